@@ -1,0 +1,67 @@
+// The constant model: nodes on a rectangular grid, joined by one spring to each of their up to six
+// neighbors (paper, section 4.1 and figure 1). Never changes after construction; what changes is
+// in LatticeState. Own: moduli, regions, fixed nodes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+struct Spring {
+  int a = 0;               // node at the lower end along `axis`
+  int b = 0;
+  int axis = 0;            // 0, 1, 2 = x, y, z
+  double stiffness = 0.0;  // N/m
+};
+
+// Directions of a node's six neighbors: 2 * axis + (1 when upwards).
+constexpr int kNeighbors = 6;
+
+class Lattice {
+ public:
+  // Throws InputError when the extent is no multiple of the spacing or a box holds no node.
+  explicit Lattice(const TissueConfig& config);
+
+  int nodeCount() const { return static_cast<int>(fixed_.size()); }
+  double spacing() const { return spacing_; }
+  const std::array<int, 3>& size() const { return size_; }  // nodes along x, y, z
+
+  // Nodes are numbered with x running fastest.
+  int node(int i, int j, int k) const { return i + size_[0] * (j + size_[1] * k); }
+  std::array<int, 3> gridIndex(int node) const;
+  Vec3 restPosition(int node) const;
+  bool isFixed(int node) const { return fixed_[static_cast<std::size_t>(node)] != 0; }
+  double mass(int node) const { return mass_[static_cast<std::size_t>(node)]; }  // kg
+
+  const std::vector<Spring>& springs() const { return springs_; }
+  // Index of the spring in `direction`, -1 at the border.
+  int springOf(int node, int direction) const {
+    return springs_of_node_[static_cast<std::size_t>(node)][static_cast<std::size_t>(direction)];
+  }
+  // Node in `direction`, -1 at the border.
+  int neighbor(int node, int direction) const;
+
+  // Nodes whose rest position is in the closed box, with a slack of a thousandth of the spacing.
+  std::vector<int> nodesIn(const Box& box) const;
+
+  LatticeState restState() const;
+
+ private:
+  void buildSprings(const TissueConfig& config);
+
+  std::array<int, 3> size_{};
+  Vec3 origin_ = Vec3::Zero();
+  double spacing_ = 0.0;
+  std::vector<std::uint8_t> fixed_;
+  std::vector<double> mass_;
+  std::vector<Spring> springs_;
+  std::vector<std::array<int, kNeighbors>> springs_of_node_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,23 @@
+// The models and methods that exist. A new one is added in registry.cpp and nowhere else.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/solver_method.h"
+#include "robot_tissue/core/tissue_model.h"
+
+namespace robot_tissue {
+
+const std::vector<std::string>& modelNames();
+const std::vector<std::string>& methodNames();
+
+// Both throw InputError on an unknown name. The model must outlive the method, the lattice both.
+std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice);
+std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Lattice& lattice,
+                                         const TissueModel& model);
+
+}  // namespace robot_tissue

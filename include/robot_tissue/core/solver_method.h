@@ -1,0 +1,24 @@
+// How the shape is found. In: the loading patches, and nodes whose balance something else has
+// disturbed (a cut, gravity, a patch they left). In and out: the shape, its last value being the
+// start. Out: what the solver says of itself.
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/loading_patch.h"
+
+namespace robot_tissue {
+
+class SolverMethod {
+ public:
+  virtual ~SolverMethod() = default;
+
+  virtual SolveReport solve(const std::vector<LoadingPatch>& patches,
+                            const std::vector<int>& disturbed, LatticeState& state) = 0;
+
+  // Longest motion of a patch in one solve that the method follows well (m).
+  virtual double patchStep() const = 0;
+};
+
+}  // namespace robot_tissue

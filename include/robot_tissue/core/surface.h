@@ -1,0 +1,37 @@
+// The displayed surface: triangles over the lattice, closed, also along cuts (own).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// A vertex follows the nodes it hangs on: x = rest + sum of weight * displacement of node.
+struct NodeWeight {
+  int node = 0;
+  double weight = 0.0;
+};
+
+struct Surface {
+  std::vector<Vec3> rest;                         // tissue frame (m)
+  std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
+  std::vector<std::array<int, 3>> triangles;      // counter-clockwise seen from outside
+  std::vector<std::uint8_t> opened;               // per triangle, 1 = face opened by a cut
+};
+
+// Faces of the cells' parts that the uncut springs hold together.
+Surface extractSurface(const Lattice& lattice, const LatticeState& state);
+
+// Deformed vertices (m, tissue frame) for node displacements (m, from rest).
+void deform(const Surface& surface, const std::vector<Vec3>& displacement,
+            std::vector<Vec3>& vertices);
+
+// Volume inside closed triangles (m^3), by the divergence theorem.
+double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices);
+
+}  // namespace robot_tissue

@@ -1,0 +1,108 @@
+// The tissue: lattice, shape, standing loads and the method that solves them, behind one door.
+// Every call either succeeds as a whole or throws InputError and changes nothing.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/surface.h"
+
+namespace robot_tissue {
+
+class SolverMethod;
+class TissueModel;
+
+struct CutReport {
+  int springs_cut = 0;  // by this cut
+  int pieces = 1;       // of the lattice, after it
+  SolveReport solve;    // balance after it
+};
+
+class Tissue {
+ public:
+  // Called after each increment of a load: 1-based increment, how many there are, what was solved.
+  using OnIncrement = std::function<void(int increment, int increments, const SolveReport&)>;
+
+  // Throws InputError: unknown model or method, a box without a node, ...
+  Tissue(const TissueConfig& tissue, const SolverConfig& solver);
+  ~Tissue();
+
+  const Lattice& lattice() const { return lattice_; }
+  const LatticeState& state() const { return state_; }
+  const Surface& surface() const { return surface_; }
+  // Deformed vertices of the surface (m, tissue frame).
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  // No tool touched it in the last solve.
+  bool isUntouched() const { return patches_.size() == named_patches_; }
+  // Longest motion of a tool that one solve follows well (m).
+  double stepLength() const;
+  // Counts the changes of the surface's triangles (cuts, resets).
+  unsigned surfaceVersion() const { return surface_version_; }
+  // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
+  const std::vector<LoadingPatch>& patches() const { return patches_; }
+  // How many of patches(), counted from the first, are named loads; the rest are the tools'.
+  std::size_t namedPatches() const { return named_patches_; }
+
+  // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
+  Vec3 nodeForce(int node) const;
+
+  // Equilibrium under what acts now.
+  SolveReport settle();
+  // Brings the step's patches to their loads in increments; they stand until released.
+  void load(const LoadStep& step, const OnIncrement& on_increment = {});
+  // What a named patch met in the last solve; zero when there is none of that name.
+  PatchAnswer answerOf(const std::string& name, const SolveReport& report) const;
+  // Takes patches away; the shape is found anew from rest under the loads that stay.
+  SolveReport release(const std::vector<std::string>& names);
+  // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
+  // left a patch.
+  SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed);
+  // Severs the springs that cross the polygon in the deformed shape, then balances.
+  CutReport cut(const std::vector<Vec3>& corners);
+  // Rest shape, bit for bit; cuts mended, loads gone.
+  void reset();
+
+ private:
+  // A patch on its way to a load, in equal increments from where it is.
+  struct Ramp {
+    std::size_t patch = 0;           // index into patches_
+    std::vector<Vec3> displacement;  // start, per node (m)
+    Vec3 force = Vec3::Zero();       // start (N)
+    LoadingPatch target;
+  };
+
+  SolveReport solve(const std::vector<int>& disturbed);
+  SolveReport solveFromRest();
+  void describeShape(SolveReport& report);
+  bool hasOnlyFiniteNumbers(const SolveReport& report) const;
+  LoadingPatch makePatch(const PatchConfig& config) const;
+  void requireOwnNodes(const std::vector<LoadingPatch>& patches) const;
+  std::size_t place(const LoadingPatch& patch);
+  Ramp makeRamp(std::size_t patch, const LoadingPatch& target) const;
+  int chooseIncrements(const std::vector<Ramp>& ramps) const;
+  SolveReport climb(const std::vector<Ramp>& ramps, int increments,
+                    const OnIncrement& on_increment);
+  Vec3 patchForce(const LoadingPatch& patch) const;
+  std::vector<int> freeNodes() const;
+  void rebuildSurface();
+
+  Lattice lattice_;
+  LatticeState state_;
+  std::unique_ptr<TissueModel> model_;
+  std::unique_ptr<SolverMethod> method_;
+  Surface surface_;
+  unsigned surface_version_ = 0;
+  double rest_volume_ = 0.0;  // m^3
+  bool has_gravity_ = false;
+  std::vector<Vec3> vertices_;  // deformed, of the surface
+  std::vector<LoadingPatch> patches_;
+  std::size_t named_patches_ = 0;
+};
+
+}  // namespace robot_tissue

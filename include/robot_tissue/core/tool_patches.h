@@ -1,0 +1,66 @@
+// Contacts -> loading patches (own; the paper takes the loading area as given).
+//
+// The contacts of one tool make one patch. A node that a contact pushed out of the tool rides on
+// it from then on, as part of one hard piece, and so sticks sideways. It leaves the patch when the
+// tool no longer holds it below its rest place and the tissue pulls it away from the tool.
+// In: contacts (tissue frame, normals from the tool into the tissue), tool poses.
+// Out: one patch a touching tool, displacements from rest (m). Fixed nodes and the nodes of named
+// loads are never taken.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/tissue.h"
+
+namespace robot_tissue {
+
+class ToolPatches {
+ public:
+  ToolPatches(const Lattice& lattice, std::vector<std::string> tool_names);
+
+  // Moves the patches with their tools; nodes that the tool has left stay behind.
+  void ride(const RobotPose& pose, const Tissue& tissue);
+  // Moves the nodes under the contacts until each contact's depth is gone.
+  void pushOut(const ContactSet& contacts, const Surface& surface, const RobotPose& pose);
+  // Lets go of every node.
+  void clear();
+
+  bool empty() const;
+  std::vector<LoadingPatch> loadingPatches() const;
+  // Nodes that left a patch in the last ride.
+  const std::vector<int>& left() const { return left_; }
+  // The tissue's displacements (m), with the patches where they are now.
+  const std::vector<Vec3>& displacement() const { return displacement_; }
+  std::vector<int> nodes(int tool) const;
+  // Mean way out of the tool over its nodes (unit, tissue frame; zero without contact).
+  Vec3 normal(int tool, const Pose& tissue_T_tool) const;
+
+ private:
+  // Where a node sits on its tool, tool frame.
+  struct Seat {
+    Vec3 point = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+  };
+  struct Support {  // of a contact: the free nodes that carry its point
+    std::vector<NodeWeight> nodes;
+    double stiffness = 0.0;  // sum of the squared weights
+  };
+
+  Support supportOf(const Contact& contact, const Surface& surface) const;
+  void seat(const Contact& contact, const Support& support, const RobotPose& pose);
+  void holdNamedLoads(const Tissue& tissue);
+
+  const Lattice& lattice_;
+  std::vector<std::string> names_;
+  std::vector<std::map<int, Seat>> seats_;  // per tool: node -> seat; ordered, so repeatable
+  std::vector<Vec3> displacement_;
+  std::vector<char> taken_;  // per node: fixed, or in a named load
+  std::vector<int> left_;
+};
+
+}  // namespace robot_tissue

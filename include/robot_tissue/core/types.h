@@ -1,0 +1,27 @@
+// Plain types that every layer shares. SI units throughout (REP 103).
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace robot_tissue {
+
+using Vec3 = Eigen::Vector3d;
+using Pose = Eigen::Isometry3d;
+
+// Closed axis-aligned box (m).
+struct Box {
+  Vec3 min = Vec3::Zero();
+  Vec3 max = Vec3::Zero();
+};
+
+// Bad input. what() is one line that names the key or argument, its value and what is allowed.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace robot_tissue

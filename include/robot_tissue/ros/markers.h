@@ -1,0 +1,41 @@
+// The tissue as rviz markers, one list marker a namespace so that rviz can switch each:
+//   surface, cut_faces            triangles of the displayed surface
+//   wireframe                     springs between surface nodes, cut ones left out
+//   fixed_nodes, loading_patches  nodes as spheres
+//   contact_normals, contact_forces   an arrow a tool; normal into the tissue, force on the tissue
+#pragma once
+
+#include <ros/time.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <string>
+
+#include "robot_tissue/pipeline/pipeline.h"
+
+namespace robot_tissue {
+
+class MarkerBuilder {
+ public:
+  // force_scale in m/N.
+  MarkerBuilder(std::string frame_id, double force_scale);
+
+  visualization_msgs::MarkerArray build(const Pipeline& pipeline, const RobotPose& pose,
+                                        const ros::Time& stamp);
+
+ private:
+  visualization_msgs::Marker make(const std::string& ns, int id, int type) const;
+  void addSurface(const Tissue& tissue, visualization_msgs::MarkerArray& array) const;
+  void addWireframe(const Tissue& tissue, visualization_msgs::MarkerArray& array);
+  void addNodes(const Tissue& tissue, visualization_msgs::MarkerArray& array) const;
+  void addContacts(const Pipeline& pipeline, const RobotPose& pose,
+                   visualization_msgs::MarkerArray& array) const;
+  void findSurfaceSprings(const Tissue& tissue);
+
+  std::string frame_id_;
+  double force_scale_;
+  ros::Time stamp_;
+  unsigned springs_version_ = 0;
+  std::vector<int> surface_springs_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,24 @@
+// The node's parameters, checked: scene keys and the node's own, from the private namespace.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "robot_tissue/core/scene.h"
+
+namespace robot_tissue {
+
+struct NodeParameters {
+  Scene scene;
+  double rate_hz = 100.0;         // ~rate: updates, upper bound
+  double marker_rate_hz = 30.0;   // ~marker_rate: markers, upper bound
+  double tf_timeout_s = 0.5;      // ~tf_timeout: an older pose is stale
+  double force_scale = 0.02;      // ~force_scale: length of a force arrow (m/N)
+  std::string robot_description_param = "robot_description";  // ~robot_description_param
+};
+
+// Throws InputError.
+NodeParameters readNodeParameters(const ros::NodeHandle& private_node);
+
+}  // namespace robot_tissue

@@ -1,0 +1,62 @@
+// The node: reads the robot's pose, steps the pipeline, publishes, answers services. It holds no
+// mechanics. Everything runs in one thread, the spinner's.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <diagnostic_updater/update_functions.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <ros/timer.h>
+#include <std_srvs/Trigger.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <robot_tissue/ApplyLoad.h>
+#include <robot_tissue/Cut.h>
+
+#include "robot_tissue/pipeline/pipeline.h"
+#include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/ros/tissue_publisher.h"
+#include "robot_tissue/ros/tool_poses.h"
+
+namespace robot_tissue {
+
+class TissueNode {
+ public:
+  // Throws InputError on a wrong parameter or robot description. A missing robot description is
+  // waited for.
+  explicit TissueNode(const ros::NodeHandle& private_node);
+
+ private:
+  void update();
+  bool robotIsKnown();
+  void report(const NodeStatus& status);
+  NodeStatus statusOf(const StepReport& report) const;
+  void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onCut(Cut::Request& request, Cut::Response& response);
+  bool onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response);
+  void advertiseServices();
+
+  ros::NodeHandle private_node_;
+  NodeParameters parameters_;
+  Pipeline pipeline_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener listener_;
+  ToolPoses tool_poses_;
+  TissuePublisher publisher_;
+  bool robot_is_known_ = false;
+  ros::Time next_robot_look_up_;
+  PoseLookUp last_look_up_;
+  NodeStatus status_;
+  diagnostic_updater::Updater diagnostics_;
+  double lowest_rate_hz_ = 0.0;
+  double highest_rate_hz_ = 0.0;
+  diagnostic_updater::FrequencyStatus frequency_;
+  ros::ServiceServer reset_service_, cut_service_, load_service_;
+  ros::Timer timer_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,61 @@
+// Everything the node publishes, in one place. Markers go out only when they changed and somebody
+// listens, at most at their own rate.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/time.h>
+
+#include <string>
+#include <vector>
+
+#include "robot_tissue/pipeline/pipeline.h"
+#include "robot_tissue/ros/markers.h"
+#include "robot_tissue/ros/node_parameters.h"
+
+namespace robot_tissue {
+
+// How the node is, in the words of TissueState.msg.
+struct NodeStatus {
+  std::string status = "OK";
+  std::string message;
+};
+
+class TissuePublisher {
+ public:
+  TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters);
+
+  // One wrench topic a tool; link names are the frames of the wrenches.
+  void setTools(const std::vector<ToolGeometry>& tools);
+
+  // After an update at a good pose. `stamp` is the pose's.
+  void publish(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp,
+               const NodeStatus& status);
+  // When there is no good pose: what is wrong, with the last good shape.
+  void publishStatus(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status);
+  // The shape without a robot: markers that are due.
+  void publishMarkers(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp);
+
+  void markersChanged() { markers_due_ = true; }
+
+ private:
+  void publishWrenches(const Pipeline& pipeline, const ros::Time& stamp);
+  void publishContacts(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp);
+
+  ros::NodeHandle private_node_;
+  std::string frame_id_;
+  MarkerBuilder marker_builder_;
+  ros::Duration marker_period_;
+  bool markers_due_ = true;
+  bool latched_markers_are_out_ = false;
+  ros::Time last_markers_;
+  NodeStatus last_status_;
+  ros::Time last_state_;
+  double publish_ms_ = 0.0;
+  bool contacts_were_empty_ = false;
+  std::vector<ToolGeometry> tools_;
+  ros::Publisher markers_, contacts_, state_;
+  std::vector<ros::Publisher> wrenches_;
+};
+
+}  // namespace robot_tissue

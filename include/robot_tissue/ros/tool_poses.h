@@ -1,0 +1,40 @@
+// Where the tools are, from TF: every tool at one common stamp, in the tissue's frame.
+#pragma once
+
+#include <ros/time.h>
+#include <tf2_ros/buffer.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/robot_pose.h"
+
+namespace robot_tissue {
+
+struct PoseLookUp {
+  enum class Status { kOk, kNoTransform, kStale };
+  Status status = Status::kNoTransform;
+  std::string message;  // one line, empty when OK
+  RobotPose pose;       // only when OK
+  ros::Time stamp;      // of the pose; now when every transform is static
+  double age_s = 0.0;
+};
+
+class ToolPoses {
+ public:
+  ToolPoses(const tf2_ros::Buffer& buffer, std::string tissue_frame, double timeout_s);
+
+  void setLinks(const std::vector<std::string>& links) { links_ = links; }
+  PoseLookUp lookUp(const ros::Time& now) const;
+  // tissue_T_frame at the newest stamp; throws InputError when there is none.
+  Pose frame(const std::string& frame_id) const;
+
+ private:
+  const tf2_ros::Buffer& buffer_;
+  std::string tissue_frame_;
+  double timeout_s_;
+  std::vector<std::string> links_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,199 @@
+#include "robot_tissue/core/surface.h"
+
+#include <algorithm>
+#include <map>
+
+#include "robot_tissue/core/cells.h"
+
+namespace robot_tissue {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// Corners of each face, counter-clockwise seen from outside; faces in the order -x +x -y +y -z +z.
+constexpr int kFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+// A part of a cut cell reaches half way to each corner it lost: the place of a corner is then
+// carried by the part's own corners nearest to it.
+struct Corner {
+  int node = 0;               // that stands at the corner
+  std::vector<int> carriers;  // the node itself, or the part's nodes nearest to it
+  bool own = true;
+};
+
+using CornerKey = std::vector<int>;  // node, carriers
+
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(const Lattice& lattice, const LatticeState& state)
+      : lattice_(lattice), state_(state), vertex_of_node_(at(lattice.nodeCount()), -1) {}
+
+  Surface build() {
+    const auto& size = lattice_.size();
+    for (int k = 0; k + 1 < size[2]; ++k) {
+      for (int j = 0; j + 1 < size[1]; ++j) {
+        for (int i = 0; i + 1 < size[0]; ++i) addCell({i, j, k});
+      }
+    }
+    for (const auto& [key, quad] : between_cells_) addQuad(quad, true);
+    return std::move(surface_);
+  }
+
+ private:
+  using Quad = std::array<Corner, 4>;
+  using QuadKey = std::array<CornerKey, 4>;
+
+  std::array<int, kCorners> partsOf(const std::array<int, 3>& cell) const {
+    return cellParts(lattice_, state_, cellCorners(lattice_, cell[0], cell[1], cell[2]));
+  }
+
+  static bool isWhole(const std::array<int, kCorners>& parts) {
+    return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
+  }
+
+  void addCell(const std::array<int, 3>& cell) {
+    const auto parts = partsOf(cell);
+    for (int face = 0; face < 6; ++face) {
+      auto neighbor = cell;
+      neighbor[at(face / 2)] += face % 2 == 1 ? 1 : -1;
+      const bool outside = neighbor[at(face / 2)] < 0 ||
+                           neighbor[at(face / 2)] + 1 >= lattice_.size()[at(face / 2)];
+      if (!outside && isWhole(parts) && isWhole(partsOf(neighbor))) continue;
+      for (int part = 0; part < kCorners; ++part) {
+        if (parts[at(part)] == part) addFace(cell, parts, part, face, outside);
+      }
+    }
+  }
+
+  void addFace(const std::array<int, 3>& cell, const std::array<int, kCorners>& parts, int part,
+               int face, bool outside) {
+    Quad quad;
+    bool touches_part = false;
+    for (int i = 0; i < 4; ++i) {
+      quad[at(i)] = makeCorner(cell, parts, part, kFaceCorners[face][i]);
+      touches_part = touches_part || quad[at(i)].own;
+    }
+    if (!touches_part) {
+      addQuad(quad, true);  // where the cut runs through the cell
+    } else if (outside) {
+      addQuad(quad, false);
+    } else {
+      addBetweenCells(quad);
+    }
+  }
+
+  // Two parts of neighboring cells that share a face hide it from each other.
+  void addBetweenCells(const Quad& quad) {
+    QuadKey key;
+    for (int i = 0; i < 4; ++i) {
+      key[at(i)] = quad[at(i)].carriers;
+      key[at(i)].insert(key[at(i)].begin(), quad[at(i)].node);
+    }
+    std::sort(key.begin(), key.end());
+    const auto [place, is_new] = between_cells_.emplace(key, quad);
+    if (!is_new) between_cells_.erase(place);
+  }
+
+  Corner makeCorner(const std::array<int, 3>& cell, const std::array<int, kCorners>& parts,
+                    int part, int corner) const {
+    const auto nodes = cellCorners(lattice_, cell[0], cell[1], cell[2]);
+    Corner made;
+    made.node = nodes[at(corner)];
+    made.own = parts[at(corner)] == part;
+    if (made.own) {
+      made.carriers = {made.node};
+      return made;
+    }
+    for (int distance = 1; distance <= 3 && made.carriers.empty(); ++distance) {
+      for (int other = 0; other < kCorners; ++other) {
+        const int apart = corner ^ other;
+        const int steps = (apart & 1) + (apart >> 1 & 1) + (apart >> 2 & 1);
+        if (parts[at(other)] == part && steps == distance) {
+          made.carriers.push_back(nodes[at(other)]);
+        }
+      }
+    }
+    return made;
+  }
+
+  // The diagonal joins the even nodes, so that the triangles are symmetric where the lattice is.
+  void addQuad(const Quad& quad, bool opened) {
+    std::array<int, 4> vertices{};
+    for (int i = 0; i < 4; ++i) vertices[at(i)] = vertex(quad[at(i)]);
+    const auto index = lattice_.gridIndex(quad[0].node);
+    const int first = (index[0] + index[1] + index[2]) % 2;
+    for (const int start : {first, first + 2}) {
+      surface_.triangles.push_back(
+          {vertices[at(start % 4)], vertices[at((start + 1) % 4)], vertices[at((start + 2) % 4)]});
+      surface_.opened.push_back(opened ? 1 : 0);
+    }
+  }
+
+  int vertex(const Corner& corner) {
+    if (corner.own) {
+      int& known = vertex_of_node_[at(corner.node)];
+      if (known < 0) known = newVertex(corner);
+      return known;
+    }
+    CornerKey key = corner.carriers;
+    key.insert(key.begin(), corner.node);
+    const auto known = lost_corners_.find(key);
+    if (known != lost_corners_.end()) return known->second;
+    return lost_corners_[key] = newVertex(corner);
+  }
+
+  int newVertex(const Corner& corner) {
+    const double share = 1.0 / static_cast<double>(corner.carriers.size());
+    Vec3 carriers_mean = Vec3::Zero();
+    std::vector<NodeWeight> weights;
+    for (const int carrier : corner.carriers) {
+      weights.push_back({carrier, share});
+      carriers_mean += share * lattice_.restPosition(carrier);
+    }
+    surface_.rest.push_back(corner.own ? lattice_.restPosition(corner.node)
+                                       : 0.5 * (carriers_mean + lattice_.restPosition(corner.node)));
+    surface_.carriers.push_back(std::move(weights));
+    return static_cast<int>(surface_.rest.size()) - 1;
+  }
+
+  const Lattice& lattice_;
+  const LatticeState& state_;
+  Surface surface_;
+  std::vector<int> vertex_of_node_;
+  std::map<CornerKey, int> lost_corners_;
+  std::map<QuadKey, Quad> between_cells_;
+};
+
+}  // namespace
+
+Surface extractSurface(const Lattice& lattice, const LatticeState& state) {
+  return SurfaceBuilder(lattice, state).build();
+}
+
+void deform(const Surface& surface, const std::vector<Vec3>& displacement,
+            std::vector<Vec3>& vertices) {
+  vertices.resize(surface.rest.size());
+  for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
+    Vec3 position = surface.rest[vertex];
+    for (const NodeWeight& carrier : surface.carriers[vertex]) {
+      position += carrier.weight * displacement[at(carrier.node)];
+    }
+    vertices[vertex] = position;
+  }
+}
+
+double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices) {
+  if (vertices.empty()) return 0.0;
+  const Vec3 origin = vertices.front();  // near the triangles, so that little cancels
+  double six_volumes = 0.0;
+  for (const auto& triangle : surface.triangles) {
+    const Vec3 a = vertices[at(triangle[0])] - origin;
+    const Vec3 b = vertices[at(triangle[1])] - origin;
+    const Vec3 c = vertices[at(triangle[2])] - origin;
+    six_volumes += a.dot(b.cross(c));
+  }
+  return six_volumes / 6.0;
+}
+
+}  // namespace robot_tissue

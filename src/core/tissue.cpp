@@ -1,0 +1,143 @@
+#include "robot_tissue/core/tissue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/cut.h"
+#include "robot_tissue/core/registry.h"
+
+namespace robot_tissue {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+}  // namespace
+
+Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
+    : lattice_(tissue),
+      state_(lattice_.restState()),
+      model_(makeModel(tissue, lattice_)),
+      method_(makeMethod(solver, lattice_, *model_)),
+      has_gravity_(!tissue.gravity.isZero()) {
+  rebuildSurface();
+}
+
+Tissue::~Tissue() = default;
+
+Vec3 Tissue::nodeForce(int node) const { return model_->nodeForce(state_, node); }
+
+double Tissue::stepLength() const { return method_->patchStep(); }
+
+SolveReport Tissue::settle() { return solve(freeNodes()); }
+
+SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
+                           const std::vector<int>& disturbed) {
+  const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  const bool one_left =
+      std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
+        return std::none_of(tool_patches.begin(), tool_patches.end(),
+                            [&](const LoadingPatch& now) { return now.name == earlier.name; });
+      });
+  patches_.erase(first_tool, patches_.end());
+  std::move(tool_patches.begin(), tool_patches.end(), std::back_inserter(patches_));
+  return one_left ? solveFromRest() : solve(disturbed);
+}
+
+CutReport Tissue::cut(const std::vector<Vec3>& corners) {
+  const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
+  CutReport report;
+  report.springs_cut = static_cast<int>(crossing.size());
+  std::vector<int> disturbed;
+  for (const int spring : crossing) {
+    state_.severed[at(spring)] = 1;
+    disturbed.push_back(lattice_.springs()[at(spring)].a);
+    disturbed.push_back(lattice_.springs()[at(spring)].b);
+  }
+  if (!crossing.empty()) {
+    state_.springs_cut += report.springs_cut;
+    state_.pieces = countPieces(lattice_, state_);
+    rebuildSurface();
+  }
+  report.pieces = state_.pieces;
+  report.solve = solve(disturbed);
+  return report;
+}
+
+void Tissue::reset() {
+  const bool was_cut = state_.springs_cut > 0;
+  state_ = lattice_.restState();
+  patches_.clear();
+  named_patches_ = 0;
+  if (was_cut) rebuildSurface();
+  vertices_ = surface_.rest;
+}
+
+SolveReport Tissue::solve(const std::vector<int>& disturbed) {
+  const std::vector<Vec3> last_good = state_.displacement;
+  SolveReport report = method_->solve(patches_, disturbed, state_);
+  if (!hasOnlyFiniteNumbers(report)) {
+    state_.displacement = last_good;
+    report = SolveReport();
+    report.status = SolveStatus::kUnconverged;
+    report.patches.resize(patches_.size());
+  }
+  describeShape(report);
+  return report;
+}
+
+// Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
+// holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
+SolveReport Tissue::solveFromRest() {
+  const std::vector<LoadingPatch> standing = patches_;
+  std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
+  SolveReport report;
+  if (has_gravity_) {
+    std::vector<LoadingPatch> none;
+    patches_.swap(none);
+    report = settle();
+    patches_.swap(none);
+  }
+  std::vector<Ramp> ramps;
+  for (std::size_t patch = 0; patch < standing.size(); ++patch) {
+    ramps.push_back(makeRamp(patch, standing[patch]));
+    ramps.back().force.setZero();
+  }
+  if (!ramps.empty()) report = climb(ramps, chooseIncrements(ramps), {});
+  return report;
+}
+
+bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
+  const auto finite = [](const Vec3& vector) { return vector.allFinite(); };
+  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
+         std::all_of(report.patches.begin(), report.patches.end(),
+                     [&](const PatchAnswer& patch) {
+                       return finite(patch.force) && finite(patch.displacement);
+                     }) &&
+         std::all_of(state_.displacement.begin(), state_.displacement.end(), finite);
+}
+
+void Tissue::describeShape(SolveReport& report) {
+  deform(surface_, state_.displacement, vertices_);
+  report.volume_ratio = enclosedVolume(surface_, vertices_) / rest_volume_;
+  report.inverted_cells = countInvertedCells(lattice_, state_);
+  if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
+}
+
+void Tissue::rebuildSurface() {
+  surface_ = extractSurface(lattice_, state_);
+  ++surface_version_;
+  rest_volume_ = enclosedVolume(surface_, surface_.rest);
+  vertices_ = surface_.rest;
+}
+
+std::vector<int> Tissue::freeNodes() const {
+  std::vector<int> nodes;
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    if (!lattice_.isFixed(node)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace robot_tissue

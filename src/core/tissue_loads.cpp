@@ -1,0 +1,183 @@
+// Tissue: named loading patches and the way to their loads.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "robot_tissue/core/solver_method.h"
+#include "robot_tissue/core/tissue.h"
+#include "robot_tissue/core/tissue_model.h"
+
+namespace robot_tissue {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+[[noreturn]] void refuse(const std::string& patch, const std::string& problem,
+                         const std::string& allowed) {
+  throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
+}
+
+}  // namespace
+
+void Tissue::load(const LoadStep& step, const OnIncrement& on_increment) {
+  std::vector<LoadingPatch> targets;
+  for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
+  requireOwnNodes(targets);
+  std::vector<Ramp> ramps;
+  for (const LoadingPatch& target : targets) ramps.push_back(makeRamp(place(target), target));
+  climb(ramps, step.increments.value_or(chooseIncrements(ramps)), on_increment);
+}
+
+SolveReport Tissue::release(const std::vector<std::string>& names) {
+  const auto named = [&](const std::string& name) {
+    const auto end = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+    return std::find_if(patches_.begin(), end,
+                        [&](const LoadingPatch& patch) { return patch.name == name; });
+  };
+  for (const std::string& name : names) {
+    if (named(name) == patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)) {
+      refuse(name, "no standing patch has this name", "the name of a patch that was loaded");
+    }
+  }
+  for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
+    patches_.erase(named(name));
+    --named_patches_;
+  }
+  return solveFromRest();
+}
+
+PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
+  for (std::size_t index = 0; index < std::min(named_patches_, report.patches.size()); ++index) {
+    if (patches_[index].name == name) return report.patches[index];
+  }
+  return {};
+}
+
+LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
+  LoadingPatch patch;
+  patch.name = config.name;
+  patch.nodes = lattice_.nodesIn(config.box);
+  if (patch.nodes.empty()) refuse(config.name, "no node in its box", "a box that holds a node");
+  if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
+                  [this](int node) { return lattice_.isFixed(node); })) {
+    refuse(config.name, "its box holds fixed nodes", "a box of free nodes");
+  }
+  if (config.force) {
+    patch.drive = LoadingPatch::Drive::kForce;
+    patch.force = *config.force;
+    return patch;
+  }
+  Vec3 displacement = Vec3::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& component = (*config.displacement)[axis];
+    patch.free_axis[axis] = !component;
+    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
+  }
+  patch.displacement.assign(patch.nodes.size(), displacement);
+  return patch;
+}
+
+// A node obeys one patch.
+void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
+  std::vector<const LoadingPatch*> owners(at(lattice_.nodeCount()), nullptr);
+  const auto claim = [&](const LoadingPatch& patch) {
+    for (const int node : patch.nodes) {
+      const LoadingPatch*& owner = owners[at(node)];
+      if (owner != nullptr && owner->name != patch.name) {
+        refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
+               "patches without a common node");
+      }
+      owner = &patch;
+    }
+  };
+  for (const LoadingPatch& patch : patches_) {
+    const auto replaced = std::find_if(patches.begin(), patches.end(), [&](const auto& other) {
+      return other.name == patch.name;
+    });
+    if (replaced == patches.end()) {
+      claim(patch);
+    } else if (replaced->nodes != patch.nodes) {
+      refuse(patch.name, "a patch of this name stands on other nodes", "the same box, or a release");
+    }
+  }
+  for (const LoadingPatch& patch : patches) claim(patch);
+}
+
+// Index of the patch among the standing ones; a new one comes after the other named ones, with no
+// load yet.
+std::size_t Tissue::place(const LoadingPatch& patch) {
+  for (std::size_t index = 0; index < named_patches_; ++index) {
+    if (patches_[index].name == patch.name) return index;
+  }
+  patches_.insert(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patch);
+  return named_patches_++;
+}
+
+Tissue::Ramp Tissue::makeRamp(std::size_t patch, const LoadingPatch& target) const {
+  Ramp ramp;
+  ramp.patch = patch;
+  ramp.target = target;
+  for (const int node : target.nodes) ramp.displacement.push_back(state_.displacement[at(node)]);
+  ramp.force = patchForce(target);
+  return ramp;
+}
+
+// Steps that the method follows well: a patch's way over the longest step; a force over what the
+// springs at rest answer to that step (own; the paper leaves the step size open).
+int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
+  double steps = 1.0;
+  for (const Ramp& ramp : ramps) {
+    if (ramp.target.drive == LoadingPatch::Drive::kForce) {
+      double stiffness = 0.0;
+      for (const int node : ramp.target.nodes) {
+        stiffness += model_->nodeStiffness(state_, node).mean();
+      }
+      const double force_step = stiffness * method_->patchStep();
+      if (force_step > 0.0) {
+        steps = std::max(steps, (ramp.target.force - ramp.force).norm() / force_step);
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < ramp.target.nodes.size(); ++i) {
+      Vec3 way = ramp.target.displacement[i] - ramp.displacement[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (ramp.target.free_axis[axis]) way[static_cast<Eigen::Index>(axis)] = 0.0;
+      }
+      steps = std::max(steps, way.norm() / method_->patchStep());
+    }
+  }
+  constexpr double kMostSteps = 100000.0;
+  constexpr double kRounding = 1e-9;  // 5 steps of a fifth are 5, not 6
+  return static_cast<int>(std::ceil(std::min(steps, kMostSteps) - kRounding));
+}
+
+SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
+                          const OnIncrement& on_increment) {
+  SolveReport report;
+  for (int increment = 1; increment <= increments; ++increment) {
+    const double share = static_cast<double>(increment) / increments;
+    for (const Ramp& ramp : ramps) {
+      LoadingPatch& patch = patches_[ramp.patch];
+      patch = ramp.target;
+      if (increment == increments) continue;
+      patch.force = ramp.force + share * (ramp.target.force - ramp.force);
+      for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
+        patch.displacement[i] =
+            ramp.displacement[i] + share * (ramp.target.displacement[i] - ramp.displacement[i]);
+      }
+    }
+    report = solve({});
+    if (on_increment) on_increment(increment, increments, report);
+  }
+  return report;
+}
+
+Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
+  Vec3 force = Vec3::Zero();
+  for (const int node : patch.nodes) force -= nodeForce(node);
+  return force;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,187 @@
+#include "robot_tissue/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kMostSubsteps = 200;
+constexpr int kPushPasses = 4;         // a curved tool's way out turns as the surface moves
+constexpr int kContactRounds = 3;      // nodes that the solve moved into the tool are pushed again
+constexpr double kDeepEnough = 0.01;   // of the spacing: penetration that is worth another round
+constexpr double kStandsStill = 1e-9;  // m
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total_ms) : total_ms_(total_ms) {}
+  ~Stopwatch() {
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start_;
+    total_ms_ += elapsed.count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& total_ms_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<std::string> namesOf(const std::vector<ToolGeometry>& tools) {
+  std::vector<std::string> names;
+  for (const ToolGeometry& tool : tools) names.push_back(tool.name);
+  return names;
+}
+
+double deepest(const ContactSet& contacts) {
+  double depth = 0.0;
+  for (const Contact& contact : contacts.contacts) depth = std::max(depth, contact.depth_m);
+  return depth;
+}
+
+// Longest way (m) that a point of the tool goes between two poses.
+double motion(const Pose& from, const Pose& to, double reach) {
+  const double angle = Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
+  return (to.translation() - from.translation()).norm() + std::abs(angle) * reach;
+}
+
+Pose between(const Pose& from, const Pose& to, double share) {
+  const Eigen::Quaterniond start(from.linear()), end(to.linear());
+  Pose pose = Pose::Identity();
+  pose.linear() = start.slerp(share, end).toRotationMatrix();
+  pose.translation() = from.translation() + share * (to.translation() - from.translation());
+  return pose;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
+                   const std::vector<ToolGeometry>& tools)
+    : tissue_(tissue, solver), finder_(tools), patches_(tissue_.lattice(), namesOf(tools)) {
+  report_.tools.resize(tools.size());
+}
+
+void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
+  finder_ = ContactFinder(tools);
+  patches_ = ToolPatches(tissue_.lattice(), namesOf(tools));
+  if (!tissue_.isUntouched()) tissue_.follow({}, {});
+  last_pose_.reset();
+  touched_ = true;
+  report_ = StepReport();
+  report_.tools.resize(tools.size());
+}
+
+const StepReport& Pipeline::step(const RobotPose& pose) {
+  report_.changed = touched_;
+  report_.too_fast = false;
+  report_.contact_ms = 0.0;
+  report_.solve_ms = 0.0;
+  report_.substeps = 0;
+  for (const RobotPose& on_the_way : substepsTo(pose)) advance(on_the_way);
+  last_pose_ = pose;
+  touched_ = false;
+  return report_;
+}
+
+// One substep, the line of the package. A second round only if the solve moved nodes into a tool.
+void Pipeline::advance(const RobotPose& pose) {
+  ++report_.substeps;
+  ContactSet contacts;
+  for (int round = 0; round < kContactRounds; ++round) {
+    patches_.ride(pose, tissue_);  // patches move with their tools
+    pushToolsOut(pose);            // robot pose -> contacts -> loading patches
+    if (tissue_.isUntouched() && patches_.empty()) break;
+    solve();  // loading patches -> solve
+    contacts = contactsAt(pose, tissue_.state().displacement);
+    if (deepest(contacts) <= kDeepEnough * tissue_.lattice().spacing()) break;
+  }
+  describeTools(pose, contacts);
+}
+
+void Pipeline::solve() {
+  const Stopwatch watch(report_.solve_ms);
+  report_.solve = tissue_.follow(patches_.loadingPatches(), patches_.left());
+  report_.changed = true;
+}
+
+void Pipeline::reset() {
+  patches_.clear();
+  tissue_.reset();
+  last_pose_.reset();
+  touched_ = true;
+}
+
+ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
+  const Stopwatch watch(report_.contact_ms);
+  deform(tissue_.surface(), displacement, vertices_);
+  return finder_.find(pose, tissue_.surface(), vertices_);
+}
+
+void Pipeline::pushToolsOut(const RobotPose& pose) {
+  for (int pass = 0; pass < kPushPasses; ++pass) {
+    const ContactSet contacts = contactsAt(pose, patches_.displacement());
+    if (contacts.contacts.empty()) return;
+    patches_.pushOut(contacts, tissue_.surface(), pose);
+  }
+}
+
+std::vector<RobotPose> Pipeline::substepsTo(const RobotPose& pose) {
+  for (const Pose& tool : pose.tools) {
+    if (!tool.matrix().allFinite()) {
+      throw InputError("pose: a tool's transform is not finite; allowed: finite numbers");
+    }
+  }
+  if (!last_pose_) return {pose};
+  double longest = 0.0;
+  for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
+    longest = std::max(longest, motion(last_pose_->tools[tool], pose.tools[tool],
+                                       finder_.reach(tool)));
+  }
+  if (longest <= kStandsStill) {
+    return touched_ ? std::vector<RobotPose>{pose} : std::vector<RobotPose>{};
+  }
+  const double steps = std::ceil(longest / tissue_.stepLength());
+  if (steps > kMostSubsteps) {
+    report_.too_fast = true;
+    patches_.clear();
+    return {pose};
+  }
+  std::vector<RobotPose> poses;
+  for (int step = 1; step < static_cast<int>(steps); ++step) {
+    poses.push_back(pose);
+    for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
+      poses.back().tools[tool] = between(last_pose_->tools[tool], pose.tools[tool], step / steps);
+    }
+  }
+  poses.push_back(pose);
+  return poses;
+}
+
+void Pipeline::describeTools(const RobotPose& pose, const ContactSet& contacts) {
+  for (std::size_t tool = 0; tool < report_.tools.size(); ++tool) {
+    ToolReport report;
+    const Pose& tissue_T_tool = pose.tools[tool];
+    report.nodes = patches_.nodes(static_cast<int>(tool));
+    report.normal = patches_.normal(static_cast<int>(tool), tissue_T_tool);
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+    for (const int node : report.nodes) {
+      const Vec3 position = tissue_.lattice().restPosition(node) +
+                            tissue_.state().displacement[static_cast<std::size_t>(node)];
+      const Vec3 node_force = tissue_.nodeForce(node);
+      report.point += position / static_cast<double>(report.nodes.size());
+      force += node_force;
+      torque += (position - tissue_T_tool.translation()).cross(node_force);
+    }
+    report.force_on_tool = tissue_T_tool.linear().transpose() * force;
+    report.torque_on_tool = tissue_T_tool.linear().transpose() * torque;
+    for (const Contact& contact : contacts.contacts) {
+      if (contact.tool != static_cast<int>(tool)) continue;
+      report.max_penetration = std::max(report.max_penetration, contact.depth_m);
+    }
+    report_.tools[tool] = std::move(report);
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,161 @@
+#include "robot_tissue/ros/markers.h"
+
+#include <utility>
+
+#include "robot_tissue/ros/conversions.h"
+
+namespace robot_tissue {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double kWireWidth = 0.0004;    // m
+constexpr double kNodeDiameter = 0.2;    // of the spacing
+constexpr double kNormalLength = 3.0;    // spacings
+constexpr double kShaftDiameter = 0.25;  // of the spacing
+constexpr double kSmallestForce = 1e-9;  // N; no arrow below
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+void setColor(Marker& marker, double red, double green, double blue, double alpha = 1.0) {
+  marker.color.r = static_cast<float>(red);
+  marker.color.g = static_cast<float>(green);
+  marker.color.b = static_cast<float>(blue);
+  marker.color.a = static_cast<float>(alpha);
+}
+
+// rviz refuses an empty list: the marker is taken away instead.
+void add(Marker marker, MarkerArray& array) {
+  if (marker.points.empty()) {
+    marker.action = Marker::DELETE;
+  }
+  array.markers.push_back(std::move(marker));
+}
+
+Vec3 nodePosition(const Tissue& tissue, int node) {
+  return tissue.lattice().restPosition(node) + tissue.state().displacement[at(node)];
+}
+
+}  // namespace
+
+MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale)
+    : frame_id_(std::move(frame_id)), force_scale_(force_scale) {}
+
+MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const RobotPose& pose,
+                                 const ros::Time& stamp) {
+  stamp_ = stamp;
+  MarkerArray array;
+  addSurface(pipeline.tissue(), array);
+  addWireframe(pipeline.tissue(), array);
+  addNodes(pipeline.tissue(), array);
+  addContacts(pipeline, pose, array);
+  return array;
+}
+
+Marker MarkerBuilder::make(const std::string& ns, int id, int type) const {
+  Marker marker;
+  marker.header.frame_id = frame_id_;
+  marker.header.stamp = stamp_;
+  marker.ns = ns;
+  marker.id = id;
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  return marker;
+}
+
+void MarkerBuilder::addSurface(const Tissue& tissue, MarkerArray& array) const {
+  Marker outside = make("surface", 0, Marker::TRIANGLE_LIST);
+  setColor(outside, 0.85, 0.47, 0.43);
+  Marker opened = make("cut_faces", 0, Marker::TRIANGLE_LIST);
+  setColor(opened, 0.55, 0.06, 0.10);
+  const Surface& surface = tissue.surface();
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    Marker& marker = surface.opened[triangle] != 0 ? opened : outside;
+    for (const int vertex : surface.triangles[triangle]) {
+      marker.points.push_back(toPoint(tissue.vertices()[at(vertex)]));
+    }
+  }
+  add(std::move(outside), array);
+  add(std::move(opened), array);
+}
+
+void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
+  if (springs_version_ != tissue.surfaceVersion()) findSurfaceSprings(tissue);
+  Marker wires = make("wireframe", 0, Marker::LINE_LIST);
+  wires.scale.x = kWireWidth;
+  setColor(wires, 0.30, 0.13, 0.12);
+  for (const int spring : surface_springs_) {
+    const Spring& ends = tissue.lattice().springs()[at(spring)];
+    wires.points.push_back(toPoint(nodePosition(tissue, ends.a)));
+    wires.points.push_back(toPoint(nodePosition(tissue, ends.b)));
+  }
+  add(std::move(wires), array);
+}
+
+void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
+  const Lattice& lattice = tissue.lattice();
+  std::vector<char> on_surface(at(lattice.nodeCount()), 0);
+  for (const auto& carriers : tissue.surface().carriers) {
+    if (carriers.size() == 1) on_surface[at(carriers.front().node)] = 1;
+  }
+  surface_springs_.clear();
+  for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
+    const Spring& ends = lattice.springs()[spring];
+    if (tissue.state().severed[spring] == 0 && on_surface[at(ends.a)] != 0 &&
+        on_surface[at(ends.b)] != 0) {
+      surface_springs_.push_back(static_cast<int>(spring));
+    }
+  }
+  springs_version_ = tissue.surfaceVersion();
+}
+
+void MarkerBuilder::addNodes(const Tissue& tissue, MarkerArray& array) const {
+  const double diameter = kNodeDiameter * tissue.lattice().spacing();
+  Marker fixed = make("fixed_nodes", 0, Marker::SPHERE_LIST);
+  Marker loaded = make("loading_patches", 0, Marker::SPHERE_LIST);
+  fixed.scale.x = fixed.scale.y = fixed.scale.z = diameter;
+  loaded.scale.x = loaded.scale.y = loaded.scale.z = 2.0 * diameter;
+  setColor(fixed, 0.25, 0.25, 0.30);
+  setColor(loaded, 1.0, 0.80, 0.10);
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(nodePosition(tissue, node)));
+  }
+  for (const LoadingPatch& patch : tissue.patches()) {
+    for (const int node : patch.nodes) loaded.points.push_back(toPoint(nodePosition(tissue, node)));
+  }
+  add(std::move(fixed), array);
+  add(std::move(loaded), array);
+}
+
+void MarkerBuilder::addContacts(const Pipeline& pipeline, const RobotPose& pose,
+                                MarkerArray& array) const {
+  const double spacing = pipeline.tissue().lattice().spacing();
+  for (std::size_t tool = 0; tool < pipeline.report().tools.size(); ++tool) {
+    const ToolReport& report = pipeline.report().tools[tool];
+    Marker normal = make("contact_normals", static_cast<int>(tool), Marker::ARROW);
+    Marker force = make("contact_forces", static_cast<int>(tool), Marker::ARROW);
+    for (Marker* arrow : {&normal, &force}) {
+      arrow->scale.x = kShaftDiameter * spacing;
+      arrow->scale.y = 2.0 * kShaftDiameter * spacing;
+      arrow->scale.z = 0.0;
+    }
+    setColor(normal, 0.10, 0.45, 0.85);
+    setColor(force, 0.10, 0.65, 0.20);
+    if (!report.nodes.empty() && tool < pose.tools.size()) {
+      const Vec3 force_on_tissue = -(pose.tools[tool].linear() * report.force_on_tool);
+      const Vec3 start = report.point - kNormalLength * spacing * report.normal;
+      if (!report.normal.isZero()) normal.points = {toPoint(start), toPoint(report.point)};
+      if (force_on_tissue.norm() > kSmallestForce) {
+        force.points = {toPoint(report.point - force_scale_ * force_on_tissue),
+                        toPoint(report.point)};
+      }
+    }
+    add(std::move(normal), array);
+    add(std::move(force), array);
+  }
+}
+
+}  // namespace robot_tissue

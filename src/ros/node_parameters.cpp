@@ -1,0 +1,75 @@
+#include "robot_tissue/ros/node_parameters.h"
+
+#include <XmlRpcValue.h>
+#include <yaml-cpp/yaml.h>
+
+#include <sstream>
+#include <vector>
+
+#include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/scene_gate.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kHighestRate = 10000.0;  // Hz
+
+const std::vector<std::string> kOwnKeys = {"rate", "marker_rate", "tf_timeout", "force_scale",
+                                           "robot_description_param"};
+
+YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
+  switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeStruct: {
+      YAML::Node map(YAML::NodeType::Map);
+      for (auto& [key, entry] : value) map[key] = toYaml(entry);
+      return map;
+    }
+    case XmlRpc::XmlRpcValue::TypeArray: {
+      YAML::Node list(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
+      return list;
+    }
+    case XmlRpc::XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return YAML::Node(static_cast<double>(value));
+    default: {
+      std::ostringstream text;
+      text << value;
+      return YAML::Node(text.str());
+    }
+  }
+}
+
+}  // namespace
+
+NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
+  XmlRpc::XmlRpcValue all;
+  YAML::Node root(YAML::NodeType::Map);
+  if (private_node.getParam(private_node.getNamespace(), all) &&
+      all.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
+    root = toYaml(all);
+  }
+  const std::string name = private_node.getNamespace();
+  const auto own = [&](const char* key) { return Entry(root[key], key, name); };
+  SceneSource source;
+  source.name = name;
+  source.user = SceneUser::kNode;
+  source.other_keys = kOwnKeys;
+
+  NodeParameters parameters;
+  const Range rate{0.0, kHighestRate, true, false, "Hz"};
+  parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
+  parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
+  parameters.tf_timeout_s = own("tf_timeout").numberOr(parameters.tf_timeout_s, Range::positive("s"));
+  parameters.force_scale =
+      own("force_scale").numberOr(parameters.force_scale, Range::positive("m/N"));
+  if (own("robot_description_param").given()) {
+    parameters.robot_description_param =
+        own("robot_description_param").word("the name of a parameter that holds a URDF");
+  }
+  parameters.scene = parseScene(root, source);
+  return parameters;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,131 @@
+#include "robot_tissue/ros/tissue_node.h"
+
+#include <string>
+
+#include "robot_tissue/contact/tool_geometry.h"
+
+namespace robot_tissue {
+namespace {
+
+const ros::Duration kRobotLookUpPeriod(1.0);
+constexpr double kRateTolerance = 0.1;
+
+}  // namespace
+
+TissueNode::TissueNode(const ros::NodeHandle& private_node)
+    : private_node_(private_node),
+      parameters_(readNodeParameters(private_node_)),
+      pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}),
+      listener_(buffer_),
+      tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
+      publisher_(private_node_, parameters_),
+      lowest_rate_hz_(parameters_.rate_hz),
+      highest_rate_hz_(parameters_.rate_hz),
+      frequency_(diagnostic_updater::FrequencyStatusParam(&lowest_rate_hz_, &highest_rate_hz_,
+                                                          kRateTolerance),
+                 "update rate") {
+  for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
+  robotIsKnown();
+  if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
+  advertiseServices();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add(frequency_);
+  diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
+  diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
+  timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
+                                     [this](const ros::TimerEvent&) { update(); });
+}
+
+// Robot pose -> contacts -> loading patches -> solve (in Pipeline::step) -> publish.
+void TissueNode::update() {
+  frequency_.tick();
+  diagnostics_.update();
+  if (!robotIsKnown()) return report({"NO_ROBOT", "parameter '" +
+                                                      parameters_.robot_description_param +
+                                                      "' is not set: waiting for a URDF"});
+  last_look_up_ = tool_poses_.lookUp(ros::Time::now());
+  if (last_look_up_.status != PoseLookUp::Status::kOk) {
+    const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;
+    return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});
+  }
+  const StepReport& step = pipeline_.step(last_look_up_.pose);
+  status_ = statusOf(step);
+  if (step.too_fast) ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
+  publisher_.publish(pipeline_, last_look_up_.pose, last_look_up_.stamp, status_);
+}
+
+// Loads the tools once the robot's description is there; without tools none is needed.
+bool TissueNode::robotIsKnown() {
+  if (robot_is_known_) return true;
+  const auto& tools = parameters_.scene.tools;
+  const ros::Time now = ros::Time::now();
+  if (!tools.empty()) {
+    if (now < next_robot_look_up_) return false;
+    next_robot_look_up_ = now + kRobotLookUpPeriod;
+    std::string path, urdf;
+    const std::string& name = parameters_.robot_description_param;
+    if (!private_node_.searchParam(name, path) || !private_node_.getParam(path, urdf)) return false;
+    const LoadedTools loaded = loadTools(urdf, tools);
+    for (const std::string& warning : loaded.warnings) ROS_WARN_STREAM(warning);
+    pipeline_.setTools(loaded.tools);
+    for (const std::string& warning : pipeline_.toolWarnings()) ROS_WARN_STREAM(warning);
+    publisher_.setTools(loaded.tools);
+    std::vector<std::string> links;
+    for (const ToolGeometry& tool : loaded.tools) links.push_back(tool.link);
+    tool_poses_.setLinks(links);
+  }
+  robot_is_known_ = true;
+  return true;
+}
+
+// The last good shape stays; what is wrong is said.
+void TissueNode::report(const NodeStatus& status) {
+  if (status.status != status_.status) ROS_WARN_STREAM(status.status << ": " << status.message);
+  status_ = status;
+  const ros::Time now = ros::Time::now();
+  publisher_.publishMarkers(pipeline_, last_look_up_.pose, now);
+  publisher_.publishStatus(pipeline_, now, status_);
+}
+
+NodeStatus TissueNode::statusOf(const StepReport& report) const {
+  if (report.too_fast) {
+    return {"TOO_FAST", "a tool jumped further than can be followed: its contact began anew"};
+  }
+  switch (report.solve.status) {
+    case SolveStatus::kOk:
+      return {};
+    case SolveStatus::kLate:
+      return {"LATE", "the solver ran out of its budget (solver.max_ms)"};
+    case SolveStatus::kUnconverged:
+      return {"UNCONVERGED", "a layer or patch did not come to balance"};
+    case SolveStatus::kInverted:
+      return {"INVERTED", std::to_string(report.solve.inverted_cells) + " cells are inverted"};
+  }
+  return {};
+}
+
+void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (!robot_is_known_) {
+    status.summary(DiagnosticStatus::ERROR, "no robot description");
+  } else if (last_look_up_.status == PoseLookUp::Status::kOk) {
+    status.summary(DiagnosticStatus::OK, "fresh");
+  } else {
+    status.summary(DiagnosticStatus::ERROR, last_look_up_.message);
+  }
+  status.add("age of the pose (s)", last_look_up_.age_s);
+}
+
+void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  const SolveReport& solve = pipeline_.report().solve;
+  const bool good = solve.status == SolveStatus::kOk;
+  status.summary(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, toString(solve.status));
+  status.add("solve (ms)", pipeline_.report().solve_ms);
+  status.add("contact (ms)", pipeline_.report().contact_ms);
+  status.add("residual", solve.residual);
+  status.add("error estimate", solve.error_estimate);
+  status.add("active nodes", solve.active_nodes);
+}
+
+}  // namespace robot_tissue

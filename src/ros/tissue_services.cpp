@@ -1,0 +1,111 @@
+// TissueNode's services: a request succeeds as a whole or leaves everything as it was.
+#include <string>
+#include <vector>
+
+#include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/tissue_node.h"
+
+namespace robot_tissue {
+namespace {
+
+std::string solved(const SolveReport& report) {
+  return report.status == SolveStatus::kOk ? std::string() : std::string("; ") + toString(report.status);
+}
+
+void requireFinite(const Vec3& vector, const std::string& key) {
+  if (!vector.allFinite()) throw InputError(key + ": not finite; allowed: finite numbers");
+}
+
+PatchConfig patchOf(const ApplyLoad::Request& request) {
+  PatchConfig patch;
+  patch.name = request.name;
+  patch.box = {toVec3(request.min), toVec3(request.max)};
+  requireFinite(patch.box.min, "min");
+  requireFinite(patch.box.max, "max");
+  if ((patch.box.min.array() > patch.box.max.array()).any()) {
+    throw InputError("min: above max; allowed: min <= max along every axis");
+  }
+  if (request.displacement.size() + request.force.size() > 1) {
+    throw InputError("displacement, force: " + std::to_string(request.displacement.size()) +
+                     " and " + std::to_string(request.force.size()) +
+                     " given; allowed: one of either, or none to release the patch");
+  }
+  if (!request.displacement.empty()) {
+    const Vec3 displacement = toVec3(request.displacement.front());
+    requireFinite(displacement, "displacement");
+    patch.displacement = {{displacement.x(), displacement.y(), displacement.z()}};
+  } else {
+    const Vec3 force = toVec3(request.force.front());
+    requireFinite(force, "force");
+    patch.force = force;
+  }
+  return patch;
+}
+
+}  // namespace
+
+void TissueNode::advertiseServices() {
+  reset_service_ = private_node_.advertiseService("reset", &TissueNode::onReset, this);
+  cut_service_ = private_node_.advertiseService("cut", &TissueNode::onCut, this);
+  load_service_ = private_node_.advertiseService("apply_load", &TissueNode::onApplyLoad, this);
+}
+
+bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  pipeline_.reset();
+  if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
+  publisher_.markersChanged();
+  response.success = true;
+  response.message = "rest shape, no cuts, no loads";
+  return true;
+}
+
+bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
+  try {
+    const Pose tissue_T_blade = tool_poses_.frame(request.header.frame_id);
+    std::vector<Vec3> corners;
+    for (const auto& corner : request.corners) corners.push_back(tissue_T_blade * toVec3(corner));
+    const CutReport cut = pipeline_.tissue().cut(corners);
+    pipeline_.touch();
+    publisher_.markersChanged();
+    response.success = true;
+    response.springs_cut = cut.springs_cut;
+    response.pieces = cut.pieces;
+    response.message = cut.springs_cut > 0 ? std::to_string(cut.springs_cut) + " springs cut"
+                                           : "no spring crosses the polygon";
+    response.message += solved(cut.solve);
+  } catch (const InputError& error) {
+    response.success = false;
+    response.message = error.what();
+    response.pieces = pipeline_.tissue().state().pieces;
+  }
+  return true;
+}
+
+bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
+  try {
+    if (request.name.empty()) throw InputError("name: empty; allowed: the name of a patch");
+    if (request.displacement.empty() && request.force.empty()) {
+      pipeline_.tissue().release({request.name});
+      response.message = "released";
+    } else {
+      SolveReport last;
+      LoadStep step;
+      step.patches.push_back(patchOf(request));
+      pipeline_.tissue().load(step,
+                              [&](int, int, const SolveReport& report) { last = report; });
+      const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
+      response.force = toVector3(answer.force);
+      response.displacement = toVector3(answer.displacement);
+      response.message = "loaded" + solved(last);
+    }
+    response.success = true;
+    pipeline_.touch();
+    publisher_.markersChanged();
+  } catch (const InputError& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+}  // namespace robot_tissue
