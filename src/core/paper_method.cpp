@@ -21,6 +21,15 @@ std::uint8_t maskOf(const LoadingPatch& patch) {
   return mask;
 }
 
+// Mean as the first node's plus the mean difference to it: exact for a patch that moved as one.
+Vec3 meanDisplacement(const LoadingPatch& patch, const LatticeState& state) {
+  if (patch.nodes.empty()) return Vec3::Zero();
+  const Vec3& first = state.displacement[at(patch.nodes.front())];
+  Vec3 difference = Vec3::Zero();
+  for (const int node : patch.nodes) difference += state.displacement[at(node)] - first;
+  return first + difference / static_cast<double>(patch.nodes.size());
+}
+
 Vec3 keepAxes(const Vec3& vector, std::uint8_t mask) {
   return {(mask & 1) != 0 ? vector.x() : 0.0, (mask & 2) != 0 ? vector.y() : 0.0,
           (mask & 4) != 0 ? vector.z() : 0.0};
@@ -266,8 +275,7 @@ void PaperMethod::describe(const std::vector<LoadingPatch>& patches, const Latti
   for (const LoadingPatch& patch : patches) {
     PatchAnswer answer;
     answer.force = patchForce(patch, state);
-    for (const int node : patch.nodes) answer.displacement += state.displacement[at(node)];
-    answer.displacement /= static_cast<double>(std::max<std::size_t>(1, patch.nodes.size()));
+    answer.displacement = meanDisplacement(patch, state);
     report.patches.push_back(answer);
     if (maskOf(patch) == kAllAxes) report.active_nodes += static_cast<int>(patch.nodes.size());
   }

@@ -14,7 +14,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 }  // namespace
 
 ToolPatches::ToolPatches(const Lattice& lattice, std::vector<std::string> tool_names)
-    : lattice_(lattice), names_(std::move(tool_names)), seats_(names_.size()) {}
+    : lattice_(&lattice), names_(std::move(tool_names)), seats_(names_.size()) {}
 
 void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   displacement_ = tissue.state().displacement;
@@ -24,7 +24,7 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
     const Pose& tissue_T_tool = pose.tools[tool];
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
       const int node = seat->first;
-      const Vec3 moved = tissue_T_tool * seat->second.point - lattice_.restPosition(node);
+      const Vec3 moved = tissue_T_tool * seat->second.point - lattice_->restPosition(node);
       const Vec3 normal = tissue_T_tool.linear() * seat->second.normal;
       const bool lifted_off = normal.dot(moved) < 0.0;
       const bool pulled_away = normal.dot(tissue.nodeForce(node)) >= 0.0;
@@ -55,7 +55,7 @@ void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
     starts.push_back(pointOf(supports.back()));
   }
   std::vector<char> pushed(supports.size(), 0);
-  const double out = kPushedOut * lattice_.spacing();
+  const double out = kPushedOut * lattice_->spacing();
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
     double deepest = 0.0;
     for (std::size_t i = 0; i < supports.size(); ++i) {
@@ -139,16 +139,16 @@ void ToolPatches::seat(const Contact& contact, const Support& support, const Rob
     }
     const Pose tool_T_tissue = pose.tools[owner].inverse();
     Seat& seat = seats_[owner][carrier.node];
-    seat.point = tool_T_tissue * Vec3(lattice_.restPosition(carrier.node) +
+    seat.point = tool_T_tissue * Vec3(lattice_->restPosition(carrier.node) +
                                       displacement_[at(carrier.node)]);
     if (owner == at(contact.tool)) seat.normal = tool_T_tissue.linear() * contact.normal;
   }
 }
 
 void ToolPatches::holdNamedLoads(const Tissue& tissue) {
-  taken_.assign(at(lattice_.nodeCount()), 0);
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    if (lattice_.isFixed(node)) taken_[at(node)] = 1;
+  taken_.assign(at(lattice_->nodeCount()), 0);
+  for (int node = 0; node < lattice_->nodeCount(); ++node) {
+    if (lattice_->isFixed(node)) taken_[at(node)] = 1;
   }
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
     for (const int node : tissue.patches()[patch].nodes) taken_[at(node)] = 1;

@@ -104,7 +104,7 @@ NodeStatus TissueNode::statusOf(const StepReport& report) const {
   return {};
 }
 
-void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   if (!robot_is_known_) {
     status.summary(DiagnosticStatus::ERROR, "no robot description");
@@ -116,7 +116,7 @@ void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("age of the pose (s)", last_look_up_.age_s);
 }
 
-void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const SolveReport& solve = pipeline_.report().solve;
   const bool good = solve.status == SolveStatus::kOk;

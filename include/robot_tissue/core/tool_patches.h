@@ -55,7 +55,7 @@ class ToolPatches {
   void seat(const Contact& contact, const Support& support, const RobotPose& pose);
   void holdNamedLoads(const Tissue& tissue);
 
-  const Lattice& lattice_;
+  const Lattice* lattice_;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;
   std::vector<std::map<int, Seat>> seats_;  // per tool: node -> seat; ordered, so repeatable
   std::vector<Vec3> displacement_;

@@ -32,8 +32,8 @@ class TissueNode {
   bool robotIsKnown();
   void report(const NodeStatus& status);
   NodeStatus statusOf(const StepReport& report) const;
-  void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) const;
-  void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onCut(Cut::Request& request, Cut::Response& response);

@@ -1,0 +1,79 @@
+// One value of a scene with its key's full path, and the typed, ranged ways to read it.
+// Every reading function throws InputError with one line that names the source, the path, the
+// value as written and what is allowed. Nothing is clipped or converted in silence.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// Numbers beyond this are refused everywhere, so that products of a few of them stay finite.
+constexpr double kLargestNumber = 1e15;
+constexpr double kSmallestPositive = 1e-12;
+
+// Allowed numbers: an interval, each end closed unless said to be open.
+struct Range {
+  double lowest = -kLargestNumber;
+  double highest = kLargestNumber;
+  bool lowest_open = false;
+  bool highest_open = false;
+  std::string unit;
+
+  static Range any(const std::string& unit) {
+    return {-kLargestNumber, kLargestNumber, false, false, unit};
+  }
+  static Range positive(const std::string& unit) {
+    return {kSmallestPositive, kLargestNumber, false, false, unit};
+  }
+  static Range atLeastZero(const std::string& unit) {
+    return {0.0, kLargestNumber, false, false, unit};
+  }
+  static Range closed(double lowest, double highest) { return {lowest, highest, false, false, ""}; }
+  static Range open(double lowest, double highest) { return {lowest, highest, true, true, ""}; }
+
+  bool contains(double value) const;
+  std::string text() const;  // "a number from 0.25 to 0.49"
+};
+
+class Entry {
+ public:
+  // `source`: file or node that the value stands in. `path`: of the key, empty for the whole scene.
+  // An undefined node is a missing entry: reading it fails with what would be allowed.
+  Entry(const YAML::Node& node, std::string path, std::string source, int parent_line = 0);
+
+  bool given() const { return node_.IsDefined(); }
+  const YAML::Node& node() const { return node_; }
+  const std::string& path() const { return path_; }
+  Entry child(const YAML::Node& node, const std::string& key) const;
+
+  double number(const Range& range) const;
+  double numberOr(double otherwise, const Range& range) const;
+  int integer(int lowest, int highest) const;
+  int integerOr(int otherwise, int lowest, int highest) const;
+  std::string word(const std::string& allowed) const;  // not empty, `allowed` says what it is
+  Vec3 vec3(const Range& range) const;
+  Vec3 vec3Or(const Vec3& otherwise, const Range& range) const;
+  // `planned` names are known but refused as not available yet.
+  std::string choice(const std::vector<std::string>& available,
+                     const std::vector<std::string>& planned) const;
+  // `what` names the entries, e.g. "patches".
+  std::vector<Entry> list(std::size_t at_least, const std::string& what) const;
+  bool isWord(const std::string& word) const;
+
+  // "scene.yaml:7: tissue.spacing = -1: must be ..."; `reason` is the part after the value.
+  [[noreturn]] void fail(const std::string& reason) const;
+  std::string line(const std::string& reason) const;
+
+ private:
+  YAML::Node node_;
+  std::string path_;
+  std::string source_;
+  int line_ = 0;  // 1-based, 0 = unknown
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,52 @@
+// The lattice's nodes by arithmetic alone: answers which nodes a box holds before any is made.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// The nodes of a box: along each axis the indices first .. last, none when first > last.
+struct NodeRange {
+  std::array<int, 3> first{};
+  std::array<int, 3> last{};
+
+  bool empty() const;
+  bool intersects(const NodeRange& other) const;
+};
+
+class Grid {
+ public:
+  // The shape's extent must be a whole multiple of the spacing, in reach of int.
+  Grid(const Box& shape, double spacing);
+
+  // Closed box with a slack of a thousandth of the spacing.
+  NodeRange nodesIn(const Box& box) const;
+  // True when the box holds the center of a cell between eight nodes: cells carry the material.
+  bool holdsCell(const Box& box) const;
+  // Position of the outermost nodes, for messages.
+  const Box& shape() const { return shape_; }
+  double spacing() const { return spacing_; }
+
+ private:
+  // Indices of the points that stand `offset` spacings above the nodes.
+  NodeRange pointsIn(const Box& box, double offset) const;
+
+  Box shape_;
+  double spacing_;
+  std::array<int, 3> size_{};
+};
+
+// True when every extent is a whole multiple of the spacing to a thousandth of it.
+bool spacingFits(const Vec3& extent, double spacing);
+
+// Nodes of a grid whose spacing fits; a double, as the number may be absurd.
+double nodeCount(const Vec3& extent, double spacing);
+
+// The nearest spacings below and above that fit all three extents; fewer when there are none.
+std::vector<double> nearestSpacings(const Vec3& extent, double spacing);
+
+}  // namespace robot_tissue

@@ -1,0 +1,40 @@
+// The parts of the scene gate, one function per part of a scene. All throw InputError.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/grid.h"
+#include "robot_tissue/scene/map_reader.h"
+#include "robot_tissue/scene/scene_gate.h"
+
+namespace robot_tissue {
+
+using Remarks = std::vector<std::string>;
+
+TissueConfig readTissue(const Entry& entry, Remarks& remarks);
+
+// Keys min and max of a map, as nodes of the grid; refused when there are none.
+Box readNodeBox(const MapReader& map, const Grid& grid);
+
+SolverConfig readSolver(const Entry& entry, const SolverOverrides& overrides, Remarks& remarks);
+
+// Follows the program through: which patches stand, and whose nodes they hold.
+std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue);
+
+// A standing patch on the way through the steps.
+struct StandingPatch {
+  std::string name;
+  NodeRange nodes;
+};
+LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
+                  std::vector<StandingPatch>& standing);
+
+std::vector<ToolConfig> readTools(const Entry& entry, const std::string& scene_folder);
+
+ToolShape readToolShape(const Entry& entry, const std::string& scene_folder);
+
+}  // namespace robot_tissue

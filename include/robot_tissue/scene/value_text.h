@@ -1,0 +1,24 @@
+// Text of values in messages: always one line, never long.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <optional>
+#include <string>
+
+namespace robot_tissue {
+
+// The value in YAML's flow style, cut short after some 60 characters.
+std::string valueText(const YAML::Node& node);
+
+// Control characters written as \n or ?, so that the text stays on its line.
+std::string onOneLine(const std::string& text);
+
+// Short decimal text, up to nine digits.
+std::string numberText(double value);
+
+// Decimal numbers as YAML has them; empty for anything else, also for inf, nan and 010 (which one
+// YAML version reads as 10 and another as 8).
+std::optional<double> parseNumber(const std::string& text);
+
+}  // namespace robot_tissue

@@ -1,0 +1,82 @@
+#include "robot_tissue/scene/grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSlack = 1e-3;  // of the spacing
+
+}  // namespace
+
+bool NodeRange::empty() const {
+  return first[0] > last[0] || first[1] > last[1] || first[2] > last[2];
+}
+
+bool NodeRange::intersects(const NodeRange& other) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (std::max(first[axis], other.first[axis]) > std::min(last[axis], other.last[axis])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+Grid::Grid(const Box& shape, double spacing) : shape_(shape), spacing_(spacing) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = std::round((shape.max[axis] - shape.min[axis]) / spacing);
+    size_[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + 1;
+  }
+}
+
+NodeRange Grid::nodesIn(const Box& box) const { return pointsIn(box, 0.0); }
+
+bool Grid::holdsCell(const Box& box) const { return !pointsIn(box, 0.5).empty(); }
+
+NodeRange Grid::pointsIn(const Box& box, double offset) const {
+  NodeRange range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double end = size_[a] - (offset > 0.0 ? 1 : 0);  // a cell less than nodes
+    const double lower = (box.min[axis] - shape_.min[axis]) / spacing_ - offset - kSlack;
+    const double upper = (box.max[axis] - shape_.min[axis]) / spacing_ - offset + kSlack;
+    range.first[a] = static_cast<int>(std::clamp(std::ceil(lower), 0.0, end));
+    range.last[a] = static_cast<int>(std::clamp(std::floor(upper), -1.0, end - 1.0));
+  }
+  return range;
+}
+
+bool spacingFits(const Vec3& extent, double spacing) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = extent[axis] / spacing;
+    if (std::round(cells) < 1.0 || std::abs(cells - std::round(cells)) > kSlack) return false;
+  }
+  return true;
+}
+
+double nodeCount(const Vec3& extent, double spacing) {
+  double count = 1.0;
+  for (int axis = 0; axis < 3; ++axis) count *= std::round(extent[axis] / spacing) + 1.0;
+  return count;
+}
+
+std::vector<double> nearestSpacings(const Vec3& extent, double spacing) {
+  constexpr double kMostTried = 10000.0;
+  const double shortest = extent.minCoeff();
+  const double cells = shortest / spacing;  // may be below 1
+  std::vector<double> found;
+  for (double n = std::max(1.0, std::ceil(cells)); n < cells + kMostTried; ++n) {
+    if (!spacingFits(extent, shortest / n)) continue;
+    found.push_back(shortest / n);
+    break;
+  }
+  for (double n = std::floor(cells); n >= std::max(1.0, cells - kMostTried); --n) {
+    if (!spacingFits(extent, shortest / n)) continue;
+    found.push_back(shortest / n);
+    break;
+  }
+  return found;
+}
+
+}  // namespace robot_tissue

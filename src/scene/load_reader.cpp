@@ -1,0 +1,107 @@
+// A load step: rigid patches, each on nodes of its own.
+#include <algorithm>
+
+#include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+bool sameNodes(const NodeRange& a, const NodeRange& b) {
+  return a.first == b.first && a.last == b.last;
+}
+
+// Names become fields of CSV files and namespaces of markers.
+std::string readPatchName(const Entry& entry) {
+  const std::string allowed = "a name without commas, quotes and control characters";
+  const std::string name = entry.word(allowed);
+  const bool bad = std::any_of(name.begin(), name.end(), [](char c) {
+    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+  if (bad) entry.fail("must be " + allowed);
+  return name;
+}
+
+std::array<std::optional<double>, 3> readDisplacement(const Entry& entry) {
+  const std::string allowed = "must be a list of 3 entries, each a number in m or the word free";
+  if (!entry.node().IsSequence() || entry.node().size() != 3) entry.fail(allowed);
+  std::array<std::optional<double>, 3> displacement;
+  const std::vector<Entry> components = entry.list(3, "numbers");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (components[axis].isWord("free")) continue;
+    const YAML::Node& node = components[axis].node();
+    if (!node.IsScalar() || !parseNumber(node.Scalar())) {
+      components[axis].fail("must be a number in m or the word free");
+    }
+    displacement[axis] = components[axis].number(Range::any("m"));
+  }
+  if (std::none_of(displacement.begin(), displacement.end(),
+                   [](const auto& component) { return component.has_value(); })) {
+    entry.fail("must have at least one number, all three are free");
+  }
+  return displacement;
+}
+
+void readDrive(const MapReader& map, PatchConfig& patch) {
+  const Entry displacement = map["displacement"];
+  const Entry force = map["force"];
+  if (displacement.given() == force.given()) {
+    map.entry().fail(std::string(force.given() ? "has both" : "has neither of") +
+                     " displacement and force, must have exactly one");
+  }
+  if (force.given()) {
+    patch.force = force.vec3(Range::any("N"));
+  } else {
+    patch.displacement = readDisplacement(displacement);
+  }
+}
+
+// Against the fixed nodes and against the patches that stand already.
+void checkNodes(const Entry& entry, const StandingPatch& patch, const std::vector<NodeRange>& fixed,
+                const std::vector<StandingPatch>& standing) {
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    if (!patch.nodes.intersects(fixed[i])) continue;
+    entry.fail("the patch holds nodes of tissue.fixed[" + std::to_string(i) +
+               "], must hold only nodes that can move");
+  }
+  for (const StandingPatch& other : standing) {
+    if (other.name == patch.name && !sameNodes(other.nodes, patch.nodes)) {
+      entry.fail("patch " + patch.name +
+                 " stands on other nodes, must be released first or keep its box");
+    }
+    if (other.name != patch.name && other.nodes.intersects(patch.nodes)) {
+      entry.fail("the patch shares nodes with standing patch " + other.name +
+                 ", must have nodes of its own");
+    }
+  }
+}
+
+}  // namespace
+
+LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
+                  std::vector<StandingPatch>& standing) {
+  const MapReader map(entry, {"increments", "patches"});
+  LoadStep step;
+  if (map["increments"].given()) step.increments = map["increments"].integer(1, 100000);
+  std::vector<std::string> names;
+  for (const Entry& patch_entry : map["patches"].list(1, "patches")) {
+    const MapReader patch_map(patch_entry, {"name", "min", "max", "displacement", "force"});
+    PatchConfig patch;
+    patch.name = readPatchName(patch_map["name"]);
+    if (std::find(names.begin(), names.end(), patch.name) != names.end()) {
+      patch_map["name"].fail("an earlier patch of this load has the name, must be unique");
+    }
+    names.push_back(patch.name);
+    patch.box = readNodeBox(patch_map, grid);
+    readDrive(patch_map, patch);
+    const StandingPatch stands{patch.name, grid.nodesIn(patch.box)};
+    checkNodes(patch_entry, stands, fixed, standing);
+    const bool again = std::any_of(standing.begin(), standing.end(),
+                                   [&](const auto& other) { return other.name == patch.name; });
+    if (!again) standing.push_back(stands);
+    step.patches.push_back(patch);
+  }
+  return step;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,82 @@
+#include "robot_tissue/scene/scene_gate.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+std::string readFile(const std::string& path) {
+  const std::string allowed = ": must be a scene file that can be read";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(onOneLine(path) + ": is a folder" + allowed);
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.is_open() && !file.bad()) return text;
+  throw InputError(onOneLine(path) + ": " + std::strerror(errno != 0 ? errno : EIO) + allowed);
+}
+
+YAML::Node parseYaml(const std::string& text, const std::string& path) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw InputError(onOneLine(path) + ": has " + std::to_string(documents.size()) +
+                       " YAML documents, must have one");
+    }
+    return documents.empty() ? YAML::Node() : documents.front();
+  } catch (const YAML::Exception& error) {
+    const std::string at = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
+    throw InputError(onOneLine(path) + at + ": not YAML: " + onOneLine(error.msg));
+  }
+}
+
+void readTools(const Entry& tools, const SceneSource& source, Scene& scene) {
+  if (!tools.given()) return;
+  if (source.user == SceneUser::kNode) {
+    scene.tools = readTools(tools, source.folder);
+  } else if (!tools.list(0, "tools").empty()) {
+    tools.fail("not available yet in the offline runner, must be [] or left out");
+  }
+}
+
+void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
+  if (!steps.given()) return;
+  if (source.user == SceneUser::kRunner) {
+    scene.steps = readSteps(steps, scene.tissue);
+  } else if (!steps.list(0, "steps").empty()) {
+    steps.fail("only the offline runner takes steps, must be [] or left out");
+  }
+}
+
+}  // namespace
+
+Scene parseScene(const YAML::Node& root, const SceneSource& source) {
+  std::vector<std::string> keys = {"tissue", "solver", "tools", "steps"};
+  keys.insert(keys.end(), source.other_keys.begin(), source.other_keys.end());
+  const MapReader map(Entry(root, "", source.name), keys);
+  Scene scene;
+  scene.tissue = readTissue(map["tissue"], scene.remarks);
+  scene.solver = readSolver(map["solver"], source.overrides, scene.remarks);
+  readTools(map["tools"], source, scene);
+  readSteps(map["steps"], source, scene);
+  return scene;
+}
+
+Scene loadScene(const std::string& path, const SolverOverrides& overrides) {
+  SceneSource source;
+  source.name = path;
+  source.folder = std::filesystem::absolute(path).parent_path().string();
+  source.overrides = overrides;
+  return parseScene(parseYaml(readFile(path), path), source);
+}
+
+}  // namespace robot_tissue

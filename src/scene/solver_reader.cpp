@@ -1,0 +1,34 @@
+#include "robot_tissue/core/registry.h"
+#include "robot_tissue/scene/readers.h"
+
+namespace robot_tissue {
+namespace {
+
+// What the command line says takes the place of the scene's own entry.
+Entry overridden(const Entry& entry, const std::optional<std::string>& value,
+                 const std::string& option) {
+  return value ? Entry(YAML::Node(*value), option, "") : entry;
+}
+
+}  // namespace
+
+SolverConfig readSolver(const Entry& entry, const SolverOverrides& overrides, Remarks& remarks) {
+  const Entry map_entry = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
+  const MapReader map(map_entry, {"method", "tolerance", "max_ms", "threads"});
+  SolverConfig solver;
+  const Entry method = overridden(map["method"], overrides.method, "--method");
+  if (method.given()) {
+    solver.method = method.choice(methodNames(), {"layered", "newton", "vbd", "xpbd", "explicit"});
+  }
+  solver.tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance")
+                         .numberOr(solver.tolerance, Range::open(0.0, 1.0));
+  solver.max_ms = map["max_ms"].numberOr(solver.max_ms, Range::atLeastZero("ms"));
+  const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
+  solver.threads = threads.integerOr(solver.threads, 1, 256);
+  if (solver.threads > 1 && solver.method == "paper") {
+    remarks.push_back(threads.line("ignored, method paper uses one thread"));
+  }
+  return solver;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,182 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "robot_tissue/core/registry.h"
+#include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+const std::vector<std::string> kMaterialKeys = {"young_modulus", "poisson_ratio", "density",
+                                                "spring_stiffness"};
+
+Box readShape(const Entry& entry) {
+  const MapReader any_type(entry, {"type", "min", "max", "resource", "scale"});
+  any_type["type"].choice({"box"}, {"mesh"});
+  return MapReader(entry, {"type", "min", "max"}).box(true);
+}
+
+double physicalMemoryBytes() {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return std::numeric_limits<double>::max();
+  return static_cast<double>(pages) * static_cast<double>(page_bytes);
+}
+
+void checkNodeCount(const Entry& spacing_entry, const Vec3& extent, double spacing) {
+  constexpr double kBytesPerNode = 1200.0;  // estimate: lattice, springs, shape and surface
+  constexpr double kSpringsPerNode = 3.0;
+  const double memory = physicalMemoryBytes();
+  const double most_springs = std::numeric_limits<int>::max();  // they are numbered by int
+  const double most = std::floor(std::min(memory / kBytesPerNode, most_springs / kSpringsPerNode));
+  const double count = nodeCount(extent, spacing);
+  if (count <= most) return;
+  spacing_entry.fail("makes " + numberText(count) + " nodes, more than the memory of " +
+                     numberText(std::round(memory / 1e6)) + " MB allows: must give at most " +
+                     numberText(most) + " nodes");
+}
+
+double readSpacing(const Entry& entry, const Box& shape) {
+  const double spacing = entry.number(Range::positive("m"));
+  const Vec3 extent = shape.max - shape.min;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double ratio = extent[axis] / spacing;
+    if (std::round(ratio) >= 1.0 && std::abs(ratio - std::round(ratio)) <= 1e-3) continue;
+    std::string fits;
+    for (const double s : nearestSpacings(extent, spacing)) {
+      fits += (fits.empty() ? "; nearest that fit: " : " and ") + numberText(s);
+    }
+    entry.fail("must divide the shape's extent along " + std::string(1, "xyz"[axis]) + ", " +
+               numberText(extent[axis]) + " m, into whole parts" + fits);
+  }
+  checkNodeCount(entry, extent, spacing);
+  return spacing;
+}
+
+// Entries of `map` replace those of `material`.
+void readMaterialEntries(const MapReader& map, const std::string& model, Material& material,
+                         Remarks& remarks) {
+  const Entry poisson = map["poisson_ratio"];
+  material.poisson_ratio = poisson.numberOr(material.poisson_ratio, Range::closed(0.25, 0.49));
+  if (poisson.given() && model == "six_spring") {
+    remarks.push_back(poisson.line("ignored, model six_spring has no Poisson's ratio"));
+  }
+  material.density = map["density"].numberOr(material.density, Range::positive("kg/m^3"));
+  material.young_modulus =
+      map["young_modulus"].numberOr(material.young_modulus, Range::positive("Pa"));
+  if (map["spring_stiffness"].given()) {
+    material.spring_stiffness = map["spring_stiffness"].number(Range::positive("N/m"));
+  }
+}
+
+Material readMaterial(const Entry& entry, const std::string& model, Remarks& remarks) {
+  const MapReader map(entry, kMaterialKeys);
+  const Entry stiffness = map["spring_stiffness"];
+  if (stiffness.given() && model != "six_spring") {
+    stiffness.fail("must be left out, only model six_spring has it; give young_modulus in Pa");
+  }
+  if (stiffness.given() && map["young_modulus"].given()) {
+    stiffness.fail("must not stand beside young_modulus, give one of the two");
+  }
+  Material material;
+  readMaterialEntries(map, model, material, remarks);
+  if (!stiffness.given())
+    material.young_modulus = map["young_modulus"].number(Range::positive("Pa"));
+  return material;
+}
+
+// Where the nodes stand, or with an offset of half a spacing the cells' centers.
+std::string nodesText(const Grid& grid, double offset) {
+  const Vec3 inset = Vec3::Constant(offset * grid.spacing());
+  const Vec3 low = grid.shape().min + inset;
+  const Vec3 high = grid.shape().max - inset;
+  std::string text = "they stand every " + numberText(grid.spacing()) + " m at";
+  for (int axis = 0; axis < 3; ++axis) {
+    text += std::string(axis == 0 ? " " : ", ") + "xyz"[axis] + " " + numberText(low[axis]) +
+            " to " + numberText(high[axis]);
+  }
+  return text;
+}
+
+Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& grid,
+                  Remarks& remarks) {
+  std::vector<std::string> keys = {"name", "min", "max"};
+  keys.insert(keys.end(), kMaterialKeys.begin(), kMaterialKeys.end());
+  const MapReader map(entry, keys);
+  Region region;
+  if (map["name"].given()) region.name = map["name"].word("a name");
+  region.box = map.box(false);
+  if (!grid.holdsCell(region.box)) {
+    entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
+  }
+  const bool by_spring = tissue.material.spring_stiffness.has_value();
+  const Entry foreign = map[by_spring ? "young_modulus" : "spring_stiffness"];
+  if (foreign.given()) {
+    foreign.fail(std::string("must be given as ") +
+                 (by_spring ? "spring_stiffness (N/m)" : "young_modulus (Pa)") +
+                 ", as in tissue.material");
+  }
+  if (std::none_of(kMaterialKeys.begin(), kMaterialKeys.end(),
+                   [&map](const std::string& key) { return map[key].given(); })) {
+    entry.fail("must change the material by at least one of " + joined(kMaterialKeys));
+  }
+  region.material = tissue.material;
+  readMaterialEntries(map, tissue.model, region.material, remarks);
+  return region;
+}
+
+std::string readFrame(const Entry& entry, const std::string& otherwise) {
+  if (!entry.given()) return otherwise;
+  const std::string allowed = "a TF frame: no blanks, no leading /";
+  const std::string frame = entry.word(allowed);
+  const bool blank = std::any_of(frame.begin(), frame.end(), [](char c) {
+    return static_cast<unsigned char>(c) <= 0x20 || c == 0x7f;
+  });
+  if (blank || frame.front() == '/') entry.fail("must be " + allowed);
+  return frame;
+}
+
+void readBoxes(const MapReader& map, TissueConfig& tissue, Remarks& remarks) {
+  const Grid grid(tissue.shape, tissue.spacing);
+  if (map["regions"].given()) {
+    for (const Entry& entry : map["regions"].list(0, "regions")) {
+      tissue.regions.push_back(readRegion(entry, tissue, grid, remarks));
+    }
+  }
+  if (map["fixed"].given()) {
+    for (const Entry& entry : map["fixed"].list(0, "boxes with min and max")) {
+      tissue.fixed.push_back(readNodeBox(MapReader(entry, {"min", "max"}), grid));
+    }
+  }
+}
+
+}  // namespace
+
+Box readNodeBox(const MapReader& map, const Grid& grid) {
+  const Box box = map.box(false);
+  if (!grid.nodesIn(box).empty()) return box;
+  map.entry().fail("the box holds no node, must hold at least one; " + nodesText(grid, 0.0));
+}
+
+TissueConfig readTissue(const Entry& entry, Remarks& remarks) {
+  const MapReader map(
+      entry, {"frame_id", "shape", "spacing", "model", "material", "regions", "fixed", "gravity"});
+  TissueConfig tissue;
+  tissue.frame_id = readFrame(map["frame_id"], tissue.frame_id);
+  tissue.shape = readShape(map["shape"]);
+  tissue.spacing = readSpacing(map["spacing"], tissue.shape);
+  if (map["model"].given()) tissue.model = map["model"].choice(modelNames(), {"elastic"});
+  tissue.material = readMaterial(map["material"], tissue.model, remarks);
+  readBoxes(map, tissue, remarks);
+  tissue.gravity = map["gravity"].vec3Or(tissue.gravity, Range::any("m/s^2"));
+  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty()) {
+    map["gravity"].fail("must be zero unless tissue.fixed holds nodes, the tissue would fall");
+  }
+  return tissue;
+}
+
+}  // namespace robot_tissue

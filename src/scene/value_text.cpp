@@ -1,0 +1,101 @@
+#include "robot_tissue/scene/value_text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kLongestValue = 60;
+
+void append(const YAML::Node& node, std::string& text);
+
+void appendSequence(const YAML::Node& node, std::string& text) {
+  text += '[';
+  bool first = true;
+  for (const auto& item : node) {
+    if (text.size() > kLongestValue) return;  // also ends a list that contains itself
+    if (!first) text += ", ";
+    first = false;
+    append(item, text);
+  }
+  text += ']';
+}
+
+void appendMap(const YAML::Node& node, std::string& text) {
+  text += '{';
+  bool first = true;
+  for (const auto& item : node) {
+    if (text.size() > kLongestValue) return;
+    if (!first) text += ", ";
+    first = false;
+    append(item.first, text);
+    text += ": ";
+    append(item.second, text);
+  }
+  text += '}';
+}
+
+void append(const YAML::Node& node, std::string& text) {
+  if (!node.IsDefined() || node.IsNull()) {
+    text += "(nothing)";
+  } else if (node.IsScalar()) {
+    const bool quoted = node.Tag() == "!" || node.Scalar().empty();
+    text += quoted ? '"' + node.Scalar() + '"' : node.Scalar();
+  } else if (node.IsSequence()) {
+    appendSequence(node, text);
+  } else {
+    appendMap(node, text);
+  }
+}
+
+bool hasAmbiguousLeadingZero(const std::string& digits) {
+  return digits.size() > 1 && digits.front() == '0' &&
+         digits.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
+
+std::string onOneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    if (c == '\n') {
+      line += "\\n";
+    } else {
+      line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    }
+  }
+  return line;
+}
+
+std::string valueText(const YAML::Node& node) {
+  std::string text;
+  append(node, text);
+  text = onOneLine(text);
+  if (text.size() <= kLongestValue) return text;
+  std::size_t end = kLongestValue;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
+  return text.substr(0, end) + "...";
+}
+
+std::string numberText(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.9g", value);
+  return text;
+}
+
+std::optional<double> parseNumber(const std::string& text) {
+  std::string digits = text;
+  if (!digits.empty() && digits.front() == '+') digits.erase(0, 1);
+  const bool negative = !digits.empty() && digits.front() == '-';
+  if (text.size() > digits.size() && negative) return std::nullopt;  // "+-1"
+  if (hasAmbiguousLeadingZero(negative ? digits.substr(1) : digits)) return std::nullopt;
+  double value = 0.0;
+  const char* end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace robot_tissue

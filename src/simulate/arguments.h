@@ -1,0 +1,28 @@
+// The runner's command line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "robot_tissue/scene/scene_gate.h"
+
+namespace robot_tissue {
+
+struct Arguments {
+  std::string scene;
+  std::string out;
+  SolverOverrides overrides;
+  bool list_methods = false;
+  bool list_models = false;
+  bool quiet = false;
+  bool help = false;
+
+  bool onlyPrints() const { return help || list_methods || list_models; }
+};
+
+// Throws InputError, one line. Values of overrides are checked with the scene.
+Arguments parseArguments(const std::vector<std::string>& arguments);
+
+std::string helpText();
+
+}  // namespace robot_tissue

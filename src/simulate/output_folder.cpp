@@ -1,0 +1,81 @@
+#include "output_folder.h"
+
+#include <stdlib.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+#include "robot_tissue/core/types.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+
+namespace fs = std::filesystem;
+
+OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> files)
+    : path_(fs::absolute(path).lexically_normal()), files_(std::move(files)) {
+  if (!path_.has_filename()) path_ = path_.parent_path();  // "results/"
+  makeFolders();
+  std::string pattern = (path_ / ".simulate-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) {
+    const std::string why = std::strerror(errno);
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder);
+    refuse(why);
+  }
+  staging_ = pattern;
+}
+
+void OutputFolder::makeFolders() {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  fs::path folder = path_;
+  while (!fs::exists(folder, error) && folder != folder.root_path()) {
+    missing.push_back(folder);
+    folder = folder.parent_path();
+  }
+  if (!fs::is_directory(folder, error)) refuse(folder.string() + " is no folder");
+  for (const std::string& file : files_) {
+    if (fs::exists(path_ / file, error) && !fs::is_regular_file(path_ / file, error)) {
+      refuse((path_ / file).string() + " is no plain file");
+    }
+  }
+  for (auto next = missing.rbegin(); next != missing.rend(); ++next) {
+    if (!fs::create_directory(*next, error)) {
+      for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made);
+      refuse(error.message());
+    }
+    made_.push_back(*next);
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+  if (committed_) return;
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
+}
+
+void OutputFolder::write(const std::string& file, const std::string& content) {
+  std::ofstream stream(staging_ / file, std::ios::binary);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  if (!stream) refuse("cannot write " + file);
+}
+
+void OutputFolder::commit() {
+  for (const std::string& file : files_) {
+    std::error_code error;
+    fs::rename(staging_ / file, path_ / file, error);
+    if (error) refuse("cannot write " + file + ", " + error.message());
+  }
+  committed_ = true;
+}
+
+void OutputFolder::refuse(const std::string& why) const {
+  throw InputError("--out = " + onOneLine(path_.string()) + ": " + onOneLine(why) +
+                   ": must be a folder that can be made and written");
+}
+
+}  // namespace robot_tissue

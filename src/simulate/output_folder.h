@@ -1,0 +1,36 @@
+// A folder that gets all its files at once or none: they are written to a hidden folder inside it
+// and moved when all are complete.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace robot_tissue {
+
+class OutputFolder {
+ public:
+  // Makes the folder where it is missing. Throws InputError when it cannot be made or written, or
+  // when one of `files` is there but no plain file.
+  OutputFolder(const std::string& path, std::vector<std::string> files);
+  // Without commit() all is as before.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Throws InputError, e.g. on a full disk.
+  void write(const std::string& file, const std::string& content);
+  void commit();
+
+ private:
+  void makeFolders();
+  [[noreturn]] void refuse(const std::string& why) const;
+
+  std::filesystem::path path_;
+  std::vector<std::string> files_;
+  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> made_;  // outermost first
+  bool committed_ = false;
+};
+
+}  // namespace robot_tissue

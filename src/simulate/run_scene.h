@@ -1,0 +1,43 @@
+// Runs a scene's steps and keeps what the output files hold.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/tissue.h"
+
+namespace robot_tissue {
+
+struct IncrementRow {
+  int step = 0;       // from 0, as in steps[0]
+  int increment = 1;  // from 1, anew in every step
+  SolveReport report;
+};
+
+struct PatchRow {
+  int step = 0;
+  int increment = 1;
+  std::string patch;
+  PatchAnswer answer;
+};
+
+struct RunResult {
+  std::vector<IncrementRow> increments;
+  std::vector<PatchRow> patches;
+  std::vector<Vec3> rest;          // per node (m, tissue frame)
+  std::vector<Vec3> displacement;  // per node (m)
+  std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
+  std::vector<std::array<int, 3>> triangles;
+
+  bool allOk() const;
+};
+
+// Called after each increment: the row and how many increments its step has.
+using OnRow = std::function<void(const IncrementRow& row, int increments)>;
+
+// Throws InputError when the tissue refuses a step; the message names the step.
+RunResult runScene(const Scene& scene, const OnRow& on_row = {});
+
+}  // namespace robot_tissue

@@ -1,0 +1,100 @@
+#include "simulate.h"
+
+#include <algorithm>
+#include <ostream>
+
+#include "arguments.h"
+#include "output_folder.h"
+#include "result_text.h"
+#include "robot_tissue/core/registry.h"
+#include "robot_tissue/scene/value_text.h"
+#include "run_scene.h"
+
+namespace robot_tissue {
+namespace {
+
+void print(const Arguments& arguments, std::ostream& out) {
+  if (arguments.help) {
+    out << helpText();
+    return;
+  }
+  if (arguments.list_methods) {
+    for (const std::string& name : methodNames()) out << name << '\n';
+  }
+  if (arguments.list_models) {
+    for (const std::string& name : modelNames()) out << name << '\n';
+  }
+}
+
+OnRow progressOn(std::ostream& err, std::size_t steps) {
+  const std::string clear_line = "\r\x1b[K";
+  return [&err, steps, clear_line](const IncrementRow& row, int increments) {
+    err << clear_line << "steps[" << row.step << "] of " << steps << ", increment " << row.increment
+        << " of " << increments << ": " << toString(row.report.status) << ", "
+        << numberText(row.report.wall_ms) << " ms" << std::flush;
+    const bool last = static_cast<std::size_t>(row.step) + 1 == steps;
+    if (last && row.increment == increments) err << std::endl;
+  };
+}
+
+void tellNotOk(const RunResult& result, std::ostream& err) {
+  const auto not_ok = [](const IncrementRow& row) { return row.report.status != SolveStatus::kOk; };
+  const auto& rows = result.increments;
+  const auto first = std::find_if(rows.begin(), rows.end(), not_ok);
+  if (first == rows.end()) return;
+  err << "simulate: " << std::count_if(rows.begin(), rows.end(), not_ok) << " of " << rows.size()
+      << " increments not OK, the first is steps[" << first->step << "] increment "
+      << first->increment << ": " << toString(first->report.status) << '\n';
+}
+
+void write(const RunResult& result, OutputFolder& folder) {
+  folder.write("nodes.csv", nodesCsv(result));
+  folder.write("patches.csv", patchesCsv(result));
+  folder.write("increments.csv", incrementsCsv(result));
+  folder.write("tools.csv", toolsCsv());
+  folder.write("surface.stl", surfaceStl(result));
+  folder.commit();
+}
+
+RunResult runNamed(const Scene& scene, const std::string& file, const OnRow& on_row) {
+  try {
+    return runScene(scene, on_row);
+  } catch (const InputError& error) {
+    throw InputError(onOneLine(file) + ": " + error.what());
+  }
+}
+
+int run(const Arguments& arguments, std::ostream& err, bool terminal) {
+  const Scene scene = loadScene(arguments.scene, arguments.overrides);
+  OutputFolder folder(arguments.out,
+                      {"nodes.csv", "patches.csv", "increments.csv", "tools.csv", "surface.stl"});
+  if (!arguments.quiet) {
+    for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';
+  }
+  const bool progress = terminal && !arguments.quiet;
+  const RunResult result =
+      runNamed(scene, arguments.scene, progress ? progressOn(err, scene.steps.size()) : OnRow());
+  write(result, folder);
+  if (!arguments.quiet) tellNotOk(result, err);
+  return result.allOk() ? kExitOk : kExitNotAllOk;
+}
+
+}  // namespace
+
+int simulate(const std::vector<std::string>& words, std::ostream& out, std::ostream& err,
+             bool terminal) {
+  try {
+    const Arguments arguments = parseArguments(words);
+    if (!arguments.onlyPrints()) return run(arguments, err, terminal);
+    print(arguments, out);
+    return kExitOk;
+  } catch (const InputError& error) {
+    err << "simulate: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    err << "simulate: " << error.what() << '\n';
+    return kExitFailure;
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,365 @@
+// The runner as a program and as a function: exit codes, files and their content.
+#include "simulate.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <sstream>
+
+#include "result_text.h"
+
+namespace robot_tissue {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kFiles = {"increments.csv", "nodes.csv", "patches.csv",
+                                         "surface.stl", "tools.csv"};
+
+const std::string kScene = R"(tissue:
+  shape: {type: box, min: [0.0, 0.0, 0.0], max: [0.04, 0.03, 0.02]}
+  spacing: 0.01
+  material: {young_modulus: 10000.0}
+  fixed:
+    - {min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 0.0]}
+steps:
+  - settle: {}
+  - load:
+      increments: 3
+      patches:
+        - {name: punch, min: [0.01, 0.01, 0.02], max: [0.02, 0.02, 0.02], displacement: [0.0, 0.0, -0.003]}
+  - load:
+      increments: 2
+      patches:
+        - {name: pull, min: [0.04, 0.03, 0.02], max: [0.04, 0.03, 0.02], displacement: [0.0, 0.0, 0.001]}
+  - release: {patches: [punch]}
+  - reset: {}
+  - load:
+      increments: 1
+      patches:
+        - {name: last, min: [0.01, 0.01, 0.02], max: [0.01, 0.01, 0.02], displacement: [0.0, 0.0, 0.002]}
+)";
+
+// The patch is pushed through the block: cells turn inside out.
+const std::string kInvertingScene = R"(tissue:
+  shape: {type: box, min: [0.0, 0.0, 0.0], max: [0.04, 0.04, 0.02]}
+  spacing: 0.01
+  material: {young_modulus: 10000.0}
+  fixed:
+    - {min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 0.0]}
+steps:
+  - load:
+      increments: 4
+      patches:
+        - {name: punch, min: [0.02, 0.02, 0.02], max: [0.02, 0.02, 0.02], displacement: [0.0, 0.0, -0.1]}
+)";
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string readText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Rows readCsv(const fs::path& path) {
+  Rows rows;
+  std::istringstream lines(readText(path));
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
+  }
+  return rows;
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+class Simulate : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "simulate_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    write("block.yaml", kScene);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  // Runs the program in the test's folder.
+  Outcome program(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" + SIMULATE_PATH + "' " +
+                                arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(folder_ / "stdout.txt"),
+                    readText(folder_ / "stderr.txt")};
+    return outcome;
+  }
+  std::vector<std::string> entries(const std::string& name) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / name)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  void expectRefused(const std::string& arguments, const std::string& fragment) const {
+    const Outcome outcome = program(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(fragment), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << arguments;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Simulate, WritesAllFilesAndNothingElse) {
+  const Outcome outcome = program("block.yaml --out out/deep/");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(entries("out/deep"), kFiles);
+  EXPECT_EQ(entries("out"), std::vector<std::string>({"deep"}));
+}
+
+TEST_F(Simulate, HasARowForEachIncrement) {
+  ASSERT_EQ(program("block.yaml --out out").code, 0);
+  const Rows rows = readCsv(folder_ / "out/increments.csv");
+  const std::vector<std::array<std::string, 2>> expected = {{"step", "increment"},
+                                                            {"0", "1"},
+                                                            {"1", "1"},
+                                                            {"1", "2"},
+                                                            {"1", "3"},
+                                                            {"2", "1"},
+                                                            {"2", "2"},
+                                                            {"3", "1"},
+                                                            {"4", "1"},
+                                                            {"5", "1"}};
+  ASSERT_EQ(rows.size(), expected.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].size(), 11U);
+    EXPECT_EQ(rows[i][0], expected[i][0]);
+    EXPECT_EQ(rows[i][1], expected[i][1]);
+    if (i > 0) EXPECT_EQ(rows[i][2], "OK");
+  }
+  EXPECT_EQ(rows[8][9], "1");             // after the reset the volume is the rest volume
+  EXPECT_LT(std::stod(rows[4][9]), 1.0);  // the punch presses the block together
+}
+
+TEST_F(Simulate, HasARowForEachStandingPatchAndItsWay) {
+  ASSERT_EQ(program("block.yaml --out out").code, 0);
+  const Rows rows = readCsv(folder_ / "out/patches.csv");
+  const std::vector<std::array<std::string, 3>> expected = {
+      {"1", "1", "punch"}, {"1", "2", "punch"}, {"1", "3", "punch"},
+      {"2", "1", "punch"}, {"2", "1", "pull"},  {"2", "2", "punch"},
+      {"2", "2", "pull"},  {"3", "1", "pull"},  {"5", "1", "last"}};
+  ASSERT_EQ(rows.size(), expected.size() + 1);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_EQ(rows[i + 1].size(), 9U);
+    for (std::size_t field = 0; field < 3; ++field)
+      EXPECT_EQ(rows[i + 1][field], expected[i][field]);
+  }
+  for (int increment = 1; increment <= 3; ++increment) {
+    const auto& row = rows[static_cast<std::size_t>(increment)];
+    EXPECT_NEAR(std::stod(row[8]), -0.001 * increment, 1e-12);
+    EXPECT_LT(std::stod(row[5]), 0.0);  // pressing down takes a force downwards
+  }
+  EXPECT_GT(std::stod(rows[9][5]), 0.0);
+}
+
+TEST_F(Simulate, HasEveryNodeWithXFastestAndWhereItWent) {
+  ASSERT_EQ(program("block.yaml --out out").code, 0);
+  const Rows rows = readCsv(folder_ / "out/nodes.csv");
+  ASSERT_EQ(rows.size(), 1U + 5 * 4 * 3);
+  EXPECT_EQ(rows[0], std::vector<std::string>({"x", "y", "z", "ux", "uy", "uz"}));
+  int moved = 0;
+  for (std::size_t node = 0; node + 1 < rows.size(); ++node) {
+    const auto& row = rows[node + 1];
+    ASSERT_EQ(row.size(), 6U);
+    EXPECT_NEAR(std::stod(row[0]), 0.01 * static_cast<double>(node % 5), 1e-12);
+    EXPECT_NEAR(std::stod(row[1]), 0.01 * static_cast<double>(node / 5 % 4), 1e-12);
+    EXPECT_NEAR(std::stod(row[2]), 0.01 * static_cast<double>(node / 20), 1e-12);
+    if (node < 20) EXPECT_EQ(row[5], "0") << "a fixed node moved";
+    if (std::stod(row[5]) > 0.0) ++moved;
+  }
+  EXPECT_GT(moved, 1);
+  EXPECT_NEAR(std::stod(rows[1 + 46][5]), 0.002, 1e-12);  // node (1, 1, 2): the patch "last"
+}
+
+float floatAt(const std::string& bytes, std::size_t at) {
+  float value = 0.0F;  // on a little-endian machine, as all of today's
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+TEST_F(Simulate, HasTheDeformedSurfaceAsClosedBinaryStl) {
+  ASSERT_EQ(program("block.yaml --out out").code, 0);
+  const std::string stl = readText(folder_ / "out/surface.stl");
+  ASSERT_GT(stl.size(), 84U);
+  EXPECT_NE(stl.compare(0, 5, "solid"), 0);
+  const std::size_t triangles = (stl.size() - 84) / 50;
+  std::uint32_t count = 0;
+  std::memcpy(&count, stl.data() + 80, sizeof(count));
+  ASSERT_EQ(count, triangles);
+  ASSERT_EQ(stl.size(), 84 + 50 * triangles);
+  double volume = 0.0;
+  double highest = 0.0;
+  for (std::size_t i = 0; i < triangles; ++i) {
+    std::array<Vec3, 4> v;  // normal, corners
+    for (std::size_t part = 0; part < 4; ++part) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        v[part][static_cast<Eigen::Index>(axis)] =
+            static_cast<double>(floatAt(stl, 84 + 50 * i + 12 * part + 4 * axis));
+      }
+    }
+    const Vec3 normal = (v[2] - v[1]).cross(v[3] - v[1]).normalized();
+    EXPECT_LT((normal - v[0]).norm(), 1e-3);
+    volume += v[1].dot(v[2].cross(v[3])) / 6.0;
+    highest = std::max({highest, v[1].z(), v[2].z(), v[3].z()});
+  }
+  const double rest_volume = 0.04 * 0.03 * 0.02;
+  const double ratio = std::stod(readCsv(folder_ / "out/increments.csv").back()[9]);
+  EXPECT_NEAR(volume / rest_volume, ratio, 1e-5);
+  EXPECT_NEAR(highest, 0.022, 1e-6);
+}
+
+TEST_F(Simulate, NumbersKeepAllTheirDigits) {
+  RunResult result;
+  result.rest = {Vec3(0.1, 1.0 / 3.0, 0.0)};
+  result.displacement = {Vec3(1e-300, -2.0 / 3.0, 0.0)};
+  const std::string csv = nodesCsv(result);
+  EXPECT_NE(csv.find("0.10000000000000001,0.33333333333333331,0,"), std::string::npos) << csv;
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double ux = 0.0;
+  double uy = 0.0;
+  ASSERT_EQ(
+      std::sscanf(csv.c_str() + csv.find('\n') + 1, "%lf,%lf,%lf,%lf,%lf", &x, &y, &z, &ux, &uy),
+      5);
+  EXPECT_EQ(y, 1.0 / 3.0);
+  EXPECT_EQ(uy, -2.0 / 3.0);
+}
+
+TEST_F(Simulate, NumbersThatAreNotFiniteAreNeverWritten) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    RunResult result;
+    result.rest = {Vec3::Zero()};
+    result.displacement = {Vec3(0.0, bad, 0.0)};
+    EXPECT_THROW(nodesCsv(result), std::runtime_error);
+    result.increments.resize(1);
+    EXPECT_NO_THROW(incrementsCsv(result));
+    result.increments[0].report.residual = bad;
+    EXPECT_THROW(incrementsCsv(result), std::runtime_error);
+    result.patches.resize(1);
+    EXPECT_NO_THROW(patchesCsv(result));
+    result.patches[0].answer.force.z() = bad;
+    EXPECT_THROW(patchesCsv(result), std::runtime_error);
+    result.vertices = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+    result.triangles = {{0, 1, 2}};
+    EXPECT_NO_THROW(surfaceStl(result));
+    result.vertices[1].x() = bad;
+    EXPECT_THROW(surfaceStl(result), std::runtime_error);
+  }
+}
+
+TEST_F(Simulate, IncrementsThatAreNotOkGiveExitCode3AndAllFiles) {
+  write("through.yaml", kInvertingScene);
+  const Outcome outcome = program("through.yaml --out out");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("increments not OK"), std::string::npos) << outcome.err;
+  EXPECT_EQ(entries("out"), kFiles);
+  EXPECT_EQ(readCsv(folder_ / "out/increments.csv").back()[2], "INVERTED");
+  const Outcome quiet = program("through.yaml --out out --quiet");
+  EXPECT_EQ(quiet.code, 3);
+  EXPECT_EQ(quiet.err, "");
+}
+
+TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
+  expectRefused("", "SCENE.yaml is missing");
+  expectRefused("block.yaml", "--out is missing");
+  expectRefused("--out out", "SCENE.yaml is missing");
+  expectRefused("block.yaml --out", "--out: must be followed by a value");
+  expectRefused("block.yaml --out=", "--out: must be followed by a value");
+  expectRefused("block.yaml other.yaml --out out", "\"other.yaml\"");
+  expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
+  expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
+  expectRefused("block.yaml --out out --out out", "--out: stands twice");
+  expectRefused("block.yaml --out out --method layered", "--method = layered: not available yet");
+  expectRefused("block.yaml --out out --method magic", "--method = magic: must be paper");
+  expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number > 0");
+  expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
+  expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
+  expectRefused("none.yaml --out out", "none.yaml: No such file");
+}
+
+TEST_F(Simulate, BadScenesAreRefusedAndOldResultsStay) {
+  write("bad.yaml", kScene + "  - suture: {}\n");
+  expectRefused("bad.yaml --out out", "bad.yaml:23: steps[6].suture");
+  ASSERT_EQ(program("block.yaml --out kept").code, 0);
+  const std::string nodes = readText(folder_ / "kept/nodes.csv");
+  EXPECT_EQ(program("bad.yaml --out kept").code, 2);
+  EXPECT_EQ(readText(folder_ / "kept/nodes.csv"), nodes);
+  EXPECT_EQ(entries("kept"), kFiles);
+}
+
+TEST_F(Simulate, FoldersThatCannotBeWrittenAreRefused) {
+  write("file", "");
+  expectRefused("block.yaml --out file", "is no folder");
+  expectRefused("block.yaml --out file/out", "is no folder");
+  expectRefused("block.yaml --out /proc/none/out", "--out = /proc/none/out");
+  fs::create_directories(folder_ / "odd/nodes.csv");
+  expectRefused("block.yaml --out odd", "is no plain file");
+  EXPECT_EQ(entries("odd"), std::vector<std::string>({"nodes.csv"}));
+}
+
+TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
+  EXPECT_EQ(program("block.yaml --out=out --threads=4").err,
+            "simulate: --threads = 4: ignored, method paper uses one thread\n");
+  EXPECT_EQ(program("block.yaml --out out --threads 4 --quiet").err, "");
+}
+
+TEST_F(Simulate, ListsMethodsAndModels) {
+  EXPECT_EQ(program("--list-methods").out, "paper\n");
+  EXPECT_EQ(program("--list-models").out, "six_spring\n");
+  EXPECT_EQ(program("--list-methods").code, 0);
+  const Outcome help = program("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("--tolerance X"), std::string::npos);
+}
+
+TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
+  const std::string scene = (folder_ / "block.yaml").string();
+  const std::string out = (folder_ / "out").string();
+  const auto progress = [&](std::vector<std::string> arguments, bool terminal) {
+    arguments.insert(arguments.end(), {scene, "--out", out});
+    std::ostringstream out_stream;
+    std::ostringstream err_stream;
+    EXPECT_EQ(simulate(arguments, out_stream, err_stream, terminal), kExitOk);
+    EXPECT_EQ(out_stream.str(), "");
+    return err_stream.str();
+  };
+  EXPECT_NE(progress({}, true).find("increment 2 of 3: OK"), std::string::npos);
+  EXPECT_EQ(progress({}, false), "");
+  EXPECT_EQ(progress({"--quiet"}, true), "");
+}
+
+}  // namespace
+}  // namespace robot_tissue
