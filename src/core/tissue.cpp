@@ -45,6 +45,13 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
   return one_left ? solveFromRest() : solve(disturbed);
 }
 
+void Tissue::restore(const Shape& shape) {
+  state_.displacement = shape.displacement;
+  patches_ = shape.patches;
+  named_patches_ = shape.named_patches;
+  deform(surface_, state_.displacement, vertices_);
+}
+
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
   CutReport report;

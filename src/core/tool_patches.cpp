@@ -6,7 +6,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kPushSweeps = 30;
+constexpr int kPushSweeps = 100;
 constexpr double kPushedOut = 1e-4;  // of the spacing
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -19,6 +19,7 @@ ToolPatches::ToolPatches(const Lattice& lattice, std::vector<std::string> tool_n
 void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   displacement_ = tissue.state().displacement;
   holdNamedLoads(tissue);
+  if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
   left_.clear();
   for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
     const Pose& tissue_T_tool = pose.tools[tool];
@@ -26,9 +27,7 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
       const int node = seat->first;
       const Vec3 moved = tissue_T_tool * seat->second.point - lattice_->restPosition(node);
       const Vec3 normal = tissue_T_tool.linear() * seat->second.normal;
-      const bool lifted_off = normal.dot(moved) < 0.0;
-      const bool pulled_away = normal.dot(tissue.nodeForce(node)) >= 0.0;
-      if (taken_[at(node)] != 0 || (lifted_off && pulled_away)) {
+      if (taken_[at(node)] != 0 || letsGo(node, moved, normal, tissue)) {
         left_.push_back(node);
         seat = seats_[tool].erase(seat);
       } else {
@@ -39,43 +38,63 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   }
 }
 
-// Gauss-Seidel over the contacts: each moves its nodes along its normal by the least that takes
-// its point out of the tool.
+// Each contact asks its nodes for the least motion along its normal that takes its point out of the
+// tool. A node follows the mean of what it is asked, so that the order of the contacts, and with it
+// the side a symmetric press starts on, does not matter.
 void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
                           const RobotPose& pose) {
-  std::vector<Support> supports;
-  std::vector<Vec3> starts;
-  const auto pointOf = [this](const Support& support) {
-    Vec3 moved = Vec3::Zero();
-    for (const NodeWeight& node : support.nodes) moved += node.weight * displacement_[at(node.node)];
-    return moved;
-  };
+  std::vector<Push> pushes;
   for (const Contact& contact : contacts.contacts) {
-    supports.push_back(supportOf(contact, surface));
-    starts.push_back(pointOf(supports.back()));
+    pushes.push_back({&contact, supportOf(contact, surface), Vec3::Zero(), false});
+    pushes.back().start = pointOf(pushes.back().support);
   }
-  std::vector<char> pushed(supports.size(), 0);
-  const double out = kPushedOut * lattice_->spacing();
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
-    double deepest = 0.0;
-    for (std::size_t i = 0; i < supports.size(); ++i) {
-      const Contact& contact = contacts.contacts[i];
-      if (supports[i].stiffness <= 0.0) continue;
-      const double depth =
-          contact.depth_m - contact.normal.dot(pointOf(supports[i]) - starts[i]);
-      if (depth <= 0.0) continue;
-      deepest = std::max(deepest, depth);
-      pushed[i] = 1;
-      for (const NodeWeight& node : supports[i].nodes) {
-        displacement_[at(node.node)] +=
-            depth * node.weight / supports[i].stiffness * contact.normal;
-      }
+    if (pushOnce(pushes) <= kPushedOut * lattice_->spacing()) break;
+  }
+  for (const Push& push : pushes) {
+    if (push.needed) seat(*push.contact, push.support, pose);
+  }
+}
+
+// Returns the depth of the deepest contact before the motion (m).
+double ToolPatches::pushOnce(std::vector<Push>& pushes) {
+  struct Asked {
+    Vec3 sum = Vec3::Zero();
+    double weight = 0.0;
+  };
+  std::map<int, Asked> asked;
+  double deepest = 0.0;
+  for (Push& push : pushes) {
+    if (push.support.stiffness <= 0.0) continue;
+    const Contact& contact = *push.contact;
+    const double depth =
+        contact.depth_m - contact.normal.dot(pointOf(push.support) - push.start);
+    if (depth <= 0.0) continue;
+    push.needed = true;
+    deepest = std::max(deepest, depth);
+    for (const NodeWeight& node : push.support.nodes) {
+      Asked& of_node = asked[node.node];
+      of_node.sum += node.weight * (depth * node.weight / push.support.stiffness) * contact.normal;
+      of_node.weight += node.weight;
     }
-    if (deepest <= out) break;
   }
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    if (pushed[i] != 0) seat(contacts.contacts[i], supports[i], pose);
+  for (const auto& [node, of_node] : asked) {
+    displacement_[at(node)] += of_node.sum / of_node.weight;
   }
+  return deepest;
+}
+
+// Motion of a contact's point (m) that its free nodes give it.
+Vec3 ToolPatches::pointOf(const Support& support) const {
+  Vec3 moved = Vec3::Zero();
+  for (const NodeWeight& node : support.nodes) moved += node.weight * displacement_[at(node.node)];
+  return moved;
+}
+
+bool ToolPatches::letsGo(int node, const Vec3& displacement, const Vec3& normal,
+                         const Tissue& tissue) const {
+  if (outward_[at(node)].dot(displacement) > 0.0) return true;
+  return normal.dot(displacement) < 0.0 && normal.dot(tissue.nodeForce(node)) >= 0.0;
 }
 
 void ToolPatches::clear() {
@@ -143,6 +162,21 @@ void ToolPatches::seat(const Contact& contact, const Support& support, const Rob
                                       displacement_[at(carrier.node)]);
     if (owner == at(contact.tool)) seat.normal = tool_T_tissue.linear() * contact.normal;
   }
+}
+
+void ToolPatches::findOutwardNormals(const Tissue& tissue) {
+  const Surface& surface = tissue.surface();
+  outward_.assign(at(lattice_->nodeCount()), Vec3::Zero());
+  for (const auto& triangle : surface.triangles) {
+    const Vec3& a = surface.rest[at(triangle[0])];
+    const Vec3 area =
+        (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
+    for (const int vertex : triangle) {
+      if (surface.carriers[at(vertex)].size() > 1) continue;
+      outward_[at(surface.carriers[at(vertex)].front().node)] += area;
+    }
+  }
+  surface_version_ = tissue.surfaceVersion();
 }
 
 void ToolPatches::holdNamedLoads(const Tissue& tissue) {

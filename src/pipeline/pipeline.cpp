@@ -8,6 +8,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kMostSubsteps = 200;
+constexpr std::size_t kMostCheckpoints = 256;
 constexpr int kPushPasses = 4;         // a curved tool's way out turns as the surface moves
 constexpr int kContactRounds = 3;      // nodes that the solve moved into the tool are pushed again
 constexpr double kDeepEnough = 0.01;   // of the spacing: penetration that is worth another round
@@ -47,12 +48,26 @@ double motion(const Pose& from, const Pose& to, double reach) {
   return (to.translation() - from.translation()).norm() + std::abs(angle) * reach;
 }
 
-Pose between(const Pose& from, const Pose& to, double share) {
-  const Eigen::Quaterniond start(from.linear()), end(to.linear());
-  Pose pose = Pose::Identity();
-  pose.linear() = start.slerp(share, end).toRotationMatrix();
-  pose.translation() = from.translation() + share * (to.translation() - from.translation());
-  return pose;
+RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
+  RobotPose between = to;
+  for (std::size_t tool = 0; tool < to.tools.size(); ++tool) {
+    const Pose& start = from.tools[tool];
+    const Pose& end = to.tools[tool];
+    Pose& pose = between.tools[tool];
+    pose.linear() = Eigen::Quaterniond(start.linear())
+                        .slerp(share, Eigen::Quaterniond(end.linear()))
+                        .toRotationMatrix();
+    pose.translation() = start.translation() + share * (end.translation() - start.translation());
+  }
+  return between;
+}
+
+void requireFinite(const RobotPose& pose) {
+  for (const Pose& tool : pose.tools) {
+    if (!tool.matrix().allFinite()) {
+      throw InputError("pose: a tool's transform is not finite; allowed: finite numbers");
+    }
+  }
 }
 
 }  // namespace
@@ -68,24 +83,37 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
   patches_ = ToolPatches(tissue_.lattice(), namesOf(tools));
   if (!tissue_.isUntouched()) tissue_.follow({}, {});
   last_pose_.reset();
+  checkpoints_.clear();
   touched_ = true;
   report_ = StepReport();
   report_.tools.resize(tools.size());
 }
 
 const StepReport& Pipeline::step(const RobotPose& pose) {
+  requireFinite(pose);
   report_.changed = touched_;
   report_.too_fast = false;
   report_.contact_ms = 0.0;
   report_.solve_ms = 0.0;
   report_.substeps = 0;
-  for (const RobotPose& on_the_way : substepsTo(pose)) advance(on_the_way);
+  if (standsStill(pose) && !touched_) return report_;
+  if (checkpoints_.empty()) checkIn(pose);
+  goBackTo(pose);
+  const RobotPose start = checkpoints_.back().pose;
+  const double steps = longestWay(start, pose) / tissue_.stepLength();
+  for (int step = 1; step <= static_cast<int>(steps); ++step) {
+    const RobotPose on_the_way = between(start, pose, step / steps);
+    advance(on_the_way);
+    checkIn(on_the_way);
+  }
+  advance(pose);
+  if (tissue_.isUntouched()) checkIn(pose);
   last_pose_ = pose;
   touched_ = false;
   return report_;
 }
 
-// One substep, the line of the package. A second round only if the solve moved nodes into a tool.
+// One load step, the line of the package. A second round only if the solve moved nodes into a tool.
 void Pipeline::advance(const RobotPose& pose) {
   ++report_.substeps;
   ContactSet contacts;
@@ -110,6 +138,7 @@ void Pipeline::reset() {
   patches_.clear();
   tissue_.reset();
   last_pose_.reset();
+  checkpoints_.clear();
   touched_ = true;
 }
 
@@ -127,36 +156,53 @@ void Pipeline::pushToolsOut(const RobotPose& pose) {
   }
 }
 
-std::vector<RobotPose> Pipeline::substepsTo(const RobotPose& pose) {
-  for (const Pose& tool : pose.tools) {
-    if (!tool.matrix().allFinite()) {
-      throw InputError("pose: a tool's transform is not finite; allowed: finite numbers");
+void Pipeline::touch() {
+  touched_ = true;
+  checkpoints_.clear();
+  if (last_pose_) checkIn(*last_pose_);
+}
+
+void Pipeline::checkIn(const RobotPose& pose) {
+  if (tissue_.isUntouched() || checkpoints_.size() >= kMostCheckpoints) checkpoints_.clear();
+  checkpoints_.push_back({pose, tissue_.shape(), patches_});
+}
+
+// Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
+void Pipeline::goBackTo(const RobotPose& pose) {
+  std::size_t nearest = checkpoints_.size() - 1;
+  double shortest = longestWay(checkpoints_[nearest].pose, pose);
+  for (std::size_t earlier = nearest; earlier-- > 0;) {
+    const double way = longestWay(checkpoints_[earlier].pose, pose);
+    if (way < shortest) {
+      shortest = way;
+      nearest = earlier;
     }
   }
-  if (!last_pose_) return {pose};
+  checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
+                     checkpoints_.end());
+  tissue_.restore(checkpoints_.back().shape);
+  patches_ = checkpoints_.back().patches;
+  if (shortest > kMostSubsteps * tissue_.stepLength()) startAnew(pose);
+}
+
+// The tools jumped: they let go, and are met anew where they are.
+void Pipeline::startAnew(const RobotPose& pose) {
+  report_.too_fast = true;
+  patches_.clear();
+  if (!tissue_.isUntouched()) tissue_.follow({}, {});
+  checkIn(pose);
+}
+
+bool Pipeline::standsStill(const RobotPose& pose) const {
+  return last_pose_ && longestWay(*last_pose_, pose) <= kStandsStill;
+}
+
+double Pipeline::longestWay(const RobotPose& from, const RobotPose& to) const {
   double longest = 0.0;
-  for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
-    longest = std::max(longest, motion(last_pose_->tools[tool], pose.tools[tool],
-                                       finder_.reach(tool)));
+  for (std::size_t tool = 0; tool < to.tools.size(); ++tool) {
+    longest = std::max(longest, motion(from.tools[tool], to.tools[tool], finder_.reach(tool)));
   }
-  if (longest <= kStandsStill) {
-    return touched_ ? std::vector<RobotPose>{pose} : std::vector<RobotPose>{};
-  }
-  const double steps = std::ceil(longest / tissue_.stepLength());
-  if (steps > kMostSubsteps) {
-    report_.too_fast = true;
-    patches_.clear();
-    return {pose};
-  }
-  std::vector<RobotPose> poses;
-  for (int step = 1; step < static_cast<int>(steps); ++step) {
-    poses.push_back(pose);
-    for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
-      poses.back().tools[tool] = between(last_pose_->tools[tool], pose.tools[tool], step / steps);
-    }
-  }
-  poses.push_back(pose);
-  return poses;
+  return longest;
 }
 
 void Pipeline::describeTools(const RobotPose& pose, const ContactSet& contacts) {

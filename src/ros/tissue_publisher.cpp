@@ -83,6 +83,7 @@ void TissuePublisher::publishStatus(const Pipeline& pipeline, const ros::Time& n
   message.header.stamp = now;
   message.header.frame_id = frame_id_;
   message.publish_ms = publish_ms_;
+  message.pose_age_ms = 1e3 * (ros::Time::now() - now).toSec();
   state_.publish(message);
   last_status_ = status;
   last_state_ = now;

@@ -69,14 +69,18 @@ std::string onOneLine(const std::string& text) {
   return line;
 }
 
+std::string shortText(const std::string& text) {
+  std::string line = onOneLine(text);
+  if (line.size() <= kLongestValue) return line;
+  std::size_t end = kLongestValue;
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
+  return line.substr(0, end) + "...";
+}
+
 std::string valueText(const YAML::Node& node) {
   std::string text;
   append(node, text);
-  text = onOneLine(text);
-  if (text.size() <= kLongestValue) return text;
-  std::size_t end = kLongestValue;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
-  return text.substr(0, end) + "...";
+  return shortText(text);
 }
 
 std::string numberText(double value) {

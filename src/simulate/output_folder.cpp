@@ -21,7 +21,9 @@ OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> fil
   std::string pattern = (path_ / ".simulate-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
     const std::string why = std::strerror(errno);
-    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder);
+    std::error_code ignored;
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
+      fs::remove(*folder, ignored);
     refuse(why);
   }
   staging_ = pattern;
@@ -43,7 +45,8 @@ void OutputFolder::makeFolders() {
   }
   for (auto next = missing.rbegin(); next != missing.rend(); ++next) {
     if (!fs::create_directory(*next, error)) {
-      for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made);
+      std::error_code ignored;
+      for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);
       refuse(error.message());
     }
     made_.push_back(*next);

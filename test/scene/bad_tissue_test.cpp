@@ -13,6 +13,10 @@ TEST_P(BadTissue, IsRefusedInOneLine) {
 const std::vector<BadScene> kBadTissues = {
     {"UnknownTopKey", "solver:", "slover:", {"slover", "did you mean solver?", "tissue, solver"}},
     {"UnknownTissueKey", "spacing:", "spacng:", {"tissue.spacng = 0.01", "did you mean spacing?"}},
+    {"UnknownLongKey",
+     "spacing: 0.01",
+     std::string(500, 'z') + ": 0.01",
+     {"tissue.zzz", "zzz... = 0.01", "must be one of"}},
     {"UnknownFarKey", "spacing: 0.01", "zzzzzz: 0.01", {"tissue.zzzzzz = 0.01", "must be one of"}},
     {"RepeatedKey",
      "  spacing: 0.01",

@@ -157,7 +157,7 @@ TEST_F(Simulate, HasARowForEachIncrement) {
     ASSERT_EQ(rows[i].size(), 11U);
     EXPECT_EQ(rows[i][0], expected[i][0]);
     EXPECT_EQ(rows[i][1], expected[i][1]);
-    if (i > 0) EXPECT_EQ(rows[i][2], "OK");
+    EXPECT_EQ(rows[i][2], i > 0 ? "OK" : "status");
   }
   EXPECT_EQ(rows[8][9], "1");             // after the reset the volume is the rest volume
   EXPECT_LT(std::stod(rows[4][9]), 1.0);  // the punch presses the block together
@@ -196,7 +196,7 @@ TEST_F(Simulate, HasEveryNodeWithXFastestAndWhereItWent) {
     EXPECT_NEAR(std::stod(row[0]), 0.01 * static_cast<double>(node % 5), 1e-12);
     EXPECT_NEAR(std::stod(row[1]), 0.01 * static_cast<double>(node / 5 % 4), 1e-12);
     EXPECT_NEAR(std::stod(row[2]), 0.01 * static_cast<double>(node / 20), 1e-12);
-    if (node < 20) EXPECT_EQ(row[5], "0") << "a fixed node moved";
+    EXPECT_TRUE(node >= 20 || row[5] == "0") << "a fixed node moved";
     if (std::stod(row[5]) > 0.0) ++moved;
   }
   EXPECT_GT(moved, 1);

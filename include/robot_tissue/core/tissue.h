@@ -63,6 +63,14 @@ class Tissue {
   // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
   // left a patch.
   SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed);
+  // The shape and its loads, to come back to; cuts are not part of it.
+  struct Shape {
+    std::vector<Vec3> displacement;
+    std::vector<LoadingPatch> patches;
+    std::size_t named_patches = 0;
+  };
+  Shape shape() const { return {state_.displacement, patches_, named_patches_}; }
+  void restore(const Shape& shape);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
   CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape, bit for bit; cuts mended, loads gone.

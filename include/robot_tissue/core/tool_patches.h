@@ -2,7 +2,8 @@
 //
 // The contacts of one tool make one patch. A node that a contact pushed out of the tool rides on
 // it from then on, as part of one hard piece, and so sticks sideways. It leaves the patch when the
-// tool no longer holds it below its rest place and the tissue pulls it away from the tool.
+// tool has lifted it above the surface's rest place, or when it is on the near side of its rest
+// place and the tissue pulls it away from the tool.
 // In: contacts (tissue frame, normals from the tool into the tissue), tool poses.
 // Out: one patch a touching tool, displacements from rest (m). Fixed nodes and the nodes of named
 // loads are never taken.
@@ -51,9 +52,20 @@ class ToolPatches {
     double stiffness = 0.0;  // sum of the squared weights
   };
 
+  struct Push {
+    const Contact* contact = nullptr;
+    Support support;
+    Vec3 start = Vec3::Zero();  // motion of the point before the push (m)
+    bool needed = false;
+  };
+
+  double pushOnce(std::vector<Push>& pushes);
+  Vec3 pointOf(const Support& support) const;
   Support supportOf(const Contact& contact, const Surface& surface) const;
   void seat(const Contact& contact, const Support& support, const RobotPose& pose);
   void holdNamedLoads(const Tissue& tissue);
+  void findOutwardNormals(const Tissue& tissue);
+  bool letsGo(int node, const Vec3& displacement, const Vec3& normal, const Tissue& tissue) const;
 
   const Lattice* lattice_;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;
@@ -61,6 +73,8 @@ class ToolPatches {
   std::vector<Vec3> displacement_;
   std::vector<char> taken_;  // per node: fixed, or in a named load
   std::vector<int> left_;
+  std::vector<Vec3> outward_;  // per node: normal of the surface at rest; zero inside
+  unsigned surface_version_ = 0;
 };
 
 }  // namespace robot_tissue

@@ -1,7 +1,12 @@
 // The straight line of one update:
 //   robot pose -> contacts -> loading patches -> solve (-> publish, in the ros layer)
-// Contacts at a pose look at the shape of the step before. A motion longer than the method follows
-// well is walked in substeps.
+// Contacts at a pose look at the shape of the step before.
+//
+// The tools' way is walked in load steps of a fixed length, the longest that the method follows
+// well. What is left of the way, less than a step, is solved from the end of the last whole step,
+// and anew at the next update: so the shape depends on the way, not on the rate of the updates.
+// The shapes at the ends of the steps are kept while a tool touches: going back the way it came, it
+// finds the shapes that it left.
 #pragma once
 
 #include <optional>
@@ -30,7 +35,7 @@ struct ToolReport {
 struct StepReport {
   bool changed = false;  // false: nothing moved, nothing was solved
   bool too_fast = false;  // the tools jumped further than can be followed; contact began anew
-  int substeps = 0;
+  int substeps = 0;  // solves that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
   SolveReport solve;              // the last one
@@ -52,27 +57,38 @@ class Pipeline {
   const StepReport& step(const RobotPose& pose);
   // Rest shape; the tools are met anew at the next step.
   void reset();
-  // To be called after the tissue changed by other means (cut, load): the reports are brought up to
-  // date at the next step even if the tools stand still.
-  void touch() { touched_ = true; }
+  // To be called after the tissue changed by other means (cut, load).
+  void touch();
 
   Tissue& tissue() { return tissue_; }
   const Tissue& tissue() const { return tissue_; }
   const StepReport& report() const { return report_; }
 
  private:
+  // Where a whole load step ended.
+  struct Checkpoint {
+    RobotPose pose;
+    Tissue::Shape shape;
+    ToolPatches patches;
+  };
+
   void advance(const RobotPose& pose);
+  void checkIn(const RobotPose& pose);
+  void goBackTo(const RobotPose& pose);
+  void startAnew(const RobotPose& pose);
+  bool standsStill(const RobotPose& pose) const;
+  double longestWay(const RobotPose& from, const RobotPose& to) const;
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   void solve();
   void pushToolsOut(const RobotPose& pose);
-  std::vector<RobotPose> substepsTo(const RobotPose& pose);
   void describeTools(const RobotPose& pose, const ContactSet& contacts);
 
   Tissue tissue_;
   ContactFinder finder_;
   ToolPatches patches_;
   std::optional<RobotPose> last_pose_;
-  bool touched_ = true;
+  std::vector<Checkpoint> checkpoints_;
+  bool touched_ = true;  // the reports are to be brought up to date
   std::vector<Vec3> vertices_;
   StepReport report_;
 };

@@ -14,6 +14,9 @@ std::string valueText(const YAML::Node& node);
 // Control characters written as \n or ?, so that the text stays on its line.
 std::string onOneLine(const std::string& text);
 
+// On one line and cut short after some 60 characters.
+std::string shortText(const std::string& text);
+
 // Short decimal text, up to nine digits.
 std::string numberText(double value);
 
