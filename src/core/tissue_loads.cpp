@@ -156,6 +156,7 @@ int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
 SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
                           const OnIncrement& on_increment) {
   SolveReport report;
+  SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
     const double share = static_cast<double>(increment) / increments;
     for (const Ramp& ramp : ramps) {
@@ -169,8 +170,10 @@ SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
       }
     }
     report = solve({});
+    worst = std::max(worst, report.status);
     if (on_increment) on_increment(increment, increments, report);
   }
+  report.status = worst;
   return report;
 }
 

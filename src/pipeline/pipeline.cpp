@@ -97,6 +97,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   report_.solve_ms = 0.0;
   report_.substeps = 0;
   if (standsStill(pose) && !touched_) return report_;
+  const bool was_touched = !tissue_.isUntouched();
   if (checkpoints_.empty()) checkIn(pose);
   goBackTo(pose);
   const RobotPose start = checkpoints_.back().pose;
@@ -108,6 +109,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   }
   advance(pose);
   if (tissue_.isUntouched()) checkIn(pose);
+  report_.changed = report_.changed || was_touched;
   last_pose_ = pose;
   touched_ = false;
   return report_;

@@ -6,8 +6,10 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "robot_tissue");
+  // The last handle to go closes the log, so one stays until the last line is said.
+  const ros::NodeHandle private_node("~");
   try {
-    const robot_tissue::TissueNode node(ros::NodeHandle("~"));
+    const robot_tissue::TissueNode node(private_node);
     ros::spin();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());

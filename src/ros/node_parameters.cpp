@@ -3,7 +3,10 @@
 #include <XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <iomanip>
+#include <locale>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include "robot_tissue/scene/entry.h"
@@ -16,6 +19,16 @@ constexpr double kHighestRate = 10000.0;  // Hz
 
 const std::vector<std::string> kOwnKeys = {"rate", "marker_rate", "tf_timeout", "force_scale",
                                            "robot_description_param"};
+
+// The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
+std::string shortestText(double value) {
+  for (int digits = 15;; ++digits) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << std::setprecision(digits) << value;
+    if (digits == 17 || std::stod(text.str()) == value) return text.str();
+  }
+}
 
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
@@ -32,7 +45,7 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
     case XmlRpc::XmlRpcValue::TypeString:
       return YAML::Node(static_cast<std::string>(value));
     case XmlRpc::XmlRpcValue::TypeDouble:
-      return YAML::Node(static_cast<double>(value));
+      return YAML::Node(shortestText(value));
     default: {
       std::ostringstream text;
       text << value;

@@ -84,6 +84,11 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
 bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
   try {
     if (request.name.empty()) throw InputError("name: empty; allowed: the name of a patch");
+    for (const ToolConfig& tool : parameters_.scene.tools) {
+      if (tool.name == request.name) {
+        throw InputError("name: '" + request.name + "' is a tool; allowed: another name");
+      }
+    }
     if (request.displacement.empty() && request.force.empty()) {
       pipeline_.tissue().release({request.name});
       response.message = "released";

@@ -1,8 +1,9 @@
 #include "robot_tissue/scene/value_text.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <locale>
+#include <sstream>
 
 namespace robot_tissue {
 namespace {
@@ -96,10 +97,12 @@ std::optional<double> parseNumber(const std::string& text) {
   if (text.size() > digits.size() && negative) return std::nullopt;  // "+-1"
   if (hasAmbiguousLeadingZero(negative ? digits.substr(1) : digits)) return std::nullopt;
   double value = 0.0;
-  const char* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
+  // A stream of the classic locale: a point is a point in every country.
+  std::istringstream stream(digits);
+  stream.imbue(std::locale::classic());
+  stream >> std::noskipws >> value;
+  if (stream.fail() || stream.peek() != std::istringstream::traits_type::eof()) return std::nullopt;
+  return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 
 }  // namespace robot_tissue

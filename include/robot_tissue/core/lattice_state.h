@@ -16,6 +16,7 @@ struct LatticeState {
   int pieces = 1;  // parts of the lattice that springs hold together
 };
 
+// From good to bad.
 enum class SolveStatus { kOk, kLate, kUnconverged, kInverted };
 const char* toString(SolveStatus status);
 

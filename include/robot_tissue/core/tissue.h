@@ -94,6 +94,7 @@ class Tissue {
   std::size_t place(const LoadingPatch& patch);
   Ramp makeRamp(std::size_t patch, const LoadingPatch& target) const;
   int chooseIncrements(const std::vector<Ramp>& ramps) const;
+  // The last increment's report, with the worst status of all.
   SolveReport climb(const std::vector<Ramp>& ramps, int increments,
                     const OnIncrement& on_increment);
   Vec3 patchForce(const LoadingPatch& patch) const;

@@ -1,0 +1,71 @@
+// Wrong parameters and robot descriptions: the node ends with exit code 2 and one line that names
+// the key. Each case starts a node of its own.
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <string>
+
+namespace {
+
+struct Ended {
+  int exit_code = -1;
+  std::string output;
+};
+
+struct Case {
+  const char* name;
+  const char* key;    // private parameter to set
+  const char* value;  // as text
+  const char* names;  // what the message must hold
+};
+
+class BadParameter : public ::testing::TestWithParam<Case> {
+ protected:
+  static Ended runNode(const std::string& name) {
+    const std::string command =
+        std::string("timeout 20 ") + NODE_PATH + " __name:=" + name + " 2>&1";
+    Ended ended;
+    FILE* pipe = popen(command.c_str(), "r");
+    char buffer[512];
+    while (fgets(buffer, sizeof(buffer), pipe) != nullptr) ended.output += buffer;
+    ended.exit_code = WEXITSTATUS(pclose(pipe));
+    return ended;
+  }
+};
+
+TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
+  const std::string name = std::string("bad_") + GetParam().name;
+  XmlRpc::XmlRpcValue scene;
+  ASSERT_TRUE(ros::param::get("/good_scene", scene));
+  ros::param::set("/" + name, scene);
+  ros::param::set("/" + name + "/" + GetParam().key, std::string(GetParam().value));
+  const Ended ended = runNode(name);
+  EXPECT_EQ(ended.exit_code, 2) << ended.output;
+  EXPECT_NE(ended.output.find(GetParam().names), std::string::npos) << ended.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Node, BadParameter,
+    ::testing::Values(
+        Case{"spacing", "tissue/spacing", "-0.005", "tissue.spacing = -0.005"},
+        Case{"ratio", "tissue/spacing", "0.03", "tissue.spacing = 0.03"},
+        Case{"model", "tissue/model", "jelly", "tissue.model = jelly"},
+        Case{"later_method", "solver/method", "newton", "solver.method = newton"},
+        Case{"unknown_key", "tissue/sapcing", "0.005", "tissue.sapcing"},
+        Case{"own_unknown_key", "ratee", "100", "ratee"},
+        Case{"rate", "rate", "0", "rate = 0"},
+        Case{"timeout", "tf_timeout", "-1", "tf_timeout = -1"},
+        Case{"description", "robot_description_param", "/broken_description", "URDF"},
+        Case{"other_robot", "robot_description_param", "/other_description", "probe"}),
+    [](const ::testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_bad_parameters");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

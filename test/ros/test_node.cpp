@@ -1,0 +1,175 @@
+// The node beside a robot that moves: what a user sees on its topics and services.
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+const std::vector<std::vector<double>> kCut = {
+    {0.0525, -0.01, 0.02}, {0.0525, 0.06, 0.02}, {0.0525, 0.06, 0.07}, {0.0525, -0.01, 0.07}};
+
+class RunningNode : public NodeTest {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
+    press(-0.01);
+    ASSERT_TRUE(reset());
+    ASSERT_TRUE(waitFor([this] { return state_ && state_->springs_cut == 0; }));
+    ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
+  }
+
+  ApplyLoad::Response load(const std::string& name, double low, double high, double down) {
+    ApplyLoad call;
+    call.request.name = name;
+    call.request.min.x = call.request.min.y = low;
+    call.request.max.x = call.request.max.y = high;
+    call.request.min.z = call.request.max.z = kTop;
+    geometry_msgs::Vector3 displacement;
+    displacement.z = -down;
+    call.request.displacement.push_back(displacement);
+    EXPECT_TRUE(ros::service::call("/tissue/apply_load", call));
+    return call.response;
+  }
+};
+
+TEST_F(RunningNode, MovingLinkDeformsTheMarkers) {
+  press(0.005);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0045; }));
+  EXPECT_NEAR(lowestOfTop(), kTop - 0.005, 0.0005);  // a tenth of the spacing
+  EXPECT_FALSE(markers_["loading_patches"].points.empty());
+  EXPECT_EQ(markers_["contact_forces"].action, visualization_msgs::Marker::ADD);
+  press(-0.01);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
+  EXPECT_EQ(markers_["loading_patches"].action, visualization_msgs::Marker::DELETE);
+  EXPECT_EQ(markers_["contact_forces"].action, visualization_msgs::Marker::DELETE);
+}
+
+TEST_F(RunningNode, WrenchGrowsWithDepthWithTheRightSignAndFrame) {
+  double last = 0.0;
+  for (double depth = 0.001; depth < 0.0055; depth += 0.001) {
+    const auto wrench = press(depth);
+    EXPECT_EQ(wrench.header.frame_id, "probe");
+    // The tissue pushes the probe up; the probe's own z points down.
+    EXPECT_LT(wrench.wrench.force.z, -last) << "at a depth of " << depth << " m";
+    last = -wrench.wrench.force.z;
+    EXPECT_LT(std::hypot(wrench.wrench.force.x, wrench.wrench.force.y), 0.02 * last);
+  }
+  const auto wrench = press(-0.01);
+  EXPECT_EQ(wrench.wrench.force.z, 0.0);
+}
+
+TEST_F(RunningNode, ContactsTellPatchAndNormal) {
+  press(0.004);
+  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  const TissueContact& contact = contacts_->contacts.front();
+  EXPECT_EQ(contacts_->header.frame_id, "tissue");
+  EXPECT_EQ(contact.tool, "probe");
+  EXPECT_GT(contact.nodes.size(), 3U);
+  EXPECT_NEAR(contact.normal.z, -1.0, 0.01);
+  EXPECT_LT(contact.force.z, 0.0);  // of the tool on the tissue: down
+  EXPECT_LT(contact.depth, 1e-4);
+}
+
+TEST_F(RunningNode, CutSeversSpringsAndResetBringsThemBackBitForBit) {
+  const Points rest = markers_["surface"].points;
+  const Points wires = markers_["wireframe"].points;
+  const auto response = cut(kCut);
+  EXPECT_TRUE(response.success) << response.message;
+  EXPECT_GT(response.springs_cut, 50);
+  EXPECT_EQ(response.pieces, 1);
+  EXPECT_TRUE(waitFor([&] { return state_->springs_cut == response.springs_cut; }));
+  ASSERT_TRUE(waitForMarkers([this] { return !markers_["cut_faces"].points.empty(); }));
+  EXPECT_FALSE(markers_["wireframe"].points == wires);
+  press(0.005);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.004; }));
+  press(-0.01);
+  ASSERT_TRUE(reset());
+  ASSERT_TRUE(waitForMarkers([this] { return markers_["cut_faces"].points.empty(); }));
+  EXPECT_TRUE(markers_["surface"].points == rest);
+  EXPECT_TRUE(markers_["wireframe"].points == wires);
+}
+
+TEST_F(RunningNode, CutIsUnderstoodInAnotherFrame) {
+  auto corners = kCut;
+  for (auto& corner : corners) corner[0] += 1.0;
+  const auto in_base = cut(corners, "base");
+  ASSERT_TRUE(reset());
+  const auto in_tissue = cut(kCut);
+  EXPECT_EQ(in_base.springs_cut, in_tissue.springs_cut);
+}
+
+TEST_F(RunningNode, BadCutsAreRefusedAndChangeNothing) {
+  EXPECT_FALSE(cut({{0, 0, 0}, {1, 1, 1}}).success);
+  EXPECT_FALSE(cut({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}).success);
+  EXPECT_FALSE(cut({{0, 0, 0}, {std::nan(""), 1, 1}, {2, 0, 2}}).success);
+  const auto lost = cut(kCut, "no_such_frame");
+  EXPECT_FALSE(lost.success);
+  EXPECT_NE(lost.message.find("no_such_frame"), std::string::npos);
+  EXPECT_EQ(lost.message.find('\n'), std::string::npos);
+  const auto beside = cut({{0.5, 0, 0}, {0.5, 0.1, 0}, {0.5, 0.1, 0.1}});
+  EXPECT_TRUE(beside.success);
+  EXPECT_EQ(beside.springs_cut, 0);
+}
+
+TEST_F(RunningNode, LoadStandsUntilItIsReleased) {
+  const auto loaded = load("punch", 0.04, 0.06, 0.003);
+  ASSERT_TRUE(loaded.success) << loaded.message;
+  EXPECT_LT(loaded.force.z, -0.1);
+  EXPECT_DOUBLE_EQ(loaded.displacement.z, -0.003);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0025; }));
+  ApplyLoad release;
+  release.request.name = "punch";
+  ASSERT_TRUE(ros::service::call("/tissue/apply_load", release));
+  EXPECT_TRUE(release.response.success) << release.response.message;
+  EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
+}
+
+TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
+  ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0025; }));
+  const Points shape = markers_["surface"].points;
+  for (const auto& refused :
+       {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
+        load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
+        load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY)}) {
+    EXPECT_FALSE(refused.success);
+    EXPECT_FALSE(refused.message.empty());
+    EXPECT_EQ(refused.message.find('\n'), std::string::npos);
+  }
+  ApplyLoad unknown;
+  unknown.request.name = "unknown";
+  ASSERT_TRUE(ros::service::call("/tissue/apply_load", unknown));
+  EXPECT_FALSE(unknown.response.success);
+  ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
+  ASSERT_TRUE(waitForMarkers([] { return true; }));
+  EXPECT_TRUE(markers_["surface"].points == shape);
+}
+
+TEST_F(RunningNode, OldTransformsAreReportedAndTheShapeStays) {
+  press(0.004);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0035; }));
+  publishes_transform_ = false;
+  ASSERT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
+  EXPECT_FALSE(state_->message.empty());
+  EXPECT_NEAR(lowestOfTop(), kTop - 0.004, 0.0005);
+  publishes_transform_ = true;
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST_F(RunningNode, DiagnosticsTellRateTransformsAndSolver) {
+  EXPECT_TRUE(waitFor([this] {
+    return diagnostics_.count("tissue: update rate") > 0 &&
+           diagnostics_.count("tissue: solver") > 0 &&
+           diagnostics_.count("tissue: transforms") > 0 &&
+           diagnostics_["tissue: transforms"].level == diagnostic_msgs::DiagnosticStatus::OK;
+  }));
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_node");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
