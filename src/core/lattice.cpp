@@ -14,7 +14,8 @@ std::array<int, 3> gridSize(const Box& shape, double spacing) {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (shape.max[axis] - shape.min[axis]) / spacing;
     const double whole = std::round(cells);
-    if (whole < 1.0 || std::abs(cells - whole) > kBoxSlack) {
+    // Written so that a spacing of 0 or NaN does not pass.
+    if (!(whole >= 1.0) || !(std::abs(cells - whole) <= kBoxSlack)) {
       std::ostringstream line;
       line << "tissue.spacing: " << spacing << ": the shape is " << shape.max[axis] - shape.min[axis]
            << " m along " << kAxisNames[axis] << "; allowed: a whole number of spacings, at least 1";

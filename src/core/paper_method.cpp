@@ -104,10 +104,21 @@ void PaperMethod::placeDisplacedPatches(const std::vector<LoadingPatch>& patches
 // to the loading force".
 void PaperMethod::pushForcedPatches(const std::vector<LoadingPatch>& patches, LatticeState& state,
                                     SolveReport& report) const {
-  for (const LoadingPatch& patch : patches) {
-    if (patch.drive != LoadingPatch::Drive::kForce) continue;
-    if (!balancePatch(patch, state, report.iterations)) report.status = SolveStatus::kUnconverged;
+  // Springs may join two patches: what one moves, the other feels.
+  bool moved = true;
+  for (int round = 0; moved && round < options_.max_patch_moves; ++round) {
+    moved = false;
+    for (const LoadingPatch& patch : patches) {
+      if (patch.drive != LoadingPatch::Drive::kForce) continue;
+      const int moves_before = report.iterations;
+      if (!balancePatch(patch, state, report.iterations)) {
+        report.status = SolveStatus::kUnconverged;
+        return;
+      }
+      moved = moved || report.iterations != moves_before;
+    }
   }
+  if (moved) report.status = SolveStatus::kUnconverged;
 }
 
 bool PaperMethod::balancePatch(const LoadingPatch& patch, LatticeState& state, int& moves) const {
@@ -146,11 +157,11 @@ void PaperMethod::spreadOutwards(const std::vector<LoadingPatch>& patches,
   std::vector<int> loading_area;
   std::vector<int> sliding;
   for (const LoadingPatch& patch : patches) {
-    auto& list = maskOf(patch) == kAllAxes ? loading_area : sliding;
-    list.insert(list.end(), patch.nodes.begin(), patch.nodes.end());
+    loading_area.insert(loading_area.end(), patch.nodes.begin(), patch.nodes.end());
+    if (maskOf(patch) == kAllAxes) continue;
+    sliding.insert(sliding.end(), patch.nodes.begin(), patch.nodes.end());
   }
   walk_.start(loading_area);
-  for (const int node : sliding) walk_.add(node);
   for (const int node : disturbed) {
     if (locked_[at(node)] == 0) walk_.add(node);
   }
@@ -158,6 +169,8 @@ void PaperMethod::spreadOutwards(const std::vector<LoadingPatch>& patches,
   active_.clear();
   // "Start at layer immediately surrounding the loading area."
   std::vector<int> layer = walk_.next(state);
+  // Nodes that slide are balanced with it: the layer around them is disturbed even if they are not.
+  layer.insert(layer.end(), sliding.begin(), sliding.end());
   // "If position change disrupts neighboring node balance: raise need to check next layer." The
   // terminating condition is a layer in which no node is disturbed.
   while (!layer.empty() && isDisturbed(layer, state)) {

@@ -56,17 +56,18 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
   CutReport report;
   report.springs_cut = static_cast<int>(crossing.size());
+  report.pieces = state_.pieces;
+  report.solve = last_report_;
+  if (crossing.empty()) return report;
   std::vector<int> disturbed;
   for (const int spring : crossing) {
     state_.severed[at(spring)] = 1;
     disturbed.push_back(lattice_.springs()[at(spring)].a);
     disturbed.push_back(lattice_.springs()[at(spring)].b);
   }
-  if (!crossing.empty()) {
-    state_.springs_cut += report.springs_cut;
-    state_.pieces = countPieces(lattice_, state_);
-    rebuildSurface();
-  }
+  state_.springs_cut += report.springs_cut;
+  state_.pieces = countPieces(lattice_, state_);
+  rebuildSurface();
   report.pieces = state_.pieces;
   report.solve = solve(disturbed);
   return report;
@@ -77,6 +78,7 @@ void Tissue::reset() {
   state_ = lattice_.restState();
   patches_.clear();
   named_patches_ = 0;
+  last_report_ = SolveReport();
   if (was_cut) rebuildSurface();
   vertices_ = surface_.rest;
 }
@@ -91,6 +93,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
     report.patches.resize(patches_.size());
   }
   describeShape(report);
+  last_report_ = report;
   return report;
 }
 
@@ -111,7 +114,12 @@ SolveReport Tissue::solveFromRest() {
     ramps.push_back(makeRamp(patch, standing[patch]));
     ramps.back().force.setZero();
   }
-  if (!ramps.empty()) report = climb(ramps, chooseIncrements(ramps), {});
+  if (!ramps.empty()) {
+    report = climb(ramps, chooseIncrements(ramps), {});
+  } else if (!has_gravity_) {
+    describeShape(report);
+    last_report_ = report;
+  }
   return report;
 }
 

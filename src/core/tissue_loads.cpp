@@ -102,7 +102,13 @@ void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
       refuse(patch.name, "a patch of this name stands on other nodes", "the same box, or a release");
     }
   }
-  for (const LoadingPatch& patch : patches) claim(patch);
+  std::set<std::string> names;
+  for (const LoadingPatch& patch : patches) {
+    if (!names.insert(patch.name).second) {
+      refuse(patch.name, "two patches of this load have this name", "a name for each patch");
+    }
+    claim(patch);
+  }
 }
 
 // Index of the patch among the standing ones; a new one comes after the other named ones, with no

@@ -14,7 +14,7 @@ struct LoadingPatch {
   enum class Drive { kDisplacement, kForce };
 
   std::string name;
-  std::vector<int> nodes;
+  std::vector<int> nodes;  // ascending
   Drive drive = Drive::kDisplacement;
   std::vector<Vec3> displacement;                           // kDisplacement: per node, from rest (m)
   std::array<bool, 3> free_axis = {{false, false, false}};  // kDisplacement: nodes slide along it

@@ -21,7 +21,7 @@ class TissueModel;
 struct CutReport {
   int springs_cut = 0;  // by this cut
   int pieces = 1;       // of the lattice, after it
-  SolveReport solve;    // balance after it
+  SolveReport solve;    // balance after it; the last one when nothing was cut
 };
 
 class Tissue {
@@ -112,6 +112,7 @@ class Tissue {
   std::vector<Vec3> vertices_;  // deformed, of the surface
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
+  SolveReport last_report_;
 };
 
 }  // namespace robot_tissue
