@@ -1,13 +1,15 @@
 #include "robot_tissue/core/tool_patches.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kPushSweeps = 100;
-constexpr double kPushedOut = 1e-4;  // of the spacing
+constexpr int kPushSweeps = 300;
+constexpr double kPushedOut = 1e-3;     // of the spacing
+constexpr double kHeldMobility = 0.05;  // of a node with a place on a tool; 1 for others
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -38,57 +40,77 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   }
 }
 
-// Each contact asks its nodes for the least motion along its normal that takes its point out of the
-// tool. A node follows the mean of what it is asked, so that the order of the contacts, and with it
-// the side a symmetric press starts on, does not matter.
+// The smallest motion of the nodes that takes every contact's point out of its tool:
+//   minimize sum |du_n|^2 / mobility_n   subject to   normal_c . sum w_cn du_n >= depth_c,
+// by sweeps over the contacts' multipliers. All of a sweep look at the same shape, so that the order
+// of the contacts, and with it the side a symmetric press would start on, does not matter.
 void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
                           const RobotPose& pose) {
   std::vector<Push> pushes;
   for (const Contact& contact : contacts.contacts) {
-    pushes.push_back({&contact, supportOf(contact, surface), Vec3::Zero(), false});
-    pushes.back().start = pointOf(pushes.back().support);
+    pushes.push_back({&contact, supportOf(contact, surface), 0.0, 0.0});
   }
+  scale(pushes);
+  std::map<int, Vec3> motion;
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
-    if (pushOnce(pushes) <= kPushedOut * lattice_->spacing()) break;
+    if (deepen(pushes, motion) <= kPushedOut * lattice_->spacing()) break;
+    motion = motionOf(pushes);
   }
+  for (const auto& [node, moved] : motion) displacement_[at(node)] += moved;
   for (const Push& push : pushes) {
-    if (push.needed) seat(*push.contact, push.support, pose);
+    if (push.multiplier > 0.0) seat(*push.contact, push.support, pose);
   }
 }
 
-// Returns the depth of the deepest contact before the motion (m).
-double ToolPatches::pushOnce(std::vector<Push>& pushes) {
-  struct Asked {
-    Vec3 sum = Vec3::Zero();
-    double weight = 0.0;
-  };
-  std::map<int, Asked> asked;
-  double deepest = 0.0;
+// A node that sits on a tool, or is itself a point inside it, has its place there; those around it
+// give way.
+void ToolPatches::scale(std::vector<Push>& pushes) const {
+  std::set<int> held;
+  for (const auto& seats : seats_) {
+    for (const auto& [node, seat] : seats) held.insert(node);
+  }
+  for (const Push& push : pushes) {
+    if (push.support.size() == 1) held.insert(push.support.front().node);
+  }
+  std::map<int, double> shared;  // per node: sum of the contacts' weights
   for (Push& push : pushes) {
-    if (push.support.stiffness <= 0.0) continue;
-    const Contact& contact = *push.contact;
-    const double depth =
-        contact.depth_m - contact.normal.dot(pointOf(push.support) - push.start);
-    if (depth <= 0.0) continue;
-    push.needed = true;
-    deepest = std::max(deepest, depth);
-    for (const NodeWeight& node : push.support.nodes) {
-      Asked& of_node = asked[node.node];
-      of_node.sum += node.weight * (depth * node.weight / push.support.stiffness) * contact.normal;
-      of_node.weight += node.weight;
+    for (Carrier& carrier : push.support) {
+      carrier.mobility = held.count(carrier.node) != 0 ? kHeldMobility : 1.0;
+      shared[carrier.node] += carrier.weight;
     }
   }
-  for (const auto& [node, of_node] : asked) {
-    displacement_[at(node)] += of_node.sum / of_node.weight;
+  for (Push& push : pushes) {
+    for (const Carrier& carrier : push.support) {
+      push.row_sum += carrier.mobility * carrier.weight * shared[carrier.node];
+    }
+  }
+}
+
+// One sweep over the multipliers; returns the depth of the deepest contact before it (m).
+double ToolPatches::deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const {
+  double deepest = 0.0;
+  for (Push& push : pushes) {
+    if (push.row_sum <= 0.0) continue;
+    double depth = push.contact->depth_m;
+    for (const Carrier& carrier : push.support) {
+      const auto moved = motion.find(carrier.node);
+      if (moved != motion.end()) depth -= carrier.weight * push.contact->normal.dot(moved->second);
+    }
+    deepest = std::max(deepest, depth);
+    push.multiplier = std::max(0.0, push.multiplier + depth / push.row_sum);
   }
   return deepest;
 }
 
-// Motion of a contact's point (m) that its free nodes give it.
-Vec3 ToolPatches::pointOf(const Support& support) const {
-  Vec3 moved = Vec3::Zero();
-  for (const NodeWeight& node : support.nodes) moved += node.weight * displacement_[at(node.node)];
-  return moved;
+std::map<int, Vec3> ToolPatches::motionOf(const std::vector<Push>& pushes) {
+  std::map<int, Vec3> motion;
+  for (const Push& push : pushes) {
+    for (const Carrier& carrier : push.support) {
+      Vec3& moved = motion.emplace(carrier.node, Vec3::Zero()).first->second;
+      moved += carrier.mobility * carrier.weight * push.multiplier * push.contact->normal;
+    }
+  }
+  return motion;
 }
 
 bool ToolPatches::letsGo(int node, const Vec3& displacement, const Vec3& normal,
@@ -132,7 +154,8 @@ Vec3 ToolPatches::normal(int tool, const Pose& tissue_T_tool) const {
   return sum.norm() > 1e-12 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
 }
 
-ToolPatches::Support ToolPatches::supportOf(const Contact& contact, const Surface& surface) const {
+std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
+                                                         const Surface& surface) const {
   std::map<int, double> weights;
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(contact.triangle)][at(corner)];
@@ -140,18 +163,17 @@ ToolPatches::Support ToolPatches::supportOf(const Contact& contact, const Surfac
       weights[carrier.node] += contact.barycentric[corner] * carrier.weight;
     }
   }
-  Support support;
+  std::vector<Carrier> support;
   for (const auto& [node, weight] : weights) {
-    if (taken_[at(node)] != 0 || weight <= 0.0) continue;
-    support.nodes.push_back({node, weight});
-    support.stiffness += weight * weight;
+    if (taken_[at(node)] == 0 && weight > 0.0) support.push_back({node, weight, 1.0});
   }
   return support;
 }
 
 // A node that another tool holds keeps that seat, at its new place.
-void ToolPatches::seat(const Contact& contact, const Support& support, const RobotPose& pose) {
-  for (const NodeWeight& carrier : support.nodes) {
+void ToolPatches::seat(const Contact& contact, const std::vector<Carrier>& support,
+                       const RobotPose& pose) {
+  for (const Carrier& carrier : support) {
     std::size_t owner = at(contact.tool);
     for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
       if (seats_[tool].count(carrier.node) != 0) owner = tool;

@@ -47,22 +47,24 @@ class ToolPatches {
     Vec3 point = Vec3::Zero();
     Vec3 normal = Vec3::Zero();
   };
-  struct Support {  // of a contact: the free nodes that carry its point
-    std::vector<NodeWeight> nodes;
-    double stiffness = 0.0;  // sum of the squared weights
+  // A free node that carries a contact's point.
+  struct Carrier {
+    int node = 0;
+    double weight = 0.0;
+    double mobility = 1.0;
   };
-
   struct Push {
     const Contact* contact = nullptr;
-    Support support;
-    Vec3 start = Vec3::Zero();  // motion of the point before the push (m)
-    bool needed = false;
+    std::vector<Carrier> support;
+    double row_sum = 0.0;     // how much all contacts together move this one's point
+    double multiplier = 0.0;  // m; > 0: the contact pushes
   };
 
-  double pushOnce(std::vector<Push>& pushes);
-  Vec3 pointOf(const Support& support) const;
-  Support supportOf(const Contact& contact, const Surface& surface) const;
-  void seat(const Contact& contact, const Support& support, const RobotPose& pose);
+  std::vector<Carrier> supportOf(const Contact& contact, const Surface& surface) const;
+  void scale(std::vector<Push>& pushes) const;
+  double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
+  static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
+  void seat(const Contact& contact, const std::vector<Carrier>& support, const RobotPose& pose);
   void holdNamedLoads(const Tissue& tissue);
   void findOutwardNormals(const Tissue& tissue);
   bool letsGo(int node, const Vec3& displacement, const Vec3& normal, const Tissue& tissue) const;
