@@ -77,6 +77,7 @@ Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 struct ContactFinder::Impl {
   std::vector<Tool> tools;
+  double touch_margin = 0.0;  // m, part of the shapes' padding
   std::vector<std::string> warnings;
 
   // Scratch, kept to spare allocations.
@@ -95,14 +96,15 @@ ContactFinder::~ContactFinder() = default;
 ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
 ContactFinder& ContactFinder::operator=(ContactFinder&&) noexcept = default;
 
-ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
+ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools, double touch_margin)
     : impl_(std::make_unique<Impl>()) {
+  impl_->touch_margin = touch_margin;
   for (const ToolGeometry& geometry : tools) {
     Tool tool;
     double thinnest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
       const std::string owner = "tool '" + geometry.name + "', shape " + std::to_string(i + 1);
-      tool.shapes.emplace_back(geometry.shapes[i], geometry.padding, owner, impl_->warnings);
+      tool.shapes.emplace_back(geometry.shapes[i], geometry.padding + touch_margin, owner, impl_->warnings);
       thinnest = std::min(thinnest, tool.shapes.back().thickness());
     }
     tool.sample_spacing = 0.5 * thinnest;
@@ -180,7 +182,7 @@ void ContactFinder::Impl::findOnTriangle(int tool, int triangle, const Surface& 
     const auto out = deepest(placed, point);
     if (!out) return;
     const Vec3 normal = out->normal.isZero() ? inward(a, b, c) : out->normal;
-    found.contacts.push_back({tool, triangle, weights, point, normal, out->depth_m});
+    found.contacts.push_back({tool, triangle, weights, point, normal, out->depth_m - touch_margin});
   };
   for (int k = 0; k < 3; ++k) {
     const auto vertex = static_cast<std::size_t>(corners[static_cast<std::size_t>(k)]);

@@ -28,14 +28,35 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
       const int node = seat->first;
       const Vec3 moved = tissue_T_tool * seat->second.point - lattice_->restPosition(node);
-      const Vec3 normal = tissue_T_tool.linear() * seat->second.normal;
-      if (taken_[at(node)] != 0 || letsGo(node, moved, normal, tissue)) {
+      const Vec3 way_out = tissue_T_tool.linear() * seat->second.pushed;
+      if (taken_[at(node)] != 0 || letsGo(node, moved, way_out, tissue)) {
         left_.push_back(node);
         seat = seats_[tool].erase(seat);
       } else {
         displacement_[at(node)] = moved;
         ++seat;
       }
+    }
+  }
+}
+
+void ToolPatches::keepTouching(const ContactSet& contacts, const Tissue& tissue) {
+  std::vector<std::set<int>> touching(seats_.size());
+  for (const Contact& contact : contacts.contacts) {
+    for (const Carrier& carrier : supportOf(contact, tissue.surface())) {
+      touching[at(contact.tool)].insert(carrier.node);
+    }
+  }
+  for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
+    for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
+      const int node = seat->first;
+      if (touching[tool].count(node) != 0) {
+        ++seat;
+        continue;
+      }
+      displacement_[at(node)] = tissue.state().displacement[at(node)];
+      left_.push_back(node);
+      seat = seats_[tool].erase(seat);
     }
   }
 }
@@ -53,13 +74,18 @@ void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
   scale(pushes);
   std::map<int, Vec3> motion;
   for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
-    if (deepen(pushes, motion) <= kPushedOut * lattice_->spacing()) break;
+    const double deepest = deepen(pushes, motion);
     motion = motionOf(pushes);
+    if (deepest <= kPushedOut * lattice_->spacing()) break;
   }
-  for (const auto& [node, moved] : motion) displacement_[at(node)] += moved;
+  std::map<int, std::size_t> tools;
   for (const Push& push : pushes) {
-    if (push.multiplier > 0.0) seat(*push.contact, push.support, pose);
+    if (push.multiplier <= 0.0) continue;
+    for (const Carrier& carrier : push.support) {
+      tools.emplace(carrier.node, at(push.contact->tool));
+    }
   }
+  for (const auto& [node, tool] : tools) seat(node, tool, motion.at(node), pose);
 }
 
 // A node that sits on a tool, or is itself a point inside it, has its place there; those around it
@@ -113,10 +139,10 @@ std::map<int, Vec3> ToolPatches::motionOf(const std::vector<Push>& pushes) {
   return motion;
 }
 
-bool ToolPatches::letsGo(int node, const Vec3& displacement, const Vec3& normal,
+bool ToolPatches::letsGo(int node, const Vec3& displacement, const Vec3& way_out,
                          const Tissue& tissue) const {
   if (outward_[at(node)].dot(displacement) > 0.0) return true;
-  return normal.dot(displacement) < 0.0 && normal.dot(tissue.nodeForce(node)) >= 0.0;
+  return way_out.dot(displacement) < 0.0 && way_out.dot(tissue.nodeForce(node)) >= 0.0;
 }
 
 void ToolPatches::clear() {
@@ -150,7 +176,7 @@ std::vector<int> ToolPatches::nodes(int tool) const {
 
 Vec3 ToolPatches::normal(int tool, const Pose& tissue_T_tool) const {
   Vec3 sum = Vec3::Zero();
-  for (const auto& [node, seat] : seats_[at(tool)]) sum += tissue_T_tool.linear() * seat.normal;
+  for (const auto& [node, seat] : seats_[at(tool)]) sum += tissue_T_tool.linear() * seat.pushed;
   return sum.norm() > 1e-12 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
 }
 
@@ -171,19 +197,15 @@ std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
 }
 
 // A node that another tool holds keeps that seat, at its new place.
-void ToolPatches::seat(const Contact& contact, const std::vector<Carrier>& support,
-                       const RobotPose& pose) {
-  for (const Carrier& carrier : support) {
-    std::size_t owner = at(contact.tool);
-    for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
-      if (seats_[tool].count(carrier.node) != 0) owner = tool;
-    }
-    const Pose tool_T_tissue = pose.tools[owner].inverse();
-    Seat& seat = seats_[owner][carrier.node];
-    seat.point = tool_T_tissue * Vec3(lattice_->restPosition(carrier.node) +
-                                      displacement_[at(carrier.node)]);
-    if (owner == at(contact.tool)) seat.normal = tool_T_tissue.linear() * contact.normal;
+void ToolPatches::seat(int node, std::size_t tool, const Vec3& moved, const RobotPose& pose) {
+  displacement_[at(node)] += moved;
+  for (std::size_t other = 0; other < seats_.size(); ++other) {
+    if (seats_[other].count(node) != 0) tool = other;
   }
+  const Pose tool_T_tissue = pose.tools[tool].inverse();
+  Seat& seat = seats_[tool][node];
+  seat.point = tool_T_tissue * Vec3(lattice_->restPosition(node) + displacement_[at(node)]);
+  seat.pushed += tool_T_tissue.linear() * moved;
 }
 
 void ToolPatches::findOutwardNormals(const Tissue& tissue) {

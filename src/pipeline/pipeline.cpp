@@ -12,6 +12,7 @@ constexpr std::size_t kMostCheckpoints = 256;
 constexpr int kPushPasses = 4;         // a curved tool's way out turns as the surface moves
 constexpr int kContactRounds = 3;      // nodes that the solve moved into the tool are pushed again
 constexpr double kDeepEnough = 0.01;   // of the spacing: penetration that is worth another round
+constexpr double kTouches = 0.02;      // of the spacing: a gap that is none
 constexpr double kStandsStill = 1e-9;  // m
 
 class Stopwatch {
@@ -35,6 +36,8 @@ std::vector<std::string> namesOf(const std::vector<ToolGeometry>& tools) {
   for (const ToolGeometry& tool : tools) names.push_back(tool.name);
   return names;
 }
+
+double touchMargin(double spacing) { return kTouches * spacing; }
 
 double deepest(const ContactSet& contacts) {
   double depth = 0.0;
@@ -74,12 +77,12 @@ void requireFinite(const RobotPose& pose) {
 
 Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
                    const std::vector<ToolGeometry>& tools)
-    : tissue_(tissue, solver), finder_(tools), patches_(tissue_.lattice(), namesOf(tools)) {
+    : tissue_(tissue, solver), finder_(tools, touchMargin(tissue.spacing)), patches_(tissue_.lattice(), namesOf(tools)) {
   report_.tools.resize(tools.size());
 }
 
 void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
-  finder_ = ContactFinder(tools);
+  finder_ = ContactFinder(tools, touchMargin(tissue_.lattice().spacing()));
   patches_ = ToolPatches(tissue_.lattice(), namesOf(tools));
   if (!tissue_.isUntouched()) tissue_.follow({}, {});
   last_pose_.reset();
@@ -139,9 +142,7 @@ void Pipeline::solve() {
 void Pipeline::reset() {
   patches_.clear();
   tissue_.reset();
-  last_pose_.reset();
-  checkpoints_.clear();
-  touched_ = true;
+  touch();
 }
 
 ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
@@ -153,7 +154,8 @@ ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& 
 void Pipeline::pushToolsOut(const RobotPose& pose) {
   for (int pass = 0; pass < kPushPasses; ++pass) {
     const ContactSet contacts = contactsAt(pose, patches_.displacement());
-    if (contacts.contacts.empty()) return;
+    if (pass == 0) patches_.keepTouching(contacts, tissue_);
+    if (deepest(contacts) <= 0.0) return;
     patches_.pushOut(contacts, tissue_.surface(), pose);
   }
 }

@@ -1,6 +1,6 @@
 // Finds the points of the deformed surface that are inside a tool.
 // In: tool poses (tissue frame), deformed surface vertices (m, tissue frame).
-// Out: contacts with depth > 0; normal from the tool into the tissue. In order of tools, then of
+// Out: contacts with depth > -touch_margin; normal from the tool into the tissue. In order of tools, then of
 // triangles; a point in several shapes of a tool is one contact, with the deepest of them.
 // FCL objects are built once, in the constructor. A mesh touches with its convex hull.
 // Sampled: vertices, points on triangles, at most half of the tool's thinnest shape apart (down to
@@ -22,8 +22,9 @@ namespace robot_tissue {
 
 class ContactFinder {
  public:
+  // Points up to touch_margin (m) outside a tool are found, too, with a depth <= 0.
   // Throws InputError: a mesh that cannot be loaded or has no volume, a measure that is not > 0.
-  explicit ContactFinder(const std::vector<ToolGeometry>& tools);
+  explicit ContactFinder(const std::vector<ToolGeometry>& tools, double touch_margin = 0.0);
   ~ContactFinder();
   ContactFinder(ContactFinder&&) noexcept;
   ContactFinder& operator=(ContactFinder&&) noexcept;

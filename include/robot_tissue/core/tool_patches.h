@@ -2,8 +2,8 @@
 //
 // The contacts of one tool make one patch. A node that a contact pushed out of the tool rides on
 // it from then on, as part of one hard piece, and so sticks sideways. It leaves the patch when the
-// tool has lifted it above the surface's rest place, or when it is on the near side of its rest
-// place and the tissue pulls it away from the tool.
+// tool has lifted it above the surface's rest place, when it is on the near side of its rest place
+// and the tissue pulls it away from the tool, or when nothing around it touches the tool.
 // In: contacts (tissue frame, normals from the tool into the tissue), tool poses.
 // Out: one patch a touching tool, displacements from rest (m). Fixed nodes and the nodes of named
 // loads are never taken.
@@ -26,6 +26,8 @@ class ToolPatches {
 
   // Moves the patches with their tools; nodes that the tool has left stay behind.
   void ride(const RobotPose& pose, const Tissue& tissue);
+  // Lets go of the nodes that carry no contact.
+  void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.
   void pushOut(const ContactSet& contacts, const Surface& surface, const RobotPose& pose);
   // Lets go of every node.
@@ -45,7 +47,7 @@ class ToolPatches {
   // Where a node sits on its tool, tool frame.
   struct Seat {
     Vec3 point = Vec3::Zero();
-    Vec3 normal = Vec3::Zero();
+    Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
   };
   // A free node that carries a contact's point.
   struct Carrier {
@@ -64,10 +66,10 @@ class ToolPatches {
   void scale(std::vector<Push>& pushes) const;
   double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
   static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
-  void seat(const Contact& contact, const std::vector<Carrier>& support, const RobotPose& pose);
+  void seat(int node, std::size_t tool, const Vec3& moved, const RobotPose& pose);
   void holdNamedLoads(const Tissue& tissue);
   void findOutwardNormals(const Tissue& tissue);
-  bool letsGo(int node, const Vec3& displacement, const Vec3& normal, const Tissue& tissue) const;
+  bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue) const;
 
   const Lattice* lattice_;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;

@@ -55,7 +55,7 @@ class Pipeline {
 
   // Follows the tools to their new pose. Poses with a non-finite number throw InputError.
   const StepReport& step(const RobotPose& pose);
-  // Rest shape; the tools are met anew at the next step.
+  // Rest shape; at the next step the tools come from where they are.
   void reset();
   // To be called after the tissue changed by other means (cut, load).
   void touch();
