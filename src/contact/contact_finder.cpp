@@ -11,6 +11,8 @@
 namespace robot_tissue {
 namespace {
 
+// An edge or a corner of a tool presses between samples by up to their distance.
+constexpr int kEdgeSubdivisions = 4;
 constexpr double kRigidSlack = 1e-6;
 
 bool isRigid(const Pose& pose) {
@@ -29,6 +31,7 @@ struct PlacedShape {
 struct Tool {
   std::vector<CollisionShape> shapes;
   double sample_spacing = 0.0;  // m
+  int least_subdivisions = 1;   // of a triangle's edge
 };
 
 Box emptyBox() {
@@ -64,6 +67,11 @@ std::optional<WayOut> deepest(const std::vector<PlacedShape>& shapes, const Vec3
     best = WayOut{out->depth_m, placed.tissue_T_shape.linear() * out->normal};
   }
   return best;
+}
+
+bool hasEdges(const ToolGeometry& geometry) {
+  return std::any_of(geometry.shapes.begin(), geometry.shapes.end(),
+                     [](const ToolShape& shape) { return shape.type != ToolShape::Type::kSphere; });
 }
 
 // Into the tissue: for a point that every way leads out of the tool alike.
@@ -104,10 +112,12 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools, double touc
     double thinnest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
       const std::string owner = "tool '" + geometry.name + "', shape " + std::to_string(i + 1);
-      tool.shapes.emplace_back(geometry.shapes[i], geometry.padding + touch_margin, owner, impl_->warnings);
+      tool.shapes.emplace_back(geometry.shapes[i], geometry.padding + touch_margin, owner,
+                               impl_->warnings);
       thinnest = std::min(thinnest, tool.shapes.back().thickness());
     }
     tool.sample_spacing = 0.5 * thinnest;
+    if (hasEdges(geometry)) tool.least_subdivisions = kEdgeSubdivisions;
     impl_->tools.push_back(std::move(tool));
   }
 }
@@ -190,8 +200,9 @@ void ContactFinder::Impl::findOnTriangle(int tool, int triangle, const Surface& 
     vertex_asked[vertex] = 1;
     if (beyond[vertex] == 0) ask(Vec3::Unit(k));
   }
-  sampleTriangle(corners, vertices, tools[static_cast<std::size_t>(tool)].sample_spacing, centers,
-                 samples);
+  const Tool& asking = tools[static_cast<std::size_t>(tool)];
+  const SampleGrid grid{asking.sample_spacing, asking.least_subdivisions};
+  sampleTriangle(corners, vertices, grid, centers, samples);
   for (const Vec3& weights : samples) ask(weights);
 }
 

@@ -7,10 +7,12 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kSameWeights = 1e-6;
+constexpr double kSpeck = 1e-3;  // of the samples' spacing: a triangle that is but a point
 
-int subdivisions(double length, double spacing) {
-  if (!(length > spacing)) return 1;
-  return static_cast<int>(std::min<double>(kMaxSubdivisions, std::ceil(length / spacing)));
+int subdivisions(double length, const SampleGrid& grid) {
+  if (!(length > kSpeck * grid.spacing)) return 1;
+  const double needed = std::min<double>(kMaxSubdivisions, std::ceil(length / grid.spacing));
+  return std::max(grid.least_subdivisions, static_cast<int>(needed));
 }
 
 // Adds a foot unless it is a vertex, lies on an edge (`least` weight zero) or is a sample already.
@@ -22,7 +24,7 @@ void addFoot(const Vec3& weights, double least, std::vector<Vec3>& samples) {
   samples.push_back(weights);
 }
 
-void sampleEdge(int from, const Vec3& a, const Vec3& b, double spacing,
+void sampleEdge(int from, const Vec3& a, const Vec3& b, const SampleGrid& sample_grid,
                 const std::vector<Vec3>& centers, std::vector<Vec3>& samples) {
   const int to = (from + 1) % 3;
   const auto weights = [&](double t) {
@@ -33,7 +35,7 @@ void sampleEdge(int from, const Vec3& a, const Vec3& b, double spacing,
   };
   const double length = (b - a).norm();
   if (!(length > 0.0)) return;
-  const int grid = subdivisions(length, spacing);
+  const int grid = subdivisions(length, sample_grid);
   for (int k = 1; k < grid; ++k) samples.push_back(weights(static_cast<double>(k) / grid));
   for (const Vec3& center : centers) {
     const double t = (center - a).dot(b - a) / (length * length);
@@ -88,7 +90,8 @@ Vec3 nearestInTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
 }
 
 void sampleTriangle(const std::array<int, 3>& triangle, const std::vector<Vec3>& vertices,
-                    double spacing, const std::vector<Vec3>& centers, std::vector<Vec3>& samples) {
+                    const SampleGrid& grid, const std::vector<Vec3>& centers,
+                    std::vector<Vec3>& samples) {
   samples.clear();
   std::array<Vec3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) corners[k] = vertices[static_cast<std::size_t>(triangle[k])];
@@ -97,10 +100,10 @@ void sampleTriangle(const std::array<int, 3>& triangle, const std::vector<Vec3>&
     const std::size_t next = (k + 1) % 3;
     longest = std::max(longest, (corners[next] - corners[k]).norm());
     if (triangle[k] < triangle[next]) {
-      sampleEdge(static_cast<int>(k), corners[k], corners[next], spacing, centers, samples);
+      sampleEdge(static_cast<int>(k), corners[k], corners[next], grid, centers, samples);
     }
   }
-  sampleInterior(corners, subdivisions(longest, spacing), centers, samples);
+  sampleInterior(corners, subdivisions(longest, grid), centers, samples);
 }
 
 }  // namespace robot_tissue

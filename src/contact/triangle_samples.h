@@ -16,9 +16,15 @@ constexpr int kMaxSubdivisions = 8;  // of an edge
 // Weights of the triangle's point that is nearest to p; sum to 1.
 Vec3 nearestInTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-// Barycentric coordinates of the sample points of a triangle, its vertices left out. `spacing`: the
-// greatest distance along an edge between two samples (m), as far as kMaxSubdivisions allows.
+// How densely triangles are sampled.
+struct SampleGrid {
+  double spacing = 0.0;        // greatest distance along an edge (m), as far as the maximum allows
+  int least_subdivisions = 1;  // of an edge
+};
+
+// Barycentric coordinates of the sample points of a triangle, its vertices left out.
 void sampleTriangle(const std::array<int, 3>& triangle, const std::vector<Vec3>& vertices,
-                    double spacing, const std::vector<Vec3>& centers, std::vector<Vec3>& samples);
+                    const SampleGrid& grid, const std::vector<Vec3>& centers,
+                    std::vector<Vec3>& samples);
 
 }  // namespace robot_tissue

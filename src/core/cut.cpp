@@ -65,8 +65,8 @@ class CutPolygon {
       const Eigen::Vector2d& a = outline_[i];
       const Eigen::Vector2d& b = outline_[j];
       const Eigen::Vector2d edge = b - a;
-      const double share =
-          std::min(1.0, std::max(0.0, (point - a).dot(edge) / std::max(edge.squaredNorm(), 1e-300)));
+      const double share = std::min(
+          1.0, std::max(0.0, (point - a).dot(edge) / std::max(edge.squaredNorm(), 1e-300)));
       if ((a + share * edge - point).norm() <= slack_) return true;
       const bool straddles = (a.y() > point.y()) != (b.y() > point.y());
       if (straddles && point.x() < a.x() + (point.y() - a.y()) / edge.y() * edge.x()) {

@@ -17,8 +17,9 @@ std::array<int, 3> gridSize(const Box& shape, double spacing) {
     // Written so that a spacing of 0 or NaN does not pass.
     if (!(whole >= 1.0) || !(std::abs(cells - whole) <= kBoxSlack)) {
       std::ostringstream line;
-      line << "tissue.spacing: " << spacing << ": the shape is " << shape.max[axis] - shape.min[axis]
-           << " m along " << kAxisNames[axis] << "; allowed: a whole number of spacings, at least 1";
+      line << "tissue.spacing: " << spacing << ": the shape is "
+           << shape.max[axis] - shape.min[axis] << " m along " << kAxisNames[axis]
+           << "; allowed: a whole number of spacings, at least 1";
       throw InputError(line.str());
     }
     size[static_cast<std::size_t>(axis)] = static_cast<int>(whole) + 1;
@@ -99,12 +100,15 @@ void Lattice::buildSprings(const TissueConfig& config) {
   for (int node = 0; node < nodeCount(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
       auto index = gridIndex(node);
-      if (++index[static_cast<std::size_t>(axis)] == size_[static_cast<std::size_t>(axis)]) continue;
+      if (++index[static_cast<std::size_t>(axis)] == size_[static_cast<std::size_t>(axis)])
+        continue;
       const int upper = this->node(index[0], index[1], index[2]);
       const int spring = static_cast<int>(springs_.size());
       springs_.push_back({node, upper, axis, 0.0});
-      springs_of_node_[static_cast<std::size_t>(node)][static_cast<std::size_t>(2 * axis + 1)] = spring;
-      springs_of_node_[static_cast<std::size_t>(upper)][static_cast<std::size_t>(2 * axis)] = spring;
+      springs_of_node_[static_cast<std::size_t>(node)][static_cast<std::size_t>(2 * axis + 1)] =
+          spring;
+      springs_of_node_[static_cast<std::size_t>(upper)][static_cast<std::size_t>(2 * axis)] =
+          spring;
     }
   }
   stiffness.resize(springs_.size());

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kAllAxes = 7;
 constexpr double kPatchBalance = 1e-6;  // of the loading force
-constexpr double kRounding = 1e-13;      // of a spring's stiffness times its length
+constexpr double kRounding = 1e-13;     // of a spring's stiffness times its length
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -235,9 +235,8 @@ bool PaperMethod::balanceNode(int node, LatticeState& state) const {
 }
 
 bool PaperMethod::isDisturbed(const std::vector<int>& layer, const LatticeState& state) const {
-  return std::any_of(layer.begin(), layer.end(), [&](int node) {
-    return freeForce(node, state).norm() > balanced_below_;
-  });
+  return std::any_of(layer.begin(), layer.end(),
+                     [&](int node) { return freeForce(node, state).norm() > balanced_below_; });
 }
 
 // Net force along the axes that the node may move on.

@@ -57,8 +57,8 @@ class SurfaceBuilder {
     for (int face = 0; face < 6; ++face) {
       auto neighbor = cell;
       neighbor[at(face / 2)] += face % 2 == 1 ? 1 : -1;
-      const bool outside = neighbor[at(face / 2)] < 0 ||
-                           neighbor[at(face / 2)] + 1 >= lattice_.size()[at(face / 2)];
+      const bool outside =
+          neighbor[at(face / 2)] < 0 || neighbor[at(face / 2)] + 1 >= lattice_.size()[at(face / 2)];
       if (!outside && isWhole(parts) && isWhole(partsOf(neighbor))) continue;
       for (int part = 0; part < kCorners; ++part) {
         if (parts[at(part)] == part) addFace(cell, parts, part, face, outside);
@@ -151,8 +151,9 @@ class SurfaceBuilder {
       weights.push_back({carrier, share});
       carriers_mean += share * lattice_.restPosition(carrier);
     }
-    surface_.rest.push_back(corner.own ? lattice_.restPosition(corner.node)
-                                       : 0.5 * (carriers_mean + lattice_.restPosition(corner.node)));
+    surface_.rest.push_back(corner.own
+                                ? lattice_.restPosition(corner.node)
+                                : 0.5 * (carriers_mean + lattice_.restPosition(corner.node)));
     surface_.carriers.push_back(std::move(weights));
     return static_cast<int>(surface_.rest.size()) - 1;
   }

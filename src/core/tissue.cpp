@@ -35,11 +35,10 @@ SolveReport Tissue::settle() { return solve(freeNodes()); }
 SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
                            const std::vector<int>& disturbed) {
   const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  const bool one_left =
-      std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
-        return std::none_of(tool_patches.begin(), tool_patches.end(),
-                            [&](const LoadingPatch& now) { return now.name == earlier.name; });
-      });
+  const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
+    return std::none_of(tool_patches.begin(), tool_patches.end(),
+                        [&](const LoadingPatch& now) { return now.name == earlier.name; });
+  });
   patches_.erase(first_tool, patches_.end());
   std::move(tool_patches.begin(), tool_patches.end(), std::back_inserter(patches_));
   return one_left ? solveFromRest() : solve(disturbed);

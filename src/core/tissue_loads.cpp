@@ -93,13 +93,13 @@ void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
     }
   };
   for (const LoadingPatch& patch : patches_) {
-    const auto replaced = std::find_if(patches.begin(), patches.end(), [&](const auto& other) {
-      return other.name == patch.name;
-    });
+    const auto replaced = std::find_if(patches.begin(), patches.end(),
+                                       [&](const auto& other) { return other.name == patch.name; });
     if (replaced == patches.end()) {
       claim(patch);
     } else if (replaced->nodes != patch.nodes) {
-      refuse(patch.name, "a patch of this name stands on other nodes", "the same box, or a release");
+      refuse(patch.name, "a patch of this name stands on other nodes",
+             "the same box, or a release");
     }
   }
   std::set<std::string> names;

@@ -63,8 +63,8 @@ void ToolPatches::keepTouching(const ContactSet& contacts, const Tissue& tissue)
 
 // The smallest motion of the nodes that takes every contact's point out of its tool:
 //   minimize sum |du_n|^2 / mobility_n   subject to   normal_c . sum w_cn du_n >= depth_c,
-// by sweeps over the contacts' multipliers. All of a sweep look at the same shape, so that the order
-// of the contacts, and with it the side a symmetric press would start on, does not matter.
+// by sweeps over the contacts' multipliers. All of a sweep look at the same shape, so that the
+// order of the contacts, and with it the side a symmetric press would start on, does not matter.
 void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
                           const RobotPose& pose) {
   std::vector<Push> pushes;
@@ -213,8 +213,7 @@ void ToolPatches::findOutwardNormals(const Tissue& tissue) {
   outward_.assign(at(lattice_->nodeCount()), Vec3::Zero());
   for (const auto& triangle : surface.triangles) {
     const Vec3& a = surface.rest[at(triangle[0])];
-    const Vec3 area =
-        (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
+    const Vec3 area = (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
     for (const int vertex : triangle) {
       if (surface.carriers[at(vertex)].size() > 1) continue;
       outward_[at(surface.carriers[at(vertex)].front().node)] += area;

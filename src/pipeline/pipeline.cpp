@@ -77,7 +77,9 @@ void requireFinite(const RobotPose& pose) {
 
 Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
                    const std::vector<ToolGeometry>& tools)
-    : tissue_(tissue, solver), finder_(tools, touchMargin(tissue.spacing)), patches_(tissue_.lattice(), namesOf(tools)) {
+    : tissue_(tissue, solver),
+      finder_(tools, touchMargin(tissue.spacing)),
+      patches_(tissue_.lattice(), namesOf(tools)) {
   report_.tools.resize(tools.size());
 }
 

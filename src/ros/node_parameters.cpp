@@ -74,7 +74,8 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   const Range rate{0.0, kHighestRate, true, false, "Hz"};
   parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
   parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
-  parameters.tf_timeout_s = own("tf_timeout").numberOr(parameters.tf_timeout_s, Range::positive("s"));
+  parameters.tf_timeout_s =
+      own("tf_timeout").numberOr(parameters.tf_timeout_s, Range::positive("s"));
   parameters.force_scale =
       own("force_scale").numberOr(parameters.force_scale, Range::positive("m/N"));
   if (own("robot_description_param").given()) {

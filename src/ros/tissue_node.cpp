@@ -40,9 +40,9 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
 void TissueNode::update() {
   frequency_.tick();
   diagnostics_.update();
-  if (!robotIsKnown()) return report({"NO_ROBOT", "parameter '" +
-                                                      parameters_.robot_description_param +
-                                                      "' is not set: waiting for a URDF"});
+  if (!robotIsKnown())
+    return report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
+                                   "' is not set: waiting for a URDF"});
   last_look_up_ = tool_poses_.lookUp(ros::Time::now());
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
     const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;

@@ -9,7 +9,8 @@ namespace robot_tissue {
 namespace {
 
 std::string solved(const SolveReport& report) {
-  return report.status == SolveStatus::kOk ? std::string() : std::string("; ") + toString(report.status);
+  return report.status == SolveStatus::kOk ? std::string()
+                                           : std::string("; ") + toString(report.status);
 }
 
 void requireFinite(const Vec3& vector, const std::string& key) {
@@ -96,8 +97,7 @@ bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& r
       SolveReport last;
       LoadStep step;
       step.patches.push_back(patchOf(request));
-      pipeline_.tissue().load(step,
-                              [&](int, int, const SolveReport& report) { last = report; });
+      pipeline_.tissue().load(step, [&](int, int, const SolveReport& report) { last = report; });
       const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
       response.force = toVector3(answer.force);
       response.displacement = toVector3(answer.displacement);

@@ -35,14 +35,14 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
     found.pose.stamp_s = found.stamp.toSec();
     found.age_s = (now - found.stamp).toSec();
   } catch (const tf2::TransformException& error) {
-    found.message = std::string("no transform from a tool to '") + tissue_frame_ +
-                    "': " + error.what();
+    found.message =
+        std::string("no transform from a tool to '") + tissue_frame_ + "': " + error.what();
     return found;
   }
   if (found.age_s > timeout_s_) {
     found.status = PoseLookUp::Status::kStale;
-    found.message = "the tools' pose is " + std::to_string(found.age_s) + " s old; allowed: " +
-                    std::to_string(timeout_s_) + " (~tf_timeout)";
+    found.message = "the tools' pose is " + std::to_string(found.age_s) +
+                    " s old; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
     return found;
   }
   found.status = PoseLookUp::Status::kOk;

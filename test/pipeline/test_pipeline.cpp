@@ -149,8 +149,9 @@ TEST_F(PressedBlock, ResetGivesTheRestShapeAndTheSameAnswerAfterwards) {
 
 TEST_F(PressedBlock, CutUnderLoadStaysAndTheToolStaysOut) {
   walk(pipeline_, -0.001, 0.004);
-  const CutReport cut = pipeline_.tissue().cut({Vec3(0.0475, -0.01, 0.02), Vec3(0.0475, 0.06, 0.02),
-                                                Vec3(0.0475, 0.06, 0.07), Vec3(0.0475, -0.01, 0.07)});
+  const CutReport cut =
+      pipeline_.tissue().cut({Vec3(0.0475, -0.01, 0.02), Vec3(0.0475, 0.06, 0.02),
+                              Vec3(0.0475, 0.06, 0.07), Vec3(0.0475, -0.01, 0.07)});
   pipeline_.touch();
   EXPECT_GT(cut.springs_cut, 0);
   walk(pipeline_, 0.004, 0.005);
@@ -205,7 +206,8 @@ TEST(Wrench, IsInTheToolsFrameAboutItsOrigin) {
 TEST(TwoTools, OneLeavesTheOtherStays) {
   Pipeline pipeline(block(), {}, {probe("left"), probe("right")});
   const auto both = [](double left, double right) {
-    return at({Vec3(0.025, 0.05, kTop + kRadius - left), Vec3(0.075, 0.05, kTop + kRadius - right)});
+    return at(
+        {Vec3(0.025, 0.05, kTop + kRadius - left), Vec3(0.075, 0.05, kTop + kRadius - right)});
   };
   for (double depth = 0.0; depth < 0.004; depth += 0.0005) pipeline.step(both(depth, depth));
   const StepReport& report = pipeline.report();

@@ -48,17 +48,17 @@ TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
 
 INSTANTIATE_TEST_SUITE_P(
     Node, BadParameter,
-    ::testing::Values(
-        Case{"spacing", "tissue/spacing", "-0.005", "tissue.spacing = -0.005"},
-        Case{"ratio", "tissue/spacing", "0.03", "tissue.spacing = 0.03"},
-        Case{"model", "tissue/model", "jelly", "tissue.model = jelly"},
-        Case{"later_method", "solver/method", "newton", "solver.method = newton"},
-        Case{"unknown_key", "tissue/sapcing", "0.005", "tissue.sapcing"},
-        Case{"own_unknown_key", "ratee", "100", "ratee"},
-        Case{"rate", "rate", "0", "rate = 0"},
-        Case{"timeout", "tf_timeout", "-1", "tf_timeout = -1"},
-        Case{"description", "robot_description_param", "/broken_description", "URDF"},
-        Case{"other_robot", "robot_description_param", "/other_description", "probe"}),
+    ::testing::Values(Case{"spacing", "tissue/spacing", "-0.005", "tissue.spacing = -0.005"},
+                      Case{"ratio", "tissue/spacing", "0.03", "tissue.spacing = 0.03"},
+                      Case{"model", "tissue/model", "jelly", "tissue.model = jelly"},
+                      Case{"later_method", "solver/method", "newton", "solver.method = newton"},
+                      Case{"unknown_key", "tissue/sapcing", "0.005", "tissue.sapcing"},
+                      Case{"own_unknown_key", "ratee", "100", "ratee"},
+                      Case{"rate", "rate", "0", "rate = 0"},
+                      Case{"timeout", "tf_timeout", "-1", "tf_timeout = -1"},
+                      Case{"description", "robot_description_param", "/broken_description", "URDF"},
+                      Case{"other_robot", "robot_description_param", "/other_description",
+                           "probe"}),
     [](const ::testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
 
 }  // namespace

@@ -1,12 +1,11 @@
 // The output folder gets all its files or stays as it was.
-#include "output_folder.h"
-
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <fstream>
 #include <iterator>
 
+#include "output_folder.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {

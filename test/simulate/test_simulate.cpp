@@ -1,6 +1,4 @@
 // The runner as a program and as a function: exit codes, files and their content.
-#include "simulate.h"
-
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -18,6 +16,7 @@
 #include <sstream>
 
 #include "result_text.h"
+#include "simulate.h"
 
 namespace robot_tissue {
 namespace {

@@ -1,10 +1,11 @@
 // Finds the points of the deformed surface that are inside a tool.
 // In: tool poses (tissue frame), deformed surface vertices (m, tissue frame).
-// Out: contacts with depth > -touch_margin; normal from the tool into the tissue. In order of tools, then of
-// triangles; a point in several shapes of a tool is one contact, with the deepest of them.
-// FCL objects are built once, in the constructor. A mesh touches with its convex hull.
-// Sampled: vertices, points on triangles, at most half of the tool's thinnest shape apart (down to
-// an eighth of an edge), and the points of the triangles nearest to the shapes' centers.
+// Out: contacts with depth > -touch_margin; normal from the tool into the tissue. In order of
+// tools, then of triangles; a point in several shapes of a tool is one contact, with the deepest of
+// them. FCL objects are built once, in the constructor. A mesh touches with its convex hull.
+// Sampled: vertices; points on triangles, at most half of the thinnest shape apart and, for a tool
+// with edges, a quarter of a triangle's edge (down to an eighth of it); and the points of the
+// triangles nearest to the shapes' centers.
 // Does not find a tool that lies wholly beneath the surface. A tool whose pose is not finite and
 // rigid touches nothing.
 #pragma once

@@ -14,7 +14,7 @@
 namespace robot_tissue {
 
 struct Spring {
-  int a = 0;               // node at the lower end along `axis`
+  int a = 0;  // node at the lower end along `axis`
   int b = 0;
   int axis = 0;            // 0, 1, 2 = x, y, z
   double stiffness = 0.0;  // N/m

@@ -16,7 +16,7 @@ struct LoadingPatch {
   std::string name;
   std::vector<int> nodes;  // ascending
   Drive drive = Drive::kDisplacement;
-  std::vector<Vec3> displacement;                           // kDisplacement: per node, from rest (m)
+  std::vector<Vec3> displacement;  // kDisplacement: per node, from rest (m)
   std::array<bool, 3> free_axis = {{false, false, false}};  // kDisplacement: nodes slide along it
   Vec3 force = Vec3::Zero();                                // kForce: on the tissue (N)
 };

@@ -63,8 +63,8 @@ class PaperMethod : public SolverMethod {
   Vec3 freeForce(int node, const LatticeState& state) const;
   Vec3 patchForce(const LoadingPatch& patch, const LatticeState& state) const;
   Vec3 moveTowardsBalance(const Vec3& force, const Vec3& stiffness) const;
-  double referenceForce(const std::vector<LoadingPatch>& patches,
-                        const std::vector<int>& disturbed, const LatticeState& state) const;
+  double referenceForce(const std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
+                        const LatticeState& state) const;
   void describe(const std::vector<LoadingPatch>& patches, const LatticeState& state,
                 SolveReport& report) const;
   double elapsedMs() const;

@@ -71,11 +71,11 @@ using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep>
 struct ToolShape {
   enum class Type { kSphere, kBox, kCylinder, kMesh };
   Type type = Type::kSphere;
-  double radius = 0.0;         // sphere, cylinder
-  double length = 0.0;         // cylinder, along its z axis
-  Vec3 size = Vec3::Zero();    // box: full edge lengths
-  std::string resource;        // mesh: package:// or file://
-  Vec3 scale = Vec3::Ones();   // mesh
+  double radius = 0.0;        // sphere, cylinder
+  double length = 0.0;        // cylinder, along its z axis
+  Vec3 size = Vec3::Zero();   // box: full edge lengths
+  std::string resource;       // mesh: package:// or file://
+  Vec3 scale = Vec3::Ones();  // mesh
   Pose pose = Pose::Identity();
 };
 

@@ -35,7 +35,7 @@ struct ToolReport {
 struct StepReport {
   bool changed = false;   // false: the shape is as it was
   bool too_fast = false;  // the tools jumped further than can be followed; contact began anew
-  int substeps = 0;  // solves that the way took
+  int substeps = 0;       // solves that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
   SolveReport solve;              // the last one

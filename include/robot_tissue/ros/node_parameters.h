@@ -11,10 +11,10 @@ namespace robot_tissue {
 
 struct NodeParameters {
   Scene scene;
-  double rate_hz = 100.0;         // ~rate: updates, upper bound
-  double marker_rate_hz = 30.0;   // ~marker_rate: markers, upper bound
-  double tf_timeout_s = 0.5;      // ~tf_timeout: an older pose is stale
-  double force_scale = 0.02;      // ~force_scale: length of a force arrow (m/N)
+  double rate_hz = 100.0;        // ~rate: updates, upper bound
+  double marker_rate_hz = 30.0;  // ~marker_rate: markers, upper bound
+  double tf_timeout_s = 0.5;     // ~tf_timeout: an older pose is stale
+  double force_scale = 0.02;     // ~force_scale: length of a force arrow (m/N)
   std::string robot_description_param = "robot_description";  // ~robot_description_param
 };
 

@@ -4,15 +4,14 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <diagnostic_updater/update_functions.h>
+#include <robot_tissue/ApplyLoad.h>
+#include <robot_tissue/Cut.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/timer.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
-
-#include <robot_tissue/ApplyLoad.h>
-#include <robot_tissue/Cut.h>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/node_parameters.h"
