@@ -5,8 +5,6 @@
 namespace robot_tissue {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 bool isWhole(const std::array<int, kCorners>& parts) {
   return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
 }

@@ -7,24 +7,16 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kBoxSlack = 1e-3;  // of the spacing
-const char* const kAxisNames[] = {"x", "y", "z"};
 
-std::array<int, 3> gridSize(const Box& shape, double spacing) {
-  std::array<int, 3> size{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cells = (shape.max[axis] - shape.min[axis]) / spacing;
-    const double whole = std::round(cells);
-    // Written so that a spacing of 0 or NaN does not pass.
-    if (!(whole >= 1.0) || !(std::abs(cells - whole) <= kBoxSlack)) {
-      std::ostringstream line;
-      line << "tissue.spacing: " << spacing << ": the shape is "
-           << shape.max[axis] - shape.min[axis] << " m along " << kAxisNames[axis]
-           << "; allowed: a whole number of spacings, at least 1";
-      throw InputError(line.str());
-    }
-    size[static_cast<std::size_t>(axis)] = static_cast<int>(whole) + 1;
+Grid makeGrid(const Box& shape, double spacing) {
+  const Vec3 extent = shape.max - shape.min;
+  if (!spacingFits(extent, spacing)) {
+    std::ostringstream line;
+    line << "tissue.spacing: " << spacing << ": the shape is " << extent.x() << " x " << extent.y()
+         << " x " << extent.z() << " m; allowed: a whole number of spacings along each axis";
+    throw InputError(line.str());
   }
-  return size;
+  return Grid(shape, spacing);
 }
 
 bool contains(const Box& box, const Vec3& point, double slack) {
@@ -73,12 +65,9 @@ const char* toString(SolveStatus status) {
   return "UNCONVERGED";
 }
 
-Lattice::Lattice(const TissueConfig& config)
-    : size_(gridSize(config.shape, config.spacing)),
-      origin_(config.shape.min),
-      spacing_(config.spacing) {
-  const auto count = static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) *
-                     static_cast<std::size_t>(size_[2]);
+Lattice::Lattice(const TissueConfig& config) : grid_(makeGrid(config.shape, config.spacing)) {
+  const auto count = static_cast<std::size_t>(size()[0]) * static_cast<std::size_t>(size()[1]) *
+                     static_cast<std::size_t>(size()[2]);
   fixed_.assign(count, 0);
   mass_.assign(count, 0.0);
   buildSprings(config);
@@ -100,7 +89,7 @@ void Lattice::buildSprings(const TissueConfig& config) {
   for (int node = 0; node < nodeCount(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
       auto index = gridIndex(node);
-      if (++index[static_cast<std::size_t>(axis)] == size_[static_cast<std::size_t>(axis)])
+      if (++index[static_cast<std::size_t>(axis)] == size()[static_cast<std::size_t>(axis)])
         continue;
       const int upper = this->node(index[0], index[1], index[2]);
       const int spring = static_cast<int>(springs_.size());
@@ -112,19 +101,19 @@ void Lattice::buildSprings(const TissueConfig& config) {
     }
   }
   stiffness.resize(springs_.size());
-  const double corner_volume = std::pow(spacing_, 3) / 8.0;
-  for (int k = 0; k + 1 < size_[2]; ++k) {
-    for (int j = 0; j + 1 < size_[1]; ++j) {
-      for (int i = 0; i + 1 < size_[0]; ++i) {
+  const double corner_volume = std::pow(spacing(), 3) / 8.0;
+  for (int k = 0; k + 1 < size()[2]; ++k) {
+    for (int j = 0; j + 1 < size()[1]; ++j) {
+      for (int i = 0; i + 1 < size()[0]; ++i) {
         const Material& material =
-            materialAt(config, restPosition(node(i, j, k)) + Vec3::Constant(0.5 * spacing_));
+            materialAt(config, restPosition(node(i, j, k)) + Vec3::Constant(0.5 * spacing()));
         for (int corner = 0; corner < 8; ++corner) {
           const int at = node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
           mass_[static_cast<std::size_t>(at)] += material.density * corner_volume;
           for (int axis = 0; axis < 3; ++axis) {
             if (corner >> axis & 1) continue;
             const int spring = springOf(at, 2 * axis + 1);
-            stiffness[static_cast<std::size_t>(spring)].add(material, spacing_);
+            stiffness[static_cast<std::size_t>(spring)].add(material, spacing());
           }
         }
       }
@@ -136,13 +125,13 @@ void Lattice::buildSprings(const TissueConfig& config) {
 }
 
 std::array<int, 3> Lattice::gridIndex(int node) const {
-  const int row = node / size_[0];
-  return {node % size_[0], row % size_[1], row / size_[1]};
+  const int row = node / size()[0];
+  return {node % size()[0], row % size()[1], row / size()[1]};
 }
 
 Vec3 Lattice::restPosition(int node) const {
   const auto index = gridIndex(node);
-  return origin_ + spacing_ * Vec3(index[0], index[1], index[2]);
+  return grid_.shape().min + spacing() * Vec3(index[0], index[1], index[2]);
 }
 
 int Lattice::neighbor(int node, int direction) const {
@@ -153,20 +142,11 @@ int Lattice::neighbor(int node, int direction) const {
 }
 
 std::vector<int> Lattice::nodesIn(const Box& box) const {
-  std::array<int, 3> first{}, last{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    const double low = (box.min[a] - origin_[a]) / spacing_ - kBoxSlack;
-    const double high = (box.max[a] - origin_[a]) / spacing_ + kBoxSlack;
-    const double top = size_[axis] - 1;
-    if (!(low <= top) || !(high >= 0.0)) return {};
-    first[axis] = static_cast<int>(std::ceil(std::max(low, 0.0)));
-    last[axis] = static_cast<int>(std::floor(std::min(high, top)));
-  }
+  const NodeRange range = grid_.nodesIn(box);
   std::vector<int> nodes;
-  for (int k = first[2]; k <= last[2]; ++k) {
-    for (int j = first[1]; j <= last[1]; ++j) {
-      for (int i = first[0]; i <= last[0]; ++i) nodes.push_back(node(i, j, k));
+  for (int k = range.first[2]; k <= range.last[2]; ++k) {
+    for (int j = range.first[1]; j <= range.last[1]; ++j) {
+      for (int i = range.first[0]; i <= range.last[0]; ++i) nodes.push_back(node(i, j, k));
     }
   }
   return nodes;

@@ -10,8 +10,6 @@ constexpr std::uint8_t kAllAxes = 7;
 constexpr double kPatchBalance = 1e-6;  // of the loading force
 constexpr double kRounding = 1e-13;     // of a spring's stiffness times its length
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 std::uint8_t maskOf(const LoadingPatch& patch) {
   if (patch.drive == LoadingPatch::Drive::kForce) return kAllAxes;
   std::uint8_t mask = 0;

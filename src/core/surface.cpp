@@ -8,8 +8,6 @@
 namespace robot_tissue {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 // Corners of each face, counter-clockwise seen from outside; faces in the order -x +x -y +y -z +z.
 constexpr int kFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};

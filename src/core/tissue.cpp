@@ -9,12 +9,6 @@
 #include "robot_tissue/core/registry.h"
 
 namespace robot_tissue {
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
-
 Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
     : lattice_(tissue),
       state_(lattice_.restState()),

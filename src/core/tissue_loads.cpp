@@ -12,8 +12,6 @@
 namespace robot_tissue {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 [[noreturn]] void refuse(const std::string& patch, const std::string& problem,
                          const std::string& allowed) {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);

@@ -11,8 +11,6 @@ constexpr int kPushSweeps = 300;
 constexpr double kPushedOut = 1e-3;     // of the spacing
 constexpr double kHeldMobility = 0.05;  // of a node with a place on a tool; 1 for others
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 }  // namespace
 
 ToolPatches::ToolPatches(const Lattice& lattice, std::vector<std::string> tool_names)

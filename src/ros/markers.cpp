@@ -16,8 +16,6 @@ constexpr double kNormalLength = 3.0;    // spacings
 constexpr double kShaftDiameter = 0.25;  // of the spacing
 constexpr double kSmallestForce = 1e-9;  // N; no arrow below
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 void setColor(Marker& marker, double red, double green, double blue, double alpha = 1.0) {
   marker.color.r = static_cast<float>(red);
   marker.color.g = static_cast<float>(green);

@@ -13,7 +13,6 @@
 
 namespace robot_tissue {
 
-inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // A block of so many cells from the origin; 10 kPa, 1000 kg/m^3; floating.
 inline TissueConfig blockOf(int cells_x, int cells_y, int cells_z, double spacing = 0.01) {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "robot_tissue/scene/grid.h"
+#include "robot_tissue/core/grid.h"
 #include "robot_tissue/scene/value_text.h"
 #include "scene_texts.h"
 

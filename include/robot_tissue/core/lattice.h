@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/types.h"
@@ -29,11 +30,11 @@ class Lattice {
   explicit Lattice(const TissueConfig& config);
 
   int nodeCount() const { return static_cast<int>(fixed_.size()); }
-  double spacing() const { return spacing_; }
-  const std::array<int, 3>& size() const { return size_; }  // nodes along x, y, z
+  double spacing() const { return grid_.spacing(); }
+  const std::array<int, 3>& size() const { return grid_.size(); }  // nodes along x, y, z
 
   // Nodes are numbered with x running fastest.
-  int node(int i, int j, int k) const { return i + size_[0] * (j + size_[1] * k); }
+  int node(int i, int j, int k) const { return i + size()[0] * (j + size()[1] * k); }
   std::array<int, 3> gridIndex(int node) const;
   Vec3 restPosition(int node) const;
   bool isFixed(int node) const { return fixed_[static_cast<std::size_t>(node)] != 0; }
@@ -55,9 +56,7 @@ class Lattice {
  private:
   void buildSprings(const TissueConfig& config);
 
-  std::array<int, 3> size_{};
-  Vec3 origin_ = Vec3::Zero();
-  double spacing_ = 0.0;
+  Grid grid_;
   std::vector<std::uint8_t> fixed_;
   std::vector<double> mass_;
   std::vector<Spring> springs_;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ namespace robot_tissue {
 
 using Vec3 = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
+
+// Index of a node, spring or vertex as containers want it.
+constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // Closed axis-aligned box (m).
 struct Box {

@@ -7,7 +7,7 @@
 
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/scene/entry.h"
-#include "robot_tissue/scene/grid.h"
+#include "robot_tissue/core/grid.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/scene_gate.h"
 

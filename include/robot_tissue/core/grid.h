@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -27,7 +26,7 @@ class Grid {
   NodeRange nodesIn(const Box& box) const;
   // True when the box holds the center of a cell between eight nodes: cells carry the material.
   bool holdsCell(const Box& box) const;
-  // Position of the outermost nodes, for messages.
+  const std::array<int, 3>& size() const { return size_; }  // nodes along x, y, z
   const Box& shape() const { return shape_; }
   double spacing() const { return spacing_; }
 

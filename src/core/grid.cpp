@@ -1,4 +1,4 @@
-#include "robot_tissue/scene/grid.h"
+#include "robot_tissue/core/grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,10 @@ NodeRange Grid::pointsIn(const Box& box, double offset) const {
 bool spacingFits(const Vec3& extent, double spacing) {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = extent[axis] / spacing;
-    if (std::round(cells) < 1.0 || std::abs(cells - std::round(cells)) > kSlack) return false;
+    // Written so that a spacing of 0 or NaN does not fit.
+    if (!(std::round(cells) >= 1.0) || !(std::abs(cells - std::round(cells)) <= kSlack)) {
+      return false;
+    }
   }
   return true;
 }
