@@ -48,7 +48,12 @@ void TissueNode::update() {
     const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;
     return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});
   }
-  const StepReport& step = pipeline_.step(last_look_up_.pose);
+  try {
+    pipeline_.step(last_look_up_.pose);
+  } catch (const InputError& error) {
+    return report({"NO_TRANSFORM", error.what()});
+  }
+  const StepReport& step = pipeline_.report();
   status_ = statusOf(step);
   if (step.too_fast) ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   publisher_.publish(pipeline_, last_look_up_.pose, last_look_up_.stamp, status_);
