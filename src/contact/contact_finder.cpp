@@ -131,6 +131,13 @@ double ContactFinder::reach(std::size_t tool) const {
   return farthest;
 }
 
+Vec3 ContactFinder::center(std::size_t tool) const {
+  Vec3 sum = Vec3::Zero();
+  const auto& shapes = impl_->tools[tool].shapes;
+  for (const CollisionShape& shape : shapes) sum += shape.poseInLink().translation();
+  return shapes.empty() ? sum : Vec3(sum / static_cast<double>(shapes.size()));
+}
+
 const std::vector<std::string>& ContactFinder::warnings() const { return impl_->warnings; }
 
 ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,

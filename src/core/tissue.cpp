@@ -42,6 +42,7 @@ void Tissue::restore(const Shape& shape) {
   state_.displacement = shape.displacement;
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
+  last_report_ = shape.report;
   deform(surface_, state_.displacement, vertices_);
 }
 

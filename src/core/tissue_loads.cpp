@@ -19,13 +19,19 @@ namespace {
 
 }  // namespace
 
-void Tissue::load(const LoadStep& step, const OnIncrement& on_increment) {
+void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets);
   std::vector<Ramp> ramps;
-  for (const LoadingPatch& target : targets) ramps.push_back(makeRamp(place(target), target));
-  climb(ramps, step.increments.value_or(chooseIncrements(ramps)), on_increment);
+  for (const LoadingPatch& target : targets) ramps.push_back(makeRamp(0, target));
+  const int increments = step.increments.value_or(chooseIncrements(ramps));
+  if (increments > most_increments) {
+    refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
+           "at most " + std::to_string(most_increments) + ", so a smaller load");
+  }
+  for (Ramp& ramp : ramps) ramp.patch = place(ramp.target);
+  climb(ramps, increments, on_increment);
 }
 
 SolveReport Tissue::release(const std::vector<std::string>& names) {

@@ -8,12 +8,12 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kMostSubsteps = 200;
-constexpr std::size_t kMostCheckpoints = 256;
+constexpr std::size_t kMostCheckpoints = 64;
 constexpr int kPushPasses = 4;         // a curved tool's way out turns as the surface moves
 constexpr int kContactRounds = 3;      // nodes that the solve moved into the tool are pushed again
 constexpr double kDeepEnough = 0.01;   // of the spacing: penetration that is worth another round
 constexpr double kTouches = 0.02;      // of the spacing: a gap that is none
-constexpr double kStandsStill = 1e-9;  // m
+constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
 
 class Stopwatch {
  public:
@@ -65,6 +65,12 @@ RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
   return between;
 }
 
+Pose farAway() {
+  Pose pose = Pose::Identity();
+  pose.translation().setConstant(1e6);  // m
+  return pose;
+}
+
 void requireFinite(const RobotPose& pose) {
   for (const Pose& tool : pose.tools) {
     if (!tool.matrix().allFinite()) {
@@ -102,22 +108,31 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   report_.solve_ms = 0.0;
   report_.substeps = 0;
   if (standsStill(pose) && !touched_) return report_;
-  const bool was_touched = !tissue_.isUntouched();
-  if (checkpoints_.empty()) checkIn(pose);
+  report_.changed = report_.changed || !tissue_.isUntouched();
+  if (checkpoints_.empty()) startAnew(pose);
   goBackTo(pose);
+  last_pose_ = walk(pose);
+  touched_ = report_.too_fast;  // there is a way left to go
+  return report_;
+}
+
+// Whole load steps, each kept, and the rest of the way. Returns how far it came in time.
+RobotPose Pipeline::walk(const RobotPose& pose) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(budget_s_);
   const RobotPose start = checkpoints_.back().pose;
   const double steps = longestWay(start, pose) / tissue_.stepLength();
   for (int step = 1; step <= static_cast<int>(steps); ++step) {
     const RobotPose on_the_way = between(start, pose, step / steps);
     advance(on_the_way);
     checkIn(on_the_way);
+    if (std::chrono::steady_clock::now() > deadline) {
+      report_.too_fast = true;
+      return on_the_way;
+    }
   }
   advance(pose);
   if (tissue_.isUntouched()) checkIn(pose);
-  report_.changed = report_.changed || was_touched;
-  last_pose_ = pose;
-  touched_ = false;
-  return report_;
+  return pose;
 }
 
 // One load step, the line of the package. A second round only if the solve moved nodes into a tool.
@@ -137,14 +152,15 @@ void Pipeline::advance(const RobotPose& pose) {
 
 void Pipeline::solve() {
   const Stopwatch watch(report_.solve_ms);
-  report_.solve = tissue_.follow(patches_.loadingPatches(), patches_.left());
+  tissue_.follow(patches_.loadingPatches(), patches_.left());
   report_.changed = true;
 }
 
 void Pipeline::reset() {
   patches_.clear();
   tissue_.reset();
-  touch();
+  checkpoints_.clear();
+  touched_ = true;
 }
 
 ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
@@ -169,8 +185,9 @@ void Pipeline::touch() {
 }
 
 void Pipeline::checkIn(const RobotPose& pose) {
-  if (tissue_.isUntouched() || checkpoints_.size() >= kMostCheckpoints) checkpoints_.clear();
-  checkpoints_.push_back({pose, tissue_.shape(), patches_});
+  if (tissue_.isUntouched()) checkpoints_.clear();
+  if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
+  checkpoints_.push_back({pose, tissue_.shape(), patches_.seats()});
 }
 
 // Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
@@ -187,20 +204,57 @@ void Pipeline::goBackTo(const RobotPose& pose) {
   checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
                      checkpoints_.end());
   tissue_.restore(checkpoints_.back().shape);
-  patches_ = checkpoints_.back().patches;
-  if (shortest > kMostSubsteps * tissue_.stepLength()) startAnew(pose);
+  patches_.restore(checkpoints_.back().seats);
+  if (shortest > kMostSubsteps * tissue_.stepLength()) {
+    report_.too_fast = true;
+    startAnew(pose);
+  }
 }
 
-// The tools jumped: they let go, and are met anew where they are.
+// The tools let go, and come in from outside.
 void Pipeline::startAnew(const RobotPose& pose) {
-  report_.too_fast = true;
   patches_.clear();
   if (!tissue_.isUntouched()) tissue_.follow({}, {});
-  checkIn(pose);
+  checkpoints_.clear();
+  checkIn(outside(pose));
+}
+
+// Each tool drawn back from the pose, step by step, until it is out of the tissue.
+RobotPose Pipeline::outside(const RobotPose& pose) {
+  RobotPose drawn_back = pose;
+  for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
+    Vec3 way = wayOut(tool, pose.tools[tool]);
+    for (int step = 0; step < kMostSubsteps && !way.isZero(); ++step) {
+      drawn_back.tools[tool].translation() += tissue_.stepLength() * way;
+      if (wayOut(tool, drawn_back.tools[tool]).isZero()) break;
+    }
+  }
+  return drawn_back;
+}
+
+// Unit direction out of the tissue for a tool that is in it; zero for one that is outside. Against
+// the contacts' normals; for a tool wholly beneath the surface, to the nearest side.
+Vec3 Pipeline::wayOut(std::size_t tool, const Pose& tissue_T_tool) {
+  RobotPose alone;
+  alone.tools.assign(report_.tools.size(), farAway());
+  alone.tools[tool] = tissue_T_tool;
+  Vec3 way = Vec3::Zero();
+  for (const Contact& contact :
+       finder_.find(alone, tissue_.surface(), tissue_.vertices()).contacts) {
+    way -= std::max(0.0, contact.depth_m) * contact.normal;
+  }
+  if (way.norm() > 0.0) return way.normalized();
+  const Box box = tissue_.lattice().bounds();
+  const Vec3 center = tissue_T_tool * finder_.center(tool);
+  const Vec3 below = center - box.min, above = box.max - center;
+  if (finder_.reach(tool) <= 0.0 || below.minCoeff() <= 0.0 || above.minCoeff() <= 0.0) return way;
+  Eigen::Index low = 0, high = 0;
+  const bool downwards = below.minCoeff(&low) < above.minCoeff(&high);
+  return downwards ? Vec3(-Vec3::Unit(low)) : Vec3(Vec3::Unit(high));
 }
 
 bool Pipeline::standsStill(const RobotPose& pose) const {
-  return last_pose_ && longestWay(*last_pose_, pose) <= kStandsStill;
+  return last_pose_ && longestWay(*last_pose_, pose) <= kStandsStill * tissue_.lattice().spacing();
 }
 
 double Pipeline::longestWay(const RobotPose& from, const RobotPose& to) const {

@@ -15,10 +15,15 @@
 namespace robot_tissue {
 namespace {
 
+constexpr double kLowestRate = 0.01;      // Hz
 constexpr double kHighestRate = 10000.0;  // Hz
 
-const std::vector<std::string> kOwnKeys = {"rate", "marker_rate", "tf_timeout", "force_scale",
-                                           "robot_description_param"};
+const std::vector<std::string> kOwnKeys = {"rate",
+                                           "marker_rate",
+                                           "tf_timeout",
+                                           "force_scale",
+                                           "robot_description_param",
+                                           "diagnostic_period"};  // read by diagnostic_updater
 
 // The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
 std::string shortestText(double value) {
@@ -71,7 +76,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   source.other_keys = kOwnKeys;
 
   NodeParameters parameters;
-  const Range rate{0.0, kHighestRate, true, false, "Hz"};
+  const Range rate{kLowestRate, kHighestRate, false, false, "Hz"};
   parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
   parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
   parameters.tf_timeout_s =

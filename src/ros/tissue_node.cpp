@@ -7,7 +7,8 @@
 namespace robot_tissue {
 namespace {
 
-const ros::Duration kRobotLookUpPeriod(1.0);
+const ros::WallDuration kRobotLookUpPeriod(1.0);
+constexpr double kLongestUpdate = 0.1;  // s, without a budget of the solver
 constexpr double kRateTolerance = 0.1;
 
 }  // namespace
@@ -25,6 +26,8 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
                                                           kRateTolerance),
                  "update rate") {
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
+  const double budget_ms = parameters_.scene.solver.max_ms;
+  pipeline_.setBudget(budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate);
   robotIsKnown();
   if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
   advertiseServices();
@@ -63,8 +66,8 @@ void TissueNode::update() {
 bool TissueNode::robotIsKnown() {
   if (robot_is_known_) return true;
   const auto& tools = parameters_.scene.tools;
-  const ros::Time now = ros::Time::now();
   if (!tools.empty()) {
+    const ros::WallTime now = ros::WallTime::now();
     if (now < next_robot_look_up_) return false;
     next_robot_look_up_ = now + kRobotLookUpPeriod;
     std::string path, urdf;
@@ -94,9 +97,10 @@ void TissueNode::report(const NodeStatus& status) {
 
 NodeStatus TissueNode::statusOf(const StepReport& report) const {
   if (report.too_fast) {
-    return {"TOO_FAST", "a tool jumped further than can be followed: its contact began anew"};
+    return {"TOO_FAST", "a tool moved further than could be followed in time: catching up"};
   }
-  switch (report.solve.status) {
+  const SolveReport& solve = pipeline_.tissue().lastReport();
+  switch (solve.status) {
     case SolveStatus::kOk:
       return {};
     case SolveStatus::kLate:
@@ -104,7 +108,7 @@ NodeStatus TissueNode::statusOf(const StepReport& report) const {
     case SolveStatus::kUnconverged:
       return {"UNCONVERGED", "a layer or patch did not come to balance"};
     case SolveStatus::kInverted:
-      return {"INVERTED", std::to_string(report.solve.inverted_cells) + " cells are inverted"};
+      return {"INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted"};
   }
   return {};
 }
@@ -123,7 +127,7 @@ void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper&
 
 void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
-  const SolveReport& solve = pipeline_.report().solve;
+  const SolveReport& solve = pipeline_.tissue().lastReport();
   const bool good = solve.status == SolveStatus::kOk;
   status.summary(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, toString(solve.status));
   status.add("solve (ms)", pipeline_.report().solve_ms);

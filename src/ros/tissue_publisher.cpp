@@ -20,14 +20,15 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
   TissueState message;
   message.status = status.status;
   message.message = status.message;
-  message.residual = report.solve.residual;
-  message.error_estimate = report.solve.error_estimate;
+  const SolveReport& solve = pipeline.tissue().lastReport();
+  message.residual = solve.residual;
+  message.error_estimate = solve.error_estimate;
   message.contact_ms = report.contact_ms;
   message.solve_ms = report.solve_ms;
-  message.active_nodes = report.solve.active_nodes;
-  message.layers = report.solve.layers;
-  message.volume_ratio = report.solve.volume_ratio;
-  message.inverted_cells = report.solve.inverted_cells;
+  message.active_nodes = solve.active_nodes;
+  message.layers = solve.layers;
+  message.volume_ratio = solve.volume_ratio;
+  message.inverted_cells = solve.inverted_cells;
   message.pieces = lattice.pieces;
   message.springs_cut = lattice.springs_cut;
   message.substeps = report.substeps;
@@ -44,7 +45,7 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
       frame_id_(parameters.scene.tissue.frame_id),
       marker_builder_(frame_id_, parameters.force_scale),
       marker_period_(1.0 / parameters.marker_rate_hz) {
-  const auto someone_came = [this](const ros::SingleSubscriberPublisher&) { markersChanged(); };
+  const auto someone_came = [this](const ros::SingleSubscriberPublisher&) { shapeChanged(); };
   markers_ = private_node_.advertise<visualization_msgs::MarkerArray>(
       "markers", 1, someone_came, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), true);
   contacts_ = private_node_.advertise<ContactArray>("contacts", 1);
@@ -63,11 +64,10 @@ void TissuePublisher::setTools(const std::vector<ToolGeometry>& tools) {
 void TissuePublisher::publish(const Pipeline& pipeline, const RobotPose& pose,
                               const ros::Time& stamp, const NodeStatus& status) {
   const auto start = std::chrono::steady_clock::now();
-  if (pipeline.report().changed) markersChanged();
+  if (pipeline.report().changed) shapeChanged();
   publishWrenches(pipeline, stamp);
   publishContacts(pipeline, pose, stamp);
   publishMarkers(pipeline, pose, stamp);
-  if (pipeline.report().changed) last_state_ = ros::Time();
   publishStatus(pipeline, stamp, status);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;

@@ -8,6 +8,9 @@
 namespace robot_tissue {
 namespace {
 
+// A service call is answered within a second or so.
+constexpr int kMostIncrements = 300;
+
 std::string solved(const SolveReport& report) {
   return report.status == SolveStatus::kOk ? std::string()
                                            : std::string("; ") + toString(report.status);
@@ -54,7 +57,7 @@ void TissueNode::advertiseServices() {
 bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   pipeline_.reset();
   if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
-  publisher_.markersChanged();
+  publisher_.shapeChanged();
   response.success = true;
   response.message = "rest shape, no cuts, no loads";
   return true;
@@ -67,7 +70,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
     for (const auto& corner : request.corners) corners.push_back(tissue_T_blade * toVec3(corner));
     const CutReport cut = pipeline_.tissue().cut(corners);
     pipeline_.touch();
-    publisher_.markersChanged();
+    publisher_.shapeChanged();
     response.success = true;
     response.springs_cut = cut.springs_cut;
     response.pieces = cut.pieces;
@@ -105,7 +108,7 @@ bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& r
     }
     response.success = true;
     pipeline_.touch();
-    publisher_.markersChanged();
+    publisher_.shapeChanged();
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();

@@ -45,6 +45,12 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
                     " s old; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
     return found;
   }
+  if (found.age_s < -timeout_s_) {
+    found.status = PoseLookUp::Status::kStale;
+    found.message = "the tools' pose is " + std::to_string(-found.age_s) +
+                    " s in the future; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
+    return found;
+  }
   found.status = PoseLookUp::Status::kOk;
   return found;
 }

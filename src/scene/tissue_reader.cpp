@@ -28,7 +28,8 @@ double physicalMemoryBytes() {
 }
 
 void checkNodeCount(const Entry& spacing_entry, const Vec3& extent, double spacing) {
-  constexpr double kBytesPerNode = 1200.0;  // estimate: lattice, springs, shape and surface
+  // Estimate: lattice, springs, shape and surface, and the shapes kept along a tool's way.
+  constexpr double kBytesPerNode = 3000.0;
   constexpr double kSpringsPerNode = 3.0;
   const double memory = physicalMemoryBytes();
   const double most_springs = std::numeric_limits<int>::max();  // they are numbered by int

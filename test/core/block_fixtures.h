@@ -13,7 +13,6 @@
 
 namespace robot_tissue {
 
-
 // A block of so many cells from the origin; 10 kPa, 1000 kg/m^3; floating.
 inline TissueConfig blockOf(int cells_x, int cells_y, int cells_z, double spacing = 0.01) {
   TissueConfig config;

@@ -129,6 +129,53 @@ TEST_F(PressedBlock, JumpIsReportedAndSurvived) {
   EXPECT_FALSE(pipeline_.step(pressed(0.0025)).too_fast);
 }
 
+// Walked in from outside, it presses as if it had been watched on its way, up to the phase of the
+// load steps.
+TEST_F(PressedBlock, ToolThatAppearsInsideIsWalkedIn) {
+  pipeline_.step(pressed(0.005));
+  const double force = tool().force_on_tool.z();
+  EXPECT_LT(tool().max_penetration, 0.01 * kSpacing);
+  Pipeline watched(block(), {}, {probe()});
+  walk(watched, -0.001, 0.005);
+  EXPECT_NEAR(force, watched.report().tools.front().force_on_tool.z(), 0.3 * force);
+}
+
+TEST_F(PressedBlock, ToolThatAppearsBeneathTheSurfaceDoesNotStick) {
+  pipeline_.step(pressed(0.028));  // the whole sphere is under the top
+  EXPECT_GT(greatestDisplacement(pipeline_.tissue()), 0.02);
+  walk(pipeline_, 0.028, -0.005, 0.001);
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+}
+
+TEST_F(PressedBlock, ReportIsThatOfThePresentShape) {
+  walk(pipeline_, -0.001, 0.006);
+  ASSERT_LT(pipeline_.tissue().lastReport().volume_ratio, 0.9999);
+  pipeline_.step(pressed(-0.01));
+  EXPECT_EQ(pipeline_.tissue().lastReport().volume_ratio, 1.0);
+  EXPECT_EQ(pipeline_.tissue().lastReport().inverted_cells, 0);
+  walk(pipeline_, -0.001, 0.006);
+  pipeline_.reset();
+  EXPECT_EQ(pipeline_.tissue().lastReport().volume_ratio, 1.0);
+}
+
+TEST_F(PressedBlock, OutOfTimeItCatchesUpInLaterSteps) {
+  pipeline_.step(pressed(-0.001));
+  pipeline_.setBudget(0.0);
+  EXPECT_TRUE(pipeline_.step(pressed(0.006)).too_fast);
+  int more = 0;
+  while (pipeline_.step(pressed(0.006)).too_fast && more < 20) ++more;
+  EXPECT_GE(more, 3);
+  EXPECT_LT(more, 20);
+  EXPECT_NEAR(tool().point.z(), kTop - 0.005, 0.002);
+  EXPECT_FALSE(pipeline_.step(pressed(0.006)).changed);
+}
+
+TEST_F(PressedBlock, TremorBelowAThousandthOfTheSpacingIsNoMotion) {
+  walk(pipeline_, 0.0, 0.004);
+  EXPECT_FALSE(pipeline_.step(pressed(0.004 + 4e-6)).changed);
+  EXPECT_TRUE(pipeline_.step(pressed(0.004 + 1e-4)).changed);
+}
+
 TEST_F(PressedBlock, PoseThatIsNotFiniteIsRefusedAndNothingChanges) {
   walk(pipeline_, 0.0, 0.004);
   const auto shape = pipeline_.tissue().state().displacement;

@@ -130,7 +130,7 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
   for (const auto& refused :
        {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
         load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
-        load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY)}) {
+        load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY), load("far", 0.0, 0.01, 1.0)}) {
     EXPECT_FALSE(refused.success);
     EXPECT_FALSE(refused.message.empty());
     EXPECT_EQ(refused.message.find('\n'), std::string::npos);
@@ -153,6 +153,21 @@ TEST_F(RunningNode, OldTransformsAreReportedAndTheShapeStays) {
   EXPECT_NEAR(lowestOfTop(), kTop - 0.004, 0.0005);
   publishes_transform_ = true;
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST_F(RunningNode, StateFollowsAServiceAndTheToolsLeaving) {
+  ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
+  EXPECT_TRUE(waitFor([this] { return state_->volume_ratio < 0.9999; }));
+  ASSERT_TRUE(reset());
+  EXPECT_TRUE(waitFor([this] { return state_->volume_ratio == 1.0 && state_->status == "OK"; }));
+}
+
+TEST_F(RunningNode, TransformThatIsNotFiniteIsReportedAndSurvived) {
+  press(0.004);
+  depth_ = INFINITY;
+  ASSERT_TRUE(waitFor([this] { return state_->status == "NO_TRANSFORM"; }));
+  depth_ = 0.004;
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }, 30.0));
 }
 
 TEST_F(RunningNode, DiagnosticsTellRateTransformsAndSolver) {

@@ -33,6 +33,9 @@ class ContactFinder {
   // Farthest that a point of the tool is from the tool's origin (m); 0 without shapes.
   double reach(std::size_t tool) const;
 
+  // Mean place of the tool's shapes, tool frame (m).
+  Vec3 center(std::size_t tool) const;
+
   // One line each, e.g. a mesh that is not convex.
   const std::vector<std::string>& warnings() const;
 

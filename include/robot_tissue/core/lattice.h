@@ -40,6 +40,9 @@ class Lattice {
   bool isFixed(int node) const { return fixed_[static_cast<std::size_t>(node)] != 0; }
   double mass(int node) const { return mass_[static_cast<std::size_t>(node)]; }  // kg
 
+  // Box around the nodes at rest (m).
+  const Box& bounds() const { return grid_.shape(); }
+
   const std::vector<Spring>& springs() const { return springs_; }
   // Index of the spring in `direction`, -1 at the border.
   int springOf(int node, int direction) const {

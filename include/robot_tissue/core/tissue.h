@@ -49,13 +49,17 @@ class Tissue {
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
   std::size_t namedPatches() const { return named_patches_; }
 
+  // What the method said of the present shape.
+  const SolveReport& lastReport() const { return last_report_; }
   // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
   Vec3 nodeForce(int node) const;
 
   // Equilibrium under what acts now.
   SolveReport settle();
-  // Brings the step's patches to their loads in increments; they stand until released.
-  void load(const LoadStep& step, const OnIncrement& on_increment = {});
+  // Brings the step's patches to their loads in increments; they stand until released. Refused when
+  // the method needs more than most_increments.
+  void load(const LoadStep& step, const OnIncrement& on_increment = {},
+            int most_increments = 100000);
   // What a named patch met in the last solve; zero when there is none of that name.
   PatchAnswer answerOf(const std::string& name, const SolveReport& report) const;
   // Takes patches away; the shape is found anew from rest under the loads that stay.
@@ -68,8 +72,9 @@ class Tissue {
     std::vector<Vec3> displacement;
     std::vector<LoadingPatch> patches;
     std::size_t named_patches = 0;
+    SolveReport report;
   };
-  Shape shape() const { return {state_.displacement, patches_, named_patches_}; }
+  Shape shape() const { return {state_.displacement, patches_, named_patches_, last_report_}; }
   void restore(const Shape& shape);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
   CutReport cut(const std::vector<Vec3>& corners);

@@ -30,8 +30,18 @@ class ToolPatches {
   void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.
   void pushOut(const ContactSet& contacts, const Surface& surface, const RobotPose& pose);
+  // Where a node sits on its tool, tool frame.
+  struct Seat {
+    Vec3 point = Vec3::Zero();
+    Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
+  };
+  using Seats = std::vector<std::map<int, Seat>>;  // per tool: node -> seat; ordered, so repeatable
+
   // Lets go of every node.
   void clear();
+  // All that is to be kept of the patches to come back to them.
+  const Seats& seats() const { return seats_; }
+  void restore(const Seats& seats) { seats_ = seats; }
 
   bool empty() const;
   std::vector<LoadingPatch> loadingPatches() const;
@@ -44,11 +54,6 @@ class ToolPatches {
   Vec3 normal(int tool, const Pose& tissue_T_tool) const;
 
  private:
-  // Where a node sits on its tool, tool frame.
-  struct Seat {
-    Vec3 point = Vec3::Zero();
-    Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
-  };
   // A free node that carries a contact's point.
   struct Carrier {
     int node = 0;
@@ -73,7 +78,7 @@ class ToolPatches {
 
   const Lattice* lattice_;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;
-  std::vector<std::map<int, Seat>> seats_;  // per tool: node -> seat; ordered, so repeatable
+  Seats seats_;
   std::vector<Vec3> displacement_;
   std::vector<char> taken_;  // per node: fixed, or in a named load
   std::vector<int> left_;

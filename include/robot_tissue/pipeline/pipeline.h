@@ -6,9 +6,10 @@
 // well. What is left of the way, less than a step, is solved from the end of the last whole step,
 // and anew at the next update: so the shape depends on the way, not on the rate of the updates.
 // The shapes at the ends of the steps are kept while a tool touches: going back the way it came, it
-// finds the shapes that it left.
+// finds the shapes that it left. A tool that appears inside the tissue is walked in from outside.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,11 +35,10 @@ struct ToolReport {
 
 struct StepReport {
   bool changed = false;   // false: the shape is as it was
-  bool too_fast = false;  // the tools jumped further than can be followed; contact began anew
+  bool too_fast = false;  // the tools moved further than could be followed in time
   int substeps = 0;       // solves that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
-  SolveReport solve;              // the last one
   std::vector<ToolReport> tools;  // in the order of the tools
 };
 
@@ -55,7 +55,9 @@ class Pipeline {
 
   // Follows the tools to their new pose. Poses with a non-finite number throw InputError.
   const StepReport& step(const RobotPose& pose);
-  // Rest shape; at the next step the tools come from where they are.
+  // Time that a step may take (s), after which it leaves the rest of the way to the next one.
+  void setBudget(double seconds) { budget_s_ = seconds; }
+  // Rest shape; at the next step the tools come in from outside.
   void reset();
   // To be called after the tissue changed by other means (cut, load).
   void touch();
@@ -69,13 +71,16 @@ class Pipeline {
   struct Checkpoint {
     RobotPose pose;
     Tissue::Shape shape;
-    ToolPatches patches;
+    ToolPatches::Seats seats;
   };
 
+  RobotPose walk(const RobotPose& pose);
   void advance(const RobotPose& pose);
   void checkIn(const RobotPose& pose);
   void goBackTo(const RobotPose& pose);
   void startAnew(const RobotPose& pose);
+  RobotPose outside(const RobotPose& pose);
+  Vec3 wayOut(std::size_t tool, const Pose& tissue_T_tool);
   bool standsStill(const RobotPose& pose) const;
   double longestWay(const RobotPose& from, const RobotPose& to) const;
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
@@ -88,6 +93,7 @@ class Pipeline {
   ToolPatches patches_;
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
+  double budget_s_ = std::numeric_limits<double>::infinity();
   bool touched_ = true;  // the reports are to be brought up to date
   std::vector<Vec3> vertices_;
   StepReport report_;

@@ -47,7 +47,7 @@ class TissueNode {
   ToolPoses tool_poses_;
   TissuePublisher publisher_;
   bool robot_is_known_ = false;
-  ros::Time next_robot_look_up_;
+  ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
   NodeStatus status_;
   diagnostic_updater::Updater diagnostics_;

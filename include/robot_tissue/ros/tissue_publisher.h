@@ -36,7 +36,11 @@ class TissuePublisher {
   // The shape without a robot: markers that are due.
   void publishMarkers(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp);
 
-  void markersChanged() { markers_due_ = true; }
+  // The next call sends markers and state, whatever their period.
+  void shapeChanged() {
+    markers_due_ = true;
+    last_state_ = ros::Time();
+  }
 
  private:
   void publishWrenches(const Pipeline& pipeline, const ros::Time& stamp);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/scene/entry.h"
-#include "robot_tissue/core/grid.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/scene_gate.h"
 
