@@ -100,7 +100,8 @@ bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& r
       SolveReport last;
       LoadStep step;
       step.patches.push_back(patchOf(request));
-      pipeline_.tissue().load(step, [&](int, int, const SolveReport& report) { last = report; });
+      const auto keep = [&](int, int, const SolveReport& report) { last = report; };
+      pipeline_.tissue().load(step, keep, kMostIncrements);
       const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
       response.force = toVector3(answer.force);
       response.displacement = toVector3(answer.displacement);
