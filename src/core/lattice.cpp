@@ -3,10 +3,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "robot_tissue/core/material.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kBoxSlack = 1e-3;  // of the spacing
 
 Grid makeGrid(const Box& shape, double spacing) {
   const Vec3 extent = shape.max - shape.min;
@@ -17,17 +17,6 @@ Grid makeGrid(const Box& shape, double spacing) {
     throw InputError(line.str());
   }
   return Grid(shape, spacing);
-}
-
-bool contains(const Box& box, const Vec3& point, double slack) {
-  return ((point - box.min).array() >= -slack).all() && ((box.max - point).array() >= -slack).all();
-}
-
-const Material& materialAt(const TissueConfig& config, const Vec3& point) {
-  for (auto region = config.regions.rbegin(); region != config.regions.rend(); ++region) {
-    if (contains(region->box, point, kBoxSlack * config.spacing)) return region->material;
-  }
-  return config.material;
 }
 
 // What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any

@@ -11,21 +11,11 @@ constexpr double kPatchBalance = 1e-6;  // of the loading force
 constexpr double kRounding = 1e-13;     // of a spring's stiffness times its length
 
 std::uint8_t maskOf(const LoadingPatch& patch) {
-  if (patch.drive == LoadingPatch::Drive::kForce) return kAllAxes;
   std::uint8_t mask = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!patch.free_axis[axis]) mask = static_cast<std::uint8_t>(mask | 1U << axis);
+    if (holds(patch, axis)) mask = static_cast<std::uint8_t>(mask | 1U << axis);
   }
   return mask;
-}
-
-// Mean as the first node's plus the mean difference to it: exact for a patch that moved as one.
-Vec3 meanDisplacement(const LoadingPatch& patch, const LatticeState& state) {
-  if (patch.nodes.empty()) return Vec3::Zero();
-  const Vec3& first = state.displacement[at(patch.nodes.front())];
-  Vec3 difference = Vec3::Zero();
-  for (const int node : patch.nodes) difference += state.displacement[at(node)] - first;
-  return first + difference / static_cast<double>(patch.nodes.size());
 }
 
 Vec3 keepAxes(const Vec3& vector, std::uint8_t mask) {
@@ -285,7 +275,7 @@ void PaperMethod::describe(const std::vector<LoadingPatch>& patches, const Latti
   for (const LoadingPatch& patch : patches) {
     PatchAnswer answer;
     answer.force = patchForce(patch, state);
-    answer.displacement = meanDisplacement(patch, state);
+    answer.displacement = meanDisplacement(patch, state.displacement);
     report.patches.push_back(answer);
     if (maskOf(patch) == kAllAxes) report.active_nodes += static_cast<int>(patch.nodes.size());
   }

@@ -1,36 +1,73 @@
 #include "robot_tissue/core/registry.h"
 
+#include "robot_tissue/core/elastic_model.h"
+#include "robot_tissue/core/newton_method.h"
 #include "robot_tissue/core/paper_method.h"
 #include "robot_tissue/core/six_spring_model.h"
 
 namespace robot_tissue {
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+std::unique_ptr<SolverMethod> makePaper(const SolverConfig& config, const Lattice& lattice,
+                                        const TissueModel& model) {
+  PaperOptions options;
+  options.balance_tolerance = config.tolerance;
+  options.max_ms = config.max_ms;
+  return std::make_unique<PaperMethod>(lattice, model, options);
+}
+
+std::unique_ptr<SolverMethod> makeNewton(const SolverConfig& config, const Lattice& lattice,
+                                         const TissueModel& model) {
+  const auto* energy_model = dynamic_cast<const EnergyModel*>(&model);
+  if (energy_model == nullptr) {
+    throw InputError(
+        "solver.method: 'newton' finds the one equilibrium of an energy, the tissue's model has "
+        "none; allowed: paper, or tissue.model elastic");
+  }
+  NewtonOptions options;
+  options.max_ms = config.max_ms;
+  return std::make_unique<NewtonMethod>(lattice, *energy_model, options);
+}
+
+}  // namespace
 
 const std::vector<std::string>& modelNames() {
-  static const std::vector<std::string> names = {"six_spring"};
+  static const std::vector<std::string> names = {"six_spring", "elastic"};
   return names;
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"paper"};
+  static const std::vector<std::string> names = {"paper", "newton"};
   return names;
+}
+
+// The six-spring lattice holds many shapes without a force: no method can name its equilibrium.
+std::vector<std::string> methodsFor(const std::string& model) {
+  if (model == "six_spring") return {"paper"};
+  return methodNames();
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {
   if (config.model == "six_spring") {
     return std::make_unique<SixSpringModel>(lattice, config.gravity);
   }
-  throw InputError("tissue.model: '" + config.model + "' is unknown; allowed: six_spring");
+  if (config.model == "elastic") return std::make_unique<ElasticModel>(lattice, config);
+  throw InputError("tissue.model: '" + config.model +
+                   "' is unknown; allowed: " + listed(modelNames()));
 }
 
 std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Lattice& lattice,
                                          const TissueModel& model) {
-  if (config.method == "paper") {
-    PaperOptions options;
-    options.balance_tolerance = config.tolerance;
-    options.max_ms = config.max_ms;
-    return std::make_unique<PaperMethod>(lattice, model, options);
-  }
-  throw InputError("solver.method: '" + config.method + "' is unknown; allowed: paper");
+  if (config.method == "paper") return makePaper(config, lattice, model);
+  if (config.method == "newton") return makeNewton(config, lattice, model);
+  throw InputError("solver.method: '" + config.method +
+                   "' is unknown; allowed: " + listed(methodNames()));
 }
 
 }  // namespace robot_tissue

@@ -65,7 +65,7 @@ Scene parseScene(const YAML::Node& root, const SceneSource& source) {
   const MapReader map(Entry(root, "", source.name), keys);
   Scene scene;
   scene.tissue = readTissue(map["tissue"], scene.remarks);
-  scene.solver = readSolver(map["solver"], source.overrides, scene.remarks);
+  scene.solver = readSolver(map["solver"], scene.tissue.model, source.overrides, scene.remarks);
   readTools(map["tools"], source, scene);
   readSteps(map["steps"], source, scene);
   return scene;

@@ -1,5 +1,8 @@
+#include <algorithm>
+
 #include "robot_tissue/core/registry.h"
 #include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
@@ -10,23 +13,35 @@ Entry overridden(const Entry& entry, const std::optional<std::string>& value,
   return value ? Entry(YAML::Node(*value), option, "") : entry;
 }
 
+void requireFit(const Entry& entry, const std::string& method, const std::string& model) {
+  const std::vector<std::string> fit = methodsFor(model);
+  if (std::find(fit.begin(), fit.end(), method) != fit.end()) return;
+  entry.fail("with tissue.model " + model + " must be " + joined(fit) + ": " + method +
+             " finds the one equilibrium that this model does not have");
+}
+
 }  // namespace
 
-SolverConfig readSolver(const Entry& entry, const SolverOverrides& overrides, Remarks& remarks) {
+SolverConfig readSolver(const Entry& entry, const std::string& model,
+                        const SolverOverrides& overrides, Remarks& remarks) {
   const Entry map_entry = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
   const MapReader map(map_entry, {"method", "tolerance", "max_ms", "threads"});
   SolverConfig solver;
   const Entry method = overridden(map["method"], overrides.method, "--method");
   if (method.given()) {
-    solver.method = method.choice(methodNames(), {"layered", "newton", "vbd", "xpbd", "explicit"});
+    solver.method = method.choice(methodNames(), {"layered", "vbd", "xpbd", "explicit"});
+    requireFit(method, solver.method, model);
   }
-  solver.tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance")
-                         .numberOr(solver.tolerance, Range::open(0.0, 1.0));
+  const Entry tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance");
+  solver.tolerance = tolerance.numberOr(solver.tolerance, Range::open(0.0, 1.0));
+  if (tolerance.given() && solver.method == "newton") {
+    remarks.push_back(tolerance.line("ignored, method newton solves exactly"));
+  }
   solver.max_ms = map["max_ms"].numberOr(solver.max_ms, Range::atLeastZero("ms"));
   const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
   solver.threads = threads.integerOr(solver.threads, 1, 256);
-  if (solver.threads > 1 && solver.method == "paper") {
-    remarks.push_back(threads.line("ignored, method paper uses one thread"));
+  if (solver.threads > 1) {
+    remarks.push_back(threads.line("ignored, method " + solver.method + " uses one thread"));
   }
   return solver;
 }

@@ -170,7 +170,7 @@ TissueConfig readTissue(const Entry& entry, Remarks& remarks) {
   tissue.frame_id = readFrame(map["frame_id"], tissue.frame_id);
   tissue.shape = readShape(map["shape"]);
   tissue.spacing = readSpacing(map["spacing"], tissue.shape);
-  if (map["model"].given()) tissue.model = map["model"].choice(modelNames(), {"elastic"});
+  if (map["model"].given()) tissue.model = map["model"].choice(modelNames(), {});
   tissue.material = readMaterial(map["material"], tissue.model, remarks);
   readBoxes(map, tissue, remarks);
   tissue.gravity = map["gravity"].vec3Or(tissue.gravity, Range::any("m/s^2"));

@@ -265,6 +265,25 @@ TEST_F(SceneFolder, OverridesTakeThePlaceOfTheScenesEntriesAndPassTheSameChecks)
   EXPECT_THROW(loadScene(path, overrides), InputError);
 }
 
+TEST_F(SceneFolder, ElasticTakesNewtonWhichIgnoresTheTolerance) {
+  const std::string path = write("block.yaml", replaced(kRunnerScene, "six_spring", "elastic"));
+  SolverOverrides overrides;
+  overrides.method = "newton";
+  overrides.tolerance = "0.5";
+  const Scene scene = loadScene(path, overrides);
+  EXPECT_EQ(scene.tissue.model, "elastic");
+  EXPECT_EQ(scene.solver.method, "newton");
+  ASSERT_EQ(scene.remarks.size(), 1U);
+  EXPECT_EQ(scene.remarks[0], "--tolerance = 0.5: ignored, method newton solves exactly");
+}
+
+TEST_F(SceneFolder, ElasticTakesThePapersMethod) {
+  const Scene scene =
+      loadScene(write("block.yaml", replaced(kRunnerScene, "six_spring", "elastic")));
+  EXPECT_EQ(scene.solver.method, "paper");
+  EXPECT_TRUE(scene.remarks.empty());
+}
+
 TEST_F(SceneFolder, MeshesAreFoundFromTheScenesFolder) {
   write("tip.stl", "solid");
   SceneSource source;

@@ -302,7 +302,7 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
   expectRefused("block.yaml --out out --out out", "--out: stands twice");
   expectRefused("block.yaml --out out --method layered", "--method = layered: not available yet");
-  expectRefused("block.yaml --out out --method magic", "--method = magic: must be paper");
+  expectRefused("block.yaml --out out --method magic", "--method = magic: must be one of paper, newton");
   expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number > 0");
   expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
   expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
@@ -335,9 +335,28 @@ TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
   EXPECT_EQ(program("block.yaml --out out --threads 4 --quiet").err, "");
 }
 
+TEST_F(Simulate, SolvesTheElasticModelExactly) {
+  std::string scene = kScene;
+  const std::string place = "  material: {";
+  scene.replace(scene.find(place), place.size(), "  model: elastic\n" + place);
+  write("elastic.yaml", scene);
+  const Outcome outcome = program("elastic.yaml --out out --method newton");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Rows rows = readCsv(folder_ / "out/increments.csv");
+  ASSERT_EQ(rows.size(), 10U);
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    EXPECT_EQ(rows[row].at(2), "OK");
+    EXPECT_LE(std::stod(rows[row].at(5)), 1e-10);
+  }
+}
+
+TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
+  expectRefused("block.yaml --out out --method newton", "--method = newton: with tissue.model");
+}
+
 TEST_F(Simulate, ListsMethodsAndModels) {
-  EXPECT_EQ(program("--list-methods").out, "paper\n");
-  EXPECT_EQ(program("--list-models").out, "six_spring\n");
+  EXPECT_EQ(program("--list-methods").out, "paper\nnewton\n");
+  EXPECT_EQ(program("--list-models").out, "six_spring\nelastic\n");
   EXPECT_EQ(program("--list-methods").code, 0);
   const Outcome help = program("--help");
   EXPECT_EQ(help.code, 0);

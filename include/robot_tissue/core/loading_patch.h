@@ -21,6 +21,12 @@ struct LoadingPatch {
   Vec3 force = Vec3::Zero();                                // kForce: on the tissue (N)
 };
 
+// True when the patch's nodes do not move along the axis by themselves.
+bool holds(const LoadingPatch& patch, std::size_t axis);
+
+// Mean over the patch's nodes of a displacement given per node of the lattice (m).
+Vec3 meanDisplacement(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
+
 // What a patch met, in the order of the patches.
 struct PatchAnswer {
   Vec3 force = Vec3::Zero();         // of the patch on the tissue (N)

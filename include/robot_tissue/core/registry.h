@@ -15,7 +15,11 @@ namespace robot_tissue {
 const std::vector<std::string>& modelNames();
 const std::vector<std::string>& methodNames();
 
-// Both throw InputError on an unknown name. The model must outlive the method, the lattice both.
+// The methods that find an equilibrium of the model.
+std::vector<std::string> methodsFor(const std::string& model);
+
+// Both throw InputError on an unknown name, the second also on a model that the method does
+// not fit. The model must outlive the method, the lattice both.
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice);
 std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Lattice& lattice,
                                          const TissueModel& model);

@@ -20,7 +20,8 @@ TissueConfig readTissue(const Entry& entry, Remarks& remarks);
 // Keys min and max of a map, as nodes of the grid; refused when there are none.
 Box readNodeBox(const MapReader& map, const Grid& grid);
 
-SolverConfig readSolver(const Entry& entry, const SolverOverrides& overrides, Remarks& remarks);
+SolverConfig readSolver(const Entry& entry, const std::string& model,
+                        const SolverOverrides& overrides, Remarks& remarks);
 
 // Follows the program through: which patches stand, and whose nodes they hold.
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue);

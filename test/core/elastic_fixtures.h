@@ -1,0 +1,74 @@
+// Blocks of model `elastic` and shapes that its tests share.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "block_fixtures.h"
+#include "robot_tissue/core/elastic_model.h"
+#include "robot_tissue/core/newton_method.h"
+
+namespace robot_tissue {
+
+inline TissueConfig elasticBlockOf(int cells_x, int cells_y, int cells_z, double poisson_ratio) {
+  TissueConfig config = blockOf(cells_x, cells_y, cells_z);
+  config.model = "elastic";
+  config.material.poisson_ratio = poisson_ratio;
+  return config;
+}
+
+// An elastic block with the exact method on it.
+struct ElasticBlock {
+  explicit ElasticBlock(const TissueConfig& config, const NewtonOptions& options = {})
+      : lattice(config),
+        model(lattice, config),
+        method(lattice, model, options),
+        state(lattice.restState()) {}
+
+  SolveReport solve(const std::vector<LoadingPatch>& patches) {
+    return method.solve(patches, {}, state);
+  }
+
+  Lattice lattice;
+  ElasticModel model;
+  NewtonMethod method;
+  LatticeState state;
+};
+
+// Displacements of up to `size` along each axis, the same at every run.
+class Shaker {
+ public:
+  explicit Shaker(unsigned seed) : random_(seed) {}
+
+  Vec3 displacement(double size) {
+    const auto component = [&] {
+      return size * (2.0 * static_cast<double>(random_()) / 4294967295.0 - 1.0);
+    };
+    const double x = component(), y = component();
+    return {x, y, component()};
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+inline void shake(LatticeState& state, double size, unsigned seed = 1) {
+  Shaker shaker(seed);
+  for (Vec3& displacement : state.displacement) displacement += shaker.displacement(size);
+}
+
+// Moves every node to where the deformation gradient takes it.
+inline void deformBy(const Lattice& lattice, const Eigen::Matrix3d& gradient, LatticeState& state) {
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    const Vec3 rest = lattice.restPosition(node);
+    state.displacement[at(node)] = gradient * rest - rest;
+  }
+}
+
+inline double greatestForce(const std::vector<Vec3>& forces) {
+  double greatest = 0.0;
+  for (const Vec3& force : forces) greatest = std::max(greatest, force.norm());
+  return greatest;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "elastic_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSpacing = 0.01;
+
+TissueConfig twoMaterials() {
+  TissueConfig config = elasticBlockOf(3, 2, 2, 0.4);
+  Region stiff;
+  stiff.box = {Vec3::Zero(), Vec3::Constant(0.9 * kSpacing)};
+  stiff.material = config.material;
+  stiff.material.young_modulus = 1e5;
+  config.regions.push_back(stiff);
+  return config;
+}
+
+TEST(ElasticModel, ForceIsTheEnergysNegativeSlope) {
+  TissueConfig config = twoMaterials();
+  config.gravity = Vec3(1.0, 2.0, -9.81);
+  ElasticBlock block(config);
+  shake(block.state, 0.2 * kSpacing);
+  constexpr double kStep = 1e-5 * kSpacing;
+  const std::vector<Vec3> forces = block.model.nodeForces(block.state);
+  for (int node = 0; node < block.lattice.nodeCount(); ++node) {
+    Vec3 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      LatticeState ahead = block.state, behind = block.state;
+      ahead.displacement[at(node)][axis] += kStep;
+      behind.displacement[at(node)][axis] -= kStep;
+      slope[axis] = (block.model.energy(ahead) - block.model.energy(behind)) / (2.0 * kStep);
+    }
+    ASSERT_GT(slope.norm(), 1e-3);
+    EXPECT_LT((forces[at(node)] + slope).norm(), 1e-6 * slope.norm()) << node;
+    EXPECT_LT((block.model.nodeForce(block.state, node) - forces[at(node)]).norm(),
+              1e-12 * slope.norm());
+  }
+}
+
+TEST(ElasticModel, HessiansAddUpToTheForcesSlope) {
+  ElasticBlock block(twoMaterials());
+  shake(block.state, 0.2 * kSpacing);
+  const int count = 3 * block.lattice.nodeCount();
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(count, count);
+  block.model.visitHessians(block.state, [&](const auto& corners, const CellHessian& cell) {
+    for (int i = 0; i < kCorners; ++i) {
+      for (int j = 0; j < kCorners; ++j) {
+        hessian.block<3, 3>(3 * corners[at(i)], 3 * corners[at(j)]) +=
+            cell.block<3, 3>(3 * i, 3 * j);
+      }
+    }
+  });
+  constexpr double kStep = 1e-6 * kSpacing;
+  for (int column = 0; column < count; ++column) {
+    LatticeState ahead = block.state, behind = block.state;
+    ahead.displacement[at(column / 3)][column % 3] += kStep;
+    behind.displacement[at(column / 3)][column % 3] -= kStep;
+    const auto after = block.model.nodeForces(ahead), before = block.model.nodeForces(behind);
+    Eigen::VectorXd slope(count);
+    for (int node = 0; node < block.lattice.nodeCount(); ++node) {
+      slope.segment<3>(3 * node) = (before[at(node)] - after[at(node)]) / (2.0 * kStep);
+    }
+    ASSERT_GT(slope.norm(), 1.0);
+    EXPECT_LT((hessian.col(column) - slope).norm(), 1e-6 * slope.norm()) << column;
+  }
+  for (int node = 0; node < block.lattice.nodeCount(); ++node) {
+    const Eigen::Matrix3d expected = hessian.block<3, 3>(3 * node, 3 * node);
+    EXPECT_LT((block.model.nodeBlock(block.state, node) - expected).norm(),
+              1e-12 * expected.norm());
+  }
+}
+
+TEST(ElasticModel, NodeStiffnessIsTheBlocksDiagonalAtRest) {
+  const ElasticBlock block(twoMaterials());
+  for (int node = 0; node < block.lattice.nodeCount(); ++node) {
+    const Vec3 expected = block.model.nodeBlock(block.state, node).diagonal();
+    ASSERT_GT(expected.minCoeff(), 0.0);
+    EXPECT_LT((block.model.nodeStiffness(block.state, node) - expected).norm(),
+              1e-12 * expected.norm());
+  }
+}
+
+TEST(ElasticModel, TurnedAndCarriedBlockHasNoForce) {
+  for (const double angle : {0.1, 1.0, 2.0, 3.1}) {
+    ElasticBlock block(elasticBlockOf(4, 3, 2, 0.49));
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized()).matrix();
+    deformBy(block.lattice, turn, block.state);
+    for (Vec3& displacement : block.state.displacement) displacement += Vec3(0.3, -0.2, 0.1);
+    ASSERT_GT(block.state.displacement.front().norm(), 0.1);
+    // Of the force E h^2 on the face of one cell.
+    EXPECT_LT(greatestForce(block.model.nodeForces(block.state)), 1e-11);
+    EXPECT_LT(std::abs(block.model.energy(block.state)), 1e-15);
+  }
+}
+
+TEST(ElasticModel, RegionIsStiffByItsCellsCenters) {
+  const TissueConfig config = twoMaterials();  // region: only the cell at the origin is inside
+  ElasticBlock block(config);
+  TissueConfig plain = config;
+  plain.regions.clear();
+  const ElasticBlock soft(plain);
+  const auto ratio = [&](int i, int j, int k) {
+    const int node = block.lattice.node(i, j, k);
+    return block.model.nodeStiffness(block.state, node).x() /
+           soft.model.nodeStiffness(soft.state, node).x();
+  };
+  EXPECT_NEAR(ratio(0, 0, 0), 10.0, 1e-12);        // one cell: stiff
+  EXPECT_NEAR(ratio(1, 0, 0), 11.0 / 2.0, 1e-12);  // one stiff, one soft
+  EXPECT_NEAR(ratio(1, 1, 1), (10.0 + 7.0) / 8.0, 1e-12);
+  EXPECT_NEAR(ratio(2, 0, 0), 1.0, 1e-12);
+}
+
+TEST(ElasticModel, GravityAddsTheNodesWeight) {
+  TissueConfig config = elasticBlockOf(2, 2, 2, 0.3);
+  config.gravity = Vec3(0.0, 0.0, -9.81);
+  const ElasticBlock block(config);
+  Vec3 weight = Vec3::Zero();
+  for (const Vec3& force : block.model.nodeForces(block.state)) weight += force;
+  const double mass = 1000.0 * std::pow(2.0 * kSpacing, 3);
+  EXPECT_NEAR(weight.z(), -9.81 * mass, 1e-12);
+}
+
+TEST(ElasticModel, SplitCellIsLostAndItsNodesAreLoose) {
+  TissueConfig config = elasticBlockOf(2, 1, 1, 0.3);
+  config.gravity = Vec3(0.0, 0.0, -9.81);
+  ElasticBlock block(config);
+  shake(block.state, 0.1 * kSpacing);
+  const int corner = block.lattice.node(0, 0, 0), middle = block.lattice.node(1, 0, 0);
+  const double before = block.model.nodeStiffness(block.state, middle).x();
+  ASSERT_GT(block.model.nodeForce(block.state, corner).norm(), 0.0);
+  // All four springs along x of the first cell.
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 2; ++j) {
+      block.state.severed[at(block.lattice.springOf(block.lattice.node(0, j, k), 1))] = 1;
+      ++block.state.springs_cut;
+    }
+  }
+  EXPECT_EQ(block.model.nodeForce(block.state, corner), Vec3(Vec3::Zero()));
+  EXPECT_EQ(block.model.nodeForces(block.state)[at(corner)], Vec3(Vec3::Zero()));
+  EXPECT_EQ(block.model.nodeStiffness(block.state, corner), Vec3(Vec3::Zero()));
+  EXPECT_NEAR(block.model.nodeStiffness(block.state, middle).x(), 0.5 * before, 1e-12);
+  EXPECT_GT(block.model.nodeForce(block.state, middle).norm(), 0.0);
+}
+
+// A cut that leaves the cell in one piece takes nothing from it.
+TEST(ElasticModel, CellThatHangsTogetherIsWhole) {
+  ElasticBlock block(elasticBlockOf(1, 1, 1, 0.3));
+  shake(block.state, 0.1 * kSpacing);
+  const double before = block.model.energy(block.state);
+  ASSERT_GT(before, 0.0);
+  block.state.severed[at(block.lattice.springOf(0, 1))] = 1;
+  block.state.springs_cut = 1;
+  EXPECT_EQ(block.model.energy(block.state), before);
+}
+
+}  // namespace
+}  // namespace robot_tissue
