@@ -127,10 +127,10 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
   ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0025; }));
   const Points shape = markers_["surface"].points;
-  for (const auto& refused :
-       {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
-        load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
-        load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY), load("far", 0.0, 0.01, 1.0)}) {
+  for (const auto& refused : {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
+                              load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
+                              load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY),
+                              load("far", 0.0, 0.01, 1.0)}) {
     EXPECT_FALSE(refused.success);
     EXPECT_FALSE(refused.message.empty());
     EXPECT_EQ(refused.message.find('\n'), std::string::npos);

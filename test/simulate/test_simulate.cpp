@@ -302,7 +302,8 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
   expectRefused("block.yaml --out out --out out", "--out: stands twice");
   expectRefused("block.yaml --out out --method layered", "--method = layered: not available yet");
-  expectRefused("block.yaml --out out --method magic", "--method = magic: must be one of paper, newton");
+  expectRefused("block.yaml --out out --method magic",
+                "--method = magic: must be one of paper, newton");
   expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number > 0");
   expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
   expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
