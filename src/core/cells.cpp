@@ -1,6 +1,11 @@
 #include "robot_tissue/core/cells.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <utility>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
 
 namespace robot_tissue {
 namespace {
@@ -11,13 +16,19 @@ bool isWhole(const std::array<int, kCorners>& parts) {
 
 }  // namespace
 
-std::array<int, kCorners> cellCorners(const Lattice& lattice, int i, int j, int k) {
-  std::array<int, kCorners> corners{};
-  for (int corner = 0; corner < kCorners; ++corner) {
-    corners[at(corner)] =
-        lattice.node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
+CellSet::CellSet(std::vector<Cell> cells, int nodes)
+    : cells_(std::move(cells)), first_(at(nodes) + 1, 0), meetings_(kCorners * cells_.size()) {
+  for (const Cell& cell : cells_) {
+    for (const int node : cell.nodes) ++first_[at(node) + 1];
   }
-  return corners;
+  for (std::size_t node = 1; node < first_.size(); ++node) first_[node] += first_[node - 1];
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cells_[cell].nodes[at(corner)];
+      meetings_[at(next[at(node)]++)] = {static_cast<int>(cell), corner};
+    }
+  }
 }
 
 std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
@@ -38,25 +49,26 @@ std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& 
   return parts;
 }
 
+std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state) {
+  std::vector<Cell> left;
+  for (const Cell& cell : lattice.cells()) {
+    if (isWhole(cellParts(lattice, state, cell.nodes))) left.push_back(cell);
+  }
+  return std::make_shared<const CellSet>(std::move(left), lattice.nodeCount());
+}
+
 int countInvertedCells(const Lattice& lattice, const LatticeState& state) {
   int inverted = 0;
-  const auto& size = lattice.size();
-  for (int k = 0; k + 1 < size[2]; ++k) {
-    for (int j = 0; j + 1 < size[1]; ++j) {
-      for (int i = 0; i + 1 < size[0]; ++i) {
-        const auto corners = cellCorners(lattice, i, j, k);
-        Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
-        for (int corner = 0; corner < kCorners; ++corner) {
-          const Vec3& moved = state.displacement[at(corners[at(corner)])];
-          for (int axis = 0; axis < 3; ++axis) {
-            const double sign = (corner >> axis & 1) != 0 ? 0.25 : -0.25;
-            gradient.col(axis) += sign / lattice.spacing() * moved;
-          }
-        }
-        if (gradient.determinant() > 0.0) continue;
-        if (isWhole(cellParts(lattice, state, corners))) ++inverted;
+  for (const Cell& cell : state.cells->all()) {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Vec3& moved = state.displacement[at(cell.nodes[at(corner)])];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double sign = (corner >> axis & 1) != 0 ? 0.25 : -0.25;
+        gradient.col(axis) += sign / lattice.spacing() * moved;
       }
     }
+    if (gradient.determinant() <= 0.0) ++inverted;
   }
   return inverted;
 }

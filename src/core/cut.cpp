@@ -90,7 +90,7 @@ std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state
                                const std::vector<Vec3>& corners) {
   const CutPolygon polygon(corners, lattice.spacing());
   const auto position = [&](int node) -> Vec3 {
-    return lattice.restPosition(node) + state.displacement[static_cast<std::size_t>(node)];
+    return lattice.restPosition(node) + state.displacement[at(node)];
   };
   std::vector<int> crossing;
   for (std::size_t index = 0; index < lattice.springs().size(); ++index) {
@@ -102,24 +102,31 @@ std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state
   return crossing;
 }
 
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state) {
+  for (const int spring : springs) state.severed[at(spring)] = 1;
+  state.springs_cut += static_cast<int>(springs.size());
+  state.pieces = countPieces(lattice, state);
+  state.cells = cellsLeft(lattice, state);
+}
+
 int countPieces(const Lattice& lattice, const LatticeState& state) {
-  std::vector<char> reached(static_cast<std::size_t>(lattice.nodeCount()), 0);
+  std::vector<char> reached(at(lattice.nodeCount()), 0);
   std::vector<int> pending;
   int pieces = 0;
   for (int start = 0; start < lattice.nodeCount(); ++start) {
-    if (reached[static_cast<std::size_t>(start)] != 0) continue;
+    if (reached[at(start)] != 0) continue;
     ++pieces;
-    reached[static_cast<std::size_t>(start)] = 1;
+    reached[at(start)] = 1;
     pending.assign(1, start);
     while (!pending.empty()) {
       const int node = pending.back();
       pending.pop_back();
       for (int direction = 0; direction < kNeighbors; ++direction) {
         const int spring = lattice.springOf(node, direction);
-        if (spring < 0 || state.severed[static_cast<std::size_t>(spring)] != 0) continue;
+        if (spring < 0 || state.severed[at(spring)] != 0) continue;
         const int other = lattice.neighbor(node, direction);
-        if (reached[static_cast<std::size_t>(other)] != 0) continue;
-        reached[static_cast<std::size_t>(other)] = 1;
+        if (reached[at(other)] != 0) continue;
+        reached[at(other)] = 1;
         pending.push_back(other);
       }
     }

@@ -34,6 +34,18 @@ NodeRange Grid::nodesIn(const Box& box) const { return pointsIn(box, 0.0); }
 
 bool Grid::holdsCell(const Box& box) const { return !pointsIn(box, 0.5).empty(); }
 
+std::array<int, 8> Grid::cornersOf(int cell) const {
+  const int row = cell / (size_[0] - 1);
+  const int lowest =
+      cell % (size_[0] - 1) + size_[0] * (row % (size_[1] - 1) + size_[1] * (row / (size_[1] - 1)));
+  std::array<int, 8> corners{};
+  for (int corner = 0; corner < 8; ++corner) {
+    corners[static_cast<std::size_t>(corner)] =
+        lowest + (corner & 1) + size_[0] * ((corner >> 1 & 1) + size_[1] * (corner >> 2 & 1));
+  }
+  return corners;
+}
+
 NodeRange Grid::pointsIn(const Box& box, double offset) const {
   NodeRange range;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
 #include "robot_tissue/core/lattice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -23,12 +24,12 @@ Grid makeGrid(const Box& shape, double spacing) {
 // cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
 class SpringStiffness {
  public:
-  void add(const Material& material, double spacing) {
+  void add(const Material& material, double spacing, double share) {
     if (material.spring_stiffness) {
       sum_ += *material.spring_stiffness;
       ++constants_;
     } else {
-      sum_ += material.young_modulus * spacing / 4.0;
+      sum_ += share * material.young_modulus * spacing / 4.0;
     }
   }
   double value() const { return constants_ > 0 ? sum_ / constants_ : sum_; }
@@ -55,56 +56,79 @@ const char* toString(SolveStatus status) {
 }
 
 Lattice::Lattice(const TissueConfig& config) : grid_(makeGrid(config.shape, config.spacing)) {
-  const auto count = static_cast<std::size_t>(size()[0]) * static_cast<std::size_t>(size()[1]) *
-                     static_cast<std::size_t>(size()[2]);
-  fixed_.assign(count, 0);
-  mass_.assign(count, 0.0);
-  buildSprings(config);
-  for (std::size_t box = 0; box < config.fixed.size(); ++box) {
-    const std::vector<int> nodes = nodesIn(config.fixed[box]);
-    if (nodes.empty()) {
-      throw InputError("tissue.fixed[" + std::to_string(box) +
-                       "]: no node in this box; allowed: a box that holds one node or more");
-    }
-    for (const int node : nodes) fixed_[static_cast<std::size_t>(node)] = 1;
+  const std::vector<double> filled(at(grid_.cellCount()), 1.0);
+  placeNodes(filled);
+  placeCells(filled);
+  placeSprings();
+  weigh(config);
+  fix(config.fixed);
+}
+
+// A node for every grid point that is a corner of a cell.
+void Lattice::placeNodes(const std::vector<double>& filled) {
+  node_at_.assign(at(size()[0] * size()[1] * size()[2]), -1);
+  for (int cell = 0; cell < grid_.cellCount(); ++cell) {
+    if (filled[at(cell)] <= 0.0) continue;
+    for (const int point : grid_.cornersOf(cell)) node_at_[at(point)] = 0;
+  }
+  int count = 0;
+  for (std::size_t point = 0; point < node_at_.size(); ++point) {
+    if (node_at_[point] < 0) continue;
+    node_at_[point] = count++;
+    const int row = static_cast<int>(point) / size()[0];
+    index_of_.push_back({static_cast<int>(point) % size()[0], row % size()[1], row / size()[1]});
   }
 }
 
-void Lattice::buildSprings(const TissueConfig& config) {
+void Lattice::placeCells(const std::vector<double>& filled) {
+  std::vector<Cell> cells;
+  for (int number = 0; number < grid_.cellCount(); ++number) {
+    if (filled[at(number)] <= 0.0) continue;
+    Cell cell;
+    cell.place = static_cast<int>(cells.size());
+    cell.share = filled[at(number)];
+    const auto points = grid_.cornersOf(number);
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      cell.nodes[corner] = node_at_[at(points[corner])];
+    }
+    cells.push_back(cell);
+  }
+  cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
+}
+
+// One along every edge of a cell.
+void Lattice::placeSprings() {
   std::array<int, kNeighbors> none{};
   none.fill(-1);
-  springs_of_node_.assign(fixed_.size(), none);
-  std::vector<SpringStiffness> stiffness;
+  springs_of_node_.assign(index_of_.size(), none);
   for (int node = 0; node < nodeCount(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
-      auto index = gridIndex(node);
-      if (++index[static_cast<std::size_t>(axis)] == size()[static_cast<std::size_t>(axis)])
-        continue;
-      const int upper = this->node(index[0], index[1], index[2]);
-      const int spring = static_cast<int>(springs_.size());
-      springs_.push_back({node, upper, axis, 0.0});
-      springs_of_node_[static_cast<std::size_t>(node)][static_cast<std::size_t>(2 * axis + 1)] =
-          spring;
-      springs_of_node_[static_cast<std::size_t>(upper)][static_cast<std::size_t>(2 * axis)] =
-          spring;
+      for (auto cell = cells_->first(node); cell != cells_->last(node); ++cell) {
+        if (cell->corner >> axis & 1) continue;
+        const int upper = cells()[at(cell->cell)].nodes[at(cell->corner | 1 << axis)];
+        const int spring = static_cast<int>(springs_.size());
+        springs_.push_back({node, upper, axis, 0.0});
+        springs_of_node_[at(node)][at(2 * axis + 1)] = spring;
+        springs_of_node_[at(upper)][at(2 * axis)] = spring;
+        break;
+      }
     }
   }
-  stiffness.resize(springs_.size());
-  const double corner_volume = std::pow(spacing(), 3) / 8.0;
-  for (int k = 0; k + 1 < size()[2]; ++k) {
-    for (int j = 0; j + 1 < size()[1]; ++j) {
-      for (int i = 0; i + 1 < size()[0]; ++i) {
-        const Material& material =
-            materialAt(config, restPosition(node(i, j, k)) + Vec3::Constant(0.5 * spacing()));
-        for (int corner = 0; corner < 8; ++corner) {
-          const int at = node(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
-          mass_[static_cast<std::size_t>(at)] += material.density * corner_volume;
-          for (int axis = 0; axis < 3; ++axis) {
-            if (corner >> axis & 1) continue;
-            const int spring = springOf(at, 2 * axis + 1);
-            stiffness[static_cast<std::size_t>(spring)].add(material, spacing());
-          }
-        }
+}
+
+// Masses of the nodes and stiffnesses of the springs, from the cells around them.
+void Lattice::weigh(const TissueConfig& config) {
+  mass_.assign(index_of_.size(), 0.0);
+  std::vector<SpringStiffness> stiffness(springs_.size());
+  const double corner_volume = std::pow(spacing(), 3) / kCorners;
+  for (const Cell& cell : cells()) {
+    const Material& material = materialAt(config, cellCenter(cell));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cell.nodes[at(corner)];
+      mass_[at(node)] += cell.share * material.density * corner_volume;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1) continue;
+        stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share);
       }
     }
   }
@@ -113,20 +137,39 @@ void Lattice::buildSprings(const TissueConfig& config) {
   }
 }
 
-std::array<int, 3> Lattice::gridIndex(int node) const {
-  const int row = node / size()[0];
-  return {node % size()[0], row % size()[1], row / size()[1]};
+void Lattice::fix(const std::vector<Box>& boxes) {
+  fixed_.assign(index_of_.size(), 0);
+  for (std::size_t box = 0; box < boxes.size(); ++box) {
+    const std::vector<int> nodes = nodesIn(boxes[box]);
+    if (nodes.empty()) {
+      throw InputError("tissue.fixed[" + std::to_string(box) +
+                       "]: no node in this box; allowed: a box that holds one node or more");
+    }
+    for (const int node : nodes) fixed_[at(node)] = 1;
+  }
 }
 
 Vec3 Lattice::restPosition(int node) const {
-  const auto index = gridIndex(node);
+  const auto& index = index_of_[at(node)];
   return grid_.shape().min + spacing() * Vec3(index[0], index[1], index[2]);
+}
+
+int Lattice::cellAt(const std::array<int, 3>& index) const {
+  const int lowest = node(index[0], index[1], index[2]);
+  if (lowest < 0) return -1;
+  const auto* found = std::find_if(cells_->first(lowest), cells_->last(lowest),
+                                   [](const auto& cell) { return cell.corner == 0; });
+  return found == cells_->last(lowest) ? -1 : found->cell;
+}
+
+Vec3 Lattice::cellCenter(const Cell& cell) const {
+  return restPosition(cell.nodes.front()) + Vec3::Constant(0.5 * spacing());
 }
 
 int Lattice::neighbor(int node, int direction) const {
   const int spring = springOf(node, direction);
   if (spring < 0) return -1;
-  const Spring& joined = springs_[static_cast<std::size_t>(spring)];
+  const Spring& joined = springs_[at(spring)];
   return direction % 2 == 1 ? joined.b : joined.a;
 }
 
@@ -135,7 +178,9 @@ std::vector<int> Lattice::nodesIn(const Box& box) const {
   std::vector<int> nodes;
   for (int k = range.first[2]; k <= range.last[2]; ++k) {
     for (int j = range.first[1]; j <= range.last[1]; ++j) {
-      for (int i = range.first[0]; i <= range.last[0]; ++i) nodes.push_back(node(i, j, k));
+      for (int i = range.first[0]; i <= range.last[0]; ++i) {
+        if (node(i, j, k) >= 0) nodes.push_back(node(i, j, k));
+      }
     }
   }
   return nodes;
@@ -143,7 +188,8 @@ std::vector<int> Lattice::nodesIn(const Box& box) const {
 
 LatticeState Lattice::restState() const {
   LatticeState state;
-  state.displacement.assign(fixed_.size(), Vec3::Zero());
+  state.displacement.assign(index_of_.size(), Vec3::Zero());
+  state.cells = cells_;
   state.severed.assign(springs_.size(), 0);
   return state;
 }

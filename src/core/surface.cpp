@@ -28,12 +28,7 @@ class SurfaceBuilder {
       : lattice_(lattice), state_(state), vertex_of_node_(at(lattice.nodeCount()), -1) {}
 
   Surface build() {
-    const auto& size = lattice_.size();
-    for (int k = 0; k + 1 < size[2]; ++k) {
-      for (int j = 0; j + 1 < size[1]; ++j) {
-        for (int i = 0; i + 1 < size[0]; ++i) addCell({i, j, k});
-      }
-    }
+    for (const Cell& cell : lattice_.cells()) addCell(cell);
     for (const auto& [key, quad] : between_cells_) addQuad(quad, true);
     return std::move(surface_);
   }
@@ -42,30 +37,30 @@ class SurfaceBuilder {
   using Quad = std::array<Corner, 4>;
   using QuadKey = std::array<CornerKey, 4>;
 
-  std::array<int, kCorners> partsOf(const std::array<int, 3>& cell) const {
-    return cellParts(lattice_, state_, cellCorners(lattice_, cell[0], cell[1], cell[2]));
+  std::array<int, kCorners> partsOf(const Cell& cell) const {
+    return cellParts(lattice_, state_, cell.nodes);
   }
 
   static bool isWhole(const std::array<int, kCorners>& parts) {
     return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
   }
 
-  void addCell(const std::array<int, 3>& cell) {
+  void addCell(const Cell& cell) {
     const auto parts = partsOf(cell);
     for (int face = 0; face < 6; ++face) {
-      auto neighbor = cell;
-      neighbor[at(face / 2)] += face % 2 == 1 ? 1 : -1;
-      const bool outside =
-          neighbor[at(face / 2)] < 0 || neighbor[at(face / 2)] + 1 >= lattice_.size()[at(face / 2)];
-      if (!outside && isWhole(parts) && isWhole(partsOf(neighbor))) continue;
+      auto index = lattice_.gridIndex(cell.nodes.front());
+      index[at(face / 2)] += face % 2 == 1 ? 1 : -1;
+      const int neighbor = lattice_.cellAt(index);
+      const bool outside = neighbor < 0;
+      if (!outside && isWhole(parts) && isWhole(partsOf(lattice_.cells()[at(neighbor)]))) continue;
       for (int part = 0; part < kCorners; ++part) {
         if (parts[at(part)] == part) addFace(cell, parts, part, face, outside);
       }
     }
   }
 
-  void addFace(const std::array<int, 3>& cell, const std::array<int, kCorners>& parts, int part,
-               int face, bool outside) {
+  void addFace(const Cell& cell, const std::array<int, kCorners>& parts, int part, int face,
+               bool outside) {
     Quad quad;
     bool touches_part = false;
     for (int i = 0; i < 4; ++i) {
@@ -93,9 +88,9 @@ class SurfaceBuilder {
     if (!is_new) between_cells_.erase(place);
   }
 
-  Corner makeCorner(const std::array<int, 3>& cell, const std::array<int, kCorners>& parts,
-                    int part, int corner) const {
-    const auto nodes = cellCorners(lattice_, cell[0], cell[1], cell[2]);
+  Corner makeCorner(const Cell& cell, const std::array<int, kCorners>& parts, int part,
+                    int corner) const {
+    const auto& nodes = cell.nodes;
     Corner made;
     made.node = nodes[at(corner)];
     made.own = parts[at(corner)] == part;

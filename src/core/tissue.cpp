@@ -55,12 +55,10 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   if (crossing.empty()) return report;
   std::vector<int> disturbed;
   for (const int spring : crossing) {
-    state_.severed[at(spring)] = 1;
     disturbed.push_back(lattice_.springs()[at(spring)].a);
     disturbed.push_back(lattice_.springs()[at(spring)].b);
   }
-  state_.springs_cut += report.springs_cut;
-  state_.pieces = countPieces(lattice_, state_);
+  sever(lattice_, crossing, state_);
   rebuildSurface();
   report.pieces = state_.pieces;
   report.solve = solve(disturbed);

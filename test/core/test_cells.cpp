@@ -1,8 +1,11 @@
 // Cells: corners, parts of cut ones, inverted ones.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "block_fixtures.h"
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/cut.h"
 
 namespace robot_tissue {
 namespace {
@@ -10,13 +13,12 @@ namespace {
 constexpr double kSpacing = 0.01;
 
 void sever(const Lattice& lattice, LatticeState& state, int node, int direction) {
-  state.severed[at(lattice.springOf(node, direction))] = 1;
-  ++state.springs_cut;
+  sever(lattice, {lattice.springOf(node, direction)}, state);
 }
 
 TEST(Cells, CornersAreNumberedByTheirBits) {
   const Lattice lattice(blockOf(3, 3, 3));
-  const auto corners = cellCorners(lattice, 1, 2, 0);
+  const auto corners = lattice.cells()[at(lattice.cellAt({1, 2, 0}))].nodes;
   for (int corner = 0; corner < kCorners; ++corner) {
     const auto index = lattice.gridIndex(corners[at(corner)]);
     EXPECT_EQ(index, (std::array<int, 3>{1 + corner % 2, 2 + corner / 2 % 2, corner / 4}));
@@ -26,7 +28,7 @@ TEST(Cells, CornersAreNumberedByTheirBits) {
 TEST(Cells, WholeCellIsOnePart) {
   const Lattice lattice(blockOf(1, 1, 1));
   const LatticeState state = lattice.restState();
-  EXPECT_EQ(cellParts(lattice, state, cellCorners(lattice, 0, 0, 0)),
+  EXPECT_EQ(cellParts(lattice, state, lattice.cells().front().nodes),
             (std::array<int, kCorners>{}));
 }
 
@@ -38,7 +40,7 @@ TEST(Cells, CutThroughAllSpringsOfADirectionMakesTwoParts) {
       if ((corner >> axis & 1) == 0) sever(lattice, state, corner, 2 * axis + 1);
     }
     ASSERT_EQ(state.springs_cut, 4);
-    const auto parts = cellParts(lattice, state, cellCorners(lattice, 0, 0, 0));
+    const auto parts = cellParts(lattice, state, lattice.cells().front().nodes);
     for (int corner = 0; corner < kCorners; ++corner) {
       EXPECT_EQ(parts[at(corner)], (corner >> axis & 1) != 0 ? 1 << axis : 0);
     }
@@ -49,7 +51,7 @@ TEST(Cells, ThreeOfFourSpringsCutLeaveOnePart) {
   const Lattice lattice(blockOf(1, 1, 1));
   LatticeState state = lattice.restState();
   for (const int corner : {0, 2, 4}) sever(lattice, state, corner, 1);
-  EXPECT_EQ(cellParts(lattice, state, cellCorners(lattice, 0, 0, 0)),
+  EXPECT_EQ(cellParts(lattice, state, lattice.cells().front().nodes),
             (std::array<int, kCorners>{}));
 }
 
@@ -57,7 +59,7 @@ TEST(Cells, CornerThatLostItsThreeSpringsIsAPartOfItsOwn) {
   const Lattice lattice(blockOf(1, 1, 1));
   LatticeState state = lattice.restState();
   for (const int direction : {0, 2, 4}) sever(lattice, state, 7, direction);
-  const auto parts = cellParts(lattice, state, cellCorners(lattice, 0, 0, 0));
+  const auto parts = cellParts(lattice, state, lattice.cells().front().nodes);
   for (int corner = 0; corner < 7; ++corner) EXPECT_EQ(parts[at(corner)], 0);
   EXPECT_EQ(parts[7], 7);
 }
@@ -65,9 +67,10 @@ TEST(Cells, CornerThatLostItsThreeSpringsIsAPartOfItsOwn) {
 TEST(Cells, AllSpringsCutMakeEightParts) {
   const Lattice lattice(blockOf(1, 1, 1));
   LatticeState state = lattice.restState();
-  state.severed.assign(state.severed.size(), 1);
-  state.springs_cut = static_cast<int>(state.severed.size());
-  const auto parts = cellParts(lattice, state, cellCorners(lattice, 0, 0, 0));
+  std::vector<int> all(state.severed.size());
+  std::iota(all.begin(), all.end(), 0);
+  sever(lattice, all, state);
+  const auto parts = cellParts(lattice, state, lattice.cells().front().nodes);
   for (int corner = 0; corner < kCorners; ++corner) EXPECT_EQ(parts[at(corner)], corner);
 }
 

@@ -29,11 +29,6 @@ Corners acrossBlock(const TissueConfig& config, int axis, double height, double 
 
 Corners reversed(Corners corners) { return {corners.rbegin(), corners.rend()}; }
 
-void sever(LatticeState& state, const std::vector<int>& springs) {
-  for (const int spring : springs) state.severed[at(spring)] = 1;
-  state.springs_cut += static_cast<int>(springs.size());
-}
-
 TEST(Cut, PlaneBetweenNodesSeversOneSpringOfEveryRow) {
   const TissueConfig config = blockOf(3, 4, 5);
   const Lattice lattice(config);
@@ -47,7 +42,7 @@ TEST(Cut, PlaneBetweenNodesSeversOneSpringOfEveryRow) {
       EXPECT_EQ(lattice.springs()[at(spring)].axis, axis);
       EXPECT_EQ(lattice.gridIndex(lattice.springs()[at(spring)].a)[at(axis)], 1);
     }
-    sever(state, crossing);
+    sever(lattice, crossing, state);
     EXPECT_EQ(countPieces(lattice, state), 2);
   }
 }
@@ -70,7 +65,7 @@ TEST(Cut, PlaneThroughNodesSeversOneSpringOfEveryRow) {
           // The nodes on the plane belong to the side that the normal looks to.
           EXPECT_EQ(lattice.gridIndex(lattice.springs()[at(spring)].a)[at(axis)], turned ? 2 : 1);
         }
-        sever(state, crossing);
+        sever(lattice, crossing, state);
         EXPECT_EQ(countPieces(lattice, state), 2);
       }
     }
@@ -86,7 +81,7 @@ TEST(Cut, DiagonalPlaneThroughNodesSeparates) {
   // Each of the 5 nodes of the diagonal, of 3 layers, loses its springs to one side: 4 along x, 4
   // along y.
   EXPECT_EQ(crossing.size(), 3u * 8u);
-  sever(state, crossing);
+  sever(lattice, crossing, state);
   EXPECT_EQ(countPieces(lattice, state), 2);
 }
 
@@ -95,7 +90,7 @@ TEST(Cut, SeveredSpringsAreNotCutAgain) {
   const Lattice lattice(config);
   LatticeState state = lattice.restState();
   const Corners corners = acrossBlock(config, 2, 1.5 * kSpacing);
-  sever(state, springsAcross(lattice, state, corners));
+  sever(lattice, springsAcross(lattice, state, corners), state);
   ASSERT_EQ(state.springs_cut, 16);
   EXPECT_TRUE(springsAcross(lattice, state, corners).empty());
 }
@@ -212,9 +207,9 @@ TEST(CountPieces, CountsWhatSpringsHoldTogether) {
   const Lattice lattice(config);
   LatticeState state = lattice.restState();
   EXPECT_EQ(countPieces(lattice, state), 1);
-  sever(state, springsAcross(lattice, state, acrossBlock(config, 0, 1.5 * kSpacing)));
-  sever(state, springsAcross(lattice, state, acrossBlock(config, 1, 1.5 * kSpacing)));
-  sever(state, springsAcross(lattice, state, acrossBlock(config, 2, 1.5 * kSpacing)));
+  sever(lattice, springsAcross(lattice, state, acrossBlock(config, 0, 1.5 * kSpacing)), state);
+  sever(lattice, springsAcross(lattice, state, acrossBlock(config, 1, 1.5 * kSpacing)), state);
+  sever(lattice, springsAcross(lattice, state, acrossBlock(config, 2, 1.5 * kSpacing)), state);
   EXPECT_EQ(countPieces(lattice, state), 8);
   state.severed.assign(state.severed.size(), 1);
   EXPECT_EQ(countPieces(lattice, state), lattice.nodeCount());

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "elastic_fixtures.h"
+#include "robot_tissue/core/cut.h"
 
 namespace robot_tissue {
 namespace {
@@ -133,12 +134,13 @@ TEST(ElasticModel, SplitCellIsLostAndItsNodesAreLoose) {
   const double before = block.model.nodeStiffness(block.state, middle).x();
   ASSERT_GT(block.model.nodeForce(block.state, corner).norm(), 0.0);
   // All four springs along x of the first cell.
+  std::vector<int> springs;
   for (int k = 0; k < 2; ++k) {
     for (int j = 0; j < 2; ++j) {
-      block.state.severed[at(block.lattice.springOf(block.lattice.node(0, j, k), 1))] = 1;
-      ++block.state.springs_cut;
+      springs.push_back(block.lattice.springOf(block.lattice.node(0, j, k), 1));
     }
   }
+  sever(block.lattice, springs, block.state);
   EXPECT_EQ(block.model.nodeForce(block.state, corner), Vec3(Vec3::Zero()));
   EXPECT_EQ(block.model.nodeForces(block.state)[at(corner)], Vec3(Vec3::Zero()));
   EXPECT_EQ(block.model.nodeStiffness(block.state, corner), Vec3(Vec3::Zero()));
@@ -152,8 +154,7 @@ TEST(ElasticModel, CellThatHangsTogetherIsWhole) {
   shake(block.state, 0.1 * kSpacing);
   const double before = block.model.energy(block.state);
   ASSERT_GT(before, 0.0);
-  block.state.severed[at(block.lattice.springOf(0, 1))] = 1;
-  block.state.springs_cut = 1;
+  sever(block.lattice, {block.lattice.springOf(0, 1)}, block.state);
   EXPECT_EQ(block.model.energy(block.state), before);
 }
 

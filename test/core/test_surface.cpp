@@ -58,12 +58,9 @@ int countOpened(const Surface& surface) {
 LatticeState cutAcrossX(const Lattice& lattice, double x, double y0, double y1, double z0,
                         double z1) {
   LatticeState state = lattice.restState();
-  for (const int spring :
-       springsAcross(lattice, state, {{x, y0, z0}, {x, y1, z0}, {x, y1, z1}, {x, y0, z1}})) {
-    state.severed[at(spring)] = 1;
-    ++state.springs_cut;
-  }
-  state.pieces = countPieces(lattice, state);
+  const auto crossing =
+      springsAcross(lattice, state, {{x, y0, z0}, {x, y1, z0}, {x, y1, z1}, {x, y0, z1}});
+  sever(lattice, crossing, state);
   return state;
 }
 
@@ -192,12 +189,10 @@ TEST_F(PartlyCutSurface, CarriesEveryVertexWholly) {
 
 TEST_F(PartlyCutSurface, GapsWhereTheSidesArePulledApart) {
   std::vector<Vec3> displacement(at(lattice_.nodeCount()), Vec3::Zero());
-  for (int i : {3, 4}) {
-    for (int j = 1; j <= 4; ++j) {
-      for (int k = 2; k <= 4; ++k) {
-        displacement[at(lattice_.node(i, j, k))].x() = i == 3 ? -0.1 * kSpacing : 0.1 * kSpacing;
-      }
-    }
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    const auto& [i, j, k] = lattice_.gridIndex(node);
+    if (j < 1 || j > 4 || k < 2 || k > 4) continue;
+    if (i == 3 || i == 4) displacement[at(node)].x() = (i == 3 ? -0.1 : 0.1) * kSpacing;
   }
   std::vector<Vec3> vertices;
   deform(surface_, displacement, vertices);
@@ -277,8 +272,7 @@ TEST(Surface, StaysClosedAfterObliqueAndCrossingCuts) {
   for (const auto& corners : cuts) {
     const auto crossing = springsAcross(lattice, state, corners);
     ASSERT_FALSE(crossing.empty());
-    for (const int spring : crossing) state.severed[at(spring)] = 1;
-    state.springs_cut += static_cast<int>(crossing.size());
+    sever(lattice, crossing, state);
     const Surface surface = extractSurface(lattice, state);
     EXPECT_EQ(countOpenEdges(surface), 0);
     EXPECT_GT(countOpened(surface), 0);

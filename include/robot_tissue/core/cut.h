@@ -17,6 +17,9 @@ namespace robot_tissue {
 std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
                                const std::vector<Vec3>& corners);
 
+// Severs the springs, none of which is severed yet, and the cells with them.
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state);
+
 // Number of parts that uncut springs hold together.
 int countPieces(const Lattice& lattice, const LatticeState& state);
 

@@ -1,9 +1,8 @@
 // Model `elastic`: an isotropic material with moduli in Pa, a cell of the lattice at a time
 // (core/elastic_cell.h, doc/model.md).
 //
-// A cell that a cut has split, that is, whose corners uncut springs no longer hold together, is
-// lost: it has no energy and no stiffness. A node without a whole cell is loose: no force acts on
-// it, not even its weight, and its stiffness is zero.
+// Cells are LatticeState::cells. A node without a cell is loose: no force acts on it, not even its
+// weight, and its stiffness is zero.
 #pragma once
 
 #include <array>
@@ -30,26 +29,17 @@ class ElasticModel : public EnergyModel {
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
 
  private:
-  using CellIndex = std::array<int, 3>;
-  struct CellAt {
+  struct Substance {
     CellModuli moduli;
-    std::array<int, kCorners> corners;
+    Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
   };
 
-  CellAt cellAt(const CellIndex& index) const;
-  bool isWhole(const LatticeState& state, const CellAt& cell) const;
-  ElasticCell shaped(const LatticeState& state, const CellAt& cell) const;
-  // Calls visit(cell) for every whole cell.
-  template <typename Visit>
-  void visitWholeCells(const LatticeState& state, const Visit& visit) const;
-  // Calls visit(cell, corner) for every whole cell that has the node as a corner.
-  template <typename Visit>
-  void visitWholeCellsAt(const LatticeState& state, int node, const Visit& visit) const;
+  CellModuli moduliOf(const Cell& cell) const;
+  Vec3 cornerWeight(const Cell& cell) const;
+  ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
 
   const Lattice& lattice_;
-  Vec3 gravity_;
-  CellIndex cells_;                 // along x, y, z
-  std::vector<CellModuli> moduli_;  // per cell, x running fastest
+  std::vector<Substance> substance_;  // per cell of the lattice
 };
 
 }  // namespace robot_tissue

@@ -27,6 +27,9 @@ class Grid {
   // True when the box holds the center of a cell between eight nodes: cells carry the material.
   bool holdsCell(const Box& box) const;
   const std::array<int, 3>& size() const { return size_; }  // nodes along x, y, z
+  int cellCount() const { return (size_[0] - 1) * (size_[1] - 1) * (size_[2] - 1); }
+  // Points, numbered with x running fastest, at the corners of a cell, numbered likewise.
+  std::array<int, 8> cornersOf(int cell) const;
   const Box& shape() const { return shape_; }
   double spacing() const { return spacing_; }
 

@@ -1,12 +1,14 @@
 // The constant model: nodes on a rectangular grid, joined by one spring to each of their up to six
 // neighbors (paper, section 4.1 and figure 1). Never changes after construction; what changes is
-// in LatticeState. Own: moduli, regions, fixed nodes.
+// in LatticeState. Own: cells, moduli, regions, fixed nodes.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/scene.h"
@@ -29,25 +31,32 @@ class Lattice {
   // Throws InputError when the extent is no multiple of the spacing or a box holds no node.
   explicit Lattice(const TissueConfig& config);
 
-  int nodeCount() const { return static_cast<int>(fixed_.size()); }
+  int nodeCount() const { return static_cast<int>(index_of_.size()); }
   double spacing() const { return grid_.spacing(); }
-  const std::array<int, 3>& size() const { return grid_.size(); }  // nodes along x, y, z
+  const std::array<int, 3>& size() const { return grid_.size(); }  // grid points along x, y, z
 
-  // Nodes are numbered with x running fastest.
-  int node(int i, int j, int k) const { return i + size()[0] * (j + size()[1] * k); }
-  std::array<int, 3> gridIndex(int node) const;
+  // Nodes are numbered with x running fastest; -1 where the grid has none.
+  int node(int i, int j, int k) const {
+    const auto& size = grid_.size();
+    if (i < 0 || j < 0 || k < 0 || i >= size[0] || j >= size[1] || k >= size[2]) return -1;
+    return node_at_[at(i + size[0] * (j + size[1] * k))];
+  }
+  const std::array<int, 3>& gridIndex(int node) const { return index_of_[at(node)]; }
   Vec3 restPosition(int node) const;
-  bool isFixed(int node) const { return fixed_[static_cast<std::size_t>(node)] != 0; }
-  double mass(int node) const { return mass_[static_cast<std::size_t>(node)]; }  // kg
+  bool isFixed(int node) const { return fixed_[at(node)] != 0; }
+  double mass(int node) const { return mass_[at(node)]; }  // kg
 
   // Box around the nodes at rest (m).
   const Box& bounds() const { return grid_.shape(); }
 
+  const std::vector<Cell>& cells() const { return cells_->all(); }
+  // The cell whose lowest corner stands at the grid index, -1 = none.
+  int cellAt(const std::array<int, 3>& index) const;
+  Vec3 cellCenter(const Cell& cell) const;  // at rest (m)
+
   const std::vector<Spring>& springs() const { return springs_; }
   // Index of the spring in `direction`, -1 at the border.
-  int springOf(int node, int direction) const {
-    return springs_of_node_[static_cast<std::size_t>(node)][static_cast<std::size_t>(direction)];
-  }
+  int springOf(int node, int direction) const { return springs_of_node_[at(node)][at(direction)]; }
   // Node in `direction`, -1 at the border.
   int neighbor(int node, int direction) const;
 
@@ -57,9 +66,16 @@ class Lattice {
   LatticeState restState() const;
 
  private:
-  void buildSprings(const TissueConfig& config);
+  void placeNodes(const std::vector<double>& filled);
+  void placeCells(const std::vector<double>& filled);
+  void placeSprings();
+  void weigh(const TissueConfig& config);
+  void fix(const std::vector<Box>& boxes);
 
   Grid grid_;
+  std::vector<int> node_at_;                  // per grid point, -1 = none
+  std::vector<std::array<int, 3>> index_of_;  // per node
+  std::shared_ptr<const CellSet> cells_;
   std::vector<std::uint8_t> fixed_;
   std::vector<double> mass_;
   std::vector<Spring> springs_;

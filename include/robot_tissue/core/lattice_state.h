@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/types.h"
 
@@ -13,7 +15,8 @@ struct LatticeState {
   std::vector<Vec3> displacement;     // per node, from rest (m)
   std::vector<std::uint8_t> severed;  // per spring, 1 = cut
   int springs_cut = 0;
-  int pieces = 1;  // parts of the lattice that springs hold together
+  std::shared_ptr<const CellSet> cells;  // what the cuts left of the lattice's
+  int pieces = 1;                        // parts of the lattice that springs hold together
 };
 
 // From good to bad.
