@@ -48,7 +48,7 @@ Eigen::Matrix3d crossMatrix(const Vec3& v) {
 
 }  // namespace
 
-ElasticCell::ElasticCell(const CellModuli& moduli, double spacing, const Corners& displacement)
+ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement)
     : moduli_(moduli), spacing_(spacing), volume_(spacing * spacing * spacing) {
   for (int corner = 0; corner < kCorners; ++corner) {
     const Vec3 rest(corner & 1, corner >> 1 & 1, corner >> 2 & 1);

@@ -10,14 +10,13 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config) :
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
   for (const Cell& cell : lattice.cells()) {
     const Material& material = materialAt(config, lattice.cellCenter(cell));
-    substance_.push_back({{shearModulus(material), bulkModulus(material)},
-                          material.density * corner_volume * config.gravity});
+    substance_.push_back({moduliOf(material), material.density * corner_volume * config.gravity});
   }
 }
 
 // A cell that is filled in part answers in part.
-CellModuli ElasticModel::moduliOf(const Cell& cell) const {
-  const CellModuli& full = substance_[at(cell.place)].moduli;
+Moduli ElasticModel::cellModuli(const Cell& cell) const {
+  const Moduli& full = substance_[at(cell.place)].moduli;
   return {cell.share * full.shear, cell.share * full.bulk};
 }
 
@@ -30,7 +29,7 @@ ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) co
   for (int corner = 0; corner < kCorners; ++corner) {
     displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
   }
-  return {moduliOf(cell), lattice_.spacing(), displacement};
+  return {cellModuli(cell), lattice_.spacing(), displacement};
 }
 
 Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
@@ -48,11 +47,22 @@ Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   double stiffness = 0.0;
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const CellModuli moduli = moduliOf(cells.all()[at(met->cell)]);
+    const Moduli moduli = cellModuli(cells.all()[at(met->cell)]);
     const double third = moduli.shear / 3.0;
     stiffness += lattice_.spacing() * (third + (moduli.bulk + third) / 16.0);
   }
   return Vec3::Constant(stiffness);
+}
+
+Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  Moduli sum;
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    const Moduli cell = cellModuli(cells.all()[at(met->cell)]);
+    sum.shear += cell.shear / 4.0;
+    sum.bulk += cell.bulk / 4.0;
+  }
+  return sum;
 }
 
 Eigen::Matrix3d ElasticModel::nodeBlock(const LatticeState& state, int node) const {

@@ -18,6 +18,14 @@ const Material& materialAt(const TissueConfig& config, const Vec3& point) {
   return config.material;
 }
 
+Moduli moduliOf(const Material& material) {
+  return {shearModulus(material), bulkModulus(material)};
+}
+
+double poissonRatio(const Moduli& moduli) {
+  return (3.0 * moduli.bulk - 2.0 * moduli.shear) / (2.0 * (3.0 * moduli.bulk + moduli.shear));
+}
+
 double shearModulus(const Material& material) {
   return material.young_modulus / (2.0 * (1.0 + material.poisson_ratio));
 }

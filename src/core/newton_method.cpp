@@ -1,8 +1,8 @@
 #include "robot_tissue/core/newton_method.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
@@ -18,14 +18,6 @@ constexpr double kRoundingEnergy = 1e-15;  // of the stiffness times the spacing
 constexpr double kShareOfExpected = 1e-4;  // of the decrease that the slope promises
 constexpr int kHalvings = 30;
 
-// The nearest matrix without a negative eigenvalue.
-CellHessian positivePart(const CellHessian& hessian) {
-  const Eigen::SelfAdjointEigenSolver<CellHessian> solver(hessian);
-  if (solver.eigenvalues().minCoeff() >= 0.0) return hessian;
-  const auto values = solver.eigenvalues().cwiseMax(0.0);
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
-}
-
 }  // namespace
 
 NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
@@ -37,98 +29,107 @@ NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
   }
 }
 
-SolveReport NewtonMethod::solve(const std::vector<LoadingPatch>& patches, const std::vector<int>&,
+SolveReport NewtonMethod::solve(std::vector<LoadingPatch>& patches, const std::vector<int>&,
                                 LatticeState& state) {
   started_ = std::chrono::steady_clock::now();
   factorized_ = false;
   SolveReport report;
-  countUnknowns(patches, state);
-  carryPatches(patches, state);
-  balance_ = balanceOf(patches, state);
-  report.status = iterate(patches, state, report.iterations);
-  describe(patches, state, report);
+  LoadedShape shape{state, patches};
+  countUnknowns(shape);
+  carryPatches(shape);
+  takeBalance(balanceOf(model_, unknowns_, shape));
+  report.status = iterate(shape, report.iterations);
+  describe(shape, report);
+  state = std::move(shape.state);
+  patches = std::move(shape.patches);
   report.wall_ms = elapsedMs();
   return report;
 }
 
 double NewtonMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
 
-void NewtonMethod::countUnknowns(const std::vector<LoadingPatch>& patches,
-                                 const LatticeState& state) {
-  Unknowns unknowns(lattice_, model_, patches, state);
-  if (analyzed_ && unknowns == unknowns_ && state.springs_cut == springs_cut_) return;
+void NewtonMethod::countUnknowns(const LoadedShape& shape) {
+  Unknowns unknowns(lattice_, model_, shape);
+  std::vector<int> rims;
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) rims.push_back(spring.node);
+    rims.push_back(-1);
+  }
+  if (analyzed_ && unknowns == unknowns_ && rims == rims_ && shape.state.cells == cells_) return;
   unknowns_ = std::move(unknowns);
-  springs_cut_ = state.springs_cut;
+  rims_ = std::move(rims);
+  cells_ = shape.state.cells;
   analyzed_ = false;
 }
 
 // Moves the patches by displacement to their places, and the nodes around them with them, as far
 // as the second derivative can tell; if that is worse than leaving the others behind, does so.
-void NewtonMethod::carryPatches(const std::vector<LoadingPatch>& patches, LatticeState& state) {
-  std::vector<Vec3> moved(state.displacement.size(), Vec3::Zero());
+void NewtonMethod::carryPatches(LoadedShape& shape) {
+  std::vector<Vec3> moved(shape.state.displacement.size(), Vec3::Zero());
   bool any = false;
-  for (const LoadingPatch& patch : patches) {
+  LoadedShape placed = shape;
+  for (const LoadingPatch& patch : shape.patches) {
     if (patch.drive != LoadingPatch::Drive::kDisplacement) continue;
+    any = any || !patch.rim.empty();
     for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
       const std::size_t node = at(patch.nodes[i]);
       for (int axis = 0; axis < 3; ++axis) {
-        if (!holds(patch, at(axis))) continue;
-        moved[node][axis] = patch.displacement[i][axis] - state.displacement[node][axis];
+        if (unknowns_.of(patch.nodes[i], axis) != Unknowns::kHeld) continue;
+        moved[node][axis] = patch.displacement[i][axis] - shape.state.displacement[node][axis];
+        placed.state.displacement[node][axis] = patch.displacement[i][axis];
         any = any || moved[node][axis] != 0.0;
       }
     }
   }
   if (!any) return;
-  const bool predicted = unknowns_.count() > 0 && factorize(state, moved);
-  const Balance before = balanceOf(patches, state);
-  for (const LoadingPatch& patch : patches) {
-    if (patch.drive != LoadingPatch::Drive::kDisplacement) continue;
-    for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (!holds(patch, at(axis))) continue;
-        state.displacement[at(patch.nodes[i])][axis] = patch.displacement[i][axis];
-      }
-    }
+  const bool predicted = unknowns_.count() > 0 && factorize(shape, moved);
+  if (predicted) {
+    const Balance before = balanceOf(model_, unknowns_, shape);
+    const Eigen::VectorXd step = solveFor(before.unbalanced - carried_);
+    LoadedShape carried = placed;
+    unknowns_.move(carried, step, capped(placed, step));
+    if (potentialOf(model_, carried) < potentialOf(model_, placed)) placed = std::move(carried);
   }
-  if (!predicted) return;
-  const Eigen::VectorXd step = solveFor(before.unbalanced - carried_);
-  LatticeState carried = state;
-  unknowns_.addTo(carried.displacement, step, capped(step));
-  if (potentialOf(patches, carried) < potentialOf(patches, state)) state = carried;
+  shape = std::move(placed);
 }
 
-SolveStatus NewtonMethod::iterate(const std::vector<LoadingPatch>& patches, LatticeState& state,
-                                  int& iterations) {
-  const std::vector<Vec3> unmoved(state.displacement.size(), Vec3::Zero());
-  for (iterations = 0; balance_.relative > options_.residual; ++iterations) {
+SolveStatus NewtonMethod::iterate(LoadedShape& shape, int& iterations) {
+  const std::vector<Vec3> unmoved(shape.state.displacement.size(), Vec3::Zero());
+  for (iterations = 0; relative_ > options_.residual; ++iterations) {
     if (iterations == options_.max_iterations) return SolveStatus::kUnconverged;
     if (options_.max_ms > 0.0 && elapsedMs() > options_.max_ms) return SolveStatus::kLate;
-    if (!factorize(state, unmoved)) return SolveStatus::kUnconverged;
-    if (!search(patches, solveFor(balance_.unbalanced), state)) {
-      return SolveStatus::kUnconverged;
-    }
+    if (!factorize(shape, unmoved)) return SolveStatus::kUnconverged;
+    if (!search(solveFor(balance_.unbalanced), shape)) return SolveStatus::kUnconverged;
   }
   return SolveStatus::kOk;
 }
 
 // The second derivative, if it is positive definite; else that of each cell without its negative
 // curvatures, which makes any step lower the energy.
-bool NewtonMethod::factorize(const LatticeState& state, const std::vector<Vec3>& moved) {
+bool NewtonMethod::factorize(const LoadedShape& shape, const std::vector<Vec3>& moved) {
   factorized_ = true;
-  for (const bool positive : {false, true}) {
-    assemble(state, moved, positive);
+  for (const bool convex : {false, true}) {
+    Curvature curvature = curvatureOf(model_, unknowns_, shape, moved, convex);
+    matrix_ = std::move(curvature.matrix);
+    carried_ = std::move(curvature.carried);
+    hold_ = 0.0;
+    holdBy(kHold * stiffness_);
     if (!analyzed_) factor_.analyze(matrix_);
     analyzed_ = true;
     if (factor_.factorize(matrix_)) return true;
   }
   while (hold_ < kFirmestHold * stiffness_) {
-    for (int unknown = 0; unknown < unknowns_.count(); ++unknown) {
-      matrix_.coeffRef(unknown, unknown) += (kFirmer - 1.0) * hold_;
-    }
-    hold_ *= kFirmer;
+    holdBy(kFirmer * hold_);
     if (factor_.factorize(matrix_)) return true;
   }
   return false;
+}
+
+void NewtonMethod::holdBy(double stiffness) {
+  for (int unknown = 0; unknown < unknowns_.count(); ++unknown) {
+    matrix_.coeffRef(unknown, unknown) += stiffness - hold_;
+  }
+  hold_ = stiffness;
 }
 
 // One step of refinement takes most of what the hold holds back.
@@ -137,62 +138,34 @@ Eigen::VectorXd NewtonMethod::solveFor(const Eigen::VectorXd& force) const {
   return step + hold_ * factor_.solve(step);
 }
 
-void NewtonMethod::assemble(const LatticeState& state, const std::vector<Vec3>& moved,
-                            bool positive) {
-  std::vector<Eigen::Triplet<double>> entries;
-  carried_ = Eigen::VectorXd::Zero(unknowns_.count());
-  model_.visitHessians(state, [&](const auto& corners, const CellHessian& exact) {
-    const CellHessian hessian = positive ? positivePart(exact) : exact;
-    std::array<int, 3 * kCorners> unknown;
-    Eigen::Matrix<double, 3 * kCorners, 1> motion;
-    for (int i = 0; i < 3 * kCorners; ++i) {
-      unknown[at(i)] = unknowns_.of(corners[at(i / 3)], i % 3);
-      motion[i] = moved[at(corners[at(i / 3)])][i % 3];
-    }
-    const Eigen::Matrix<double, 3 * kCorners, 1> force = hessian * motion;
-    for (int i = 0; i < 3 * kCorners; ++i) {
-      const int row = unknown[at(i)];
-      if (row == Unknowns::kHeld) continue;
-      carried_[row] += force[i];
-      for (int j = 0; j < 3 * kCorners; ++j) {
-        const int column = unknown[at(j)];
-        if (column == Unknowns::kHeld || column > row) continue;
-        entries.emplace_back(row, column, hessian(i, j));
-      }
-    }
-  });
-  hold_ = kHold * stiffness_;
-  for (int unknown = 0; unknown < unknowns_.count(); ++unknown) {
-    entries.emplace_back(unknown, unknown, hold_);
-  }
-  matrix_.resize(unknowns_.count(), unknowns_.count());
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-}
-
 // Goes along the step as far as the potential falls.
-bool NewtonMethod::search(const std::vector<LoadingPatch>& patches, const Eigen::VectorXd& step,
-                          LatticeState& state) {
+bool NewtonMethod::search(const Eigen::VectorXd& step, LoadedShape& shape) {
   const double promised = balance_.unbalanced.dot(step);  // decrease a full step begins with (J)
   if (!std::isfinite(promised)) return false;
-  LatticeState trial = state;
-  double share = capped(step);
+  double share = capped(shape, step);
   for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
-    trial.displacement = state.displacement;
-    unknowns_.addTo(trial.displacement, step, share);
-    const Balance balance = balanceOf(patches, trial);
+    LoadedShape trial = shape;
+    unknowns_.move(trial, step, share);
+    const Balance balance = balanceOf(model_, unknowns_, trial);
     if (!improves(balance, share * promised)) continue;
-    state.displacement = trial.displacement;
-    balance_ = balance;
+    shape = std::move(trial);
+    takeBalance(balance);
     return true;
   }
   return false;
+}
+
+void NewtonMethod::takeBalance(const Balance& balance) {
+  balance_ = balance;
+  const double floor = kRoundingForce * stiffness_ * lattice_.spacing();
+  relative_ = balance.unbalanced.norm() / std::max(balance.holding, floor / options_.residual);
 }
 
 // Close to the equilibrium the potential changes by less than its rounding error: there the
 // unbalanced force decides.
 bool NewtonMethod::improves(const Balance& trial, double promised) const {
   if (trial.potential <= balance_.potential - kShareOfExpected * promised) {
-    return std::isfinite(trial.relative);
+    return std::isfinite(trial.unbalanced.norm());
   }
   const double rounding =
       kRoundingEnergy * stiffness_ * std::pow(lattice_.spacing(), 2) * lattice_.nodeCount();
@@ -200,75 +173,47 @@ bool NewtonMethod::improves(const Balance& trial, double promised) const {
          trial.unbalanced.norm() < balance_.unbalanced.norm();
 }
 
-double NewtonMethod::potentialOf(const std::vector<LoadingPatch>& patches,
-                                 const LatticeState& state) const {
-  double potential = model_.energy(state);
-  for (const LoadingPatch& patch : patches) {
-    if (patch.drive != LoadingPatch::Drive::kForce) continue;
-    potential -= patch.force.dot(meanDisplacement(patch, state.displacement));
-  }
-  return potential;
-}
-
-NewtonMethod::Balance NewtonMethod::balanceOf(const std::vector<LoadingPatch>& patches,
-                                              const LatticeState& state) const {
-  Balance balance;
-  balance.potential = potentialOf(patches, state);
-  std::vector<Vec3> forces = model_.nodeForces(state);
-  double holding = unknowns_.heldNorm(forces);
-  for (const LoadingPatch& patch : patches) {
-    if (patch.drive != LoadingPatch::Drive::kForce) continue;
-    forces[at(patch.nodes.front())] += patch.force;
-    holding = std::max(holding, patch.force.norm());
-  }
-  balance.unbalanced = unknowns_.gather(forces);
-  const double floor = kRoundingForce * stiffness_ * lattice_.spacing();
-  balance.relative = balance.unbalanced.norm() / std::max(holding, floor / options_.residual);
-  return balance;
-}
-
 // Share of the step in which no node moves further than allowed.
-double NewtonMethod::capped(const Eigen::VectorXd& step) const {
-  std::vector<Vec3> motion(at(lattice_.nodeCount()), Vec3::Zero());
-  unknowns_.addTo(motion, step, 1.0);
+double NewtonMethod::capped(const LoadedShape& shape, const Eigen::VectorXd& step) const {
+  LoadedShape moved = shape;
+  unknowns_.move(moved, step, 1.0);
   double longest = 0.0;
-  for (const Vec3& move : motion) longest = std::max(longest, move.norm());
+  for (std::size_t node = 0; node < moved.state.displacement.size(); ++node) {
+    const Vec3 motion = moved.state.displacement[node] - shape.state.displacement[node];
+    longest = std::max(longest, motion.norm());
+  }
   const double allowed = options_.node_step * lattice_.spacing();
   return longest > allowed ? allowed / longest : 1.0;
 }
 
-void NewtonMethod::describe(const std::vector<LoadingPatch>& patches, const LatticeState& state,
-                            SolveReport& report) {
-  report.residual = balance_.relative;
-  const std::vector<Vec3> forces = model_.nodeForces(state);
-  for (const LoadingPatch& patch : patches) {
-    PatchAnswer answer;
-    answer.displacement = meanDisplacement(patch, state.displacement);
-    for (const int node : patch.nodes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if (holds(patch, at(axis))) answer.force[axis] -= forces[at(node)][axis];
-      }
-    }
-    report.patches.push_back(answer);
+void NewtonMethod::describe(const LoadedShape& shape, SolveReport& report) {
+  report.residual = relative_;
+  const std::vector<Vec3>& displacement = shape.state.displacement;
+  const std::vector<Vec3> forces = model_.nodeForces(shape.state);
+  for (const LoadingPatch& patch : shape.patches) {
+    report.patches.push_back(answerOf(patch, forces, displacement));
   }
-  double moved = 0.0;
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    moved += state.displacement[at(node)].squaredNorm();
+  double moved_squared = 0.0;
+  for (int node = 0; node < static_cast<int>(displacement.size()); ++node) {
+    moved_squared += displacement[at(node)].squaredNorm();
     bool solved = false;
-    for (int axis = 0; axis < 3; ++axis) solved = solved || unknowns_.of(node, axis) >= 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      solved = solved || unknowns_.of(node, axis) != Unknowns::kHeld;
+    }
     if (solved) ++report.active_nodes;
   }
-  if (moved == 0.0 || balance_.unbalanced.isZero(0.0)) return;
-  if (!factorized_ &&
-      !factorize(state, std::vector<Vec3>(state.displacement.size(), Vec3::Zero()))) {
+  if (moved_squared == 0.0 || balance_.unbalanced.isZero(0.0)) return;
+  if (!factorized_ && !factorize(shape, std::vector<Vec3>(displacement.size(), Vec3::Zero()))) {
     report.status = SolveStatus::kUnconverged;
     return;
   }
-  std::vector<Vec3> missing(state.displacement.size(), Vec3::Zero());
-  unknowns_.addTo(missing, solveFor(balance_.unbalanced), 1.0);
+  LoadedShape balanced = shape;
+  unknowns_.move(balanced, solveFor(balance_.unbalanced), 1.0);
   double squared = 0.0;
-  for (const Vec3& move : missing) squared += move.squaredNorm();
-  report.error_estimate = std::sqrt(squared / moved);
+  for (std::size_t node = 0; node < displacement.size(); ++node) {
+    squared += (balanced.state.displacement[node] - displacement[node]).squaredNorm();
+  }
+  report.error_estimate = std::sqrt(squared / moved_squared);
 }
 
 double NewtonMethod::elapsedMs() const {

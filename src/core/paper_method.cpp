@@ -40,7 +40,7 @@ PaperMethod::PaperMethod(const Lattice& lattice, const TissueModel& model,
   }
 }
 
-SolveReport PaperMethod::solve(const std::vector<LoadingPatch>& patches,
+SolveReport PaperMethod::solve(std::vector<LoadingPatch>& patches,
                                const std::vector<int>& disturbed, LatticeState& state) {
   started_ = std::chrono::steady_clock::now();
   SolveReport report;

@@ -43,7 +43,7 @@ void Tissue::restore(const Shape& shape) {
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
-  deform(surface_, state_.displacement, vertices_);
+  deform(surface_, shownDisplacement(), vertices_);
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
@@ -75,11 +75,23 @@ void Tissue::reset() {
   vertices_ = surface_.rest;
 }
 
+std::vector<Vec3> Tissue::shownDisplacement() const {
+  std::vector<Vec3> shown = state_.displacement;
+  for (const LoadingPatch& patch : patches_) {
+    if (patch.rim.empty()) continue;
+    const std::vector<Vec3> own = ownDisplacement(patch, state_.displacement);
+    for (std::size_t i = 0; i < own.size(); ++i) shown[at(patch.nodes[i])] = own[i];
+  }
+  return shown;
+}
+
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   const std::vector<Vec3> last_good = state_.displacement;
+  const std::vector<LoadingPatch> last_good_patches = patches_;
   SolveReport report = method_->solve(patches_, disturbed, state_);
   if (!hasOnlyFiniteNumbers(report)) {
     state_.displacement = last_good;
+    patches_ = last_good_patches;
     report = SolveReport();
     report.status = SolveStatus::kUnconverged;
     report.patches.resize(patches_.size());
@@ -103,8 +115,10 @@ SolveReport Tissue::solveFromRest() {
   }
   std::vector<Ramp> ramps;
   for (std::size_t patch = 0; patch < standing.size(); ++patch) {
-    ramps.push_back(makeRamp(patch, standing[patch]));
-    ramps.back().force.setZero();
+    ramps.push_back(makeRamp(standing[patch], nullptr));
+    ramps.back().patch = patch;
+    ramps.back().start.force.setZero();
+    patches_[patch] = ramps.back().start;
   }
   if (!ramps.empty()) {
     report = climb(ramps, chooseIncrements(ramps), {});
@@ -126,7 +140,7 @@ bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
 }
 
 void Tissue::describeShape(SolveReport& report) {
-  deform(surface_, state_.displacement, vertices_);
+  deform(surface_, shownDisplacement(), vertices_);
   report.volume_ratio = enclosedVolume(surface_, vertices_) / rest_volume_;
   report.inverted_cells = countInvertedCells(lattice_, state_);
   if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "robot_tissue/core/patch_rim.h"
 #include "robot_tissue/core/solver_method.h"
 #include "robot_tissue/core/tissue.h"
 #include "robot_tissue/core/tissue_model.h"
@@ -24,13 +25,16 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets);
   std::vector<Ramp> ramps;
-  for (const LoadingPatch& target : targets) ramps.push_back(makeRamp(0, target));
+  for (const LoadingPatch& target : targets) {
+    ramps.push_back(makeRamp(target, standingPatch(target.name)));
+  }
   const int increments = step.increments.value_or(chooseIncrements(ramps));
   if (increments > most_increments) {
     refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
            "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
-  for (Ramp& ramp : ramps) ramp.patch = place(ramp.target);
+  for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
+  leaveRimsToOwners();
   climb(ramps, increments, on_increment);
 }
 
@@ -68,9 +72,16 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
                   [this](int node) { return lattice_.isFixed(node); })) {
     refuse(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
+  if (method_->joinsRims()) {
+    patch.rim = rimOf(lattice_, *model_, state_, config.box, patch.nodes);
+  }
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
+    patch.turns = config.turns;
+    for (const int node : patch.nodes) {
+      patch.center += lattice_.restPosition(node) / static_cast<double>(patch.nodes.size());
+    }
     return patch;
   }
   Vec3 displacement = Vec3::Zero();
@@ -80,6 +91,12 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
     displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
   }
   patch.displacement.assign(patch.nodes.size(), displacement);
+  for (RimSpring& spring : patch.rim) {
+    spring.anchor = displacement;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
+    }
+  }
   return patch;
 }
 
@@ -119,18 +136,56 @@ void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
 // load yet.
 std::size_t Tissue::place(const LoadingPatch& patch) {
   for (std::size_t index = 0; index < named_patches_; ++index) {
-    if (patches_[index].name == patch.name) return index;
+    if (patches_[index].name != patch.name) continue;
+    patches_[index] = patch;
+    return index;
   }
   patches_.insert(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patch);
   return named_patches_++;
 }
 
-Tissue::Ramp Tissue::makeRamp(std::size_t patch, const LoadingPatch& target) const {
+// Where a patch's rim reaches nodes of another one, these are the other's alone.
+void Tissue::leaveRimsToOwners() {
+  std::vector<const LoadingPatch*> owners(at(lattice_.nodeCount()), nullptr);
+  for (const LoadingPatch& patch : patches_) {
+    for (const int node : patch.nodes) owners[at(node)] = &patch;
+  }
+  for (LoadingPatch& patch : patches_) {
+    const auto foreign = [&](const RimSpring& spring) {
+      const LoadingPatch* owner = owners[at(spring.node)];
+      return owner != nullptr && owner != &patch;
+    };
+    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
+  }
+}
+
+const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
+  for (std::size_t index = 0; index < named_patches_; ++index) {
+    if (patches_[index].name == name) return &patches_[index];
+  }
+  return nullptr;
+}
+
+// Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
+Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
   Ramp ramp;
-  ramp.patch = patch;
   ramp.target = target;
-  for (const int node : target.nodes) ramp.displacement.push_back(state_.displacement[at(node)]);
-  ramp.force = patchForce(target);
+  ramp.start = target;
+  for (RimSpring& spring : ramp.start.rim) spring.anchor = state_.displacement[at(spring.node)];
+  ramp.start.place = PatchPlace();
+  if (standing != nullptr) {
+    for (RimSpring& spring : ramp.start.rim) {
+      for (const RimSpring& earlier : standing->rim) {
+        if (earlier.node == spring.node) spring.anchor = earlier.anchor;
+      }
+    }
+    if (standing->drive == target.drive) ramp.start.place = standing->place;
+  }
+  if (target.drive == LoadingPatch::Drive::kForce) {
+    ramp.start.force = patchForce(ramp.start);
+    return ramp;
+  }
+  ramp.start.displacement = ownDisplacement(ramp.start, state_.displacement);
   return ramp;
 }
 
@@ -146,12 +201,12 @@ int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
       }
       const double force_step = stiffness * method_->patchStep();
       if (force_step > 0.0) {
-        steps = std::max(steps, (ramp.target.force - ramp.force).norm() / force_step);
+        steps = std::max(steps, (ramp.target.force - ramp.start.force).norm() / force_step);
       }
       continue;
     }
     for (std::size_t i = 0; i < ramp.target.nodes.size(); ++i) {
-      Vec3 way = ramp.target.displacement[i] - ramp.displacement[i];
+      Vec3 way = ramp.target.displacement[i] - ramp.start.displacement[i];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (ramp.target.free_axis[axis]) way[static_cast<Eigen::Index>(axis)] = 0.0;
       }
@@ -163,22 +218,31 @@ int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
   return static_cast<int>(std::ceil(std::min(steps, kMostSteps) - kRounding));
 }
 
+// Sets the patch to a share of its way. A patch by force stays where the solver moved it to.
+void Tissue::goAlong(const Ramp& ramp, double share, LoadingPatch& patch) {
+  const auto between = [share](const Vec3& start, const Vec3& target) -> Vec3 {
+    return share < 1.0 ? Vec3(start + share * (target - start)) : target;
+  };
+  patch.force = between(ramp.start.force, ramp.target.force);
+  if (patch.drive == LoadingPatch::Drive::kForce) return;
+  for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
+    patch.displacement[i] = between(ramp.start.displacement[i], ramp.target.displacement[i]);
+  }
+  for (RimSpring& spring : patch.rim) {
+    const auto same = [&](const RimSpring& other) { return other.node == spring.node; };
+    const auto start = std::find_if(ramp.start.rim.begin(), ramp.start.rim.end(), same);
+    const auto target = std::find_if(ramp.target.rim.begin(), ramp.target.rim.end(), same);
+    spring.anchor = between(start->anchor, target->anchor);
+  }
+}
+
 SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
                           const OnIncrement& on_increment) {
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
     const double share = static_cast<double>(increment) / increments;
-    for (const Ramp& ramp : ramps) {
-      LoadingPatch& patch = patches_[ramp.patch];
-      patch = ramp.target;
-      if (increment == increments) continue;
-      patch.force = ramp.force + share * (ramp.target.force - ramp.force);
-      for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
-        patch.displacement[i] =
-            ramp.displacement[i] + share * (ramp.target.displacement[i] - ramp.displacement[i]);
-      }
-    }
+    for (const Ramp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
     report = solve({});
     worst = std::max(worst, report.status);
     if (on_increment) on_increment(increment, increments, report);
@@ -188,9 +252,9 @@ SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
 }
 
 Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
-  Vec3 force = Vec3::Zero();
-  for (const int node : patch.nodes) force -= nodeForce(node);
-  return force;
+  std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
+  for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
+  return robot_tissue::answerOf(patch, forces, state_.displacement).force;
 }
 
 }  // namespace robot_tissue

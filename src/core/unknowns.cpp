@@ -1,5 +1,6 @@
 #include "robot_tissue/core/unknowns.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace robot_tissue {
@@ -7,23 +8,31 @@ namespace {
 
 constexpr int kOwn = 0;  // until the unknowns are numbered
 
+bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
+
 }  // namespace
 
-Unknowns::Unknowns(const Lattice& lattice, const TissueModel& model,
-                   const std::vector<LoadingPatch>& patches, const LatticeState& state)
-    : of_(at(lattice.nodeCount()), {kOwn, kOwn, kOwn}) {
-  for (int node = 0; node < lattice.nodeCount(); ++node) {
-    const bool held = lattice.isFixed(node) || model.nodeStiffness(state, node).isZero(0.0);
-    if (held) of_[at(node)].fill(kHeld);
+Unknowns::Unknowns(const Lattice& lattice, const TissueModel& model, const LoadedShape& shape)
+    : lattice_(&lattice),
+      of_(shape.state.displacement.size(), {kOwn, kOwn, kOwn}),
+      carrier_(of_.size(), -1),
+      patches_(shape.patches.size()) {
+  for (std::size_t node = 0; node < of_.size(); ++node) {
+    const int index = static_cast<int>(node);
+    const bool fixed = index < lattice.nodeCount() && lattice.isFixed(index);
+    if (fixed || model.nodeStiffness(shape.state, index).isZero(0.0)) of_[node].fill(kHeld);
   }
-  // A patch's nodes are numbered with its first node.
-  std::vector<int> leader(of_.size());
-  for (std::size_t node = 0; node < leader.size(); ++node) leader[node] = static_cast<int>(node);
-  for (const LoadingPatch& patch : patches) {
-    const bool by_force = patch.drive == LoadingPatch::Drive::kForce;
-    for (const int node : patch.nodes) {
-      if (by_force) {
-        leader[at(node)] = patch.nodes.front();
+  bind(shape.patches);
+  number();
+  measure(shape);
+}
+
+void Unknowns::bind(const std::vector<LoadingPatch>& patches) {
+  for (std::size_t index = 0; index < patches.size(); ++index) {
+    const LoadingPatch& patch = patches[index];
+    for (const int node : hardNodes(patch)) {
+      if (byForce(patch)) {
+        carrier_[at(node)] = static_cast<int>(index);
         of_[at(node)].fill(kOwn);
         continue;
       }
@@ -31,22 +40,97 @@ Unknowns::Unknowns(const Lattice& lattice, const TissueModel& model,
         if (holds(patch, axis)) of_[at(node)][axis] = kHeld;
       }
     }
+    if (byForce(patch)) patches_[index].first = kOwn;
+    if (byForce(patch) && patch.turns) patches_[index].first_turn = kOwn;
+  }
+}
+
+void Unknowns::number() {
+  for (PatchUnknowns& patch : patches_) {
+    if (patch.first == kOwn) patch.first = 3 * count_++;
+  }
+  count_ *= 3;
+  for (PatchUnknowns& patch : patches_) {
+    if (patch.first_turn != kOwn) continue;
+    patch.first_turn = count_;
+    count_ += 3;
   }
   for (std::size_t node = 0; node < of_.size(); ++node) {
-    const std::size_t first = at(leader[node]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (of_[node][axis] == kHeld) continue;
-      of_[node][axis] = first < node ? of_[first][axis] : count_++;
+      int& unknown = of_[node][axis];
+      if (unknown == kHeld) continue;
+      unknown = carrier_[node] >= 0 ? patches_[at(carrier_[node])].first + static_cast<int>(axis)
+                                    : count_++;
     }
   }
 }
 
-Eigen::VectorXd Unknowns::gather(const std::vector<Vec3>& per_node) const {
+// A turning patch's length: the mean distance of its nodes and anchors from the center.
+void Unknowns::measure(const LoadedShape& shape) {
+  for (std::size_t index = 0; index < patches_.size(); ++index) {
+    const LoadingPatch& patch = shape.patches[index];
+    double sum = 0.0;
+    for (const int node : patch.nodes) {
+      sum += (lattice_->restPosition(node) - patch.center).norm();
+    }
+    patches_[index].length =
+        std::max(sum / static_cast<double>(patch.nodes.size()), lattice_->spacing());
+  }
+}
+
+bool Unknowns::operator==(const Unknowns& other) const {
+  const auto same = [](const PatchUnknowns& a, const PatchUnknowns& b) {
+    return a.first == b.first && a.first_turn == b.first_turn && a.length == b.length;
+  };
+  return of_ == other.of_ && carrier_ == other.carrier_ &&
+         std::equal(patches_.begin(), patches_.end(), other.patches_.begin(), other.patches_.end(),
+                    same);
+}
+
+Unknowns::Shares Unknowns::sharesOf(const LoadedShape& shape, int node, int axis) const {
+  const int carrier = carrier_[at(node)];
+  if (carrier >= 0) return sharesOf(shape, at(carrier), position(shape, node), axis);
+  Shares shares;
+  if (of(node, axis) != kHeld) shares.add(of(node, axis), 1.0);
+  return shares;
+}
+
+// A turn w moves a point at arm r from the center by w x r.
+Unknowns::Shares Unknowns::sharesOf(const LoadedShape& shape, std::size_t patch, const Vec3& point,
+                                    int axis) const {
+  Shares shares;
+  if (patches_[patch].first == kHeld) return shares;
+  shares.add(patches_[patch].first + axis, 1.0);
+  if (patches_[patch].first_turn == kHeld) return shares;
+  const Vec3 arm = point - centerOf(shape.patches[patch]);
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  shares.add(patches_[patch].first_turn + next, arm[last] / patches_[patch].length);
+  shares.add(patches_[patch].first_turn + last, -arm[next] / patches_[patch].length);
+  return shares;
+}
+
+Unknowns::Share Unknowns::turnOf(std::size_t patch, int axis) const {
+  const PatchUnknowns& unknowns = patches_[patch];
+  if (unknowns.first_turn == kHeld) return {};
+  return {unknowns.first_turn + axis, 1.0 / unknowns.length};
+}
+
+Vec3 Unknowns::position(const LoadedShape& shape, int node) const {
+  return lattice_->restPosition(node) + shape.state.displacement[at(node)];
+}
+
+Vec3 Unknowns::centerOf(const LoadingPatch& patch) {
+  return patch.center + patch.place.displacement;
+}
+
+Eigen::VectorXd Unknowns::gather(const LoadedShape& shape,
+                                 const std::vector<Vec3>& per_node) const {
   Eigen::VectorXd gathered = Eigen::VectorXd::Zero(count_);
   for (std::size_t node = 0; node < of_.size(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
-      const int unknown = of_[node][at(axis)];
-      if (unknown != kHeld) gathered[unknown] += per_node[node][axis];
+      for (const Share& share : sharesOf(shape, static_cast<int>(node), axis)) {
+        gathered[share.unknown] += share.weight * per_node[node][axis];
+      }
     }
   }
   return gathered;
@@ -62,12 +146,25 @@ double Unknowns::heldNorm(const std::vector<Vec3>& per_node) const {
   return std::sqrt(squared);
 }
 
-void Unknowns::addTo(std::vector<Vec3>& per_node, const Eigen::VectorXd& step, double share) const {
+Vec3 Unknowns::turnAbout(const PatchUnknowns& unknowns, const Eigen::VectorXd& step,
+                         double share) const {
+  if (unknowns.first_turn == kHeld) return Vec3::Zero();
+  return share / unknowns.length * step.segment<3>(unknowns.first_turn);
+}
+
+void Unknowns::move(LoadedShape& shape, const Eigen::VectorXd& step, double share) const {
   for (std::size_t node = 0; node < of_.size(); ++node) {
+    if (carrier_[node] >= 0) continue;
     for (int axis = 0; axis < 3; ++axis) {
       const int unknown = of_[node][at(axis)];
-      if (unknown != kHeld) per_node[node][axis] += share * step[unknown];
+      if (unknown != kHeld) shape.state.displacement[node][axis] += share * step[unknown];
     }
+  }
+  for (std::size_t index = 0; index < patches_.size(); ++index) {
+    if (patches_[index].first == kHeld) continue;
+    const Vec3 translation = share * step.segment<3>(patches_[index].first);
+    movePatch(*lattice_, shape.patches[index], translation, turnAbout(patches_[index], step, share),
+              shape.state);
   }
 }
 

@@ -56,7 +56,7 @@ class Runner {
     for (int node = 0; node < lattice.nodeCount(); ++node) {
       result_.rest.push_back(lattice.restPosition(node));
     }
-    result_.displacement = tissue_.state().displacement;
+    result_.displacement = tissue_.shownDisplacement();
     deform(tissue_.surface(), result_.displacement, result_.vertices);
     result_.triangles = tissue_.surface().triangles;
   }

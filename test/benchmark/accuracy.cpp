@@ -87,8 +87,7 @@ bool contains(const Box& box, const Vec3& point) {
 }
 
 // The lattice's displacement at a rest position, trilinear between the nodes.
-Vec3 displacementAt(const Tissue& tissue, const Vec3& rest) {
-  const Lattice& lattice = tissue.lattice();
+Vec3 displacementAt(const Lattice& lattice, const std::vector<Vec3>& moved, const Vec3& rest) {
   std::array<int, 3> low{};
   Vec3 share;
   for (int axis = 0; axis < 3; ++axis) {
@@ -105,8 +104,7 @@ Vec3 displacementAt(const Tissue& tissue, const Vec3& rest) {
       index[at(axis)] += bit;
       weight *= bit != 0 ? share[axis] : 1.0 - share[axis];
     }
-    displacement +=
-        weight * tissue.state().displacement[at(lattice.node(index[0], index[1], index[2]))];
+    displacement += weight * moved[at(lattice.node(index[0], index[1], index[2]))];
   }
   return displacement;
 }
@@ -114,13 +112,14 @@ Vec3 displacementAt(const Tissue& tissue, const Vec3& rest) {
 // Relative L2 over the reference's nodes; nodes in the patch count where the patch is.
 double fieldError(const Case& one, const Tissue& tissue) {
   const PatchConfig patch = patchOf(one);
+  const std::vector<Vec3> shown = tissue.shownDisplacement();
   double missed = 0.0, moved = 0.0;
   for (std::size_t node = 0; node < one.field.size(); ++node) {
     const int n = static_cast<int>(node);
     const int row = n / kReferenceNodes[0];
     const Vec3 rest = kReferenceSpacing * Vec3(n % kReferenceNodes[0], row % kReferenceNodes[1],
                                                row / kReferenceNodes[1]);
-    Vec3 displacement = displacementAt(tissue, rest);
+    Vec3 displacement = displacementAt(tissue.lattice(), shown, rest);
     for (int axis = 0; axis < 3 && contains(patch.box, rest); ++axis) {
       displacement[axis] = one.displacement[at(axis)].value_or(displacement[axis]);
     }

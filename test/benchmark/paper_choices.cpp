@@ -152,7 +152,8 @@ Outcome runOnce(const Job& job, const Setup& setup, double share) {
     const Vec3 load = share * step / steps * job.load;
     if (job.drive == Drive::kForce) patch.force = load;
     if (job.drive == Drive::kDisplacement) patch.displacement.assign(patch.nodes.size(), load);
-    const SolveReport report = method.solve({patch}, {}, state);
+    std::vector<LoadingPatch> patches = {patch};
+    const SolveReport report = method.solve(patches, {}, state);
     outcome.ms += report.wall_ms;
     outcome.layers = std::max(outcome.layers, report.layers);
     outcome.residual = report.residual;

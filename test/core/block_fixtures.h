@@ -71,6 +71,10 @@ struct PaperBlock {
         method(lattice, model, options),
         state(lattice.restState()) {}
 
+  SolveReport solve(std::vector<LoadingPatch> patches, const std::vector<int>& disturbed = {}) {
+    return method.solve(patches, disturbed, state);
+  }
+
   Lattice lattice;
   SixSpringModel model;
   PaperMethod method;

@@ -25,9 +25,7 @@ struct ElasticBlock {
         method(lattice, model, options),
         state(lattice.restState()) {}
 
-  SolveReport solve(const std::vector<LoadingPatch>& patches) {
-    return method.solve(patches, {}, state);
-  }
+  SolveReport solve(std::vector<LoadingPatch> patches) { return method.solve(patches, {}, state); }
 
   Lattice lattice;
   ElasticModel model;

@@ -9,7 +9,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kSpacing = 0.01;
-const CellModuli kModuli = {3448.0, 33333.0};  // Pa: 10 kPa, Poisson's ratio 0.45
+const Moduli kModuli = {3448.0, 33333.0};  // Pa: 10 kPa, Poisson's ratio 0.45
 
 using Corners = ElasticCell::Corners;
 

@@ -23,7 +23,7 @@ std::vector<int> middleOfTop(const Lattice& lattice) {
 LatticeState press(PaperBlock& block, int steps, double step) {
   const std::vector<int> patch = middleOfTop(block.lattice);
   for (int i = 1; i <= steps; ++i) {
-    block.method.solve({displaced(patch, Vec3(0.0, 0.0, -i * step))}, {}, block.state);
+    block.solve({displaced(patch, Vec3(0.0, 0.0, -i * step))});
   }
   return block.state;
 }
@@ -120,8 +120,8 @@ TEST(PaperMethod, AnswersSmallLoadsInProportion) {
   PaperBlock single(kPressed), twice(kPressed);
   const std::vector<int> patch = middleOfTop(single.lattice);
   const Vec3 way(0.0, 0.0, -1e-6 * kSpacing);
-  const SolveReport one = single.method.solve({displaced(patch, way)}, {}, single.state);
-  const SolveReport two = twice.method.solve({displaced(patch, 2.0 * way)}, {}, twice.state);
+  const SolveReport one = single.solve({displaced(patch, way)});
+  const SolveReport two = twice.solve({displaced(patch, 2.0 * way)});
   const Vec3 force = one.patches[0].force;
   ASSERT_LT(force.z(), 0.0);  // the patch pushes the tissue down
   EXPECT_LT((two.patches[0].force - 2.0 * force).norm(), 1e-3 * force.norm());
@@ -147,7 +147,7 @@ TEST(PaperMethod, EndsWhereTheNextLayerIsNotDisturbed) {
   for (const int node : patch) {
     greatest = std::max(greatest, block.model.nodeForce(loaded, node).norm());
   }
-  const SolveReport report = block.method.solve({displaced(patch, way)}, {}, block.state);
+  const SolveReport report = block.solve({displaced(patch, way)});
   ASSERT_EQ(report.status, SolveStatus::kOk);
   ASSERT_GT(report.layers, 2);
   const double balanced = options.balance_tolerance * greatest;
@@ -198,7 +198,7 @@ void expectBar(double way, const std::array<bool, 3>& free_axis) {
   LoadingPatch top = displaced(block.lattice.nodesIn(nodeBox(config, {0, 0, 10}, {1, 1, 10})),
                                Vec3(0.0, 0.0, way));
   top.free_axis = free_axis;
-  const SolveReport report = block.method.solve({top}, {}, block.state);
+  const SolveReport report = block.solve({top});
   const double area = config.shape.max.x() * config.shape.max.y();
   const double expected = config.material.young_modulus * area * way / length;
   EXPECT_NEAR(report.patches.at(0).force.z(), expected, 1e-4 * std::abs(expected));
@@ -227,8 +227,8 @@ TEST(PaperMethod, TighterToleranceRaisesAtLeastAsManyLayers) {
     PaperOptions options;
     options.balance_tolerance = tolerance;
     PaperBlock block(kPressed, options);
-    const SolveReport report = block.method.solve(
-        {displaced(middleOfTop(block.lattice), Vec3(0.0, 0.0, -1e-3))}, {}, block.state);
+    const SolveReport report =
+        block.solve({displaced(middleOfTop(block.lattice), Vec3(0.0, 0.0, -1e-3))});
     EXPECT_GE(report.layers, layers) << tolerance;
     layers = report.layers;
     seen.insert(layers);
@@ -241,7 +241,7 @@ TEST(PaperMethod, ReportsWhenItRunsOutOfTime) {
   options.max_ms = 1e-9;
   PaperBlock block(kPressed, options);
   const LoadingPatch punch = displaced(middleOfTop(block.lattice), Vec3(0.0, 0.0, -1e-3));
-  const SolveReport report = block.method.solve({punch}, {}, block.state);
+  const SolveReport report = block.solve({punch});
   EXPECT_EQ(report.status, SolveStatus::kLate);
   EXPECT_GT(report.wall_ms, options.max_ms);
   for (const Vec3& moved : block.state.displacement) EXPECT_TRUE(moved.allFinite());
@@ -249,12 +249,12 @@ TEST(PaperMethod, ReportsWhenItRunsOutOfTime) {
   PaperOptions patient;
   patient.max_ms = 1e6;
   PaperBlock relaxed(kPressed, patient);
-  EXPECT_EQ(relaxed.method.solve({punch}, {}, relaxed.state).status, SolveStatus::kOk);
+  EXPECT_EQ(relaxed.solve({punch}).status, SolveStatus::kOk);
 }
 
 TEST(PaperMethod, WithoutLoadNothingMoves) {
   PaperBlock block(kPressed);
-  const SolveReport report = block.method.solve({}, nodesOf(block.lattice), block.state);
+  const SolveReport report = block.solve({}, nodesOf(block.lattice));
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_EQ(countMoved(block.state), 0);
   EXPECT_EQ(report.layers, 0);

@@ -23,7 +23,7 @@ void expectAnswer(const TissueConfig& config, const Vec3& force, int steps) {
   ASSERT_EQ(patch.size(), 9u);
   for (int step = 1; step <= steps; ++step) {
     const Vec3 load = force * step / steps;
-    const SolveReport report = block.method.solve({forced(patch, load)}, {}, block.state);
+    const SolveReport report = block.solve({forced(patch, load)});
     EXPECT_EQ(report.status, SolveStatus::kOk);
     ASSERT_EQ(report.patches.size(), 1u);
     EXPECT_LT((report.patches[0].force - load).norm(), 1e-5 * load.norm()) << "step " << step;
@@ -61,8 +61,8 @@ TEST(ForcedPatch, HarderPushGoesDeeper) {
   for (const double push : {0.1, 0.2, 0.4}) {
     const TissueConfig config = withFixedBottom(floatingBlock());
     PaperBlock block(config);
-    const SolveReport report = block.method.solve(
-        {forced(middleOfTop(block.lattice, config), Vec3(0.0, 0.0, -push))}, {}, block.state);
+    const SolveReport report =
+        block.solve({forced(middleOfTop(block.lattice, config), Vec3(0.0, 0.0, -push))});
     EXPECT_LT(report.patches.at(0).displacement.z(), deepest);
     deepest = report.patches.at(0).displacement.z();
   }
@@ -73,10 +73,10 @@ TEST(ForcedPatch, NeighborsBothAnswerTheirLoadsOrSayThatTheyDoNot) {
   const TissueConfig config = withFixedBottom(floatingBlock());
   PaperBlock block(config);
   const Vec3 push(0.05, 0.0, -0.2), pull(0.05, 0.0, 0.1);
-  const SolveReport report = block.method.solve(
-      {forced(block.lattice.nodesIn(nodeBox(config, {2, 4, 5}, {4, 6, 5})), push),
-       forced(block.lattice.nodesIn(nodeBox(config, {5, 4, 5}, {7, 6, 5})), pull)},
-      {}, block.state);
+  const SolveReport report =
+      block.solve({forced(block.lattice.nodesIn(nodeBox(config, {2, 4, 5}, {4, 6, 5})), push),
+                   forced(block.lattice.nodesIn(nodeBox(config, {5, 4, 5}, {7, 6, 5})), pull)},
+                  {});
   ASSERT_EQ(report.patches.size(), 2u);
   const bool both = (report.patches[0].force - push).norm() < 1e-5 * push.norm() &&
                     (report.patches[1].force - pull).norm() < 1e-5 * pull.norm();
@@ -87,8 +87,7 @@ TEST(ForcedPatch, ReportsALoadItCannotBalance) {
   // Nothing holds a patch that is the whole floating block.
   const TissueConfig config = blockOf(2, 2, 2);
   PaperBlock block(config);
-  const SolveReport report =
-      block.method.solve({forced(nodesOf(block.lattice), Vec3(0.0, 0.0, -0.1))}, {}, block.state);
+  const SolveReport report = block.solve({forced(nodesOf(block.lattice), Vec3(0.0, 0.0, -0.1))});
   EXPECT_EQ(report.status, SolveStatus::kUnconverged);
   for (const Vec3& moved : block.state.displacement) EXPECT_TRUE(moved.allFinite());
 }
@@ -98,7 +97,7 @@ TEST(DisplacedPatch, MovesAsOneToItsPlace) {
   PaperBlock block(config);
   const std::vector<int> patch = middleOfTop(block.lattice, config);
   const Vec3 way(5e-4, -3e-4, -1e-3);
-  const SolveReport report = block.method.solve({displaced(patch, way)}, {}, block.state);
+  const SolveReport report = block.solve({displaced(patch, way)});
   for (const int node : patch) EXPECT_LT((block.state.displacement[at(node)] - way).norm(), 1e-15);
   EXPECT_LT((report.patches.at(0).displacement - way).norm(), 1e-15);
   EXPECT_GT(report.patches[0].force.dot(way), 0.0);
@@ -111,7 +110,7 @@ TEST(DisplacedPatch, NodesMayHaveWaysOfTheirOwn) {  // a tool that turns
   for (std::size_t i = 0; i < punch.nodes.size(); ++i) {
     punch.displacement[i] = Vec3(1e-5, -2e-5, -1e-4) * static_cast<double>(i);
   }
-  block.method.solve({punch}, {}, block.state);
+  block.solve({punch});
   for (std::size_t i = 0; i < punch.nodes.size(); ++i) {
     EXPECT_LT((block.state.displacement[at(punch.nodes[i])] - punch.displacement[i]).norm(), 1e-15);
   }
@@ -125,7 +124,7 @@ TEST(DisplacedPatch, HeldPatchBlocksWhatAnotherPushes) {
   LoadingPatch held =
       displaced(block.lattice.nodesIn(nodeBox(config, {4, 0, 1}, {4, 2, 2})), Vec3::Zero());
   held.name = "held";
-  const SolveReport report = block.method.solve({pushed, held}, {}, block.state);
+  const SolveReport report = block.solve({pushed, held});
   ASSERT_EQ(report.patches.size(), 2u);
   EXPECT_GT(report.patches[0].force.x(), 0.0);
   EXPECT_LT(report.patches[1].force.x(), 0.0);
@@ -155,7 +154,7 @@ TEST(FreeAxis, NodesSlideUntilBalancedAlongIt) {
     if (block.lattice.isFixed(node)) continue;
     greatest = std::max(greatest, block.model.nodeForce(loaded, node).norm());
   }
-  const SolveReport report = block.method.solve({plate, end}, {}, block.state);
+  const SolveReport report = block.solve({plate, end});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   for (const int node : plate.nodes) {
     const Vec3& moved = block.state.displacement[at(node)];
@@ -179,7 +178,7 @@ TEST(FreeAxis, LoadReachesTheLayersBelowThePlate) {
   LoadingPatch plate = displaced(block.lattice.nodesIn(nodeBox(config, {0, 0, 4}, {2, 2, 4})),
                                  Vec3(0.0, 0.0, -1e-3));
   plate.free_axis = {{true, true, false}};
-  const SolveReport report = block.method.solve({plate}, {}, block.state);
+  const SolveReport report = block.solve({plate});
   EXPECT_GE(report.layers, 2);
   for (const int node : block.lattice.nodesIn(nodeBox(config, {0, 0, 3}, {2, 2, 3}))) {
     EXPECT_LT(block.state.displacement[at(node)].z(), -1e-4);
@@ -192,7 +191,7 @@ TEST(Disturbed, NodesAreBalancedWithoutAPatch) {
   const int node = block.lattice.node(3, 3, 2);
   block.state.displacement[at(node)] = Vec3(0.0, 0.0, 2e-3);
   const double before = block.model.nodeForce(block.state, node).norm();
-  const SolveReport report = block.method.solve({}, {node}, block.state);
+  const SolveReport report = block.solve({}, {node});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_GE(report.layers, 1);
   EXPECT_LT(block.state.displacement[at(node)].norm(), 1e-3);

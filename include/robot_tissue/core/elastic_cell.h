@@ -12,14 +12,10 @@
 
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/energy_model.h"
+#include "robot_tissue/core/material.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
-
-struct CellModuli {
-  double shear = 0.0;  // Pa
-  double bulk = 0.0;   // Pa
-};
 
 class ElasticCell {
  public:
@@ -27,7 +23,7 @@ class ElasticCell {
   using Corners = std::array<Vec3, kCorners>;
 
   // Displacements of the corners from rest (m).
-  ElasticCell(const CellModuli& moduli, double spacing, const Corners& displacement);
+  ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement);
 
   double energy() const;                    // J, zero at rest
   Vec3 gradient(int corner) const;          // of the energy (N)
@@ -55,7 +51,7 @@ class ElasticCell {
   Curve volumeTerm() const;
   Curve barrier(const Determinant& edges) const;  // Pa
 
-  CellModuli moduli_;
+  Moduli moduli_;
   double spacing_;
   double volume_;     // at rest (m^3)
   Corners position_;  // from the lowest corner's rest place (m)

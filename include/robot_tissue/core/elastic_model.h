@@ -21,6 +21,7 @@ class ElasticModel : public EnergyModel {
 
   Vec3 nodeForce(const LatticeState& state, int node) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
+  Moduli moduliAt(const LatticeState& state, int node) const override;
   double energy(const LatticeState& state) const override;
   std::vector<Vec3> nodeForces(const LatticeState& state) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
@@ -30,11 +31,11 @@ class ElasticModel : public EnergyModel {
 
  private:
   struct Substance {
-    CellModuli moduli;
+    Moduli moduli;
     Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
   };
 
-  CellModuli moduliOf(const Cell& cell) const;
+  Moduli cellModuli(const Cell& cell) const;
   Vec3 cornerWeight(const Cell& cell) const;
   ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
 

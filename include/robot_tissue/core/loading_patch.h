@@ -9,28 +9,72 @@
 
 namespace robot_tissue {
 
+class Lattice;
+struct LatticeState;
+
+// Joins a node at the rim of a patch to it (core/patch_rim.h); the patch's other nodes are hard.
+struct RimSpring {
+  int node = 0;
+  Vec3 stiffness = Vec3::Zero();  // along the patch's own x, y, z, which turn with it (N/m)
+  Vec3 anchor = Vec3::Zero();     // the patch's end: what the node's displacement would be, were it
+                                  // hard (m)
+};
+
+// Where a patch stands that a force moves: its center moved, then it turned about that.
+struct PatchPlace {
+  Vec3 displacement = Vec3::Zero();  // from where the patch was put on (m)
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+};
+
 // Nodes that move as one hard piece (paper, section 4.3: "a single hard surface patch").
 struct LoadingPatch {
   enum class Drive { kDisplacement, kForce };
 
   std::string name;
-  std::vector<int> nodes;  // ascending
+  std::vector<int> nodes;      // ascending
+  std::vector<RimSpring> rim;  // ascending; nodes of the patch, and some next to it
   Drive drive = Drive::kDisplacement;
   std::vector<Vec3> displacement;  // kDisplacement: per node, from rest (m)
   std::array<bool, 3> free_axis = {{false, false, false}};  // kDisplacement: nodes slide along it
   Vec3 force = Vec3::Zero();                                // kForce: on the tissue (N)
+  bool turns = false;          // kForce: also until the moment about its center is zero
+  Vec3 center = Vec3::Zero();  // kForce: mean rest position of its nodes, where the force acts (m)
+  PatchPlace place;            // kForce: the solver moves it, with its nodes and anchors
 };
 
 // True when the patch's nodes do not move along the axis by themselves.
 bool holds(const LoadingPatch& patch, std::size_t axis);
 
-// Mean over the patch's nodes of a displacement given per node of the lattice (m).
+// The patch's nodes without those that rim springs join to it.
+std::vector<int> hardNodes(const LoadingPatch& patch);
+
+// Displacements of the patch's nodes as the patch has them (m): of those in the rim, the anchors'.
+std::vector<Vec3> ownDisplacement(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
+
+// Mean of ownDisplacement (m).
 Vec3 meanDisplacement(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
+
+// Of the rim's springs on their nodes (N), added to what the nodes have. Energy in J.
+void addRimForces(const LoadingPatch& patch, const std::vector<Vec3>& displacement,
+                  std::vector<Vec3>& forces);
+double rimEnergy(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
+
+// Matrix of a rim spring's stiffness in the tissue frame (N/m).
+Eigen::Matrix3d stiffnessOf(const LoadingPatch& patch, const RimSpring& spring);
+
+// Moves a patch by force, with its hard nodes and anchors: by a translation (m), then by a turn
+// about its center (rotation vector, rad).
+void movePatch(const Lattice& lattice, LoadingPatch& patch, const Vec3& translation,
+               const Vec3& turn, LatticeState& state);
 
 // What a patch met, in the order of the patches.
 struct PatchAnswer {
   Vec3 force = Vec3::Zero();         // of the patch on the tissue (N)
   Vec3 displacement = Vec3::Zero();  // mean over its nodes, from rest (m)
 };
+
+// From the tissue's forces on its nodes (N; without the rim's).
+PatchAnswer answerOf(const LoadingPatch& patch, const std::vector<Vec3>& tissue_forces,
+                     const std::vector<Vec3>& displacement);
 
 }  // namespace robot_tissue

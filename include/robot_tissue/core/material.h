@@ -10,6 +10,15 @@ namespace robot_tissue {
 // own material elsewhere.
 const Material& materialAt(const TissueConfig& config, const Vec3& point);
 
+// Of an isotropic material.
+struct Moduli {
+  double shear = 0.0;  // Pa
+  double bulk = 0.0;   // Pa
+};
+
+Moduli moduliOf(const Material& material);
+double poissonRatio(const Moduli& moduli);
+
 double shearModulus(const Material& material);  // Pa
 double bulkModulus(const Material& material);   // Pa
 

@@ -2,15 +2,17 @@
 // factorization, until the unbalanced force is a rounding error. The yardstick for other methods.
 //
 // Unbalanced force: of all unknowns (Unknowns), L2, over the L2 of what holds the tissue: forces
-// on fixed nodes and patches, and gravity.
+// on fixed nodes and patches.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <chrono>
+#include <memory>
 #include <vector>
 
 #include "robot_tissue/core/energy_model.h"
+#include "robot_tissue/core/equilibrium.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/solver_method.h"
 #include "robot_tissue/core/sparse_factor.h"
@@ -32,33 +34,23 @@ class NewtonMethod : public SolverMethod {
   NewtonMethod(const Lattice& lattice, const EnergyModel& model, const NewtonOptions& options);
 
   // `disturbed` is not needed: all free nodes are solved for.
-  SolveReport solve(const std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
+  SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
+  bool joinsRims() const override { return true; }
   double patchStep() const override;
 
  private:
-  // Where the search stands.
-  struct Balance {
-    double potential = 0.0;      // energy less the work of patches by force (J)
-    Eigen::VectorXd unbalanced;  // N, per unknown
-    double relative = 0.0;       // its norm over what holds the tissue
-  };
-
-  void countUnknowns(const std::vector<LoadingPatch>& patches, const LatticeState& state);
-  void carryPatches(const std::vector<LoadingPatch>& patches, LatticeState& state);
-  SolveStatus iterate(const std::vector<LoadingPatch>& patches, LatticeState& state,
-                      int& iterations);
-  bool factorize(const LatticeState& state, const std::vector<Vec3>& moved);
-  void assemble(const LatticeState& state, const std::vector<Vec3>& moved, bool positive);
+  void countUnknowns(const LoadedShape& shape);
+  void carryPatches(LoadedShape& shape);
+  SolveStatus iterate(LoadedShape& shape, int& iterations);
+  bool factorize(const LoadedShape& shape, const std::vector<Vec3>& moved);
+  void holdBy(double stiffness);
   Eigen::VectorXd solveFor(const Eigen::VectorXd& force) const;
-  bool search(const std::vector<LoadingPatch>& patches, const Eigen::VectorXd& step,
-              LatticeState& state);
+  bool search(const Eigen::VectorXd& step, LoadedShape& shape);
+  void takeBalance(const Balance& balance);
   bool improves(const Balance& trial, double promised) const;
-  Balance balanceOf(const std::vector<LoadingPatch>& patches, const LatticeState& state) const;
-  double potentialOf(const std::vector<LoadingPatch>& patches, const LatticeState& state) const;
-  double capped(const Eigen::VectorXd& step) const;
-  void describe(const std::vector<LoadingPatch>& patches, const LatticeState& state,
-                SolveReport& report);
+  double capped(const LoadedShape& shape, const Eigen::VectorXd& step) const;
+  void describe(const LoadedShape& shape, SolveReport& report);
   double elapsedMs() const;
 
   const Lattice& lattice_;
@@ -66,7 +58,8 @@ class NewtonMethod : public SolverMethod {
   NewtonOptions options_;
   double stiffness_ = 0.0;  // mean over the nodes at rest (N/m)
   Unknowns unknowns_;
-  int springs_cut_ = -1;  // when the pattern was analyzed
+  std::vector<int> rims_;                 // of the patches, when the pattern was analyzed
+  std::shared_ptr<const CellSet> cells_;  // likewise
   bool analyzed_ = false;
   bool factorized_ = false;             // in this solve
   Eigen::SparseMatrix<double> matrix_;  // second derivative in the unknowns, lower triangle
@@ -74,6 +67,7 @@ class NewtonMethod : public SolverMethod {
   Eigen::VectorXd carried_;             // force that the held nodes' motion puts on the unknowns
   SparseFactor factor_;
   Balance balance_;
+  double relative_ = 0.0;  // the unbalanced force over what holds the tissue
   std::chrono::steady_clock::time_point started_;
 };
 

@@ -42,7 +42,7 @@ class PaperMethod : public SolverMethod {
  public:
   PaperMethod(const Lattice& lattice, const TissueModel& model, const PaperOptions& options);
 
-  SolveReport solve(const std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
+  SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   double patchStep() const override;
 

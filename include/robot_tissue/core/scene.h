@@ -51,6 +51,7 @@ struct PatchConfig {
   // Total displacement from rest; an empty component is free (nodes slide along that axis).
   std::optional<std::array<std::optional<double>, 3>> displacement;
   std::optional<Vec3> force;  // N, of the patch on the tissue
+  bool turns = false;         // with a force: the patch also turns, until no moment is left
 };
 
 struct SettleStep {};

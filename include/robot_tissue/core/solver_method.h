@@ -1,6 +1,6 @@
-// How the shape is found. In: the loading patches, and nodes whose balance something else has
-// disturbed (a cut, gravity, a patch they left). In and out: the shape, its last value being the
-// start. Out: what the solver says of itself.
+// How the shape is found. In: the loading patches (those by force are moved to where they balance),
+// and nodes whose balance something else has disturbed (a cut, gravity, a patch they left). In and
+// out: the shape, its last value being the start. Out: what the solver says of itself.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,11 @@ class SolverMethod {
  public:
   virtual ~SolverMethod() = default;
 
-  virtual SolveReport solve(const std::vector<LoadingPatch>& patches,
-                            const std::vector<int>& disturbed, LatticeState& state) = 0;
+  virtual SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
+                            LatticeState& state) = 0;
+
+  // Whether patches may have rim springs; if not, all their nodes are hard.
+  virtual bool joinsRims() const { return false; }
 
   // Longest motion of a patch in one solve that the method follows well (m).
   virtual double patchStep() const = 0;

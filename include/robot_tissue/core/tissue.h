@@ -51,6 +51,8 @@ class Tissue {
 
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
+  // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.
+  std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
   Vec3 nodeForce(int node) const;
 
@@ -84,9 +86,8 @@ class Tissue {
  private:
   // A patch on its way to a load, in equal increments from where it is.
   struct Ramp {
-    std::size_t patch = 0;           // index into patches_
-    std::vector<Vec3> displacement;  // start, per node (m)
-    Vec3 force = Vec3::Zero();       // start (N)
+    std::size_t patch = 0;  // index into patches_
+    LoadingPatch start;     // of the target's nodes and drive
     LoadingPatch target;
   };
 
@@ -95,9 +96,12 @@ class Tissue {
   void describeShape(SolveReport& report);
   bool hasOnlyFiniteNumbers(const SolveReport& report) const;
   LoadingPatch makePatch(const PatchConfig& config) const;
+  void leaveRimsToOwners();
+  static void goAlong(const Ramp& ramp, double share, LoadingPatch& patch);
   void requireOwnNodes(const std::vector<LoadingPatch>& patches) const;
   std::size_t place(const LoadingPatch& patch);
-  Ramp makeRamp(std::size_t patch, const LoadingPatch& target) const;
+  Ramp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
+  const LoadingPatch* standingPatch(const std::string& name) const;
   int chooseIncrements(const std::vector<Ramp>& ramps) const;
   // The last increment's report, with the worst status of all.
   SolveReport climb(const std::vector<Ramp>& ramps, int increments,

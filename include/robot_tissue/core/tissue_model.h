@@ -3,6 +3,7 @@
 #pragma once
 
 #include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/material.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -17,6 +18,10 @@ class TissueModel {
   // Stiffness against moving this node alone, at rest, along x, y and z (N/m); zero along an axis
   // that nothing resists.
   virtual Vec3 nodeStiffness(const LatticeState& state, int node) const = 0;
+
+  // Moduli behind a node of the surface: a quarter of the sum over its cells, so the material's own
+  // where it meets four full ones. Zero where the model has none.
+  virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }
 };
 
 }  // namespace robot_tissue

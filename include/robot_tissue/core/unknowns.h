@@ -1,5 +1,5 @@
-// The unknowns of an equilibrium: which components of which nodes are free to move, and which move
-// as one.
+// The unknowns of an equilibrium: which components of which nodes are free to move, which move as
+// one, and how patches by force move them.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,29 +13,72 @@
 
 namespace robot_tissue {
 
+// A shape and the patches that go with it.
+struct LoadedShape {
+  LatticeState state;
+  std::vector<LoadingPatch> patches;
+};
+
 class Unknowns {
  public:
   static constexpr int kHeld = -1;
 
+  // A component's motion is the sum of weight * unknown.
+  struct Share {
+    int unknown = kHeld;
+    double weight = 0.0;
+  };
+  struct Shares {
+    std::array<Share, 3> all;
+    int count = 0;
+    const Share* begin() const { return all.data(); }
+    const Share* end() const { return all.data() + count; }
+    void add(int unknown, double weight) { all[at(count++)] = {unknown, weight}; }
+  };
+
   Unknowns() = default;
-  // Held: fixed nodes, the held axes of patches by displacement, and nodes that nothing resists.
-  // The nodes of a patch by force share three unknowns.
-  Unknowns(const Lattice& lattice, const TissueModel& model,
-           const std::vector<LoadingPatch>& patches, const LatticeState& state);
+  // Held: fixed nodes, the held axes of the hard nodes of patches by displacement, and nodes that
+  // nothing resists. A patch by force has three unknowns, and three more if it turns: its turn
+  // about x, y and z times a length of its own (m).
+  Unknowns(const Lattice& lattice, const TissueModel& model, const LoadedShape& shape);
 
   int count() const { return count_; }
-  // The unknown that moves the node along the axis, or kHeld.
+  // The unknown that moves the node along the axis without a turn, or kHeld.
   int of(int node, int axis) const { return of_[at(node)][at(axis)]; }
-  bool operator==(const Unknowns& other) const { return of_ == other.of_; }
+  bool operator==(const Unknowns& other) const;
 
-  // Sum over the nodes of each unknown.
-  Eigen::VectorXd gather(const std::vector<Vec3>& per_node) const;
-  // L2 norm of what gather() leaves out.
+  // How a node's component moves. Patches that turn do so about where they are in the shape.
+  Shares sharesOf(const LoadedShape& shape, int node, int axis) const;
+  // The same for a point of the patch (m, tissue frame).
+  Shares sharesOf(const LoadedShape& shape, std::size_t patch, const Vec3& point, int axis) const;
+  // Of the turn about an axis; kHeld for a patch that does not turn.
+  Share turnOf(std::size_t patch, int axis) const;
+  Vec3 position(const LoadedShape& shape, int node) const;  // m
+  // Where a patch by force turns about, in this shape (m).
+  static Vec3 centerOf(const LoadingPatch& patch);
+
+  // Work of forces on the nodes (N), by unknown.
+  Eigen::VectorXd gather(const LoadedShape& shape, const std::vector<Vec3>& per_node) const;
+  // L2 norm of the forces that held components take.
   double heldNorm(const std::vector<Vec3>& per_node) const;
-  void addTo(std::vector<Vec3>& per_node, const Eigen::VectorXd& step, double share) const;
+  void move(LoadedShape& shape, const Eigen::VectorXd& step, double share) const;
 
  private:
-  std::vector<std::array<int, 3>> of_;
+  struct PatchUnknowns {
+    int first = kHeld;       // of three
+    int first_turn = kHeld;  // of three
+    double length = 0.0;     // m
+  };
+
+  void bind(const std::vector<LoadingPatch>& patches);
+  void number();
+  void measure(const LoadedShape& shape);
+  Vec3 turnAbout(const PatchUnknowns& unknowns, const Eigen::VectorXd& step, double share) const;
+
+  const Lattice* lattice_ = nullptr;
+  std::vector<std::array<int, 3>> of_;  // per node
+  std::vector<int> carrier_;  // per node: the patch by force that it is hard in, -1 = none
+  std::vector<PatchUnknowns> patches_;
   int count_ = 0;
 };
 
