@@ -1,0 +1,88 @@
+// Potential, unbalanced forces and second derivative of a loaded shape agree by differences.
+#include <gtest/gtest.h>
+
+#include "elastic_fixtures.h"
+#include "robot_tissue/core/equilibrium.h"
+#include "robot_tissue/core/patch_rim.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSpacing = 0.01;
+
+// A shaken block with a patch of 3 x 3 nodes on top that was pushed and turned.
+class ShakenBlock : public ::testing::TestWithParam<bool> {
+ protected:
+  ShakenBlock()
+      : lattice_(withFixedBottom(elasticBlockOf(4, 4, 2, 0.4))), model_(lattice_, config()) {
+    shape_.state = lattice_.restState();
+    LoadingPatch patch = forced(lattice_.nodesIn(box()), Vec3(0.01, -0.02, -0.1));
+    patch.turns = GetParam();
+    patch.rim = rimOf(lattice_, model_, shape_.state, box(), patch.nodes);
+    for (const int node : patch.nodes) patch.center += lattice_.restPosition(node) / 9.0;
+    shape_.patches.push_back(patch);
+    const Unknowns unknowns(lattice_, model_, shape_);
+    for (int node = 0; node < lattice_.nodeCount(); ++node) {
+      if (!lattice_.isFixed(node))
+        shape_.state.displacement[at(node)] = shaker_.displacement(0.1 * kSpacing);
+    }
+    movePatch(lattice_, shape_.patches.front(), Vec3(0.1, 0.2, -0.3) * kSpacing,
+              GetParam() ? Vec3(0.2, -0.1, 0.3) : Vec3(0.0, 0.0, 0.0), shape_.state);
+  }
+
+  static TissueConfig config() { return withFixedBottom(elasticBlockOf(4, 4, 2, 0.4)); }
+  static Box box() { return {Vec3(0.009, 0.01, 0.02), Vec3(0.033, 0.03, 0.02)}; }
+
+  LoadedShape movedBy(const Unknowns& unknowns, const Eigen::VectorXd& step, double share) const {
+    LoadedShape moved = shape_;
+    unknowns.move(moved, step, share);
+    return moved;
+  }
+
+  Eigen::VectorXd anyStep(const Unknowns& unknowns) {
+    Eigen::VectorXd step(unknowns.count());
+    for (int i = 0; i < step.size(); ++i) step[i] = shaker_.displacement(1.0).x();
+    return step;
+  }
+
+  Lattice lattice_;
+  ElasticModel model_;
+  LoadedShape shape_;
+  Shaker shaker_{7};
+};
+
+TEST_P(ShakenBlock, UnbalancedForceIsThePotentialsSlope) {
+  const Unknowns unknowns(lattice_, model_, shape_);
+  const Eigen::VectorXd unbalanced = balanceOf(model_, unknowns, shape_).unbalanced;
+  for (int trial = 0; trial < 5; ++trial) {
+    const Eigen::VectorXd step = anyStep(unknowns);
+    constexpr double kDifference = 1e-7;
+    const double slope = (potentialOf(model_, movedBy(unknowns, step, kDifference)) -
+                          potentialOf(model_, movedBy(unknowns, step, -kDifference))) /
+                         (2.0 * kDifference);
+    EXPECT_NEAR(-unbalanced.dot(step), slope, 1e-5 * unbalanced.norm() * step.norm());
+  }
+}
+
+TEST_P(ShakenBlock, MatrixIsTheUnbalancedForcesSlope) {
+  const Unknowns unknowns(lattice_, model_, shape_);
+  const std::vector<Vec3> unmoved(shape_.state.displacement.size(), Vec3::Zero());
+  const Curvature curvature = curvatureOf(model_, unknowns, shape_, unmoved, false);
+  const Eigen::MatrixXd lower(curvature.matrix);
+  const Eigen::MatrixXd matrix = lower.selfadjointView<Eigen::Lower>();
+  for (int trial = 0; trial < 5; ++trial) {
+    // Along one straight step, as turns in a row do not commute.
+    const Eigen::VectorXd step = anyStep(unknowns);
+    constexpr double kDifference = 1e-6;
+    const double before = potentialOf(model_, movedBy(unknowns, step, -kDifference));
+    const double middle = potentialOf(model_, shape_);
+    const double after = potentialOf(model_, movedBy(unknowns, step, kDifference));
+    const double second = (after - 2.0 * middle + before) / (kDifference * kDifference);
+    EXPECT_NEAR(step.dot(matrix * step), second, 1e-3 * std::abs(second));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Patch, ShakenBlock, ::testing::Bool());
+
+}  // namespace
+}  // namespace robot_tissue
