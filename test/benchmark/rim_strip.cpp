@@ -1,145 +1,203 @@
 // How much wider than it is a bonded patch seems to the lattice of model `elastic`, and the springs
-// between patch and rim nodes that make up for it. Prints CSV; doc/model.md reads it.
+// between patch and rim nodes that make up for it. Prints CSV; doc/model.md, "The rim", reads it.
 //
-// A strip of N cells' height, fixed at the bottom, endless along y, is bonded to a rigid plate on
-// top for x < a. The plate moves by one unit: normal to the strip, across the rim (x) or along it
-// (y). In the continuum the energy of small motions is W = W0 (a + beta H): scale has no other
-// place to enter. The lattice's is W0 (a + beta H + delta h), and two heights tell delta:
-// with w = W / (W0 h), delta = 2 w(N) - w(2 N).
-#include <Eigen/LU>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-#include <cstdio>
-#include <vector>
+// quantity:
+//   plate_column         what one column more under the plate adds to the energy: 1, if the strip
+//                        is long enough
+//   strip_shift          how much wider (spacings) the plate seems, joined rigidly
+//   strip_stiffness      diagonal springs that take this away; "coupling": the shift they leave
+//                        to two motions at once
+//   rim_shift, rim_stiffness   the same of the rim itself, below; a "coupling" spring included
+//   stiffness_at_depth, law_at_depth   strip_stiffness for a plate that ends `depth` spacings
+//                        beyond the rim column, and what rim_law.h says
+//   law_shift            shift that the springs of rim_law.h leave
+// Values of rim_law.h are rim_shift (across, along, normal) and rim_stiffness at the limit.
+// cells: of the lower of two strips, the other has twice as many; "limit": extrapolated from the
+// last three, with errors of 1/cells and 1/cells^2.
+//
+// The rim itself: near it, a motion across and one normal to the surface mix, and the mixture turns
+// with the logarithm of the strip's height (stresses there go as r^(-1/2 + i eps), eps =
+// log(3 - 4 nu) / 2 pi). So the strip's shifts have no limit. The mixture shows in the gap that a
+// motion of the plate leaves at free rim nodes: gap = C^(1/2) Q with a rotation Q, C their
+// compliance, and the strip's shift is Q^T M Q. M has a limit. Springs S give it
+// M(S) = M - (1 + C^(1/2) S C^(1/2))^(-1), so S = C^(-1/2) (M^(-1) - 1) C^(-1/2) leaves none.
+#include "../rim_strip.h"
 
-#include "robot_tissue/core/elastic_cell.h"
-#include "robot_tissue/core/material.h"
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kBonded = 3;  // length of the strip under the plate and beside it, in heights
-constexpr int kBeside = 3;
+constexpr int kBonded = 12;  // length of the strip under the plate and beside it, in heights
+constexpr int kBeside = 7;
+constexpr int kLowest = 8;  // cells
+constexpr char kLimit[] = "limit";
 
-// Stiffness of the springs that join a rim node to the plate, in shear moduli times the spacing.
-struct RimSprings {
-  bool rigid = true;
-  Vec3 stiffness = Vec3::Zero();  // across, along, normal: x, y, z
+using Mix = Eigen::Matrix2d;  // of motions across the rim and normal to the surface
+
+struct Row {
+  double across = 0.0;
+  double along = 0.0;
+  double normal = 0.0;
+  double coupling = 0.0;  // of across and normal
 };
 
-// Of one slice of cells, a spacing of 1 m thick, in which nothing depends on y.
-class Strip {
+Row rowOf(const Eigen::Matrix3d& form) { return {form(0, 0), form(1, 1), form(2, 2), form(0, 2)}; }
+Row rowOf(const Mix& mix, double along) { return {mix(0, 0), along, mix(1, 1), mix(0, 1)}; }
+Mix mixOf(const Eigen::Matrix3d& form) {
+  return (Mix() << form(0, 0), form(0, 2), form(2, 0), form(2, 2)).finished();
+}
+
+void print(const char* quantity, double ratio, const std::string& cells, double depth,
+           const Row& row) {
+  std::printf("%s,%g,%s,%g,%.4f,%.4f,%.4f,%.4f\n", quantity, ratio, cells.c_str(), depth,
+              row.across, row.along, row.normal, row.coupling);
+  std::fflush(stdout);
+}
+
+double limitOf(double coarse, double middle, double fine) {
+  return (8.0 * fine - 6.0 * middle + coarse) / 3.0;
+}
+Row limitOf(const std::vector<Row>& rows) {
+  const Row &a = rows[rows.size() - 3], &b = rows[rows.size() - 2], &c = rows.back();
+  return {limitOf(a.across, b.across, c.across), limitOf(a.along, b.along, c.along),
+          limitOf(a.normal, b.normal, c.normal), limitOf(a.coupling, b.coupling, c.coupling)};
+}
+
+class Strips {
  public:
-  Strip(int cells, double poisson_ratio, const RimSprings& rim) : cells_(cells), rim_(rim) {
-    material_.young_modulus = 1.0;
-    material_.poisson_ratio = poisson_ratio;
-    ElasticCell::Corners rest;
-    rest.fill(Vec3::Zero());
-    hessian_ = ElasticCell({shearModulus(material_), bulkModulus(material_)}, 1.0, rest).hessian();
+  Strips(double poisson_ratio, int highest) : ratio_(poisson_ratio) {
+    for (int cells = kLowest; cells <= highest; cells *= 2) {
+      cells_.push_back(cells);
+      strips_.emplace_back(cells, poisson_ratio, kBonded, kBeside);
+    }
   }
 
-  // w of the plate's motion along an axis.
-  double energyOver(int axis) const {
-    const double shear = shearModulus(material_);
-    const double modulus = axis == 2 ? bulkModulus(material_) + 4.0 / 3.0 * shear : shear;
-    return energy(axis) * 2.0 * cells_ / modulus;
+  // measure(coarse, fine) of each pair of strips.
+  template <typename Measure>
+  std::vector<Row> measured(const Measure& measure) const {
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i + 1 < strips_.size(); ++i) {
+      rows.push_back(measure(strips_[i], strips_[i + 1]));
+    }
+    return rows;
   }
+  template <typename Measure>
+  std::vector<Row> report(const char* quantity, const Measure& measure) const {
+    const std::vector<Row> rows = measured(measure);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      print(quantity, ratio_, std::to_string(cells_[i]), 0.0, rows[i]);
+    }
+    return rows;
+  }
+  template <typename Measure>
+  void reportLimit(const char* quantity, const Measure& measure) const {
+    print(quantity, ratio_, kLimit, 0.0, limitOf(report(quantity, measure)));
+  }
+  void reportShifts() const;
+  void reportScan() const;
 
  private:
-  int columns() const { return (kBonded + kBeside) * cells_ + 1; }
-  int edge() const { return kBonded * cells_; }  // column of the rim nodes
-
-  // The unknown of a node, -1: does not move, -2: moves with the plate.
-  int unknown(int column, int row, int component, int axis) const {
-    if (row == 0) return -1;
-    if (row == cells_ && (column < edge() || (column == edge() && rim_.rigid))) {
-      return component == axis ? -2 : -1;
-    }
-    // At the far end under the plate the strip deforms as an endless one.
-    if (column == 0 && component != axis) return -1;
-    return 3 * (column * (cells_ + 1) + row) + component;
-  }
-
-  double energy(int axis) const {
-    const int count = 3 * columns() * (cells_ + 1);
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(count);
-    double energy = 0.0;
-    const auto add = [&](int i, int j, double value) {
-      if (i == -1 || j == -1) return;
-      if (i == -2 && j == -2) energy += 0.5 * value;
-      if (i >= 0 && j == -2) force[i] -= value;
-      if (i >= 0 && j >= 0) entries.emplace_back(i, j, value);
-    };
-    for (int column = 0; column + 1 < columns(); ++column) {
-      for (int row = 0; row < cells_; ++row) {
-        std::array<int, 3 * kCorners> of;
-        for (int i = 0; i < 3 * kCorners; ++i) {
-          const int corner = i / 3;
-          of[at(i)] = unknown(column + (corner & 1), row + (corner >> 2 & 1), i % 3, axis);
-        }
-        for (int i = 0; i < 3 * kCorners; ++i) {
-          for (int j = 0; j < 3 * kCorners; ++j) add(of[at(i)], of[at(j)], hessian_(i, j));
-        }
-      }
-    }
-    for (int component = 0; component < 3 && !rim_.rigid; ++component) {
-      const int node = unknown(edge(), cells_, component, axis);
-      const int plate = component == axis ? -2 : -1;
-      const double stiffness = rim_.stiffness[component] * shearModulus(material_);
-      add(node, node, stiffness);
-      add(node, plate, -stiffness);
-      add(plate, plate, stiffness);
-    }
-    // Components that nothing moves keep a row of their own.
-    for (int i = 0; i < count; ++i) entries.emplace_back(i, i, 1e-12);
-    Eigen::SparseMatrix<double> matrix(count, count);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-    const Eigen::VectorXd moved = factor.solve(force);
-    return energy - 0.5 * moved.dot(force);
-  }
-
-  int cells_;
-  RimSprings rim_;
-  Material material_;
-  CellHessian hessian_;
+  double ratio_;
+  std::vector<int> cells_;
+  std::vector<Strip> strips_;
 };
 
-Vec3 excessWidths(int cells, double poisson_ratio, const RimSprings& rim) {
-  const Strip coarse(cells, poisson_ratio, rim), fine(2 * cells, poisson_ratio, rim);
-  Vec3 delta;
-  for (int axis = 0; axis < 3; ++axis) {
-    delta[axis] = 2.0 * coarse.energyOver(axis) - fine.energyOver(axis);
-  }
-  return delta;
-}
-
-// Springs for which no excess width is left: Newton's method with slopes by differences.
-RimSprings springsWithoutExcess(int cells, double poisson_ratio) {
-  constexpr double kStep = 1e-3;
-  RimSprings rim;
-  rim.rigid = false;
-  rim.stiffness = Vec3(5.0, 3.6, 7.0);
-  for (int iteration = 0; iteration < 6; ++iteration) {
-    const Vec3 delta = excessWidths(cells, poisson_ratio, rim);
+// Diagonal springs to the rim column for which the plate seems to end where it does: Newton's
+// method with slopes by differences, on logarithms, so that they stay positive.
+RimSprings springsWithoutShift(const Strip& coarse, const Strip& fine, const RimLaw& start,
+                               double depth) {
+  constexpr double kStep = 1e-5;
+  RimSprings springs = springsAt(start, depth);
+  const auto excess = [&](const RimSprings& joined) {
+    return Vec3(seemingDepth(coarse, fine, joined).diagonal().array() - depth);
+  };
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const Vec3 left = excess(springs);
     Eigen::Matrix3d slope;
     for (int axis = 0; axis < 3; ++axis) {
-      RimSprings stiffer = rim;
-      stiffer.stiffness[axis] += kStep;
-      slope.col(axis) = (excessWidths(cells, poisson_ratio, stiffer) - delta) / kStep;
+      RimSprings stiffer = springs;
+      stiffer[axis] *= std::exp(kStep);
+      slope.col(axis) = (excess(stiffer) - left) / kStep;
     }
-    rim.stiffness -= slope.partialPivLu().solve(delta);
+    const Vec3 step = slope.partialPivLu().solve(left).cwiseMax(-0.5).cwiseMin(0.5);
+    springs.head<3>().array() *= (-step).array().exp();
   }
-  return rim;
+  return springs;
 }
 
-void print(const char* joined, int cells, double poisson_ratio, const RimSprings& rim) {
-  const Vec3 delta = excessWidths(cells, poisson_ratio, rim);
-  std::printf("%s,%g,%d,%.3f,%.3f,%.3f,%.4f,%.4f,%.4f\n", joined, poisson_ratio, cells,
-              rim.stiffness.x(), rim.stiffness.y(), rim.stiffness.z(), delta.x(), delta.y(),
-              delta.z());
-  std::fflush(stdout);
+Mix rootOf(const Mix& mix) { return Eigen::SelfAdjointEigenSolver<Mix>(mix).operatorSqrt(); }
+
+// Q of the head comment.
+Mix turnOf(const Strip& strip) {
+  const Mix gap = rootOf(mixOf(strip.compliance())).inverse() * mixOf(strip.gap());
+  const Eigen::JacobiSVD<Mix> parts(gap, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return parts.matrixU() * parts.matrixV().transpose();
+}
+
+// M of the head comment: 2 Qc^T M Qc - Qf^T M Qf is what the two strips show.
+Mix rimShift(const Strip& coarse, const Strip& fine) {
+  const Mix turn_coarse = turnOf(coarse), turn_fine = turnOf(fine);
+  const auto asVector = [](const Mix& mix) { return Vec3(mix(0, 0), mix(1, 1), mix(0, 1)); };
+  Eigen::Matrix3d shown;
+  for (int i = 0; i < 3; ++i) {
+    Mix one = Mix::Zero();
+    one(i == 1, i != 0) = one(i != 0, i == 1) = 1.0;
+    shown.col(i) = asVector(2.0 * turn_coarse.transpose() * one * turn_coarse -
+                            turn_fine.transpose() * one * turn_fine);
+  }
+  const Vec3 measured = asVector(mixOf(seemingDepth(coarse, fine, rigidRim())));
+  const Vec3 m = shown.partialPivLu().solve(measured);
+  return (Mix() << m[0], m[2], m[2], m[1]).finished();
+}
+
+void Strips::reportShifts() const {
+  report("plate_column", [](const Strip& coarse, const Strip&) {
+    return rowOf(Eigen::Matrix3d(coarse.excess(rigidRim()) - coarse.excess(RimSprings::Zero())));
+  });
+  report("strip_shift", [](const Strip& coarse, const Strip& fine) {
+    return rowOf(seemingDepth(coarse, fine, rigidRim()));
+  });
+  reportLimit("rim_shift", [](const Strip& coarse, const Strip& fine) {
+    return rowOf(rimShift(coarse, fine), seemingDepth(coarse, fine, rigidRim())(1, 1));
+  });
+  reportLimit("rim_stiffness", [](const Strip& coarse, const Strip& fine) {
+    const Mix inverse_root = rootOf(mixOf(fine.compliance())).inverse();
+    const Mix inner = rimShift(coarse, fine).inverse() - Mix::Identity();
+    const double along = seemingDepth(coarse, fine, rigidRim())(1, 1);
+    return rowOf(Mix(inverse_root * inner * inverse_root),
+                 (1.0 / along - 1.0) / fine.compliance()(1, 1));
+  });
+  reportLimit("strip_stiffness", [&](const Strip& coarse, const Strip& fine) {
+    const RimSprings springs = springsWithoutShift(coarse, fine, rimLaw(ratio_), 0.0);
+    return Row{springs[0], springs[1], springs[2], seemingDepth(coarse, fine, springs)(0, 2)};
+  });
+}
+
+void Strips::reportScan() const {
+  const RimLaw law = rimLaw(ratio_);
+  for (int tenths = -7; tenths <= 2; ++tenths) {
+    const double depth = 0.1 * tenths;
+    if (depth < law.normal.shift) {
+      const auto best = measured([&](const Strip& coarse, const Strip& fine) {
+        const RimSprings springs = springsWithoutShift(coarse, fine, law, depth);
+        return Row{springs[0], springs[1], springs[2], seemingDepth(coarse, fine, springs)(0, 2)};
+      });
+      print("stiffness_at_depth", ratio_, kLimit, depth, limitOf(best));
+    }
+    const RimSprings springs = springsAt(law, depth);
+    print("law_at_depth", ratio_, kLimit, depth, {springs[0], springs[1], springs[2], 0.0});
+    const auto left = measured([&](const Strip& coarse, const Strip& fine) {
+      return rowOf(Eigen::Matrix3d(seemingDepth(coarse, fine, springs) -
+                                   depth * Eigen::Matrix3d::Identity()));
+    });
+    print("law_shift", ratio_, std::to_string(cells_[1]), depth, left[1]);
+    print("law_shift", ratio_, kLimit, depth, limitOf(left));
+  }
 }
 
 }  // namespace
@@ -147,12 +205,11 @@ void print(const char* joined, int cells, double poisson_ratio, const RimSprings
 
 int main() {
   using namespace robot_tissue;
-  std::printf(
-      "joined,poisson_ratio,cells,k_across,k_along,k_normal,"
-      "delta_across,delta_along,delta_normal\n");
-  for (const double ratio : {0.25, 0.35, 0.45, 0.49}) {
-    for (const int cells : {4, 8, 16}) print("rigidly", cells, ratio, RimSprings());
-    print("by springs", 16, ratio, springsWithoutExcess(16, ratio));
+  std::printf("quantity,poisson_ratio,cells,depth,across,along,normal,coupling\n");
+  for (const double ratio : {0.25, 0.30, 0.35, 0.40, 0.45, 0.47, 0.49}) {
+    const Strips strips(ratio, ratio < 0.42 ? 128 : 256);
+    strips.reportShifts();
+    strips.reportScan();
   }
   return 0;
 }

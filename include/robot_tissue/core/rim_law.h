@@ -1,26 +1,32 @@
-// The springs that join a bonded patch's rim to the lattice of model `elastic` so that it answers
-// as the continuum does (own; doc/model.md, "The rim").
+// The springs that join the nodes at the rim of a bonded flat patch to it, in model `elastic` (own;
+// doc/model.md, "The rim").
+//
+// Joined rigidly, the lattice acts as if the patch were wider by a shift on every side. A spring of
+// stiffness k to the rim nodes, whose own compliance is c, takes 1 / (1 + k c) spacings of it back.
+// The patch's edge then seems to be where it is, `depth` spacings beyond the node, for
+// shift - 1 / (1 + k c) = depth.
 #pragma once
 
 namespace robot_tissue {
 
-// Motion of the patch along its rim, across it, or normal to the surface.
 struct RimMode {
-  double shift = 0.0;      // by which a patch without the springs acts too wide, in spacings
-  double stiffness = 0.0;  // of the spring to a node right at the edge, in shear modulus x spacing
+  double shift = 0.0;      // spacings
+  double stiffness = 0.0;  // of a node right at the edge, in shear modulus times spacing
 };
 
+// By the patch's motion: in its plane along or across the rim, or normal to the surface.
 struct RimLaw {
   RimMode along;
   RimMode across;
   RimMode normal;
 };
 
-// Poisson's ratio 0.25 .. 0.49.
+// Linear between the ratios that were measured (doc/data/rim_strip.csv), as at the nearest one
+// outside 0.25 to 0.49.
 RimLaw rimLaw(double poisson_ratio);
 
-// Stiffness of the spring that joins a node at this depth inside the edge (in spacings, negative
-// outside) to the patch, in shear modulus x spacing; infinite = rigid, 0 = free.
+// Stiffness of the spring between the patch and a node at a depth inside its edge (spacings,
+// negative outside), in shear modulus times spacing; infinity = rigid, 0 = free.
 double rimStiffness(const RimMode& mode, double depth);
 
 }  // namespace robot_tissue
