@@ -78,6 +78,10 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
+    if (config.turns && !method_->joinsRims()) {
+      refuse(config.name, "turns: this method moves patches without turning them",
+             "turns false, or another method");
+    }
     patch.turns = config.turns;
     for (const int node : patch.nodes) {
       patch.center += lattice_.restPosition(node) / static_cast<double>(patch.nodes.size());

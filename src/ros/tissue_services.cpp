@@ -37,11 +37,13 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
   if (!request.displacement.empty()) {
     const Vec3 displacement = toVec3(request.displacement.front());
     requireFinite(displacement, "displacement");
+    if (request.turns) throw InputError("turns: true; allowed: only with a force");
     patch.displacement = {{displacement.x(), displacement.y(), displacement.z()}};
   } else {
     const Vec3 force = toVec3(request.force.front());
     requireFinite(force, "force");
     patch.force = force;
+    patch.turns = request.turns;
   }
   return patch;
 }

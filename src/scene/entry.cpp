@@ -90,6 +90,12 @@ int Entry::integerOr(int otherwise, int lowest, int highest) const {
   return given() ? integer(lowest, highest) : otherwise;
 }
 
+bool Entry::truth() const {
+  if (isWord("true")) return true;
+  if (!isWord("false")) fail("must be true or false");
+  return false;
+}
+
 std::string Entry::word(const std::string& allowed) const {
   if (!given() || !node_.IsScalar() || node_.Scalar().empty()) fail("must be " + allowed);
   return node_.Scalar();

@@ -56,6 +56,16 @@ void readDrive(const MapReader& map, PatchConfig& patch) {
   }
 }
 
+// Only what a force moves may also turn until no moment is left.
+void readTurns(const Entry& entry, const SolverConfig& solver, PatchConfig& patch) {
+  if (!entry.given()) return;
+  patch.turns = entry.truth();
+  if (patch.turns && !patch.force) entry.fail("the patch has a displacement, must have a force");
+  if (patch.turns && solver.method == "paper") {
+    entry.fail("method paper moves patches without turning them, must be false or left out");
+  }
+}
+
 // Against the fixed nodes and against the patches that stand already.
 void checkNodes(const Entry& entry, const StandingPatch& patch, const std::vector<NodeRange>& fixed,
                 const std::vector<StandingPatch>& standing) {
@@ -79,13 +89,14 @@ void checkNodes(const Entry& entry, const StandingPatch& patch, const std::vecto
 }  // namespace
 
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
-                  std::vector<StandingPatch>& standing) {
+                  const SolverConfig& solver, std::vector<StandingPatch>& standing) {
   const MapReader map(entry, {"increments", "patches"});
   LoadStep step;
   if (map["increments"].given()) step.increments = map["increments"].integer(1, 100000);
   std::vector<std::string> names;
   for (const Entry& patch_entry : map["patches"].list(1, "patches")) {
-    const MapReader patch_map(patch_entry, {"name", "min", "max", "displacement", "force"});
+    const MapReader patch_map(patch_entry,
+                              {"name", "min", "max", "displacement", "force", "turns"});
     PatchConfig patch;
     patch.name = readPatchName(patch_map["name"]);
     if (std::find(names.begin(), names.end(), patch.name) != names.end()) {
@@ -94,6 +105,7 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
     names.push_back(patch.name);
     patch.box = readNodeBox(patch_map, grid);
     readDrive(patch_map, patch);
+    readTurns(patch_map["turns"], solver, patch);
     const StandingPatch stands{patch.name, grid.nodesIn(patch.box)};
     checkNodes(patch_entry, stands, fixed, standing);
     const bool again = std::any_of(standing.begin(), standing.end(),

@@ -51,7 +51,7 @@ void readTools(const Entry& tools, const SceneSource& source, Scene& scene) {
 void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
   if (!steps.given()) return;
   if (source.user == SceneUser::kRunner) {
-    scene.steps = readSteps(steps, scene.tissue);
+    scene.steps = readSteps(steps, scene.tissue, scene.solver);
   } else if (!steps.list(0, "steps").empty()) {
     steps.fail("only the offline runner takes steps, must be [] or left out");
   }

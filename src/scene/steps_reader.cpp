@@ -86,7 +86,8 @@ std::string readKind(const Entry& entry) {
 
 }  // namespace
 
-std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue) {
+std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
+                            const SolverConfig& solver) {
   const Grid grid(tissue.shape, tissue.spacing);
   std::vector<NodeRange> fixed;
   for (const Box& box : tissue.fixed) fixed.push_back(grid.nodesIn(box));
@@ -96,7 +97,7 @@ std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue) {
     const std::string kind = readKind(step_entry);
     const MapReader map(step_entry, kSteps);
     if (kind == "load") {
-      steps.push_back(readLoad(map[kind], grid, fixed, standing));
+      steps.push_back(readLoad(map[kind], grid, fixed, solver, standing));
     } else if (kind == "cut") {
       steps.push_back(readCut(map[kind], tissue.spacing));
     } else if (kind == "release") {

@@ -17,7 +17,7 @@ class SolverMethod {
   virtual SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                             LatticeState& state) = 0;
 
-  // Whether patches may have rim springs; if not, all their nodes are hard.
+  // Whether patches may have rim springs and may turn; if not, all their nodes are hard.
   virtual bool joinsRims() const { return false; }
 
   // Longest motion of a patch in one solve that the method follows well (m).

@@ -55,6 +55,7 @@ class Entry {
   double numberOr(double otherwise, const Range& range) const;
   int integer(int lowest, int highest) const;
   int integerOr(int otherwise, int lowest, int highest) const;
+  bool truth() const;                                  // true or false
   std::string word(const std::string& allowed) const;  // not empty, `allowed` says what it is
   Vec3 vec3(const Range& range) const;
   Vec3 vec3Or(const Vec3& otherwise, const Range& range) const;

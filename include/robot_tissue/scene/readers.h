@@ -24,7 +24,8 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
                         const SolverOverrides& overrides, Remarks& remarks);
 
 // Follows the program through: which patches stand, and whose nodes they hold.
-std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue);
+std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
+                            const SolverConfig& solver);
 
 // A standing patch on the way through the steps.
 struct StandingPatch {
@@ -32,7 +33,7 @@ struct StandingPatch {
   NodeRange nodes;
 };
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
-                  std::vector<StandingPatch>& standing);
+                  const SolverConfig& solver, std::vector<StandingPatch>& standing);
 
 std::vector<ToolConfig> readTools(const Entry& entry, const std::string& scene_folder);
 
