@@ -9,7 +9,8 @@
 #include <limits>
 #include <memory>
 
-#include "quiet_console.h"
+#include "robot_tissue/mesh/mesh_file.h"
+#include "robot_tissue/mesh/quiet_console.h"
 #include "triangle_samples.h"
 
 namespace robot_tissue {
@@ -20,39 +21,22 @@ constexpr double kFlatShare = 1e-9;
 // Nearer to a face than this (m), the direction to its nearest point is rounding noise.
 constexpr double kOnFace = 1e-12;
 
-std::unique_ptr<shapes::Mesh> loadMesh(const std::string& resource, const Vec3& scale,
-                                       const std::string& owner) {
-  const std::string allowed = "; allowed is a package:// or file:// address of a mesh with volume";
-  // Anything else would be looked for on the network.
-  if (resource.rfind("package://", 0) != 0 && resource.rfind("file://", 0) != 0) {
-    throw InputError(owner + ": mesh '" + resource + "' is no such address" + allowed);
-  }
-  QuietConsole console;
-  std::unique_ptr<shapes::Mesh> mesh;
-  std::string reason;
+TriangleMesh loadMesh(const std::string& resource, const Vec3& scale, const std::string& owner) {
   try {
-    mesh.reset(shapes::createMeshFromResource(resource, scale));
-    reason = console.reason();
-  } catch (const std::exception& error) {
-    reason = std::string(" (") + error.what() + ")";
+    return loadMeshFile(resource, scale);
+  } catch (const InputError& error) {
+    throw InputError(owner + ": mesh '" + resource + "' " + error.what() +
+                     "; allowed is a package:// or file:// address of a mesh with volume");
   }
-  if (!mesh || mesh->triangle_count == 0) {
-    throw InputError(owner + ": mesh '" + resource + "' cannot be loaded" + reason + allowed);
-  }
-  return mesh;
 }
 
-// Volume that the triangles enclose about `middle` (divergence theorem), whichever way they turn.
-double meshVolume(const shapes::Mesh& mesh, const Vec3& middle) {
-  const auto vertex = [&](unsigned int triangle, unsigned int corner) -> Vec3 {
-    const unsigned int index = mesh.triangles[3 * triangle + corner];
-    return Eigen::Map<const Vec3>(mesh.vertices + 3 * index) - middle;
-  };
-  double six_volumes = 0.0;
-  for (unsigned int t = 0; t < mesh.triangle_count; ++t) {
-    six_volumes += vertex(t, 0).dot(vertex(t, 1).cross(vertex(t, 2)));
+std::unique_ptr<shapes::Mesh> toShape(const TriangleMesh& mesh) {
+  const EigenSTL::vector_Vector3d vertices(mesh.vertices.begin(), mesh.vertices.end());
+  std::vector<unsigned int> corners;
+  for (const MeshTriangle& triangle : mesh.triangles) {
+    for (const int corner : triangle) corners.push_back(static_cast<unsigned int>(corner));
   }
-  return std::abs(six_volumes) / 6.0;
+  return std::unique_ptr<shapes::Mesh>(shapes::createMeshFromVertices(vertices, corners));
 }
 
 Vec3 mean(const std::vector<Vec3>& points) {
@@ -85,12 +69,12 @@ void addFace(std::array<int, 3> corners, const Vec3& middle, ConvexHull& hull) {
 }  // namespace
 
 ConvexHull loadHull(const std::string& resource, const Vec3& scale, const std::string& owner) {
-  const auto mesh = loadMesh(resource, scale, owner);
+  const TriangleMesh mesh = loadMesh(resource, scale, owner);
   ConvexHull hull;
   double extent = 0.0;
   {
     QuietConsole console;
-    const bodies::ConvexMesh body(mesh.get());
+    const bodies::ConvexMesh body(toShape(mesh).get());
     if (!body.getTriangles().empty()) {
       hull.vertices.assign(body.getVertices().begin(), body.getVertices().end());
       const Vec3 middle = mean(hull.vertices);
@@ -103,7 +87,7 @@ ConvexHull loadHull(const std::string& resource, const Vec3& scale, const std::s
       for (const Vec3& vertex : hull.vertices) {
         extent = std::max(extent, 2.0 * (vertex - middle).norm());
       }
-      hull.mesh_volume = meshVolume(*mesh, middle);
+      hull.mesh_volume = std::abs(enclosedVolume(mesh.vertices, mesh.triangles));
     }
   }
   if (!(hull.volume > kFlatShare * extent * extent * extent)) {

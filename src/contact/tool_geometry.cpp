@@ -7,7 +7,7 @@
 #include <exception>
 #include <memory>
 
-#include "quiet_console.h"
+#include "robot_tissue/mesh/quiet_console.h"
 
 namespace robot_tissue {
 namespace {

@@ -108,9 +108,16 @@ TEST(Layering, CoreStandsOnEigenAlone) {
   }
 }
 
+TEST(Layering, MeshKeepsItsLibrariesBehindItsHeaders) {
+  expectOnly("include/robot_tissue/mesh", {"Eigen/", "robot_tissue/core/", "robot_tissue/mesh/"});
+  expectOnly("src/mesh", {"Eigen/", "geometric_shapes/", "console_bridge/", "rospack/",
+                          "robot_tissue/core/", "robot_tissue/mesh/"});
+}
+
 TEST(Layering, SceneAddsYaml) {
   for (const char* folder : {"include/robot_tissue/scene", "src/scene"}) {
-    expectOnly(folder, {"Eigen/", "yaml-cpp/", "robot_tissue/core/", "robot_tissue/scene/"});
+    expectOnly(folder, {"Eigen/", "yaml-cpp/", "robot_tissue/core/", "robot_tissue/mesh/",
+                        "robot_tissue/scene/"});
   }
 }
 
@@ -118,7 +125,7 @@ TEST(Layering, ContactKeepsItsLibrariesBehindItsHeaders) {
   expectOnly("include/robot_tissue/contact",
              {"Eigen/", "robot_tissue/core/", "robot_tissue/contact/"});
   expectOnly("src/contact", {"Eigen/", "fcl/", "geometric_shapes/", "urdf_model/", "urdf_parser/",
-                             "console_bridge/", "robot_tissue/core/", "robot_tissue/contact/"});
+                             "robot_tissue/core/", "robot_tissue/mesh/", "robot_tissue/contact/"});
 }
 
 TEST(Layering, PipelineJoinsCoreAndContact) {
