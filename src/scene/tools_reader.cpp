@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <map>
 
 #include "robot_tissue/scene/readers.h"
@@ -26,41 +25,6 @@ Pose readPose(const MapReader& map) {
        Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
           .toRotationMatrix();
   return pose;
-}
-
-bool startsWith(const std::string& text, const std::string& start) {
-  return text.compare(0, start.size(), start) == 0;
-}
-
-// package:// stays; files must be there and become absolute file:// addresses.
-std::string readResource(const Entry& entry, const std::string& scene_folder) {
-  const std::string package = "package://";
-  const std::string file = "file://";
-  const std::string allowed = "package://PACKAGE/PATH, file:///PATH or a path";
-  const std::string resource = entry.word(allowed);
-  if (startsWith(resource, package) && resource.size() > package.size()) return resource;
-  if (resource.find("://") != std::string::npos && !startsWith(resource, file)) {
-    entry.fail("must be " + allowed);
-  }
-  std::filesystem::path path = startsWith(resource, file) ? resource.substr(file.size()) : resource;
-  if (path.is_relative()) {
-    if (scene_folder.empty() || startsWith(resource, file)) {
-      entry.fail("must be package://PACKAGE/PATH or file:///PATH, a relative path has no start");
-    }
-    path = std::filesystem::absolute(scene_folder / path).lexically_normal();
-  }
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    entry.fail("must be an existing file, there is none at " + path.string());
-  }
-  return file + path.string();
-}
-
-Vec3 readScale(const Entry& entry) {
-  if (!entry.given()) return Vec3::Ones();
-  if (entry.node().IsSequence()) return entry.vec3(Range::positive(""));
-  if (!entry.node().IsScalar()) entry.fail("must be a number > 0 or a list of 3 of them");
-  return Vec3::Constant(entry.number(Range::positive("")));
 }
 
 std::string readToolName(const MapReader& map, const std::string& link) {

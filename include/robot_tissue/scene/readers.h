@@ -7,6 +7,7 @@
 
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/scene_gate.h"
@@ -36,6 +37,19 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
                   const SolverConfig& solver, std::vector<StandingPatch>& standing);
 
 std::vector<ToolConfig> readTools(const Entry& entry, const std::string& scene_folder);
+
+// Address of a mesh file: package:// stays as it is; a path must be an existing file, relative to
+// the scene's folder, and becomes file://.
+std::string readResource(const Entry& entry, const std::string& scene_folder);
+
+// One factor for all axes or three; 1 when not given.
+Vec3 readScale(const Entry& entry);
+
+// Shape of type mesh: loaded, joined at its corners, closed, facing outwards.
+TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder);
+
+// Refuses a spacing larger than the mesh's smallest extent.
+void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh);
 
 ToolShape readToolShape(const Entry& entry, const std::string& scene_folder);
 

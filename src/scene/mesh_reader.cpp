@@ -1,0 +1,86 @@
+#include <filesystem>
+
+#include "robot_tissue/core/mesh_checks.h"
+#include "robot_tissue/mesh/mesh_file.h"
+#include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+bool startsWith(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+TriangleMesh load(const Entry& resource, const std::string& address, const Vec3& scale) {
+  try {
+    return loadMeshFile(address, scale);
+  } catch (const InputError& error) {
+    resource.fail(onOneLine(error.what()) + ", must be a mesh file, such as STL, OBJ or DAE");
+  }
+}
+
+bool inReach(const TriangleMesh& mesh) {
+  for (const Vec3& vertex : mesh.vertices) {
+    // Written so that NaN is out of reach.
+    if (!(vertex.cwiseAbs().maxCoeff() <= kLargestNumber)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string readResource(const Entry& entry, const std::string& scene_folder) {
+  const std::string package = "package://";
+  const std::string file = "file://";
+  const std::string allowed = "package://PACKAGE/PATH, file:///PATH or a path";
+  const std::string resource = entry.word(allowed);
+  if (startsWith(resource, package) && resource.size() > package.size()) return resource;
+  if (resource.find("://") != std::string::npos && !startsWith(resource, file)) {
+    entry.fail("must be " + allowed);
+  }
+  std::filesystem::path path = startsWith(resource, file) ? resource.substr(file.size()) : resource;
+  if (path.is_relative()) {
+    if (scene_folder.empty() || startsWith(resource, file)) {
+      entry.fail("must be package://PACKAGE/PATH or file:///PATH, a relative path has no start");
+    }
+    path = std::filesystem::absolute(scene_folder / path).lexically_normal();
+  }
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    entry.fail("must be an existing file, there is none at " + path.string());
+  }
+  return file + path.string();
+}
+
+Vec3 readScale(const Entry& entry) {
+  if (!entry.given()) return Vec3::Ones();
+  if (entry.node().IsSequence()) return entry.vec3(Range::positive(""));
+  if (!entry.node().IsScalar()) entry.fail("must be a number > 0 or a list of 3 of them");
+  return Vec3::Constant(entry.number(Range::positive("")));
+}
+
+TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) {
+  const MapReader map(entry, {"type", "resource", "scale"});
+  const Entry resource = map["resource"];
+  const std::string address = readResource(resource, scene_folder);
+  TriangleMesh mesh = load(resource, address, readScale(map["scale"]));
+  if (!inReach(mesh)) {
+    resource.fail("the mesh, scaled, has a coordinate that is not finite or beyond " +
+                  numberText(kLargestNumber) + " m, must have none");
+  }
+  mesh = welded(mesh);
+  if (const auto fault = meshFault(mesh)) {
+    resource.fail("the mesh " + *fault + "; must be closed and not intersect itself");
+  }
+  return facingOutward(std::move(mesh));
+}
+
+void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh) {
+  const Box bounds = boundsOf(mesh.vertices);
+  const double smallest = (bounds.max - bounds.min).minCoeff();
+  if (spacing.number(Range::positive("m")) <= smallest) return;
+  spacing.fail("must be at most the mesh's smallest extent, " + numberText(smallest) + " m");
+}
+
+}  // namespace robot_tissue
