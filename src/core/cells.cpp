@@ -8,16 +8,11 @@
 #include "robot_tissue/core/lattice_state.h"
 
 namespace robot_tissue {
-namespace {
-
-bool isWhole(const std::array<int, kCorners>& parts) {
-  return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
-}
-
-}  // namespace
-
-CellSet::CellSet(std::vector<Cell> cells, int nodes)
-    : cells_(std::move(cells)), first_(at(nodes) + 1, 0), meetings_(kCorners * cells_.size()) {
+CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> ghosts)
+    : cells_(std::move(cells)),
+      ghosts_(std::move(ghosts)),
+      first_(at(lattice_nodes) + ghosts_.size() + 1, 0),
+      meetings_(kCorners * cells_.size()) {
   for (const Cell& cell : cells_) {
     for (const int node : cell.nodes) ++first_[at(node) + 1];
   }
@@ -31,30 +26,22 @@ CellSet::CellSet(std::vector<Cell> cells, int nodes)
   }
 }
 
-std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
-                                    const std::array<int, kCorners>& corners) {
-  std::array<int, kCorners> parts{};
-  if (state.springs_cut == 0) return parts;
-  for (int corner = 0; corner < kCorners; ++corner) parts[at(corner)] = corner;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (corner >> axis & 1) continue;
-      const int other = corner | 1 << axis;
-      if (state.severed[at(lattice.springOf(corners[at(corner)], 2 * axis + 1))] != 0) continue;
-      const int from = std::max(parts[at(corner)], parts[at(other)]);
-      const int to = std::min(parts[at(corner)], parts[at(other)]);
-      std::replace(parts.begin(), parts.end(), from, to);
-    }
+const Cell* CellSet::owner(int place, int corner) const {
+  const auto before = [](const Cell& cell, int other) { return cell.place < other; };
+  for (auto cell = std::lower_bound(cells_.begin(), cells_.end(), place, before);
+       cell != cells_.end() && cell->place == place; ++cell) {
+    if (cell->owns(corner)) return &*cell;
   }
-  return parts;
+  return nullptr;
 }
 
-std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state) {
-  std::vector<Cell> left;
-  for (const Cell& cell : lattice.cells()) {
-    if (isWhole(cellParts(lattice, state, cell.nodes))) left.push_back(cell);
-  }
-  return std::make_shared<const CellSet>(std::move(left), lattice.nodeCount());
+Vec3 restPosition(const Lattice& lattice, const CellSet& cells, int node) {
+  return lattice.restPosition(cells.original(node));
+}
+
+bool isFixed(const Lattice& lattice, const CellSet& cells, int node) {
+  if (!cells.isGhost(node)) return lattice.isFixed(node);
+  return cells.ghosts()[at(node - lattice.nodeCount())].fixed;
 }
 
 int countInvertedCells(const Lattice& lattice, const LatticeState& state) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "robot_tissue/core/split_cells.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -102,11 +104,14 @@ std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state
   return crossing;
 }
 
-void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state) {
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
+           SplitCells split) {
   for (const int spring : springs) state.severed[at(spring)] = 1;
   state.springs_cut += static_cast<int>(springs.size());
   state.pieces = countPieces(lattice, state);
-  state.cells = cellsLeft(lattice, state);
+  const auto left = cellsLeft(lattice, state, split);
+  state.displacement = carriedOver(*state.cells, state.displacement, *left);
+  state.cells = left;
 }
 
 int countPieces(const Lattice& lattice, const LatticeState& state) {

@@ -16,6 +16,11 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::unique_ptr<SolverMethod> makePaper(const SolverConfig& config, const Lattice& lattice,
                                         const TissueModel& model) {
+  if (model.splitCells() == SplitCells::kParted) {
+    throw InputError(
+        "solver.method: 'paper' goes from node to node along springs, the tissue's model is made "
+        "of cells; allowed: newton, or tissue.model six_spring");
+  }
   PaperOptions options;
   options.balance_tolerance = config.tolerance;
   options.max_ms = config.max_ms;
@@ -47,10 +52,11 @@ const std::vector<std::string>& methodNames() {
   return names;
 }
 
-// The six-spring lattice holds many shapes without a force: no method can name its equilibrium.
+// The six-spring lattice holds many shapes without a force: no method can name its equilibrium. The
+// paper's method moves along springs, which do not reach the ghosts that cuts give the cells.
 std::vector<std::string> methodsFor(const std::string& model) {
   if (model == "six_spring") return {"paper"};
-  return methodNames();
+  return {"newton"};
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {

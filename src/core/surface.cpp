@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
 namespace {
@@ -12,15 +12,22 @@ namespace {
 constexpr int kFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-// A part of a cut cell reaches half way to each corner it lost: the place of a corner is then
-// carried by the part's own corners nearest to it.
 struct Corner {
-  int node = 0;               // that stands at the corner
+  int node = 0;               // of the lattice, that stands at the corner
   std::vector<int> carriers;  // the node itself, or the part's nodes nearest to it
   bool own = true;
+  int ghost = kNone;  // that the part has in place of a lost node; of the lattice where a cut ends
+
+  static constexpr int kNone = -1;
 };
 
-using CornerKey = std::vector<int>;  // node, carriers
+using CornerKey = std::vector<int>;  // node, ghost, carriers
+
+CornerKey keyOf(const Corner& corner) {
+  CornerKey key = {corner.node, corner.ghost};
+  key.insert(key.end(), corner.carriers.begin(), corner.carriers.end());
+  return key;
+}
 
 class SurfaceBuilder {
  public:
@@ -79,10 +86,7 @@ class SurfaceBuilder {
   // Two parts of neighboring cells that share a face hide it from each other.
   void addBetweenCells(const Quad& quad) {
     QuadKey key;
-    for (int i = 0; i < 4; ++i) {
-      key[at(i)] = quad[at(i)].carriers;
-      key[at(i)].insert(key[at(i)].begin(), quad[at(i)].node);
-    }
+    for (int i = 0; i < 4; ++i) key[at(i)] = keyOf(quad[at(i)]);
     std::sort(key.begin(), key.end());
     const auto [place, is_new] = between_cells_.emplace(key, quad);
     if (!is_new) between_cells_.erase(place);
@@ -97,6 +101,9 @@ class SurfaceBuilder {
     if (made.own) {
       made.carriers = {made.node};
       return made;
+    }
+    if (const Cell* with_ghosts = state_.cells->owner(cell.place, part)) {
+      made.ghost = with_ghosts->nodes[at(corner)];
     }
     for (int distance = 1; distance <= 3 && made.carriers.empty(); ++distance) {
       for (int other = 0; other < kCorners; ++other) {
@@ -129,8 +136,7 @@ class SurfaceBuilder {
       if (known < 0) known = newVertex(corner);
       return known;
     }
-    CornerKey key = corner.carriers;
-    key.insert(key.begin(), corner.node);
+    const CornerKey key = keyOf(corner);
     const auto known = lost_corners_.find(key);
     if (known != lost_corners_.end()) return known->second;
     return lost_corners_[key] = newVertex(corner);
@@ -138,16 +144,19 @@ class SurfaceBuilder {
 
   int newVertex(const Corner& corner) {
     const double share = 1.0 / static_cast<double>(corner.carriers.size());
+    const bool has_ghost = corner.ghost != Corner::kNone;
     Vec3 carriers_mean = Vec3::Zero();
     std::vector<NodeWeight> weights;
     for (const int carrier : corner.carriers) {
-      weights.push_back({carrier, share});
+      weights.push_back({carrier, has_ghost ? 0.5 * share : share});
       carriers_mean += share * lattice_.restPosition(carrier);
     }
+    if (has_ghost) weights.push_back({corner.ghost, 0.5});
     surface_.rest.push_back(corner.own
                                 ? lattice_.restPosition(corner.node)
                                 : 0.5 * (carriers_mean + lattice_.restPosition(corner.node)));
     surface_.carriers.push_back(std::move(weights));
+    surface_.node.push_back(corner.carriers.size() == 1 ? corner.carriers.front() : -1);
     return static_cast<int>(surface_.rest.size()) - 1;
   }
 

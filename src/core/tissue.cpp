@@ -7,6 +7,7 @@
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/cut.h"
 #include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
 Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
@@ -39,7 +40,7 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
 }
 
 void Tissue::restore(const Shape& shape) {
-  state_.displacement = shape.displacement;
+  state_.displacement = carriedOver(*shape.cells, shape.displacement, *state_.cells);
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
@@ -58,7 +59,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
     disturbed.push_back(lattice_.springs()[at(spring)].a);
     disturbed.push_back(lattice_.springs()[at(spring)].b);
   }
-  sever(lattice_, crossing, state_);
+  sever(lattice_, crossing, state_, model_->splitCells());
   rebuildSurface();
   report.pieces = state_.pieces;
   report.solve = solve(disturbed);
@@ -73,6 +74,10 @@ void Tissue::reset() {
   last_report_ = SolveReport();
   if (was_cut) rebuildSurface();
   vertices_ = surface_.rest;
+}
+
+Vec3 Tissue::nodePosition(int node) const {
+  return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
 }
 
 std::vector<Vec3> Tissue::shownDisplacement() const {

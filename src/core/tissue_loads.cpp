@@ -106,7 +106,7 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
 
 // A node obeys one patch.
 void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
-  std::vector<const LoadingPatch*> owners(at(lattice_.nodeCount()), nullptr);
+  std::vector<const LoadingPatch*> owners(state_.displacement.size(), nullptr);
   const auto claim = [&](const LoadingPatch& patch) {
     for (const int node : patch.nodes) {
       const LoadingPatch*& owner = owners[at(node)];
@@ -150,7 +150,7 @@ std::size_t Tissue::place(const LoadingPatch& patch) {
 
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
 void Tissue::leaveRimsToOwners() {
-  std::vector<const LoadingPatch*> owners(at(lattice_.nodeCount()), nullptr);
+  std::vector<const LoadingPatch*> owners(state_.displacement.size(), nullptr);
   for (const LoadingPatch& patch : patches_) {
     for (const int node : patch.nodes) owners[at(node)] = &patch;
   }

@@ -18,6 +18,7 @@ ToolPatches::ToolPatches(const Lattice& lattice, std::vector<std::string> tool_n
 
 void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   displacement_ = tissue.state().displacement;
+  cells_ = tissue.state().cells;
   holdNamedLoads(tissue);
   if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
   left_.clear();
@@ -25,7 +26,8 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
     const Pose& tissue_T_tool = pose.tools[tool];
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
       const int node = seat->first;
-      const Vec3 moved = tissue_T_tool * seat->second.point - lattice_->restPosition(node);
+      const Vec3 moved =
+          tissue_T_tool * seat->second.point - restPosition(*lattice_, *cells_, node);
       const Vec3 way_out = tissue_T_tool.linear() * seat->second.pushed;
       if (taken_[at(node)] != 0 || letsGo(node, moved, way_out, tissue)) {
         left_.push_back(node);
@@ -202,28 +204,32 @@ void ToolPatches::seat(int node, std::size_t tool, const Vec3& moved, const Robo
   }
   const Pose tool_T_tissue = pose.tools[tool].inverse();
   Seat& seat = seats_[tool][node];
-  seat.point = tool_T_tissue * Vec3(lattice_->restPosition(node) + displacement_[at(node)]);
+  seat.point =
+      tool_T_tissue * Vec3(restPosition(*lattice_, *cells_, node) + displacement_[at(node)]);
   seat.pushed += tool_T_tissue.linear() * moved;
 }
 
 void ToolPatches::findOutwardNormals(const Tissue& tissue) {
   const Surface& surface = tissue.surface();
-  outward_.assign(at(lattice_->nodeCount()), Vec3::Zero());
+  outward_.assign(displacement_.size(), Vec3::Zero());
   for (const auto& triangle : surface.triangles) {
     const Vec3& a = surface.rest[at(triangle[0])];
     const Vec3 area = (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
     for (const int vertex : triangle) {
-      if (surface.carriers[at(vertex)].size() > 1) continue;
-      outward_[at(surface.carriers[at(vertex)].front().node)] += area;
+      const int node = surface.node[at(vertex)];
+      if (node < 0) continue;
+      outward_[at(node)] += area;
+      const int ghost = surface.carriers[at(vertex)].back().node;
+      if (cells_->isGhost(ghost)) outward_[at(ghost)] += area;
     }
   }
   surface_version_ = tissue.surfaceVersion();
 }
 
 void ToolPatches::holdNamedLoads(const Tissue& tissue) {
-  taken_.assign(at(lattice_->nodeCount()), 0);
-  for (int node = 0; node < lattice_->nodeCount(); ++node) {
-    if (lattice_->isFixed(node)) taken_[at(node)] = 1;
+  taken_.assign(displacement_.size(), 0);
+  for (int node = 0; node < cells_->nodeCount(); ++node) {
+    if (isFixed(*lattice_, *cells_, node)) taken_[at(node)] = 1;
   }
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
     for (const int node : tissue.patches()[patch].nodes) taken_[at(node)] = 1;

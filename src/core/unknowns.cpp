@@ -19,8 +19,9 @@ Unknowns::Unknowns(const Lattice& lattice, const TissueModel& model, const Loade
       patches_(shape.patches.size()) {
   for (std::size_t node = 0; node < of_.size(); ++node) {
     const int index = static_cast<int>(node);
-    const bool fixed = index < lattice.nodeCount() && lattice.isFixed(index);
-    if (fixed || model.nodeStiffness(shape.state, index).isZero(0.0)) of_[node].fill(kHeld);
+    if (isFixed(lattice, *shape.state.cells, index) ||
+        model.nodeStiffness(shape.state, index).isZero(0.0))
+      of_[node].fill(kHeld);
   }
   bind(shape.patches);
   number();

@@ -273,8 +273,7 @@ void Pipeline::describeTools(const RobotPose& pose, const ContactSet& contacts) 
     report.normal = patches_.normal(static_cast<int>(tool), tissue_T_tool);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const int node : report.nodes) {
-      const Vec3 position = tissue_.lattice().restPosition(node) +
-                            tissue_.state().displacement[static_cast<std::size_t>(node)];
+      const Vec3 position = tissue_.nodePosition(node);
       const Vec3 node_force = tissue_.nodeForce(node);
       report.point += position / static_cast<double>(report.nodes.size());
       force += node_force;

@@ -31,10 +31,6 @@ void add(Marker marker, MarkerArray& array) {
   array.markers.push_back(std::move(marker));
 }
 
-Vec3 nodePosition(const Tissue& tissue, int node) {
-  return tissue.lattice().restPosition(node) + tissue.state().displacement[at(node)];
-}
-
 }  // namespace
 
 MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale)
@@ -87,8 +83,8 @@ void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
   setColor(wires, 0.30, 0.13, 0.12);
   for (const int spring : surface_springs_) {
     const Spring& ends = tissue.lattice().springs()[at(spring)];
-    wires.points.push_back(toPoint(nodePosition(tissue, ends.a)));
-    wires.points.push_back(toPoint(nodePosition(tissue, ends.b)));
+    wires.points.push_back(toPoint(tissue.nodePosition(ends.a)));
+    wires.points.push_back(toPoint(tissue.nodePosition(ends.b)));
   }
   add(std::move(wires), array);
 }
@@ -96,8 +92,8 @@ void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
 void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
   const Lattice& lattice = tissue.lattice();
   std::vector<char> on_surface(at(lattice.nodeCount()), 0);
-  for (const auto& carriers : tissue.surface().carriers) {
-    if (carriers.size() == 1) on_surface[at(carriers.front().node)] = 1;
+  for (const int node : tissue.surface().node) {
+    if (node >= 0) on_surface[at(node)] = 1;
   }
   surface_springs_.clear();
   for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
@@ -119,10 +115,10 @@ void MarkerBuilder::addNodes(const Tissue& tissue, MarkerArray& array) const {
   setColor(fixed, 0.25, 0.25, 0.30);
   setColor(loaded, 1.0, 0.80, 0.10);
   for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
-    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(nodePosition(tissue, node)));
+    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
   }
   for (const LoadingPatch& patch : tissue.patches()) {
-    for (const int node : patch.nodes) loaded.points.push_back(toPoint(nodePosition(tissue, node)));
+    for (const int node : patch.nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
   }
   add(std::move(fixed), array);
   add(std::move(loaded), array);

@@ -17,7 +17,7 @@ void requireFit(const Entry& entry, const std::string& method, const std::string
   const std::vector<std::string> fit = methodsFor(model);
   if (std::find(fit.begin(), fit.end(), method) != fit.end()) return;
   entry.fail("with tissue.model " + model + " must be " + joined(fit) + ": " + method +
-             " finds the one equilibrium that this model does not have");
+             " does not fit this model");
 }
 
 }  // namespace
@@ -27,6 +27,7 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
   const Entry map_entry = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
   const MapReader map(map_entry, {"method", "tolerance", "max_ms", "threads"});
   SolverConfig solver;
+  solver.method = methodsFor(model).front();
   const Entry method = overridden(map["method"], overrides.method, "--method");
   if (method.given()) {
     solver.method = method.choice(methodNames(), {"layered", "vbd", "xpbd", "explicit"});

@@ -6,6 +6,7 @@
 #include "block_fixtures.h"
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/cut.h"
+#include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
 namespace {

@@ -277,10 +277,12 @@ TEST_F(SceneFolder, ElasticTakesNewtonWhichIgnoresTheTolerance) {
   EXPECT_EQ(scene.remarks[0], "--tolerance = 0.5: ignored, method newton solves exactly");
 }
 
-TEST_F(SceneFolder, ElasticTakesThePapersMethod) {
-  const Scene scene =
-      loadScene(write("block.yaml", replaced(kRunnerScene, "six_spring", "elastic")));
-  EXPECT_EQ(scene.solver.method, "paper");
+TEST_F(SceneFolder, ElasticTakesNewtonUnlessTold) {
+  const std::string elastic = replaced(kRunnerScene, "six_spring", "elastic");
+  EXPECT_THROW(loadScene(write("block.yaml", elastic)), InputError);
+  const Scene scene = loadScene(
+      write("block.yaml", replaced(elastic, "method: paper, tolerance: 0.02, max_ms", "max_ms")));
+  EXPECT_EQ(scene.solver.method, "newton");
   EXPECT_TRUE(scene.remarks.empty());
 }
 

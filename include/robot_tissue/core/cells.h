@@ -1,9 +1,15 @@
 // The cells between the nodes, that carry the material: 8 corners, 12 springs each. Corner c sits
 // at the cell's lowest node plus (c & 1, c >> 1 & 1, c >> 2 & 1) spacings.
+//
+// A cut may split a cell (core/split_cells.h). Its parts are cells again, with 8 corners each;
+// where a part lost a corner, a ghost stands in for the node (Molino, Bao, Fedkiw 2004, "A virtual
+// node algorithm for changing mesh topology during simulation"). Ghosts are nodes that the lattice
+// does not know: numbered from Lattice::nodeCount() on, with a displacement of their own, without
+// springs.
 #pragma once
 
 #include <array>
-#include <memory>
+#include <cstdint>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -17,8 +23,21 @@ constexpr int kCorners = 8;
 
 struct Cell {
   std::array<int, kCorners> nodes{};
-  int place = 0;       // which of the lattice's cells it is, or is a part of
-  double share = 1.0;  // of that cell's volume h^3 that it holds, in (0, 1]
+  int place = 0;            // which of the lattice's cells it is, or is a part of
+  double share = 1.0;       // of that cell's volume h^3 that it holds, in (0, 1]
+  std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
+
+  bool owns(int corner) const { return (own >> corner & 1) != 0; }
+  bool isPart() const { return own != 0xff; }
+};
+
+// What becomes of cells that a cut has split: they go as a whole, or stay as parts with ghosts.
+enum class SplitCells { kLost, kParted };
+
+struct Ghost {
+  int original = 0;    // the lattice's node at its grid point, that it stands in for
+  bool fixed = false;  // the original is, and so is an own corner of a part that has the ghost:
+                       // what a cut parts from all fixed nodes is free
 };
 
 // Cells, and who meets at a node. Constant after construction: a cut makes a new set.
@@ -31,30 +50,35 @@ class CellSet {
   };
 
   CellSet() = default;
-  CellSet(std::vector<Cell> cells, int nodes);
+  // Cells in ascending order of their places, and how many nodes the lattice has.
+  CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> ghosts = {});
 
   const std::vector<Cell>& all() const { return cells_; }
+  const std::vector<Ghost>& ghosts() const { return ghosts_; }
+  // With the ghosts, which come after the lattice's.
   int nodeCount() const { return static_cast<int>(first_.size()) - 1; }
-  // The cells that have the node as a corner, first .. last - 1; at most 8.
+  int latticeNodeCount() const { return nodeCount() - static_cast<int>(ghosts_.size()); }
+  bool isGhost(int node) const { return node >= latticeNodeCount(); }
+  // The lattice's node at the same grid point: the node itself, or the ghost's original.
+  int original(int node) const {
+    return isGhost(node) ? ghosts_[at(node - latticeNodeCount())].original : node;
+  }
+  // The cell at the place that owns the corner; null where a cut left none.
+  const Cell* owner(int place, int corner) const;
+  // The cells that have the node as a corner, first .. last - 1; at most 8 that own it.
   const Meeting* first(int node) const { return meetings_.data() + first_[at(node)]; }
   const Meeting* last(int node) const { return meetings_.data() + first_[at(node) + 1]; }
-  // No cell has the node as a corner: nothing holds it.
-  bool isLoose(int node) const { return first(node) == last(node); }
 
  private:
   std::vector<Cell> cells_;
+  std::vector<Ghost> ghosts_;
   std::vector<int> first_ = {0};  // per node, index into meetings_
   std::vector<Meeting> meetings_;
 };
 
-// For each corner the lowest corner of the part of the cell it belongs to; corners that uncut
-// springs of the cell join are in one part. All zero in a whole cell.
-std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
-                                    const std::array<int, kCorners>& corners);
-
-// What the severed springs leave of the lattice's cells: the whole ones. A cell that is split, that
-// is, whose corners uncut springs no longer hold together, is lost.
-std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state);
+// Of any node, also of a ghost.
+Vec3 restPosition(const Lattice& lattice, const CellSet& cells, int node);  // m
+bool isFixed(const Lattice& lattice, const CellSet& cells, int node);
 
 // Cells turned inside out: the mean deformation gradient's determinant is not positive.
 int countInvertedCells(const Lattice& lattice, const LatticeState& state);

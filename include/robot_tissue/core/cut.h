@@ -17,8 +17,10 @@ namespace robot_tissue {
 std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
                                const std::vector<Vec3>& corners);
 
-// Severs the springs, none of which is severed yet, and the cells with them.
-void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state);
+// Severs the springs, none of which is severed yet, and the cells with them; new ghosts are put
+// behind the other nodes of state.displacement.
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
+           SplitCells split = SplitCells::kLost);
 
 // Number of parts that uncut springs hold together.
 int countPieces(const Lattice& lattice, const LatticeState& state);

@@ -1,8 +1,7 @@
 // Model `elastic`: an isotropic material with moduli in Pa, a cell of the lattice at a time
 // (core/elastic_cell.h, doc/model.md).
 //
-// Cells are LatticeState::cells. A node without a cell is loose: no force acts on it, not even its
-// weight, and its stiffness is zero.
+// Cells are LatticeState::cells; ghosts are nodes like others.
 #pragma once
 
 #include <array>
@@ -19,6 +18,7 @@ class ElasticModel : public EnergyModel {
   // The lattice, made of the same config, must outlive the model.
   ElasticModel(const Lattice& lattice, const TissueConfig& config);
 
+  SplitCells splitCells() const override { return SplitCells::kParted; }
   Vec3 nodeForce(const LatticeState& state, int node) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
   Moduli moduliAt(const LatticeState& state, int node) const override;

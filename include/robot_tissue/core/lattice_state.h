@@ -12,7 +12,7 @@
 namespace robot_tissue {
 
 struct LatticeState {
-  std::vector<Vec3> displacement;     // per node, from rest (m)
+  std::vector<Vec3> displacement;     // per node, the ghosts last, from rest (m)
   std::vector<std::uint8_t> severed;  // per spring, 1 = cut
   int springs_cut = 0;
   std::shared_ptr<const CellSet> cells;  // what the cuts left of the lattice's

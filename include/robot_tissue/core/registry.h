@@ -15,7 +15,7 @@ namespace robot_tissue {
 const std::vector<std::string>& modelNames();
 const std::vector<std::string>& methodNames();
 
-// The methods that find an equilibrium of the model.
+// The methods that fit the model; the first is the default.
 std::vector<std::string> methodsFor(const std::string& model);
 
 // Both throw InputError on an unknown name, the second also on a model that the method does

@@ -20,11 +20,15 @@ struct NodeWeight {
 struct Surface {
   std::vector<Vec3> rest;                         // tissue frame (m)
   std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
+  std::vector<int> node;                          // per vertex: the lattice's node it stands at or,
+                                                  // on a cut, beside; -1 = beside several
   std::vector<std::array<int, 3>> triangles;      // counter-clockwise seen from outside
   std::vector<std::uint8_t> opened;               // per triangle, 1 = face opened by a cut
 };
 
-// Faces of the cells' parts that the uncut springs hold together.
+// Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half
+// way to each corner it lost. What is there is carried half by the part's own corners nearest to it
+// and half by the ghost, so as the material between them; without ghosts by the own corners alone.
 Surface extractSurface(const Lattice& lattice, const LatticeState& state);
 
 // Deformed vertices (m, tissue frame) for node displacements (m, from rest).

@@ -55,6 +55,7 @@ class Tissue {
   std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
   Vec3 nodeForce(int node) const;
+  Vec3 nodePosition(int node) const;  // deformed (m)
 
   // Equilibrium under what acts now.
   SolveReport settle();
@@ -69,14 +70,17 @@ class Tissue {
   // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
   // left a patch.
   SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed);
-  // The shape and its loads, to come back to; cuts are not part of it.
+  // The shape and its loads, to come back to; cuts are not part of it: those made since stay.
   struct Shape {
     std::vector<Vec3> displacement;
+    std::shared_ptr<const CellSet> cells;  // whose nodes they are of
     std::vector<LoadingPatch> patches;
     std::size_t named_patches = 0;
     SolveReport report;
   };
-  Shape shape() const { return {state_.displacement, patches_, named_patches_, last_report_}; }
+  Shape shape() const {
+    return {state_.displacement, state_.cells, patches_, named_patches_, last_report_};
+  }
   void restore(const Shape& shape);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
   CutReport cut(const std::vector<Vec3>& corners);

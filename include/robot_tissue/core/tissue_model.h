@@ -19,6 +19,9 @@ class TissueModel {
   // that nothing resists.
   virtual Vec3 nodeStiffness(const LatticeState& state, int node) const = 0;
 
+  // A model of cells needs their parts; one of springs needs no ghosts, which have none.
+  virtual SplitCells splitCells() const { return SplitCells::kLost; }
+
   // Moduli behind a node of the surface: a quarter of the sum over its cells, so the material's own
   // where it meets four full ones. Zero where the model has none.
   virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,8 @@ class ToolPatches {
   std::vector<std::string> names_;
   Seats seats_;
   std::vector<Vec3> displacement_;
-  std::vector<char> taken_;  // per node: fixed, or in a named load
+  std::shared_ptr<const CellSet> cells_;  // of the tissue in the last ride
+  std::vector<char> taken_;               // per node: fixed, or in a named load
   std::vector<int> left_;
   std::vector<Vec3> outward_;  // per node: normal of the surface at rest; zero inside
   unsigned surface_version_ = 0;
