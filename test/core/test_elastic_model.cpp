@@ -125,36 +125,14 @@ TEST(ElasticModel, GravityAddsTheNodesWeight) {
   EXPECT_NEAR(weight.z(), -9.81 * mass, 1e-12);
 }
 
-TEST(ElasticModel, SplitCellIsLostAndItsNodesAreLoose) {
-  TissueConfig config = elasticBlockOf(2, 1, 1, 0.3);
-  config.gravity = Vec3(0.0, 0.0, -9.81);
-  ElasticBlock block(config);
-  shake(block.state, 0.1 * kSpacing);
-  const int corner = block.lattice.node(0, 0, 0), middle = block.lattice.node(1, 0, 0);
-  const double before = block.model.nodeStiffness(block.state, middle).x();
-  ASSERT_GT(block.model.nodeForce(block.state, corner).norm(), 0.0);
-  // All four springs along x of the first cell.
-  std::vector<int> springs;
-  for (int k = 0; k < 2; ++k) {
-    for (int j = 0; j < 2; ++j) {
-      springs.push_back(block.lattice.springOf(block.lattice.node(0, j, k), 1));
-    }
-  }
-  sever(block.lattice, springs, block.state);
-  EXPECT_EQ(block.model.nodeForce(block.state, corner), Vec3(Vec3::Zero()));
-  EXPECT_EQ(block.model.nodeForces(block.state)[at(corner)], Vec3(Vec3::Zero()));
-  EXPECT_EQ(block.model.nodeStiffness(block.state, corner), Vec3(Vec3::Zero()));
-  EXPECT_NEAR(block.model.nodeStiffness(block.state, middle).x(), 0.5 * before, 1e-12);
-  EXPECT_GT(block.model.nodeForce(block.state, middle).norm(), 0.0);
-}
-
 // A cut that leaves the cell in one piece takes nothing from it.
 TEST(ElasticModel, CellThatHangsTogetherIsWhole) {
   ElasticBlock block(elasticBlockOf(1, 1, 1, 0.3));
   shake(block.state, 0.1 * kSpacing);
   const double before = block.model.energy(block.state);
   ASSERT_GT(before, 0.0);
-  sever(block.lattice, {block.lattice.springOf(0, 1)}, block.state);
+  sever(block.lattice, {block.lattice.springOf(0, 1)}, block.state, SplitCells::kParted);
+  EXPECT_TRUE(block.state.cells->ghosts().empty());
   EXPECT_EQ(block.model.energy(block.state), before);
 }
 

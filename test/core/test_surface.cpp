@@ -262,14 +262,15 @@ TEST_F(PartedSurface, OneHalfMovesWithoutTheOther) {
   EXPECT_NEAR(enclosedVolume(surface_, vertices), 8 * 3 * 4 * 1e-6, 1e-14);
 }
 
+const std::vector<std::vector<Vec3>> kObliqueAndCrossing = {
+    {{0.011, -0.01, -0.01}, {0.047, 0.07, -0.01}, {0.047, 0.07, 0.05}, {0.011, -0.01, 0.05}},
+    {{-0.01, 0.023, 0.013}, {0.07, 0.033, 0.021}, {0.07, 0.033, 0.06}, {-0.01, 0.023, 0.06}},
+    {{0.02, 0.02, 0.012}, {0.055, 0.02, 0.031}, {0.055, 0.05, 0.031}, {0.02, 0.05, 0.012}}};
+
 TEST(Surface, StaysClosedAfterObliqueAndCrossingCuts) {
   const Lattice lattice(blockOf(6, 6, 4));
   LatticeState state = lattice.restState();
-  const std::vector<std::vector<Vec3>> cuts = {
-      {{0.011, -0.01, -0.01}, {0.047, 0.07, -0.01}, {0.047, 0.07, 0.05}, {0.011, -0.01, 0.05}},
-      {{-0.01, 0.023, 0.013}, {0.07, 0.033, 0.021}, {0.07, 0.033, 0.06}, {-0.01, 0.023, 0.06}},
-      {{0.02, 0.02, 0.012}, {0.055, 0.02, 0.031}, {0.055, 0.05, 0.031}, {0.02, 0.05, 0.012}}};
-  for (const auto& corners : cuts) {
+  for (const auto& corners : kObliqueAndCrossing) {
     const auto crossing = springsAcross(lattice, state, corners);
     ASSERT_FALSE(crossing.empty());
     sever(lattice, crossing, state);
@@ -278,6 +279,33 @@ TEST(Surface, StaysClosedAfterObliqueAndCrossingCuts) {
     EXPECT_GT(countOpened(surface), 0);
     EXPECT_EQ(surface.opened.size(), surface.triangles.size());
     EXPECT_NEAR(enclosedVolume(surface, surface.rest), 144e-6, 0.05 * 144e-6);
+  }
+}
+
+// What the springs hold together is the same with ghosts; they change who carries the cut faces.
+TEST(Surface, OfPartsWithGhostsIsClosedAndDeformsAsTheMaterial) {
+  const Lattice lattice(blockOf(6, 6, 4));
+  LatticeState state = lattice.restState(), without = state;
+  Eigen::Matrix3d gradient;
+  gradient << 1.2, 0.3, -0.1, -0.4, 0.9, 0.2, 0.1, 0.5, 1.1;
+  for (const auto& corners : kObliqueAndCrossing) {
+    const auto crossing = springsAcross(lattice, state, corners);
+    sever(lattice, crossing, state, SplitCells::kParted);
+    sever(lattice, crossing, without);
+    const Surface surface = extractSurface(lattice, state);
+    EXPECT_EQ(countOpenEdges(surface), 0);
+    const Surface plain = extractSurface(lattice, without);
+    EXPECT_NEAR(enclosedVolume(surface, surface.rest), enclosedVolume(plain, plain.rest), 1e-12);
+    std::vector<Vec3> displacement, vertices;
+    for (int node = 0; node < state.cells->nodeCount(); ++node) {
+      const Vec3 rest = restPosition(lattice, *state.cells, node);
+      displacement.push_back(gradient * rest - rest);
+    }
+    ASSERT_GT(displacement.size(), at(lattice.nodeCount()));
+    deform(surface, displacement, vertices);
+    for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+      EXPECT_LT((vertices[vertex] - gradient * surface.rest[vertex]).norm(), 1e-14);
+    }
   }
 }
 

@@ -208,6 +208,31 @@ TEST_F(PressedBlock, CutUnderLoadStaysAndTheToolStaysOut) {
   EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
 }
 
+// The probe presses on both edges of the cut, nodes and ghosts.
+TEST(PressedElasticBlock, CutOpensUnderTheToolAndClosesAgain) {
+  TissueConfig tissue = block();
+  tissue.model = "elastic";
+  tissue.spacing = 0.0125;
+  SolverConfig solver;
+  solver.method = "newton";
+  Pipeline pipeline(tissue, solver, {probe()});
+  walk(pipeline, -0.001, 0.002, 0.001);
+  const double whole = pipeline.report().tools.front().force_on_tool.z();
+  pipeline.tissue().cut({Vec3(0.0563, -0.01, 0.02), Vec3(0.0563, 0.11, 0.02),
+                         Vec3(0.0563, 0.11, 0.07), Vec3(0.0563, -0.01, 0.07)});
+  pipeline.touch();
+  walk(pipeline, 0.002, 0.006, 0.001);
+  const ToolReport& tool = pipeline.report().tools.front();
+  EXPECT_LT(tool.max_penetration, 0.05 * tissue.spacing);
+  EXPECT_GT(tool.force_on_tool.z(), whole);
+  const CellSet& cells = *pipeline.tissue().state().cells;
+  EXPECT_TRUE(std::any_of(tool.nodes.begin(), tool.nodes.end(),
+                          [&](int node) { return cells.isGhost(node); }));
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+  walk(pipeline, 0.006, -0.001, 0.001);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
 TEST_F(PressedBlock, NamedLoadStandsBesideTheTool) {
   pipeline_.step(pressed(-0.001));
   PatchConfig patch;
