@@ -59,6 +59,7 @@ class Runner {
     result_.displacement = tissue_.shownDisplacement();
     deform(tissue_.surface(), result_.displacement, result_.vertices);
     result_.triangles = tissue_.surface().triangles;
+    result_.displacement.resize(result_.rest.size());  // ghosts are no nodes of the lattice
   }
 
   const Scene& scene_;

@@ -215,7 +215,7 @@ TEST(Newton, RestStaysAtRest) {
   for (const Vec3& moved : block.state.displacement) EXPECT_EQ(moved, Vec3(Vec3::Zero()));
 }
 
-TEST(Newton, LeavesLooseNodesAndFreePiecesWhereTheyAre) {
+TEST(Newton, LeavesAPieceCutOffWhereItIs) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(3, 3, 5, 0.45));
   SolverConfig solver;
   solver.method = "newton";

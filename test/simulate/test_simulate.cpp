@@ -351,6 +351,19 @@ TEST_F(Simulate, SolvesTheElasticModelExactly) {
   }
 }
 
+TEST_F(Simulate, WritesTheLatticesNodesAlsoAfterACutOfElasticTissue) {
+  std::string scene = kScene;
+  const std::string place = "  material: {";
+  scene.replace(scene.find(place), place.size(), "  model: elastic\n" + place);
+  scene +=
+      "  - cut: {corners: [[0.025, -1, 0.005], [0.025, 1, 0.005], [0.025, 1, 1], [0.025, -1, "
+      "1]]}\n";
+  write("elastic.yaml", scene);
+  const Outcome outcome = program("elastic.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(readCsv(folder_ / "out/nodes.csv").size(), 1U + 5U * 4U * 3U);
+}
+
 TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
   expectRefused("block.yaml --out out --method newton", "--method = newton: with tissue.model");
 }
