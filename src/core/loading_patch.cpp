@@ -87,7 +87,7 @@ void movePatch(const Lattice& lattice, LoadingPatch& patch, const Vec3& translat
   if (turns) rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
   const auto move = [&](int node, Vec3& displacement) {
     if (turns) {
-      const Vec3 arm = lattice.restPosition(node) + displacement - center;
+      const Vec3 arm = restPosition(lattice, *state.cells, node) + displacement - center;
       displacement += rotation * arm - arm;
     }
     displacement += translation;

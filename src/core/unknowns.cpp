@@ -72,7 +72,7 @@ void Unknowns::measure(const LoadedShape& shape) {
     const LoadingPatch& patch = shape.patches[index];
     double sum = 0.0;
     for (const int node : patch.nodes) {
-      sum += (lattice_->restPosition(node) - patch.center).norm();
+      sum += (restPosition(*lattice_, *shape.state.cells, node) - patch.center).norm();
     }
     patches_[index].length =
         std::max(sum / static_cast<double>(patch.nodes.size()), lattice_->spacing());
@@ -117,7 +117,7 @@ Unknowns::Share Unknowns::turnOf(std::size_t patch, int axis) const {
 }
 
 Vec3 Unknowns::position(const LoadedShape& shape, int node) const {
-  return lattice_->restPosition(node) + shape.state.displacement[at(node)];
+  return restPosition(*lattice_, *shape.state.cells, node) + shape.state.displacement[at(node)];
 }
 
 Vec3 Unknowns::centerOf(const LoadingPatch& patch) {
