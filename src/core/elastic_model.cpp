@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "robot_tissue/core/cell_modes.h"
 #include "robot_tissue/core/material.h"
 
 namespace robot_tissue {
@@ -94,6 +95,43 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
     }
   }
   return forces;
+}
+
+NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  NodeBalance balance;
+  CellModes modes(lattice_.spacing());
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    const Cell& cell = cells.all()[at(met->cell)];
+    balance.force += cornerWeight(cell);
+    modes.add(cellModuli(cell), cell.nodes, met->corner, state.displacement);
+  }
+  modes.solve();
+  balance.force -= modes.gradient();
+  balance.block = modes.block();
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    if (modes.suffices(static_cast<int>(met - cells.first(node)))) continue;
+    const ElasticCell squeezed = shaped(state, cells.all()[at(met->cell)]);
+    balance.force -= squeezed.gradient(met->corner);
+    balance.block += squeezed.block(met->corner);
+  }
+  return balance;
+}
+
+void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& cells,
+                             std::vector<Vec3>& forces) const {
+  for (const int index : cells) {
+    const Cell& cell = state.cells->all()[at(index)];
+    const Vec3 weight = cornerWeight(cell);
+    const ElasticCell shape = shaped(state, cell);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      forces[at(cell.nodes[at(corner)])] += weight - shape.gradient(corner);
+    }
+  }
+}
+
+CellHessian ElasticModel::cellHessian(const LatticeState& state, int cell) const {
+  return shaped(state, state.cells->all()[at(cell)]).hessian();
 }
 
 void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& visit) const {

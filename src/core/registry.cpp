@@ -1,6 +1,7 @@
 #include "robot_tissue/core/registry.h"
 
 #include "robot_tissue/core/elastic_model.h"
+#include "robot_tissue/core/layered_method.h"
 #include "robot_tissue/core/newton_method.h"
 #include "robot_tissue/core/paper_method.h"
 #include "robot_tissue/core/six_spring_model.h"
@@ -27,17 +28,26 @@ std::unique_ptr<SolverMethod> makePaper(const SolverConfig& config, const Lattic
   return std::make_unique<PaperMethod>(lattice, model, options);
 }
 
+const EnergyModel& requireEnergy(const TissueModel& model, const std::string& method) {
+  if (const auto* energy_model = dynamic_cast<const EnergyModel*>(&model)) return *energy_model;
+  throw InputError("solver.method: '" + method +
+                   "' finds the one equilibrium of an energy, the tissue's model has none; "
+                   "allowed: paper, or tissue.model elastic");
+}
+
+std::unique_ptr<SolverMethod> makeLayered(const SolverConfig& config, const Lattice& lattice,
+                                          const TissueModel& model) {
+  LayeredOptions options;
+  options.tolerance = config.tolerance;
+  options.max_ms = config.max_ms;
+  return std::make_unique<LayeredMethod>(lattice, requireEnergy(model, "layered"), options);
+}
+
 std::unique_ptr<SolverMethod> makeNewton(const SolverConfig& config, const Lattice& lattice,
                                          const TissueModel& model) {
-  const auto* energy_model = dynamic_cast<const EnergyModel*>(&model);
-  if (energy_model == nullptr) {
-    throw InputError(
-        "solver.method: 'newton' finds the one equilibrium of an energy, the tissue's model has "
-        "none; allowed: paper, or tissue.model elastic");
-  }
   NewtonOptions options;
   options.max_ms = config.max_ms;
-  return std::make_unique<NewtonMethod>(lattice, *energy_model, options);
+  return std::make_unique<NewtonMethod>(lattice, requireEnergy(model, "newton"), options);
 }
 
 }  // namespace
@@ -48,7 +58,7 @@ const std::vector<std::string>& modelNames() {
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"paper", "newton"};
+  static const std::vector<std::string> names = {"layered", "paper", "newton"};
   return names;
 }
 
@@ -70,6 +80,7 @@ std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice
 
 std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Lattice& lattice,
                                          const TissueModel& model) {
+  if (config.method == "layered") return makeLayered(config, lattice, model);
   if (config.method == "paper") return makePaper(config, lattice, model);
   if (config.method == "newton") return makeNewton(config, lattice, model);
   throw InputError("solver.method: '" + config.method +

@@ -24,6 +24,10 @@ class ElasticModel : public EnergyModel {
   Moduli moduliAt(const LatticeState& state, int node) const override;
   double energy(const LatticeState& state) const override;
   std::vector<Vec3> nodeForces(const LatticeState& state) const override;
+  NodeBalance nodeBalance(const LatticeState& state, int node) const override;
+  void addForces(const LatticeState& state, const std::vector<int>& cells,
+                 std::vector<Vec3>& forces) const override;
+  CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
 
   // Second derivative of the energy in this node alone (N/m).

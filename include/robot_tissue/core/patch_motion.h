@@ -1,0 +1,72 @@
+// What may move under loading patches, for methods that move nodes one at a time: components of
+// nodes that are free, patches by force as a whole, and the forces on both.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "robot_tissue/core/energy_model.h"
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/unknowns.h"
+
+namespace robot_tissue {
+
+// A motion (m, rad), or forces (N, N m) that do work in it. Patches by displacement: zero.
+struct Motion {
+  struct OfPatch {
+    Vec3 shift = Vec3::Zero();  // or force
+    Vec3 turn = Vec3::Zero();   // about the patch's center; or moment
+  };
+
+  std::vector<Vec3> nodes;
+  std::vector<OfPatch> patches;
+};
+
+constexpr std::uint8_t kAllHeld = 7;
+
+// Who holds what. A component is held, bit 1 << axis, when its node is fixed or loose, or hard in a
+// patch that holds the axis; nodes that are hard in a patch by force move with that.
+class PatchHold {
+ public:
+  PatchHold(const Lattice& lattice, const EnergyModel& model);
+
+  // Places hard nodes of patches by displacement.
+  void bind(LoadedShape& shape);
+  void place(LoadedShape& shape) const;
+
+  const std::vector<std::uint8_t>& held() const { return held_; }
+  // Per node: index of the patch by force in which it is hard, -1 = none.
+  const std::vector<int>& carriers() const { return carriers_; }
+  const std::vector<int>& hardOf(std::size_t patch) const { return hard_[patch]; }
+  Vec3 freePart(int node, const Vec3& vector) const;
+
+  // Adds what rim springs do to the node.
+  void addRims(const LoadedShape& shape, int node, NodeBalance& balance) const;
+
+  // Of the patch's own force, its hard nodes and its rim (N, N m about its center).
+  Motion::OfPatch forceOn(const LoadedShape& shape, std::size_t patch) const;
+  // The same from forces on the nodes, those of rims not included.
+  Motion::OfPatch forceOn(const LoadedShape& shape, std::size_t patch,
+                          const std::vector<Vec3>& forces) const;
+
+  // Where a node of a patch by force is, from the patch's center (m).
+  Vec3 armOf(const LoadedShape& shape, std::size_t patch, int node) const;
+
+ private:
+  struct RimPlace {
+    std::size_t patch = 0;
+    std::size_t spring = 0;
+    int next = -1;  // of the same node
+  };
+
+  const Lattice& lattice_;
+  const EnergyModel& model_;
+  std::vector<std::uint8_t> held_;
+  std::vector<int> carriers_;
+  std::vector<std::vector<int>> hard_;  // per patch
+  std::vector<RimPlace> rims_;
+  std::vector<int> first_rim_;  // per node, into rims_, -1 = none
+};
+
+}  // namespace robot_tissue
