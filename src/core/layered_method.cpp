@@ -14,6 +14,8 @@ namespace {
 constexpr double kRounding = 1e-13;  // of a node's stiffness times the spacing
 constexpr double kSoftest = 0.05;    // of a node's stiffest direction: its others count as no less
 constexpr double kFlatEnough = 0.25;  // of the slope along a direction: no need to look further
+constexpr double kMostLeft = 0.9;   // of the length left before a cycle, to learn from it
+constexpr double kMostFactor = 10.0;
 constexpr int kTrials = 8;
 constexpr int kPlainCycles = 8;
 constexpr double kBlownUp = 100.0;  // times the unbalanced force that a solve begins with
@@ -190,19 +192,42 @@ double LayeredMethod::localLength(const Motion& forces) const {
   return std::sqrt(squared);
 }
 
-double LayeredMethod::estimate(const LoadedShape& shape, const Motion& forces,
-                               const Motion& smooth) const {
-  double moved = 0.0, left = std::pow(localLength(forces), 2);
-  for (std::size_t node = 0; node < shape.state.displacement.size(); ++node) {
-    left += smooth.nodes[node].squaredNorm();
+// Length (m) of the motion that the coarse lattice and the nodes' stiffness say is left.
+double LayeredMethod::lengthLeft(const Motion& forces, const Motion& smooth) const {
+  double squared = std::pow(localLength(forces), 2);
+  for (std::size_t node = 0; node < smooth.nodes.size(); ++node) {
+    squared += smooth.nodes[node].squaredNorm();
     const int carrier = hold_.carriers()[node];
-    if (carrier >= 0) left += smooth.patches[at(carrier)].shift.squaredNorm();
-    if (hold_.held()[node] != kAllHeld || carrier >= 0) {
-      moved += shape.state.displacement[node].squaredNorm();
-    }
+    if (carrier >= 0) squared += smooth.patches[at(carrier)].shift.squaredNorm();
   }
+  return std::sqrt(squared);
+}
+
+// A cycle has gone so far (m), where the lengths left were these before and after it: what was
+// really left before is taken to be what it went and the same multiple of what is left after it.
+void LayeredMethod::calibrate(double went, double before, double after) {
+  if (!(after < kMostLeft * before)) return;
+  const double factor = std::min(std::max(went / (before - after), 1.0), kMostFactor);
+  factor_ = std::max(factor, last_factor_);
+  last_factor_ = factor;
+}
+
+double LayeredMethod::distance(const LoadedShape& shape, const std::vector<Vec3>& from) const {
+  double squared = 0.0;
+  for (std::size_t node = 0; node < from.size(); ++node) {
+    squared += (shape.state.displacement[node] - from[node]).squaredNorm();
+  }
+  return std::sqrt(squared);
+}
+
+double LayeredMethod::relative(double left, const LoadedShape& shape) const {
   if (left == 0.0) return 0.0;
-  return moved > 0.0 ? std::sqrt(left / moved) : 1.0;
+  double moved = 0.0;
+  for (std::size_t node = 0; node < shape.state.displacement.size(); ++node) {
+    if (hold_.held()[node] == kAllHeld && hold_.carriers()[node] < 0) continue;
+    moved += shape.state.displacement[node].squaredNorm();
+  }
+  return moved > 0.0 ? factor_ * left / std::sqrt(moved) : 1.0;
 }
 
 SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
@@ -213,6 +238,8 @@ SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
   LoadedShape best = shape;
   double least = std::numeric_limits<double>::infinity(), first = 0.0;
   int best_cycle = 0;
+  std::vector<Vec3> before;
+  double left_before = 0.0;
   SolveStatus status = SolveStatus::kUnconverged;
   for (int cycle = 0;; ++cycle) {
     Motion smooth = smoothMotion(forces, shape);
@@ -220,7 +247,9 @@ SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
       forces = forcesOf(shape);
       smooth = smoothMotion(forces, shape);
     }
-    const double error = estimate(shape, forces, smooth);
+    const double left = lengthLeft(forces, smooth);
+    if (cycle > 0) calibrate(distance(shape, before), left_before, left);
+    const double error = relative(left, shape);
     const double unbalanced = localLength(forces);
     if (cycle == 0) {
       first = unbalanced;
@@ -243,6 +272,8 @@ SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
       shape = best;
       forces = forcesOf(shape);
     }
+    before = shape.state.displacement;
+    left_before = lengthLeft(forces, smooth);
     if (blown_up || !advance(shape, forces, search)) {
       search = Search();
       search.plain = kPlainCycles;

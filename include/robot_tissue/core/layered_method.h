@@ -61,7 +61,10 @@ class LayeredMethod : public SolverMethod {
   Motion forcesOf(const LoadedShape& shape) const;
   Motion smoothMotion(const Motion& forces, const LoadedShape& shape) const;
   double localLength(const Motion& forces) const;
-  double estimate(const LoadedShape& shape, const Motion& forces, const Motion& smooth) const;
+  double lengthLeft(const Motion& forces, const Motion& smooth) const;
+  void calibrate(double went, double before, double after);
+  double distance(const LoadedShape& shape, const std::vector<Vec3>& from) const;
+  double relative(double left, const LoadedShape& shape) const;
 
   SolveStatus iterate(LoadedShape& shape, SolveReport& report);
   bool advance(LoadedShape& shape, Motion& forces, Search& search) const;
@@ -89,6 +92,8 @@ class LayeredMethod : public SolverMethod {
   CellLayers layers_;
   std::vector<double> stiffness_;             // per node, at rest (N/m)
   std::vector<Eigen::MatrixXd> answers_;      // per patch by force: its stiffness, nodes held
+  double factor_ = 1.0;       // of lengthLeft: what cycles showed to be left
+  double last_factor_ = 1.0;  // likewise, the last cycle alone
   double greatest_ = 0.0;                     // unbalanced node force at the start (N)
   std::vector<int> pending_;                  // nodes that may be out of balance, ascending
   std::vector<int> patch_nodes_;              // of the last solve: hard or in a rim
