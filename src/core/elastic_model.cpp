@@ -1,5 +1,6 @@
 #include "robot_tissue/core/elastic_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "robot_tissue/core/cell_modes.h"
@@ -120,12 +121,27 @@ NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const
 
 void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& cells,
                              std::vector<Vec3>& forces) const {
-  for (const int index : cells) {
-    const Cell& cell = state.cells->all()[at(index)];
-    const Vec3 weight = cornerWeight(cell);
-    const ElasticCell shape = shaped(state, cell);
-    for (int corner = 0; corner < kCorners; ++corner) {
-      forces[at(cell.nodes[at(corner)])] += weight - shape.gradient(corner);
+  for (std::size_t first = 0; first < cells.size(); first += CellModes::kMost) {
+    const std::size_t end = std::min(cells.size(), first + CellModes::kMost);
+    CellModes modes(lattice_.spacing());
+    for (std::size_t i = first; i < end; ++i) {
+      const Cell& cell = state.cells->all()[at(cells[i])];
+      modes.add(cellModuli(cell), cell.nodes, 0, state.displacement);
+    }
+    modes.solve();
+    modes.findGradients();
+    for (std::size_t i = first; i < end; ++i) {
+      const Cell& cell = state.cells->all()[at(cells[i])];
+      const Vec3 weight = cornerWeight(cell);
+      const int lane = static_cast<int>(i - first);
+      for (int corner = 0; corner < kCorners; ++corner) {
+        forces[at(cell.nodes[at(corner)])] += weight - modes.gradient(lane, corner);
+      }
+      if (modes.suffices(lane)) continue;
+      const ElasticCell squeezed = shaped(state, cell);
+      for (int corner = 0; corner < kCorners; ++corner) {
+        forces[at(cell.nodes[at(corner)])] -= squeezed.gradient(corner);
+      }
     }
   }
 }
