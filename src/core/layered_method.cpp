@@ -62,11 +62,13 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   LoadedShape shape{state, patches};
   hold_.bind(shape);
   findDisturbed(shape, disturbed);
+  const std::vector<Vec3> start = shape.state.displacement;
   hold_.place(shape);
   layOut(shape);
   report.status = iterate(shape, report);
   state = std::move(shape.state);
   patches = std::move(shape.patches);
+  rememberWay(start, state.displacement);
   left_ = state.displacement;
   left_cells_ = state.cells;
   report.wall_ms = elapsedMs();
@@ -254,6 +256,7 @@ SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
     if (cycle == 0) {
       first = unbalanced;
       greatest_ = greatest(forces);
+      if (error > options_.tolerance && carryOn(shape, forces)) continue;
     }
     if (error < least) {
       least = error;
@@ -301,6 +304,27 @@ double LayeredMethod::displacementLength(const LoadedShape& shape) const {
   double squared = 0.0;
   for (const Vec3& moved : shape.state.displacement) squared += moved.squaredNorm();
   return std::sqrt(squared);
+}
+
+// Of a solve in which something moved.
+void LayeredMethod::rememberWay(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  if (from == to) return;
+  last_way_.resize(to.size());
+  for (std::size_t node = 0; node < to.size(); ++node) last_way_[node] = to[node] - from[node];
+}
+
+// Goes on, or back, the way that the last solve went, as far as the forces work along it.
+bool LayeredMethod::carryOn(LoadedShape& shape, Motion& forces) const {
+  if (last_way_.size() != shape.state.displacement.size()) return false;
+  Motion way;
+  way.nodes = last_way_;
+  way.patches.assign(shape.patches.size(), {});
+  double slope = dot(forces, way);
+  if (slope < 0.0) {
+    for (Vec3& moved : way.nodes) moved = -moved;
+    slope = -slope;
+  }
+  return slope > 0.0 && goAlong(way, slope, shape, forces);
 }
 
 // One cycle and a step of conjugate gradients along it (Polak and Ribiere). False when that led

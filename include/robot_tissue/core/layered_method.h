@@ -67,6 +67,8 @@ class LayeredMethod : public SolverMethod {
   double relative(double left, const LoadedShape& shape) const;
 
   SolveStatus iterate(LoadedShape& shape, SolveReport& report);
+  bool carryOn(LoadedShape& shape, Motion& forces) const;
+  void rememberWay(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
   bool advance(LoadedShape& shape, Motion& forces, Search& search) const;
   bool goAlong(const Motion& direction, double slope, LoadedShape& shape, Motion& forces) const;
   Motion cycle(const LoadedShape& shape) const;
@@ -97,6 +99,7 @@ class LayeredMethod : public SolverMethod {
   double greatest_ = 0.0;                     // unbalanced node force at the start (N)
   std::vector<int> pending_;                  // nodes that may be out of balance, ascending
   std::vector<int> patch_nodes_;              // of the last solve: hard or in a rim
+  std::vector<Vec3> last_way_;                // of all nodes in the last solve (m)
   std::vector<Vec3> left_;                    // displacement that the last solve left
   std::shared_ptr<const CellSet> left_cells_;
   std::chrono::steady_clock::time_point started_;
