@@ -16,6 +16,7 @@ constexpr double kSoftest = 0.05;    // of a node's stiffest direction: its othe
 constexpr double kFlatEnough = 0.25;  // of the slope along a direction: no need to look further
 constexpr double kMostLeft = 0.9;   // of the length left before a cycle, to learn from it
 constexpr double kMostFactor = 10.0;
+constexpr double kStill = 1e-6;    // of the spacing, a node: a shape that is off rest by less is at rest
 constexpr int kTrials = 8;
 constexpr int kPlainCycles = 8;
 constexpr double kBlownUp = 100.0;  // times the unbalanced force that a solve begins with
@@ -229,7 +230,8 @@ double LayeredMethod::relative(double left, const LoadedShape& shape) const {
     if (hold_.held()[node] == kAllHeld && hold_.carriers()[node] < 0) continue;
     moved += shape.state.displacement[node].squaredNorm();
   }
-  return moved > 0.0 ? factor_ * left / std::sqrt(moved) : 1.0;
+  const double still = kStill * lattice_.spacing();
+  return factor_ * left / std::sqrt(std::max(moved, still * still * layers_.nodeCount()));
 }
 
 SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {

@@ -1,0 +1,187 @@
+// Method `layered` against method `newton`: shapes, and what it says of its own error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "layered_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+class LayeredPress : public testing::TestWithParam<std::tuple<double, double>> {};
+
+// Down by 16 mm of 40, aside by 6, back up to 4.
+TEST_P(LayeredPress, AgreesWithNewtonWithinTheErrorItStates) {
+  const auto [poisson_ratio, tolerance] = GetParam();
+  const TissueConfig config = pressBlock(poisson_ratio);
+  LayeredBlock block(config, within(tolerance));
+  ElasticBlock exact(config);
+  const std::vector<Vec3> path = {{0, 0, -0.0002}, {0, 0, -0.004},    {0, 0, -0.008},
+                                  {0, 0, -0.012},  {0, 0, -0.016},    {0.003, 0, -0.016},
+                                  {0.006, 0, -0.016}, {0.003, 0, -0.012}, {0, 0, -0.008},
+                                  {0, 0, -0.004}};
+  for (const Vec3& place : path) {
+    const LoadingPatch punch = punchOn(block.lattice, block.model, block.state, config, place);
+    ASSERT_FALSE(punch.rim.empty());
+    const SolveReport report = block.solve({punch});
+    const SolveReport right = exact.solve({punch});
+    ASSERT_EQ(right.status, SolveStatus::kOk);
+    expectHonest(block, report, exact, tolerance);
+    EXPECT_NEAR(report.patches[0].force.z(), right.patches[0].force.z(),
+                3.0 * tolerance * right.patches[0].force.norm());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RatiosAndTolerances, LayeredPress,
+                         testing::Combine(testing::Values(0.25, 0.45, 0.49),
+                                          testing::Values(1e-2, 1e-3, 1e-6)));
+
+TEST(Layered, BalancesEveryFreeNode) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredBlock block(config, within(1e-8));
+  const LoadingPatch punch =
+      punchOn(block.lattice, block.model, block.state, config, Vec3(0.001, 0, -0.005));
+  const SolveReport report = block.solve({punch});
+  ASSERT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_LT(report.residual, 1e-6);
+  std::vector<Vec3> forces = block.model.nodeForces(block.state);
+  addRimForces(punch, block.state.displacement, forces);
+  const std::vector<int> hard = hardNodes(punch);
+  for (const int node : nodesOf(block.lattice)) {
+    if (block.lattice.isFixed(node) || std::binary_search(hard.begin(), hard.end(), node)) continue;
+    EXPECT_LT(forces[at(node)].norm(), 1e-6 * report.patches[0].force.norm());
+  }
+}
+
+TEST(Layered, SymmetricPressHasASymmetricShape) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredBlock block(config, within(1e-7));
+  ASSERT_EQ(block.solve({punchOn(block.lattice, block.model, block.state, config,
+                                 Vec3(0, 0, -0.005))})
+                .status,
+            SolveStatus::kOk);
+  for (const int node : nodesOf(block.lattice)) {
+    const auto& index = block.lattice.gridIndex(node);
+    const int mirrored = block.lattice.node(8 - index[0], index[1], index[2]);
+    const int swapped = block.lattice.node(index[1], index[0], index[2]);
+    const Vec3& here = block.state.displacement[at(node)];
+    const Vec3& there = block.state.displacement[at(mirrored)];
+    EXPECT_LT((here - Vec3(-there.x(), there.y(), there.z())).norm(), 1e-8);
+    const Vec3& across = block.state.displacement[at(swapped)];
+    EXPECT_LT((here - Vec3(across.y(), across.x(), across.z())).norm(), 1e-8);
+  }
+}
+
+TEST(Layered, TwoRunsAreEqualBitForBit) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredBlock first(config), second(config);
+  for (const double depth : {0.003, 0.006, 0.002}) {
+    for (LayeredBlock* block : {&first, &second}) {
+      block->solve({punchOn(block->lattice, block->model, block->state, config,
+                            Vec3(0.0005, 0, -depth))});
+    }
+    ASSERT_EQ(first.state.displacement, second.state.displacement);
+  }
+}
+
+TEST(Layered, SolveInBalanceIsOneCheck) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredBlock block(config);
+  const LoadingPatch punch =
+      punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.004));
+  ASSERT_GT(block.solve({punch}).iterations, 0);
+  const std::vector<Vec3> before = block.state.displacement;
+  const SolveReport again = block.solve({punch});
+  EXPECT_EQ(again.status, SolveStatus::kOk);
+  EXPECT_EQ(again.iterations, 0);
+  EXPECT_EQ(block.state.displacement, before);
+}
+
+TEST(Layered, RestStaysAtRestAndNothingIsVisited) {
+  LayeredBlock block(pressBlock(0.49));
+  const SolveReport report = block.solve({});
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_EQ(report.active_nodes, 0);
+  EXPECT_EQ(report.layers, 0);
+  for (const Vec3& moved : block.state.displacement) EXPECT_EQ(moved, Vec3(Vec3::Zero()));
+}
+
+TEST(Layered, UntouchedTissueIsNotVisited) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(60, 3, 2, 0.3));
+  LayeredBlock block(config);
+  const std::vector<int> end = block.lattice.nodesIn(nodeBox(config, {0, 1, 2}, {1, 2, 2}));
+  const SolveReport report = block.solve({displaced(end, Vec3(0, 0, -0.003))});
+  ASSERT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_GT(report.layers, 3);
+  EXPECT_LT(report.layers, 40);
+  EXPECT_LT(report.active_nodes, block.lattice.nodeCount() / 2);
+  for (const int node : block.lattice.nodesIn(nodeBox(config, {45, 0, 0}, {60, 3, 2}))) {
+    EXPECT_EQ(block.state.displacement[at(node)], Vec3(Vec3::Zero()));
+  }
+  ElasticBlock exact(config);
+  exact.solve({displaced(end, Vec3(0, 0, -0.003))});
+  expectHonest(block, report, exact, 0.01);
+}
+
+TEST(Layered, ReleasedAtOnceGoesBackToRest) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredBlock block(config);
+  for (const double depth : {0.004, 0.008, 0.012}) {
+    block.solve({punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -depth))});
+  }
+  ASSERT_GT(block.state.displacement[at(block.lattice.node(4, 4, 4))].norm(), 0.01);
+  const SolveReport report = block.solve({});
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  for (const Vec3& moved : block.state.displacement) EXPECT_LT(moved.norm(), 1e-6 * 0.01);
+}
+
+TEST(Layered, LateSolveIsCarriedOn) {
+  const TissueConfig config = pressBlock(0.49);
+  LayeredOptions options = within(1e-6);
+  options.max_ms = 1e-6;
+  LayeredBlock block(config, options);
+  const LoadingPatch punch =
+      punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.004));
+  SolveReport report = block.solve({punch});
+  ASSERT_EQ(report.status, SolveStatus::kLate);
+  EXPECT_GT(report.error_estimate, options.tolerance);
+  for (const Vec3& moved : block.state.displacement) ASSERT_TRUE(moved.allFinite());
+  int solves = 1;
+  while (report.status == SolveStatus::kLate && solves < 200) {
+    report = block.solve({punch});
+    ++solves;
+  }
+  ElasticBlock exact(config);
+  exact.solve({punch});
+  expectHonest(block, report, exact, 1e-6);
+}
+
+TEST(Layered, SaysSoWhenItDidNotConverge) {
+  const TissueConfig config = pressBlock(0.45);
+  LayeredOptions options = within(1e-6);
+  options.max_cycles = 2;
+  LayeredBlock block(config, options);
+  const SolveReport report = block.solve(
+      {punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.004))});
+  EXPECT_EQ(report.status, SolveStatus::kUnconverged);
+  EXPECT_GT(report.error_estimate, 1e-6);
+}
+
+// Corners thrown about by more than half a spacing: cells pressed flat and turned inside out.
+TEST(Layered, CrushedCellsRecover) {
+  const TissueConfig config = pressBlock(0.3);
+  LayeredBlock block(config);
+  for (const int node : block.lattice.nodesIn(nodeBox(config, {2, 2, 2}, {6, 6, 4}))) {
+    Shaker shaker(static_cast<unsigned>(node));
+    block.state.displacement[at(node)] = shaker.displacement(0.006);
+  }
+  ASSERT_GT(countInvertedCells(block.lattice, block.state), 0);
+  const SolveReport report = block.solve({});
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_EQ(countInvertedCells(block.lattice, block.state), 0);
+  for (const Vec3& moved : block.state.displacement) EXPECT_LT(moved.norm(), 1e-6 * 0.01);
+}
+
+}  // namespace
+}  // namespace robot_tissue

@@ -1,0 +1,199 @@
+// Method `layered` under all kinds of loads, against method `newton`.
+#include <gtest/gtest.h>
+
+#include "layered_fixtures.h"
+#include "tissue_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+class LayeredByForce : public testing::TestWithParam<std::tuple<double, bool>> {};
+
+TEST_P(LayeredByForce, PatchFindsWhereItsForceAndMomentBalance) {
+  const auto [poisson_ratio, turns] = GetParam();
+  const TissueConfig config = pressBlock(poisson_ratio);
+  LayeredBlock block(config, within(1e-4));
+  ElasticBlock exact(config);
+  const Vec3 full(0.8, 0.0, -1.2);
+  LoadingPatch moved, right = punchByForce(block, config, full, turns);
+  moved = right;
+  SolveReport report;
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    moved.force = right.force = share * full;
+    report = block.solve({moved});
+    moved = block.patches[0];
+    std::vector<LoadingPatch> loads = {right};
+    ASSERT_EQ(exact.method.solve(loads, {}, exact.state).status, SolveStatus::kOk);
+    right = loads[0];
+    expectHonest(block, report, exact, 1e-4, 6.0);
+  }
+  EXPECT_LT((report.patches[0].force - full).norm(), 1e-3 * full.norm());
+  EXPECT_LT((moved.place.displacement - right.place.displacement).norm(),
+            1e-3 * right.place.displacement.norm());
+  const double angle = Eigen::AngleAxisd(moved.place.rotation).angle();
+  const double right_angle = Eigen::AngleAxisd(right.place.rotation).angle();
+  EXPECT_NEAR(angle, right_angle, 1e-3 * right_angle);
+  EXPECT_EQ(turns, angle > 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(RatiosAndTurns, LayeredByForce,
+                         testing::Combine(testing::Values(0.25, 0.45), testing::Bool()));
+
+class LayeredUniaxial : public testing::TestWithParam<double> {};
+
+TEST_P(LayeredUniaxial, FreeAxesGivePoissonsRatioBack) {
+  constexpr double kStrain = 1e-4;
+  const TissueConfig config = elasticBlockOf(4, 3, 5, GetParam());
+  LayeredBlock block(config, within(1e-5));
+  std::vector<LoadingPatch> faces;
+  for (const int k : {0, 5}) {
+    faces.push_back(displaced(block.lattice.nodesIn(nodeBox(config, {0, 0, k}, {4, 3, k})),
+                              Vec3(0.0, 0.0, kStrain * 0.01 * k)));
+    faces.back().free_axis = {{true, true, false}};
+  }
+  const SolveReport report = block.solve(faces);
+  ASSERT_EQ(report.status, SolveStatus::kOk);
+  const double force = 1e4 * 0.04 * 0.03 * kStrain;
+  EXPECT_NEAR(report.patches[1].force.z(), force, 2e-3 * force);
+  const Vec3 widened = block.state.displacement.back() - block.state.displacement.front();
+  EXPECT_NEAR(-widened.x() / (kStrain * 0.04), GetParam(), 2e-3 * GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Ratios, LayeredUniaxial, testing::Values(0.25, 0.45, 0.49));
+
+TEST(LayeredLoads, SagsUnderGravityAsNewtonSays) {
+  TissueConfig config = elasticBlockOf(10, 3, 3, 0.45);
+  config.fixed.push_back(nodeBox(config, {0, 0, 0}, {0, 3, 3}));
+  config.gravity = Vec3(0.0, 0.0, -3.0);
+  LayeredBlock block(config, within(1e-3));
+  ElasticBlock exact(config);
+  const SolveReport report = block.solve({}, nodesOf(block.lattice));
+  ASSERT_EQ(exact.solve({}).status, SolveStatus::kOk);
+  EXPECT_LT(exact.state.displacement.back().z(), -0.02);
+  expectHonest(block, report, exact, 1e-3);
+}
+
+TEST(LayeredLoads, RegionsAHundredTimesStifferAndSofter) {
+  for (const double factor : {100.0, 0.01}) {
+    TissueConfig config = pressBlock(0.45);
+    Region region;
+    region.name = "tumour";
+    region.box = nodeBox(config, {4, 2, 1}, {6, 6, 3});
+    region.material = config.material;
+    region.material.young_modulus *= factor;
+    config.regions.push_back(region);
+    LayeredBlock block(config, within(1e-3));
+    ElasticBlock exact(config);
+    for (const double depth : {0.004, 0.008}) {
+      const LoadingPatch punch =
+          punchOn(block.lattice, block.model, block.state, config, Vec3(0.002, 0, -depth));
+      const SolveReport report = block.solve({punch});
+      ASSERT_EQ(exact.solve({punch}).status, SolveStatus::kOk);
+      expectHonest(block, report, exact, 1e-3, 10.0);
+    }
+  }
+}
+
+TEST(LayeredLoads, TwoPatchesUnderGravityAddUp) {
+  TissueConfig config = pressBlock(0.45);
+  config.gravity = Vec3(0.0, 0.0, -9.81);
+  LayeredBlock block(config, within(1e-6));
+  LoadingPatch push =
+      forced(block.lattice.nodesIn(nodeBox(config, {0, 3, 4}, {1, 5, 4})), Vec3(0.2, 0, -0.2));
+  LoadingPatch pull =
+      displaced(block.lattice.nodesIn(nodeBox(config, {6, 3, 4}, {7, 5, 4})), Vec3(0, 0, 0.003));
+  pull.name = "pull";
+  pull.free_axis[1] = true;
+  const SolveReport report = block.solve({push, pull}, nodesOf(block.lattice));
+  ASSERT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_EQ(report.patches[1].force.y(), 0.0);
+  Vec3 total = report.patches[0].force + report.patches[1].force;
+  double mass = 0.0;
+  const std::vector<Vec3> forces = block.model.nodeForces(block.state);
+  for (const int node : nodesOf(block.lattice)) {
+    mass += block.lattice.mass(node);
+    if (block.lattice.isFixed(node)) total -= forces[at(node)];
+  }
+  total += mass * config.gravity;
+  EXPECT_LT(total.norm(), 1e-4);
+  ASSERT_GT(mass * 9.81, 1.0);
+}
+
+TEST(LayeredLoads, FloatingTissueUnderAForceHasNoEquilibrium) {
+  const TissueConfig config = elasticBlockOf(3, 3, 3, 0.45);
+  LayeredBlock block(config);
+  const SolveReport report = block.solve(
+      {forced(block.lattice.nodesIn(nodeBox(config, {1, 1, 3}, {2, 2, 3})), Vec3(0, 0, -0.1))});
+  EXPECT_NE(report.status, SolveStatus::kOk);
+  for (const Vec3& moved : block.state.displacement) EXPECT_TRUE(moved.allFinite());
+}
+
+Tissue tissueOf(const TissueConfig& config, const std::string& method, double tolerance = 1e-3) {
+  SolverConfig solver;
+  solver.method = method;
+  solver.tolerance = tolerance;
+  return Tissue(config, solver);
+}
+
+// Deep: half of the block's height; the load comes in increments of the method's own length.
+TEST(LayeredTissue, DeepPressAgreesWithNewtonAndIsRestAfterRelease) {
+  const TissueConfig config = pressBlock(0.45);
+  Tissue layered = tissueOf(config, "layered"), newton = tissueOf(config, "newton");
+  const LoadStep press = loadOf(
+      {displacedPatch("punch", nodeBox(config, {3, 3, 4}, {5, 5, 4}), Vec3(0.0, 0.0, -0.02))});
+  const std::vector<SolveReport> reports = reportsOf(layered, press);
+  reportsOf(newton, press);
+  for (const SolveReport& report : reports) EXPECT_EQ(report.status, SolveStatus::kOk);
+  const double error = errorOf(layered.lattice(), layered.patches(), layered.state().displacement,
+                               newton.state().displacement);
+  EXPECT_LT(error, 2e-3);
+  layered.release({"punch"});
+  expectAtRest(layered);
+}
+
+TEST(LayeredTissue, CutTissueAgreesWithNewton) {
+  const TissueConfig config = pressBlock(0.45);
+  Tissue layered = tissueOf(config, "layered"), newton = tissueOf(config, "newton");
+  const LoadStep press = loadOf(
+      {displacedPatch("punch", nodeBox(config, {5, 3, 4}, {7, 5, 4}), Vec3(0.003, 0.0, -0.006))});
+  for (Tissue* tissue : {&layered, &newton}) {
+    reportsOf(*tissue, press);
+    const CutReport cut = tissue->cut({Vec3(0.035, -1, 0.015), Vec3(0.035, 1, 0.015),
+                                       Vec3(0.035, 1, 0.1), Vec3(0.035, -1, 0.1)});
+    ASSERT_GT(cut.springs_cut, 0);
+    EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
+  }
+  const double error = errorOf(layered.lattice(), layered.patches(), layered.state().displacement,
+                               newton.state().displacement);
+  EXPECT_LE(error, 2.0 * layered.lastReport().error_estimate);
+  EXPECT_GE(5.0 * error, layered.lastReport().error_estimate);
+}
+
+TEST(LayeredTissue, PieceCutOffStaysWhereItIs) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(3, 3, 5, 0.45));
+  Tissue tissue = tissueOf(config, "layered");
+  const CutReport cut =
+      tissue.cut({Vec3(-1, -1, 0.025), Vec3(1, -1, 0.025), Vec3(1, 1, 0.025), Vec3(-1, 1, 0.025)});
+  ASSERT_EQ(cut.pieces, 2);
+  const SolveReport report =
+      reportsOf(tissue, loadOf({displacedPatch("punch", nodeBox(config, {1, 1, 2}, {2, 2, 2}),
+                                               Vec3(0.0, 0.0, -0.004))}))
+          .back();
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_GT(report.patches[0].force.norm(), 0.01);
+  for (const int node : tissue.lattice().nodesIn(nodeBox(config, {0, 0, 3}, {3, 3, 5}))) {
+    EXPECT_EQ(tissue.state().displacement[at(node)], Vec3(Vec3::Zero()));
+  }
+}
+
+TEST(LayeredTissue, IsRefusedForTheSixSpringLattice) {
+  TissueConfig config = pressBlock(0.45);
+  config.model = "six_spring";
+  const std::string line = inputErrorOf([&] { tissueOf(config, "layered"); });
+  EXPECT_TRUE(isOneLine(line) && mentions(line, "solver.method") && mentions(line, "layered") &&
+              mentions(line, "allowed: paper"))
+      << line;
+}
+
+}  // namespace
+}  // namespace robot_tissue
