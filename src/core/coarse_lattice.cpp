@@ -52,9 +52,11 @@ void CoarseLattice::build(const LoadedShape& shape, const PatchHold& hold) {
   }
   const bool same_cells = cells_ == shape.state.cells;
   if (same_cells && held_ == hold.held() && carriers_ == hold.carriers() && rims_ == rims) return;
-  LatticeState rest = shape.state;
-  std::fill(rest.displacement.begin(), rest.displacement.end(), Vec3::Zero());
-  if (!same_cells) lay(shape.state);
+  if (!same_cells) {
+    lay(shape.state);
+    about_ = shape.state;
+    std::fill(about_.displacement.begin(), about_.displacement.end(), Vec3::Zero());
+  }
   for (Block& block : blocks_) {
     const auto changed = [&](int node) {
       return same_cells && held_[at(node)] == hold.held()[at(node)] &&
@@ -64,15 +66,29 @@ void CoarseLattice::build(const LoadedShape& shape, const PatchHold& hold) {
       const auto& nodes = shape.state.cells->all()[at(cell)].nodes;
       return std::all_of(nodes.begin(), nodes.end(), changed);
     });
-    if (!same) fill(block, rest, hold);
+    if (!same) fill(block, about_, hold);
   }
   cells_ = shape.state.cells;
   held_ = hold.held();
   carriers_ = hold.carriers();
   rims_ = std::move(rims);
+  assemble(shape, hold);
+}
+
+void CoarseLattice::renew(const LoadedShape& shape, const PatchHold& hold) {
+  about_.displacement = shape.state.displacement;
+  for (Block& block : blocks_) fill(block, about_, hold);
+  assemble(shape, hold);
+  if (usable_) return;
+  std::fill(about_.displacement.begin(), about_.displacement.end(), Vec3::Zero());
+  for (Block& block : blocks_) fill(block, about_, hold);
+  assemble(shape, hold);
+}
+
+void CoarseLattice::assemble(const LoadedShape& shape, const PatchHold& hold) {
   numberPatches(shape);
   entries_.clear();
-  addCarried(shape, rest, hold);
+  addCarried(shape, about_, hold);
   addRims(shape, hold);
   factorize();
 }

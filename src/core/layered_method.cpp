@@ -15,7 +15,9 @@ constexpr double kRounding = 1e-13;  // of a node's stiffness times the spacing
 constexpr double kSoftest = 0.05;    // of a node's stiffest direction: its others count as no less
 constexpr double kFlatEnough = 0.25;  // of the slope along a direction: no need to look further
 constexpr double kMostLeft = 0.9;   // of the length left before a cycle, to learn from it
-constexpr double kMostFactor = 10.0;
+constexpr double kMostFactor = 4.0;
+constexpr double kRemembered = 0.9;  // of the factor, from cycle to cycle
+constexpr std::size_t kLongestPast = 8;  // cycles
 constexpr double kStill = 1e-6;    // of the spacing, a node: a shape that is off rest by less is at rest
 constexpr int kTrials = 8;
 constexpr int kPlainCycles = 8;
@@ -65,6 +67,7 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   findDisturbed(shape, disturbed);
   const std::vector<Vec3> start = shape.state.displacement;
   hold_.place(shape);
+  goes_on_ = !past_.empty() && shape.state.cells == left_cells_ && shape.state.displacement == left_;
   layOut(shape);
   report.status = iterate(shape, report);
   state = std::move(shape.state);
@@ -206,13 +209,19 @@ double LayeredMethod::lengthLeft(const Motion& forces, const Motion& smooth) con
   return std::sqrt(squared);
 }
 
-// A cycle has gone so far (m), where the lengths left were these before and after it: what was
-// really left before is taken to be what it went and the same multiple of what is left after it.
-void LayeredMethod::calibrate(double went, double before, double after) {
-  if (!(after < kMostLeft * before)) return;
-  const double factor = std::min(std::max(went / (before - after), 1.0), kMostFactor);
-  factor_ = std::max(factor, last_factor_);
-  last_factor_ = factor;
+// Some cycles went so far, and these were the lengths left before and after them: what was really
+// left before is taken to be what they went and the same multiple of what is left after them. Many
+// cycles show slow motions, few show the others.
+void LayeredMethod::calibrate(const std::vector<Past>& past, const LoadedShape& shape, double left) {
+  double factor = 0.0;
+  for (std::size_t cycles = 1; cycles <= past.size(); cycles *= 2) {
+    const Past& before = past[past.size() - cycles];
+    if (!(left < kMostLeft * before.left)) continue;
+    factor = std::max(factor, distance(shape, before.displacement) / (before.left - left));
+  }
+  if (factor == 0.0) return;
+  factor = std::min(std::max(factor, 1.0), kMostFactor);
+  factor_ = std::max(factor, kRemembered * factor_);
 }
 
 double LayeredMethod::distance(const LoadedShape& shape, const std::vector<Vec3>& from) const {
@@ -237,61 +246,65 @@ double LayeredMethod::relative(double left, const LoadedShape& shape) const {
 SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
   coarse_.build(shape, hold_);
   measurePatches(shape);
-  Motion forces = forcesOf(shape);
-  Search search;
-  LoadedShape best = shape;
-  double least = std::numeric_limits<double>::infinity(), first = 0.0;
-  int best_cycle = 0;
-  std::vector<Vec3> before;
-  double left_before = 0.0;
-  SolveStatus status = SolveStatus::kUnconverged;
-  for (int cycle = 0;; ++cycle) {
-    Motion smooth = smoothMotion(forces, shape);
-    if (raiseLayers(smooth, displacementLength(shape))) {
-      forces = forcesOf(shape);
-      smooth = smoothMotion(forces, shape);
-    }
-    const double left = lengthLeft(forces, smooth);
-    if (cycle > 0) calibrate(distance(shape, before), left_before, left);
-    const double error = relative(left, shape);
-    const double unbalanced = localLength(forces);
-    if (cycle == 0) {
-      first = unbalanced;
-      greatest_ = greatest(forces);
-      if (error > options_.tolerance && carryOn(shape, forces)) continue;
-    }
-    if (error < least) {
-      least = error;
-      best = shape;
-      best_cycle = cycle;
-    }
-    if (error <= options_.tolerance) status = SolveStatus::kOk;
-    if (status == SolveStatus::kOk) break;
-    if (cycle == options_.max_cycles || cycle > best_cycle + options_.patience) break;
-    if (cycle > 0 && outOfBudget()) {
-      status = SolveStatus::kLate;
-      break;
-    }
-    const bool blown_up = !(unbalanced <= kBlownUp * first) || !std::isfinite(error);
-    if (blown_up) {
-      shape = best;
-      forces = forcesOf(shape);
-    }
-    before = shape.state.displacement;
-    left_before = lengthLeft(forces, smooth);
-    if (blown_up || !advance(shape, forces, search)) {
-      search = Search();
-      search.plain = kPlainCycles;
-    }
-    report.iterations += 2;
+  Course course;
+  if (goes_on_) course.past.swap(past_);
+  course.forces = forcesOf(shape);
+  greatest_ = greatest(course.forces);
+  SolveStatus status = look(shape, course);
+  if (status != SolveStatus::kOk && !goes_on_ && carryOn(shape, course.forces)) {
+    course.past.clear();
+    status = look(shape, course);
   }
-  if (status != SolveStatus::kOk) {
-    shape = best;
-    forces = forcesOf(shape);
+  for (; status == SolveStatus::kLate; status = look(shape, course)) {
+    if (course.cycles > 0 && outOfBudget()) break;
+    if (course.cycles == options_.slow) coarse_.renew(shape, hold_);
+    if (course.blown_up) {
+      shape = course.best;
+      course.forces = forcesOf(shape);
+    }
+    if (course.blown_up || !advance(shape, course.forces, course.search)) {
+      course.search = Search();
+      course.search.plain = kPlainCycles;
+    }
+    ++course.cycles;
   }
-  report.error_estimate = std::isfinite(least) ? least : 1.0;
-  describe(shape, forces, report);
+  if (status == SolveStatus::kUnconverged || course.blown_up) {
+    shape = course.best;
+    course.forces = forcesOf(shape);
+    course.error = course.best_error;
+  }
+  past_.clear();
+  if (status == SolveStatus::kLate) past_.swap(course.past);
+  report.iterations = 2 * course.cycles;
+  report.error_estimate = std::isfinite(course.error) ? course.error : 1.0;
+  describe(shape, course.forces, report);
   return status;
+}
+
+// Where the course stands: kOk, kLate while there is hope, kUnconverged. Raises layers.
+SolveStatus LayeredMethod::look(const LoadedShape& shape, Course& course) {
+  Motion smooth = smoothMotion(course.forces, shape);
+  if (raiseLayers(smooth, displacementLength(shape))) {
+    course.forces = forcesOf(shape);
+    smooth = smoothMotion(course.forces, shape);
+  }
+  const double left = lengthLeft(course.forces, smooth);
+  calibrate(course.past, shape, left);
+  course.error = relative(left, shape);
+  if (course.first < 0.0) course.first = left;
+  course.blown_up = !(left <= kBlownUp * course.first);
+  course.past.push_back({shape.state.displacement, left});
+  if (course.past.size() > kLongestPast) course.past.erase(course.past.begin());
+  if (left < course.least) {
+    course.least = left;
+    course.best = shape;
+    course.best_error = course.error;
+    course.best_cycle = course.cycles;
+  }
+  if (course.error <= options_.tolerance) return SolveStatus::kOk;
+  const bool hopeless = course.cycles >= options_.max_cycles ||
+                        course.cycles > course.best_cycle + options_.patience;
+  return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
 }
 
 double LayeredMethod::greatest(const Motion& forces) const {

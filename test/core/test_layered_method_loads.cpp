@@ -44,7 +44,7 @@ class LayeredUniaxial : public testing::TestWithParam<double> {};
 TEST_P(LayeredUniaxial, FreeAxesGivePoissonsRatioBack) {
   constexpr double kStrain = 1e-4;
   const TissueConfig config = elasticBlockOf(4, 3, 5, GetParam());
-  LayeredBlock block(config, within(1e-5));
+  LayeredBlock block(config, within(1e-7));
   std::vector<LoadingPatch> faces;
   for (const int k : {0, 5}) {
     faces.push_back(displaced(block.lattice.nodesIn(nodeBox(config, {0, 0, k}, {4, 3, k})),
@@ -55,8 +55,12 @@ TEST_P(LayeredUniaxial, FreeAxesGivePoissonsRatioBack) {
   ASSERT_EQ(report.status, SolveStatus::kOk);
   const double force = 1e4 * 0.04 * 0.03 * kStrain;
   EXPECT_NEAR(report.patches[1].force.z(), force, 2e-3 * force);
-  const Vec3 widened = block.state.displacement.back() - block.state.displacement.front();
-  EXPECT_NEAR(-widened.x() / (kStrain * 0.04), GetParam(), 2e-3 * GetParam());
+  // Nothing keeps the block from turning about z: lengths tell.
+  const int from = block.lattice.node(0, 1, 2), to = block.lattice.node(4, 1, 2);
+  const double width = (Vec3(0.04, 0.0, 0.0) + block.state.displacement[at(to)] -
+                        block.state.displacement[at(from)])
+                           .norm();
+  EXPECT_NEAR((0.04 - width) / (kStrain * 0.04), GetParam(), 2e-3 * GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Ratios, LayeredUniaxial, testing::Values(0.25, 0.45, 0.49));
@@ -70,7 +74,7 @@ TEST(LayeredLoads, SagsUnderGravityAsNewtonSays) {
   const SolveReport report = block.solve({}, nodesOf(block.lattice));
   ASSERT_EQ(exact.solve({}).status, SolveStatus::kOk);
   EXPECT_LT(exact.state.displacement.back().z(), -0.02);
-  expectHonest(block, report, exact, 1e-3);
+  expectHonest(block, report, exact, 1e-3, 10.0);
 }
 
 TEST(LayeredLoads, RegionsAHundredTimesStifferAndSofter) {

@@ -301,9 +301,9 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
   expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
   expectRefused("block.yaml --out out --out out", "--out: stands twice");
-  expectRefused("block.yaml --out out --method layered", "--method = layered: not available yet");
+  expectRefused("block.yaml --out out --method vbd", "--method = vbd: not available yet");
   expectRefused("block.yaml --out out --method magic",
-                "--method = magic: must be one of paper, newton");
+                "--method = magic: must be one of layered, paper, newton");
   expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number > 0");
   expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
   expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
@@ -369,7 +369,7 @@ TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
 }
 
 TEST_F(Simulate, ListsMethodsAndModels) {
-  EXPECT_EQ(program("--list-methods").out, "paper\nnewton\n");
+  EXPECT_EQ(program("--list-methods").out, "layered\npaper\nnewton\n");
   EXPECT_EQ(program("--list-models").out, "six_spring\nelastic\n");
   EXPECT_EQ(program("--list-methods").code, 0);
   const Outcome help = program("--help");

@@ -28,6 +28,9 @@ class CoarseLattice {
   // Costs nothing when cells, held components and rims are those of the last call.
   void build(const LoadedShape& shape, const PatchHold& hold);
 
+  // Takes the second derivative at this shape from now on; at rest when it has none that holds.
+  void renew(const LoadedShape& shape, const PatchHold& hold);
+
   // Motion of the nodes and of patches by force under forces on them. Held components do not move.
   void solve(const Motion& forces, const LoadedShape& shape, const PatchHold& hold,
              Motion& motion) const;
@@ -47,6 +50,7 @@ class CoarseLattice {
     std::array<double, kCorners> weight{};
   };
 
+  void assemble(const LoadedShape& shape, const PatchHold& hold);
   void lay(const LatticeState& state);
   void fill(Block& block, const LatticeState& rest, const PatchHold& hold);
   bool isCarried(const Cell& cell, const PatchHold& hold) const;
@@ -70,6 +74,7 @@ class CoarseLattice {
   std::vector<std::uint8_t> held_;
   std::vector<int> carriers_;
   std::vector<double> rims_;  // nodes and stiffnesses
+  LatticeState about_;        // the shape whose second derivative it is
   std::vector<Block> blocks_;
   std::vector<Place> places_;
   std::vector<int> first_group_;  // per patch: of its shift, then its turn; -1 = none

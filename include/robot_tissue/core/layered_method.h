@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct LayeredOptions {
   double tolerance = 0.01;  // of error_estimate
   double max_ms = 0.0;      // 0 = no budget; the cycle under way is finished, at least one is made
   int max_cycles = 300;
+  int slow = 12;             // cycles after which the coarse lattice is fitted to the shape
   int patience = 40;         // cycles without a better shape
   double patch_step = 0.5;   // longest motion of a patch in one solve, in spacings
   double node_step = 0.5;    // of a node in one visit, likewise
@@ -45,6 +47,12 @@ class LayeredMethod : public SolverMethod {
   double patchStep() const override;
 
  private:
+  // Before a cycle: the shape, and lengthLeft (m).
+  struct Past {
+    std::vector<Vec3> displacement;
+    double left = 0.0;
+  };
+
   // Which way the last cycle went, for the next one.
   struct Search {
     Motion direction;
@@ -52,6 +60,21 @@ class LayeredMethod : public SolverMethod {
     double promised = 0.0;  // work of that force in the cycle's own motion (J)
     bool fresh = true;
     int plain = 0;  // cycles to come that only sweep
+  };
+
+  // A solve on its way.
+  struct Course {
+    Motion forces;  // unbalanced
+    Search search;
+    std::vector<Past> past;  // the last cycles, oldest first
+    int cycles = 0;
+    double error = 0.0;  // error_estimate
+    double first = -1.0;  // lengthLeft when it began (m)
+    bool blown_up = false;
+    LoadedShape best;
+    double least = std::numeric_limits<double>::infinity();  // lengthLeft of the best (m)
+    double best_error = 1.0;
+    int best_cycle = 0;
   };
 
   void findDisturbed(const LoadedShape& shape, const std::vector<int>& disturbed);
@@ -62,11 +85,12 @@ class LayeredMethod : public SolverMethod {
   Motion smoothMotion(const Motion& forces, const LoadedShape& shape) const;
   double localLength(const Motion& forces) const;
   double lengthLeft(const Motion& forces, const Motion& smooth) const;
-  void calibrate(double went, double before, double after);
+  void calibrate(const std::vector<Past>& past, const LoadedShape& shape, double left);
   double distance(const LoadedShape& shape, const std::vector<Vec3>& from) const;
   double relative(double left, const LoadedShape& shape) const;
 
   SolveStatus iterate(LoadedShape& shape, SolveReport& report);
+  SolveStatus look(const LoadedShape& shape, Course& course);
   bool carryOn(LoadedShape& shape, Motion& forces) const;
   void rememberWay(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
   bool advance(LoadedShape& shape, Motion& forces, Search& search) const;
@@ -95,10 +119,11 @@ class LayeredMethod : public SolverMethod {
   std::vector<double> stiffness_;             // per node, at rest (N/m)
   std::vector<Eigen::MatrixXd> answers_;      // per patch by force: its stiffness, nodes held
   double factor_ = 1.0;       // of lengthLeft: what cycles showed to be left
-  double last_factor_ = 1.0;  // likewise, the last cycle alone
   double greatest_ = 0.0;                     // unbalanced node force at the start (N)
   std::vector<int> pending_;                  // nodes that may be out of balance, ascending
   std::vector<int> patch_nodes_;              // of the last solve: hard or in a rim
+  std::vector<Past> past_;                    // of the last solve, if it ran out of time
+  bool goes_on_ = false;                      // the solve under way is where that one stopped
   std::vector<Vec3> last_way_;                // of all nodes in the last solve (m)
   std::vector<Vec3> left_;                    // displacement that the last solve left
   std::shared_ptr<const CellSet> left_cells_;
