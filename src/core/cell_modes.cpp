@@ -13,8 +13,8 @@ constexpr double kSqueezed = 0.3;  // likewise
 constexpr double kSlight = 0.5 * 0.33 * 0.33;
 
 // w_s
-constexpr double kWeight[kCorners] = {0.0,       1.0,       1.0,       2.0 / 3.0,
-                                      1.0,       2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0};
+constexpr double kWeight[kCorners] = {0.0, 1.0,       1.0,       2.0 / 3.0,
+                                      1.0, 2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0};
 
 // x^(-1/3), x > 0: a guess within 4 % from the exponent, then Newton's method. std::cbrt would take
 // a third of the time of it all.
@@ -134,8 +134,7 @@ void CellModes::stiffen() {
     const double inverse = root * root * root;
     a_[cell] = shear_[cell] * root * root;
     slope_[cell] = -2.0 / 3.0 * a_[cell] * inverse;
-    pressure_[cell] =
-        0.5 * slope_[cell] * invariant_[cell] + bulk_[cell] * (volume_[cell] - 1.0);
+    pressure_[cell] = 0.5 * slope_[cell] * invariant_[cell] + bulk_[cell] * (volume_[cell] - 1.0);
     curvature_[cell] = -5.0 / 6.0 * slope_[cell] * inverse * invariant_[cell] + bulk_[cell];
   }
 }

@@ -108,7 +108,8 @@ void CoarseLattice::lay(const LatticeState& state) {
     const Cell& cell = cells[index];
     const std::array<int, 3>& low = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
     const int i = low[0] / 2, j = low[1] / 2, k = low[2] / 2;
-    const auto [found, is_new] = block_at.try_emplace(key(i, j, k), static_cast<int>(blocks_.size()));
+    const auto [found, is_new] =
+        block_at.try_emplace(key(i, j, k), static_cast<int>(blocks_.size()));
     if (is_new) {
       blocks_.emplace_back();
       for (int corner = 0; corner < kCorners; ++corner) {
@@ -195,8 +196,8 @@ std::vector<CoarseLattice::Share> CoarseLattice::sharesOf(const LoadedShape& sha
   for (int corner = 0; place.block >= 0 && corner < kCorners; ++corner) {
     if (place.weight[at(corner)] == 0.0) continue;
     Eigen::Matrix3d weight = place.weight[at(corner)] * Eigen::Matrix3d::Identity();
-    shares.push_back({blocks_[at(place.block)].coarse[at(corner)],
-                      freeBlock(weight, hold.held()[at(node)], 0)});
+    shares.push_back(
+        {blocks_[at(place.block)].coarse[at(corner)], freeBlock(weight, hold.held()[at(node)], 0)});
   }
   return shares;
 }

@@ -101,20 +101,24 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
 NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   NodeBalance balance;
-  CellModes modes(lattice_.spacing());
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Cell& cell = cells.all()[at(met->cell)];
-    balance.force += cornerWeight(cell);
-    modes.add(cellModuli(cell), cell.nodes, met->corner, state.displacement);
-  }
-  modes.solve();
-  balance.force -= modes.gradient();
-  balance.block = modes.block();
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    if (modes.suffices(static_cast<int>(met - cells.first(node)))) continue;
-    const ElasticCell squeezed = shaped(state, cells.all()[at(met->cell)]);
-    balance.force -= squeezed.gradient(met->corner);
-    balance.block += squeezed.block(met->corner);
+  for (auto first = cells.first(node); first != cells.last(node);) {
+    const auto end = std::min(cells.last(node), first + CellModes::kMost);
+    CellModes modes(lattice_.spacing());
+    for (auto met = first; met != end; ++met) {
+      const Cell& cell = cells.all()[at(met->cell)];
+      balance.force += cornerWeight(cell);
+      modes.add(cellModuli(cell), cell.nodes, met->corner, state.displacement);
+    }
+    modes.solve();
+    balance.force -= modes.gradient();
+    balance.block += modes.block();
+    for (auto met = first; met != end; ++met) {
+      if (modes.suffices(static_cast<int>(met - first))) continue;
+      const ElasticCell squeezed = shaped(state, cells.all()[at(met->cell)]);
+      balance.force -= squeezed.gradient(met->corner);
+      balance.block += squeezed.block(met->corner);
+    }
+    first = end;
   }
   return balance;
 }

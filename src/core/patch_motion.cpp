@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace robot_tissue {
+namespace {
+
+bool isLoose(const CellSet& cells, int node) { return cells.first(node) == cells.last(node); }
+
+}  // namespace
 
 PatchHold::PatchHold(const Lattice& lattice, const EnergyModel& model)
     : lattice_(lattice), model_(model) {}
@@ -16,8 +21,8 @@ void PatchHold::bind(LoadedShape& shape) {
   hard_.clear();
   for (std::size_t node = 0; node < nodes; ++node) {
     const int index = static_cast<int>(node);
-    const bool fixed = index < lattice_.nodeCount() && lattice_.isFixed(index);
-    if (fixed || shape.state.cells->isLoose(index)) held_[node] = kAllHeld;
+    if (isFixed(lattice_, *shape.state.cells, index) || isLoose(*shape.state.cells, index))
+      held_[node] = kAllHeld;
   }
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
@@ -71,8 +76,8 @@ void PatchHold::addRims(const LoadedShape& shape, int node, NodeBalance& balance
 }
 
 Vec3 PatchHold::armOf(const LoadedShape& shape, std::size_t patch, int node) const {
-  const Vec3 rest = node < lattice_.nodeCount() ? lattice_.restPosition(node) : Vec3(Vec3::Zero());
-  return rest + shape.state.displacement[at(node)] - Unknowns::centerOf(shape.patches[patch]);
+  return restPosition(lattice_, *shape.state.cells, node) + shape.state.displacement[at(node)] -
+         Unknowns::centerOf(shape.patches[patch]);
 }
 
 Motion::OfPatch PatchHold::forceOn(const LoadedShape& shape, std::size_t patch) const {

@@ -63,8 +63,8 @@ inline void expectHonest(const LayeredBlock& block, const SolveReport& report,
                          const ElasticBlock& exact, double tolerance, double most = 5.0) {
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_LE(report.error_estimate, tolerance);
-  const double error = errorOf(block.lattice, block.patches, block.state.displacement,
-                               exact.state.displacement);
+  const double error =
+      errorOf(block.lattice, block.patches, block.state.displacement, exact.state.displacement);
   EXPECT_GE(report.error_estimate, 0.5 * error);
   EXPECT_LE(report.error_estimate, most * error);
 }
@@ -86,8 +86,7 @@ inline LoadingPatch punchOn(const Lattice& lattice, const TissueModel& model,
 
 inline LoadingPatch punchByForce(const LayeredBlock& block, const TissueConfig& config,
                                  const Vec3& force, bool turns) {
-  LoadingPatch patch =
-      punchOn(block.lattice, block.model, block.state, config, Vec3(Vec3::Zero()));
+  LoadingPatch patch = punchOn(block.lattice, block.model, block.state, config, Vec3(Vec3::Zero()));
   patch.drive = LoadingPatch::Drive::kForce;
   patch.displacement.clear();
   patch.force = force;

@@ -17,10 +17,9 @@ TEST_P(LayeredPress, AgreesWithNewtonWithinTheErrorItStates) {
   const TissueConfig config = pressBlock(poisson_ratio);
   LayeredBlock block(config, within(tolerance));
   ElasticBlock exact(config);
-  const std::vector<Vec3> path = {{0, 0, -0.0002}, {0, 0, -0.004},    {0, 0, -0.008},
-                                  {0, 0, -0.012},  {0, 0, -0.016},    {0.003, 0, -0.016},
-                                  {0.006, 0, -0.016}, {0.003, 0, -0.012}, {0, 0, -0.008},
-                                  {0, 0, -0.004}};
+  const std::vector<Vec3> path = {
+      {0, 0, -0.0002},    {0, 0, -0.004},     {0, 0, -0.008},     {0, 0, -0.012}, {0, 0, -0.016},
+      {0.003, 0, -0.016}, {0.006, 0, -0.016}, {0.003, 0, -0.012}, {0, 0, -0.008}, {0, 0, -0.004}};
   for (const Vec3& place : path) {
     const LoadingPatch punch = punchOn(block.lattice, block.model, block.state, config, place);
     ASSERT_FALSE(punch.rim.empty());
@@ -57,10 +56,10 @@ TEST(Layered, BalancesEveryFreeNode) {
 TEST(Layered, SymmetricPressHasASymmetricShape) {
   const TissueConfig config = pressBlock(0.45);
   LayeredBlock block(config, within(1e-7));
-  ASSERT_EQ(block.solve({punchOn(block.lattice, block.model, block.state, config,
-                                 Vec3(0, 0, -0.005))})
-                .status,
-            SolveStatus::kOk);
+  ASSERT_EQ(
+      block.solve({punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.005))})
+          .status,
+      SolveStatus::kOk);
   for (const int node : nodesOf(block.lattice)) {
     const auto& index = block.lattice.gridIndex(node);
     const int mirrored = block.lattice.node(8 - index[0], index[1], index[2]);
@@ -78,8 +77,8 @@ TEST(Layered, TwoRunsAreEqualBitForBit) {
   LayeredBlock first(config), second(config);
   for (const double depth : {0.003, 0.006, 0.002}) {
     for (LayeredBlock* block : {&first, &second}) {
-      block->solve({punchOn(block->lattice, block->model, block->state, config,
-                            Vec3(0.0005, 0, -depth))});
+      block->solve(
+          {punchOn(block->lattice, block->model, block->state, config, Vec3(0.0005, 0, -depth))});
     }
     ASSERT_EQ(first.state.displacement, second.state.displacement);
   }
@@ -162,8 +161,8 @@ TEST(Layered, SaysSoWhenItDidNotConverge) {
   LayeredOptions options = within(1e-6);
   options.max_cycles = 2;
   LayeredBlock block(config, options);
-  const SolveReport report = block.solve(
-      {punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.004))});
+  const SolveReport report =
+      block.solve({punchOn(block.lattice, block.model, block.state, config, Vec3(0, 0, -0.004))});
   EXPECT_EQ(report.status, SolveStatus::kUnconverged);
   EXPECT_GT(report.error_estimate, 1e-6);
 }

@@ -57,9 +57,9 @@ TEST_P(LayeredUniaxial, FreeAxesGivePoissonsRatioBack) {
   EXPECT_NEAR(report.patches[1].force.z(), force, 2e-3 * force);
   // Nothing keeps the block from turning about z: lengths tell.
   const int from = block.lattice.node(0, 1, 2), to = block.lattice.node(4, 1, 2);
-  const double width = (Vec3(0.04, 0.0, 0.0) + block.state.displacement[at(to)] -
-                        block.state.displacement[at(from)])
-                           .norm();
+  const double width =
+      (Vec3(0.04, 0.0, 0.0) + block.state.displacement[at(to)] - block.state.displacement[at(from)])
+          .norm();
   EXPECT_NEAR((0.04 - width) / (kStrain * 0.04), GetParam(), 2e-3 * GetParam());
 }
 
@@ -162,8 +162,8 @@ TEST(LayeredTissue, CutTissueAgreesWithNewton) {
       {displacedPatch("punch", nodeBox(config, {5, 3, 4}, {7, 5, 4}), Vec3(0.003, 0.0, -0.006))});
   for (Tissue* tissue : {&layered, &newton}) {
     reportsOf(*tissue, press);
-    const CutReport cut = tissue->cut({Vec3(0.035, -1, 0.015), Vec3(0.035, 1, 0.015),
-                                       Vec3(0.035, 1, 0.1), Vec3(0.035, -1, 0.1)});
+    const CutReport cut = tissue->cut(
+        {Vec3(0.035, -1, 0.015), Vec3(0.035, 1, 0.015), Vec3(0.035, 1, 0.1), Vec3(0.035, -1, 0.1)});
     ASSERT_GT(cut.springs_cut, 0);
     EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
   }

@@ -2,8 +2,8 @@
 // the same numbers, without the barrier.
 //
 // A cell is seen from one of its corners. From there its corners are k = 0 .. 7 (bits of k: axes,
-// itself 0), and the modes of the trilinear cell are M_s = sum over k of (-1)^(bits in k and s) x_k.
-// Then (own)
+// itself 0), and the modes of the trilinear cell are M_s = sum over k of (-1)^(bits in k and s)
+// x_k. Then (own)
 //
 //   F e_a = -+ M_a / 4h,   I1 = sum over s of w_s |M_s|^2 / 16h^2
 //

@@ -68,7 +68,7 @@ class LayeredMethod : public SolverMethod {
     Search search;
     std::vector<Past> past;  // the last cycles, oldest first
     int cycles = 0;
-    double error = 0.0;  // error_estimate
+    double error = 0.0;   // error_estimate
     double first = -1.0;  // lengthLeft when it began (m)
     bool blown_up = false;
     LoadedShape best;
@@ -116,16 +116,16 @@ class LayeredMethod : public SolverMethod {
   PatchHold hold_;
   CoarseLattice coarse_;
   CellLayers layers_;
-  std::vector<double> stiffness_;             // per node, at rest (N/m)
-  std::vector<Eigen::MatrixXd> answers_;      // per patch by force: its stiffness, nodes held
-  double factor_ = 1.0;       // of lengthLeft: what cycles showed to be left
-  double greatest_ = 0.0;                     // unbalanced node force at the start (N)
-  std::vector<int> pending_;                  // nodes that may be out of balance, ascending
-  std::vector<int> patch_nodes_;              // of the last solve: hard or in a rim
-  std::vector<Past> past_;                    // of the last solve, if it ran out of time
-  bool goes_on_ = false;                      // the solve under way is where that one stopped
-  std::vector<Vec3> last_way_;                // of all nodes in the last solve (m)
-  std::vector<Vec3> left_;                    // displacement that the last solve left
+  std::vector<double> stiffness_;         // per node, at rest (N/m)
+  std::vector<Eigen::MatrixXd> answers_;  // per patch by force: its stiffness, nodes held
+  double factor_ = 1.0;                   // of lengthLeft: what cycles showed to be left
+  double greatest_ = 0.0;                 // unbalanced node force at the start (N)
+  std::vector<int> pending_;              // nodes that may be out of balance, ascending
+  std::vector<int> patch_nodes_;          // of the last solve: hard or in a rim
+  std::vector<Past> past_;                // of the last solve, if it ran out of time
+  bool goes_on_ = false;                  // the solve under way is where that one stopped
+  std::vector<Vec3> last_way_;            // of all nodes in the last solve (m)
+  std::vector<Vec3> left_;                // displacement that the last solve left
   std::shared_ptr<const CellSet> left_cells_;
   std::chrono::steady_clock::time_point started_;
 };
