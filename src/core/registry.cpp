@@ -53,12 +53,12 @@ std::unique_ptr<SolverMethod> makeNewton(const SolverConfig& config, const Latti
 }  // namespace
 
 const std::vector<std::string>& modelNames() {
-  static const std::vector<std::string> names = {"six_spring", "elastic"};
+  static const std::vector<std::string> names = {"elastic", "six_spring"};
   return names;
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"layered", "paper", "newton"};
+  static const std::vector<std::string> names = {"layered", "newton", "paper"};
   return names;
 }
 
@@ -66,7 +66,7 @@ const std::vector<std::string>& methodNames() {
 // paper's method moves along springs, which do not reach the ghosts that cuts give the cells.
 std::vector<std::string> methodsFor(const std::string& model) {
   if (model == "six_spring") return {"paper"};
-  return {"newton"};
+  return {"layered", "newton"};
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {

@@ -16,11 +16,18 @@ namespace robot_tissue {
 // A block of so many cells from the origin; 10 kPa, 1000 kg/m^3; floating.
 inline TissueConfig blockOf(int cells_x, int cells_y, int cells_z, double spacing = 0.01) {
   TissueConfig config;
+  config.model = "six_spring";
   config.shape.max = Vec3(cells_x, cells_y, cells_z) * spacing;
   config.spacing = spacing;
   config.material.young_modulus = 1e4;
   config.material.density = 1000.0;
   return config;
+}
+
+inline SolverConfig paperSolver() {
+  SolverConfig solver;
+  solver.method = "paper";
+  return solver;
 }
 
 // Box of the nodes first..last (grid indices).

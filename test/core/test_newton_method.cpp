@@ -248,7 +248,7 @@ TEST(Newton, IsRefusedForTheSixSpringLattice) {
 
 TEST(PaperMethod, IsRefusedForElasticTissue) {
   const std::string line =
-      inputErrorOf([] { const Tissue tissue(pressedBlock(0.45), SolverConfig()); });
+      inputErrorOf([] { const Tissue tissue(pressedBlock(0.45), paperSolver()); });
   EXPECT_TRUE(isOneLine(line) && mentions(line, "solver.method") && mentions(line, "paper") &&
               mentions(line, "allowed: newton"))
       << line;

@@ -15,7 +15,7 @@ const Box kRight = nodeBox(kBlock, {14, 4, 8}, {17, 8, 8});
 const Vec3 kDown(0.0, 0.0, -3e-3);
 
 TEST(Tissue, BeginsAtRest) {
-  const Tissue tissue(kBlock, SolverConfig());
+  const Tissue tissue(kBlock, paperSolver());
   expectAtRest(tissue);
   EXPECT_TRUE(tissue.patches().empty());
   EXPECT_TRUE(tissue.isUntouched());
@@ -26,7 +26,7 @@ TEST(Tissue, BeginsAtRest) {
 TEST(Tissue, RefusesUnknownModelAndMethod) {
   TissueConfig config = kBlock;
   config.model = "jelly";
-  std::string line = inputErrorOf([&] { const Tissue tissue(config, SolverConfig()); });
+  std::string line = inputErrorOf([&] { const Tissue tissue(config, paperSolver()); });
   EXPECT_TRUE(isOneLine(line) && mentions(line, "tissue.model") && mentions(line, "jelly") &&
               mentions(line, "six_spring"))
       << line;
@@ -39,7 +39,7 @@ TEST(Tissue, RefusesUnknownModelAndMethod) {
 }
 
 TEST(TissueLoad, ReachesTheWholeDisplacementInTheGivenIncrements) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   std::vector<double> depths;
   int called = 0;
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}, 6),
@@ -62,7 +62,7 @@ TEST(TissueLoad, ReachesTheWholeDisplacementInTheGivenIncrements) {
 }
 
 TEST(TissueLoad, ChoosesIncrementsNoLongerThanTheMethodFollows) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   for (const double steps : {0.5, 1.0, 3.0, 3.5}) {
     const Vec3 way(0.0, 0.0, -steps * tissue.stepLength());
     EXPECT_EQ(reportsOf(tissue, loadOf({displacedPatch("left", kLeft, way)})).size(),
@@ -72,7 +72,7 @@ TEST(TissueLoad, ChoosesIncrementsNoLongerThanTheMethodFollows) {
 }
 
 TEST(TissueLoad, ChoosesMoreIncrementsForMoreForce) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const auto count = [&](double push) {
     tissue.reset();
     return reportsOf(tissue, loadOf({forcedPatch("left", kLeft, Vec3(0.0, 0.0, -push))})).size();
@@ -82,7 +82,7 @@ TEST(TissueLoad, ChoosesMoreIncrementsForMoreForce) {
 }
 
 TEST(TissueLoad, CountsDisplacementFromRest) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}));
   const auto reports = reportsOf(tissue, loadOf({displacedPatch("left", kLeft, 2.0 * kDown)}, 3));
   ASSERT_EQ(reports.size(), 3u);
@@ -92,7 +92,7 @@ TEST(TissueLoad, CountsDisplacementFromRest) {
 }
 
 TEST(TissueLoad, CountsForceFromNoneAndGoesThereFromTheForceBefore) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const Vec3 force(0.0, 0.0, -0.2);
   tissue.load(loadOf({forcedPatch("left", kLeft, force)}));
   const auto reports = reportsOf(tissue, loadOf({forcedPatch("left", kLeft, 2.0 * force)}, 4));
@@ -104,7 +104,7 @@ TEST(TissueLoad, CountsForceFromNoneAndGoesThereFromTheForceBefore) {
 }
 
 TEST(TissueLoad, ForceThenDisplacementOnTheSamePatch) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const Vec3 force(0.0, 0.0, -0.3);
   auto reports = reportsOf(tissue, loadOf({forcedPatch("left", kLeft, force)}));
   EXPECT_LT((tissue.answerOf("left", reports.back()).force - force).norm(), 1e-5 * force.norm());
@@ -117,7 +117,7 @@ TEST(TissueLoad, ForceThenDisplacementOnTheSamePatch) {
 }
 
 TEST(TissueLoad, DisplacementThenForceOnTheSamePatch) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}));
   const Vec3 force(0.02, 0.0, -0.1);
   const auto reports = reportsOf(tissue, loadOf({forcedPatch("left", kLeft, force)}));
@@ -125,7 +125,7 @@ TEST(TissueLoad, DisplacementThenForceOnTheSamePatch) {
 }
 
 TEST(TissueLoad, SeveralPatchesStandTogether) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const Vec3 force(0.0, 0.0, -0.2);
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}));
   const auto reports = reportsOf(tissue, loadOf({forcedPatch("right", kRight, force)}));
@@ -140,7 +140,7 @@ TEST(TissueLoad, SeveralPatchesStandTogether) {
 }
 
 TEST(TissueLoad, FreeComponentLetsNodesSlide) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   PatchConfig plate = displacedPatch("left", kLeft, kDown);
   (*plate.displacement)[0] = std::nullopt;
   tissue.load(loadOf({plate}));
@@ -157,7 +157,7 @@ TEST(TissueLoad, FreeComponentLetsNodesSlide) {
 }
 
 TEST(TissueReport, VolumeIsThatOfRestAndFallsUnderAPress) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   EXPECT_NEAR(tissue.settle().volume_ratio, 1.0, 1e-12);
   double ratio = 1.0;
   for (const SolveReport& report :
@@ -174,7 +174,7 @@ TEST(TissueReport, VolumeIsThatOfRestAndFallsUnderAPress) {
 
 TEST(TissueReport, SaysWhenCellsAreTurnedInsideOut) {
   const TissueConfig column = withFixedBottom(blockOf(1, 1, 2));
-  Tissue tissue(column, SolverConfig());
+  Tissue tissue(column, paperSolver());
   const Box top = nodeBox(column, {0, 0, 2}, {1, 1, 2});
   auto reports = reportsOf(tissue, loadOf({displacedPatch("top", top, Vec3(0, 0, -1e-3))}, 1));
   EXPECT_EQ(reports.back().status, SolveStatus::kOk);
@@ -185,7 +185,7 @@ TEST(TissueReport, SaysWhenCellsAreTurnedInsideOut) {
 }
 
 TEST(TissueReport, VerticesFollowTheNodes) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}));
   const Surface& surface = tissue.surface();
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {

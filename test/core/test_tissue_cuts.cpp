@@ -103,7 +103,7 @@ TEST_F(CutTissue, ResetMendsIt) {
 
 TEST_F(CutTissue, OfSpringsAloneHasNoGhosts) {
   config_.model = "six_spring";
-  Tissue springs(config_, SolverConfig());
+  Tissue springs(config_, paperSolver());
   ASSERT_GT(springs.cut(upright(1.5, 0.5)).springs_cut, 0);
   EXPECT_EQ(springs.state().displacement.size(), at(nodes()));
 }

@@ -48,7 +48,7 @@ Vec3 reaction(const Tissue& tissue) {  // of the fixed nodes on the tissue (N)
 
 TEST(Gravity, TopOfAColumnSinksByTheAnalyticLengthWithinTheTolerance) {
   const TissueConfig config = standingColumn();
-  SolverConfig solver;
+  SolverConfig solver = paperSolver();
   solver.tolerance = 0.01;
   Tissue tissue(config, solver);
   const SolveReport report = tissue.settle();
@@ -64,7 +64,7 @@ TEST(Gravity, TopOfAColumnSinksByTheAnalyticLengthWithinTheTolerance) {
 
 TEST(Gravity, SettledOnTheProfileIsTheAnalyticParabola) {
   const TissueConfig config = standingColumn();
-  SolverConfig solver;
+  SolverConfig solver = paperSolver();
   solver.tolerance = 1e-3;
   Tissue tissue(config, solver);
   for (int i = 0; i < 4; ++i) tissue.settle();
@@ -77,7 +77,7 @@ TEST(Gravity, SettledOnTheProfileIsTheAnalyticParabola) {
 
 TEST(Gravity, GroundCarriesTheWeight) {
   const TissueConfig config = standingColumn();
-  Tissue tissue(config, SolverConfig());
+  Tissue tissue(config, paperSolver());
   tissue.settle();
   EXPECT_NEAR(reaction(tissue).z(), weight(config), 0.01 * weight(config));
   EXPECT_LT(reaction(tissue).head<2>().norm(), 0.01 * weight(config));
@@ -85,7 +85,7 @@ TEST(Gravity, GroundCarriesTheWeight) {
 
 TEST(Gravity, SoftHangingColumnGetsLongerByAsMuch) {
   const TissueConfig config = hangingColumn();  // by 5 % of its length
-  Tissue tissue(config, SolverConfig());
+  Tissue tissue(config, paperSolver());
   ASSERT_EQ(tissue.settle().status, SolveStatus::kOk);
   for (const int node : tissue.lattice().nodesIn(nodeBox(config, {0, 0, 0}, {1, 1, 0}))) {
     const Vec3& moved = tissue.state().displacement[at(node)];
@@ -95,7 +95,7 @@ TEST(Gravity, SoftHangingColumnGetsLongerByAsMuch) {
 }
 
 TEST(Gravity, SoftStandingColumnTopplesAndIsNotCalledOk) {
-  Tissue tissue(standingColumn(1e4), SolverConfig());
+  Tissue tissue(standingColumn(1e4), paperSolver());
   const SolveReport report = tissue.settle();
   EXPECT_NE(report.status, SolveStatus::kOk);
   for (const Vec3& moved : tissue.state().displacement) EXPECT_TRUE(moved.allFinite());
@@ -103,7 +103,7 @@ TEST(Gravity, SoftStandingColumnTopplesAndIsNotCalledOk) {
 
 TEST(Gravity, ReleasedColumnSettlesToItsWeightAgain) {
   const TissueConfig config = standingColumn();
-  Tissue tissue(config, SolverConfig());
+  Tissue tissue(config, paperSolver());
   tissue.settle();
   const std::vector<Vec3> settled = tissue.state().displacement;
   const std::vector<Vec3> vertices = tissue.vertices();
@@ -117,7 +117,7 @@ TEST(Gravity, ReleasedColumnSettlesToItsWeightAgain) {
 }
 
 TEST(Gravity, WithoutItSettlingChangesNothing) {
-  Tissue tissue(withFixedBottom(blockOf(3, 3, 3)), SolverConfig());
+  Tissue tissue(withFixedBottom(blockOf(3, 3, 3)), paperSolver());
   const SolveReport report = tissue.settle();
   EXPECT_EQ(report.status, SolveStatus::kOk);
   expectAtRest(tissue);
@@ -125,7 +125,7 @@ TEST(Gravity, WithoutItSettlingChangesNothing) {
 
 TEST(Gravity, SurfaceSinksWithTheColumn) {
   const TissueConfig config = standingColumn();
-  Tissue tissue(config, SolverConfig());
+  Tissue tissue(config, paperSolver());
   const SolveReport report = tissue.settle();
   // The mean depth is the top's: volume ratio = 1 - sink / length.
   EXPECT_NEAR(report.volume_ratio, 1.0 - topSinks(config) / length(config),

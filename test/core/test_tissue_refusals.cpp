@@ -17,7 +17,7 @@ const Vec3 kDown(0.0, 0.0, -2e-3);
 // A tissue that is loaded and cut, so that there is something to lose.
 class Refusal : public ::testing::Test {
  protected:
-  Refusal() : tissue_(kBlock, SolverConfig()) {
+  Refusal() : tissue_(kBlock, paperSolver()) {
     tissue_.cut({{0.055, -0.1, 0.025}, {0.055, 0.1, 0.025}, {0.055, 0.1, 0.1}, {0.055, -0.1, 0.1}});
     tissue_.load(loadOf({displacedPatch("punch", kPunch, kDown)}));
     EXPECT_TRUE(isDeformed(tissue_));

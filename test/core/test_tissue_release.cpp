@@ -18,7 +18,7 @@ std::vector<Vec3> bladeAcross(double x, double z_from) {
 
 class LoadedTissue : public ::testing::Test {
  protected:
-  LoadedTissue() : tissue_(kBlock, SolverConfig()) {
+  LoadedTissue() : tissue_(kBlock, paperSolver()) {
     last_ = reportsOf(tissue_, loadOf({displacedPatch("left", kLeft, kDown),
                                        displacedPatch("right", kRight, kDown)}))
                 .back();
@@ -73,7 +73,7 @@ TEST_F(LoadedTissue, ForceReleasedReturnsToRestToTheLastBit) {
 }
 
 TEST_F(LoadedTissue, ResetMendsEverythingToTheLastBit) {
-  const Tissue untouched(kBlock, SolverConfig());
+  const Tissue untouched(kBlock, paperSolver());
   tissue_.cut(bladeAcross(0.095, 0.022));
   ASSERT_GT(tissue_.state().springs_cut, 0);
   const unsigned version = tissue_.surfaceVersion();
@@ -128,7 +128,7 @@ TEST_F(LoadedTissue, ToolsComeAfterNamedPatchesAndLeaveThemStanding) {
 }
 
 TEST(TissueCut, LowersTheSpringsAndRaisesThePieces) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const unsigned version = tissue.surfaceVersion();
   const std::size_t triangles = tissue.surface().triangles.size();
   CutReport report = tissue.cut(bladeAcross(0.095, 0.022));
@@ -149,7 +149,7 @@ TEST(TissueCut, LowersTheSpringsAndRaisesThePieces) {
 }
 
 TEST(TissueCut, BesideTheTissueChangesNothing) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   const Snapshot before(tissue);
   const CutReport report = tissue.cut(bladeAcross(0.5, -0.1));
   EXPECT_EQ(report.springs_cut, 0);
@@ -158,7 +158,7 @@ TEST(TissueCut, BesideTheTissueChangesNothing) {
 }
 
 TEST(TissueCut, PieceThatIsCutOffFeelsNoLoadOnTheOther) {
-  Tissue tissue(kBlock, SolverConfig());
+  Tissue tissue(kBlock, paperSolver());
   tissue.cut(bladeAcross(0.055, -0.1));
   const Box near_cut = nodeBox(kBlock, {2, 3, 5}, {5, 5, 5});
   tissue.load(loadOf({displacedPatch("left", near_cut, 3.0 * kDown)}));
@@ -176,7 +176,7 @@ TEST(TissueCut, PieceThatIsCutOffFeelsNoLoadOnTheOther) {
 TEST(TissueCut, OpensUnderTension) {
   TissueConfig config = blockOf(8, 2, 2);
   config.fixed.push_back(nodeBox(config, {0, 0, 0}, {0, 2, 2}));
-  Tissue tissue(config, SolverConfig());
+  Tissue tissue(config, paperSolver());
   tissue.load(
       loadOf({displacedPatch("end", nodeBox(config, {8, 0, 0}, {8, 2, 2}), Vec3(8e-3, 0.0, 0.0))}));
   for (int i = 0; i < 5; ++i) tissue.settle();

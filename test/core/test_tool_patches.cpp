@@ -23,7 +23,7 @@ Pose poseAt(const Vec3& position, double angle = 0.0, const Vec3& axis = Vec3::U
 class ToolPatchesTest : public ::testing::Test {
  protected:
   ToolPatchesTest()
-      : tissue_(kBlock, SolverConfig()), patches_(tissue_.lattice(), {"probe", "jaw"}) {
+      : tissue_(kBlock, paperSolver()), patches_(tissue_.lattice(), {"probe", "jaw"}) {
     pose_.tools = {poseAt(Vec3(0.03, 0.03, 0.05)), poseAt(Vec3(0.0, 0.1, 0.05), 0.4)};
   }
 

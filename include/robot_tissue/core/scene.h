@@ -30,7 +30,7 @@ struct TissueConfig {
   std::string frame_id = "tissue";
   Box shape;
   double spacing = 0.0;
-  std::string model = "six_spring";
+  std::string model = "elastic";
   Material material;
   std::vector<Region> regions;  // a later one wins where two overlap
   std::vector<Box> fixed;       // nodes in these never move; none: the block floats in space
@@ -38,7 +38,7 @@ struct TissueConfig {
 };
 
 struct SolverConfig {
-  std::string method = "paper";
+  std::string method = "layered";
   double tolerance = 0.01;  // relative, 0 < tolerance < 1
   double max_ms = 0.0;      // budget of one update; 0 = none
   int threads = 1;
