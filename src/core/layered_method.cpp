@@ -52,6 +52,17 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   return report;
 }
 
+void LayeredMethod::forget() {
+  coarse_.forget();
+  factor_ = 1.0;
+  pending_.clear();
+  patch_nodes_.clear();
+  past_.clear();
+  last_way_.clear();
+  left_.clear();
+  left_cells_.reset();
+}
+
 // Pending are nodes that the last solve left so, and all that something has happened to since.
 void LayeredMethod::findDisturbed(const LoadedShape& shape, const std::vector<int>& disturbed) {
   const LatticeState& state = shape.state;

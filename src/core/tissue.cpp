@@ -68,6 +68,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
 
 void Tissue::reset() {
   const bool was_cut = state_.springs_cut > 0;
+  method_->forget();
   state_ = lattice_.restState();
   patches_.clear();
   named_patches_ = 0;
@@ -110,6 +111,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
 // holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
 SolveReport Tissue::solveFromRest() {
   const std::vector<LoadingPatch> standing = patches_;
+  method_->forget();
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   SolveReport report;
   if (has_gravity_) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
+#include "robot_tissue/core/registry.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {
@@ -12,13 +14,20 @@ constexpr double kSpacing = 0.005;
 constexpr double kTop = 0.05;
 constexpr double kRadius = 0.01;
 
-inline TissueConfig block() {
+inline TissueConfig block(const std::string& model = "elastic") {
   TissueConfig tissue;
+  tissue.model = model;
   tissue.shape.max = Vec3(0.1, 0.1, kTop);
   tissue.spacing = kSpacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back({Vec3(-1, -1, -1e-6), Vec3(1, 1, 1e-6)});
   return tissue;
+}
+
+inline SolverConfig methodOf(const std::string& model) {
+  SolverConfig solver;
+  solver.method = methodsFor(model).front();
+  return solver;
 }
 
 // A sphere at `center` in the frame of its link.

@@ -129,10 +129,10 @@ TEST(GoodScene, OnlyTheTissueIsNeeded) {
   const std::string text = kNodeScene.substr(0, kNodeScene.find("tools:"));
   const Scene scene = parseText(text, SceneUser::kRunner);
   EXPECT_EQ(scene.tissue.frame_id, "tissue");
-  EXPECT_EQ(scene.tissue.model, "six_spring");
+  EXPECT_EQ(scene.tissue.model, "elastic");
   EXPECT_EQ(scene.tissue.material.density, 1000.0);
   EXPECT_EQ(scene.tissue.gravity, Vec3(0.0, 0.0, 0.0));
-  EXPECT_EQ(scene.solver.method, "paper");
+  EXPECT_EQ(scene.solver.method, "layered");
   EXPECT_EQ(scene.solver.tolerance, 0.01);
   EXPECT_EQ(scene.solver.max_ms, 0.0);
   EXPECT_EQ(scene.solver.threads, 1);
@@ -277,13 +277,15 @@ TEST_F(SceneFolder, ElasticTakesNewtonWhichIgnoresTheTolerance) {
   EXPECT_EQ(scene.remarks[0], "--tolerance = 0.5: ignored, method newton solves exactly");
 }
 
-TEST_F(SceneFolder, ElasticTakesNewtonUnlessTold) {
+TEST_F(SceneFolder, EveryModelHasAMethodOfItsOwnUnlessTold) {
   const std::string elastic = replaced(kRunnerScene, "six_spring", "elastic");
   EXPECT_THROW(loadScene(write("block.yaml", elastic)), InputError);
-  const Scene scene = loadScene(
-      write("block.yaml", replaced(elastic, "method: paper, tolerance: 0.02, max_ms", "max_ms")));
-  EXPECT_EQ(scene.solver.method, "newton");
-  EXPECT_TRUE(scene.remarks.empty());
+  for (const auto& [text, method] : {std::pair(elastic, "layered"), {kRunnerScene, "paper"}}) {
+    const std::string untold = replaced(text, "method: paper, tolerance: 0.02, max_ms", "max_ms");
+    const Scene scene = loadScene(write("block.yaml", untold));
+    EXPECT_EQ(scene.solver.method, method);
+    EXPECT_TRUE(scene.remarks.empty());
+  }
 }
 
 TEST_F(SceneFolder, MeshesAreFoundFromTheScenesFolder) {

@@ -28,6 +28,9 @@ class CoarseLattice {
   // Costs nothing when cells, held components and rims are those of the last call.
   void build(const LoadedShape& shape, const PatchHold& hold);
 
+  // Builds anew at the next call, from rest.
+  void forget() { cells_.reset(); }
+
   // Takes the second derivative at this shape from now on; at rest when it has none that holds.
   void renew(const LoadedShape& shape, const PatchHold& hold);
 

@@ -43,6 +43,7 @@ class LayeredMethod : public SolverMethod {
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
+  void forget() override;
   bool joinsRims() const override { return true; }
   double patchStep() const override;
 

@@ -17,6 +17,9 @@ class SolverMethod {
   virtual SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                             LatticeState& state) = 0;
 
+  // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
+  virtual void forget() {}
+
   // Whether patches may have rim springs and may turn; if not, all their nodes are hard.
   virtual bool joinsRims() const { return false; }
 
