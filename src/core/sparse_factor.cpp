@@ -2,6 +2,9 @@
 
 #include <Eigen/CholmodSupport>
 
+// Of OpenBLAS, which CHOLMOD may call as its BLAS; null with another one.
+extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
+
 namespace robot_tissue {
 
 struct SparseFactor::Library {
@@ -10,6 +13,9 @@ struct SparseFactor::Library {
 
 SparseFactor::SparseFactor() : library_(std::make_unique<Library>()) {
   library_->cholesky.cholmod().print = 0;  // a matrix that is not positive definite is no news
+  // Its threads wait in a busy loop, for longer than our small fronts take, and split sums in a way
+  // that depends on their number.
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
 }
 
 SparseFactor::~SparseFactor() = default;
