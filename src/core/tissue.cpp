@@ -10,6 +10,12 @@
 #include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
+namespace {
+
+constexpr double kToolStep = 0.2;  // of the spacing
+
+}  // namespace
+
 Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
     : lattice_(tissue),
       state_(lattice_.restState()),
@@ -23,7 +29,10 @@ Tissue::~Tissue() = default;
 
 Vec3 Tissue::nodeForce(int node) const { return model_->nodeForce(state_, node); }
 
-double Tissue::stepLength() const { return method_->patchStep(); }
+// Contacts are found anew after each step: what a tool meets on the way must not be far.
+double Tissue::stepLength() const {
+  return std::min(method_->patchStep(), kToolStep * lattice_.spacing());
+}
 
 SolveReport Tissue::settle() { return solve(freeNodes()); }
 
