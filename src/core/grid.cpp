@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
@@ -14,15 +15,6 @@ bool NodeRange::empty() const {
   return first[0] > last[0] || first[1] > last[1] || first[2] > last[2];
 }
 
-bool NodeRange::intersects(const NodeRange& other) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::max(first[axis], other.first[axis]) > std::min(last[axis], other.last[axis])) {
-      return false;
-    }
-  }
-  return true;
-}
-
 Grid::Grid(const Box& shape, double spacing) : shape_(shape), spacing_(spacing) {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = std::round((shape.max[axis] - shape.min[axis]) / spacing);
@@ -30,9 +22,62 @@ Grid::Grid(const Box& shape, double spacing) : shape_(shape), spacing_(spacing) 
   }
 }
 
-NodeRange Grid::nodesIn(const Box& box) const { return pointsIn(box, 0.0); }
+Grid::Grid(const Grid& whole, std::vector<std::uint8_t> cells)
+    : shape_(whole.shape_),
+      spacing_(whole.spacing_),
+      size_(whole.size_),
+      cells_(std::move(cells)),
+      nodes_(static_cast<std::size_t>(size_[0]) * at(size_[1]) * at(size_[2]), 0) {
+  for (int cell = 0; cell < cellCount(); ++cell) {
+    if (cells_[at(cell)] == 0) continue;
+    for (const int point : cornersOf(cell)) nodes_[at(point)] = 1;
+  }
+}
 
-bool Grid::holdsCell(const Box& box) const { return !pointsIn(box, 0.5).empty(); }
+NodeRange Grid::nodesIn(const Box& box) const { return shrunk(pointsIn(box, 0.0)); }
+
+bool Grid::shareNode(const NodeRange& a, const NodeRange& b) const {
+  NodeRange common;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    common.first[axis] = std::max(a.first[axis], b.first[axis]);
+    common.last[axis] = std::min(a.last[axis], b.last[axis]);
+  }
+  return !shrunk(common).empty();
+}
+
+bool Grid::holdsCell(const Box& box) const {
+  const NodeRange range = pointsIn(box, 0.5);
+  if (cells_.empty()) return !range.empty();
+  for (int k = range.first[2]; k <= range.last[2]; ++k) {
+    for (int j = range.first[1]; j <= range.last[1]; ++j) {
+      for (int i = range.first[0]; i <= range.last[0]; ++i) {
+        if (cells_[at(i + (size_[0] - 1) * (j + (size_[1] - 1) * k))] != 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// The smallest range with the same nodes.
+NodeRange Grid::shrunk(const NodeRange& range) const {
+  if (nodes_.empty() || range.empty()) return range;
+  NodeRange found{range.last, range.first};
+  bool any = false;
+  for (int k = range.first[2]; k <= range.last[2]; ++k) {
+    for (int j = range.first[1]; j <= range.last[1]; ++j) {
+      for (int i = range.first[0]; i <= range.last[0]; ++i) {
+        if (nodes_[at(i + size_[0] * (j + size_[1] * k))] == 0) continue;
+        any = true;
+        const std::array<int, 3> index = {i, j, k};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          found.first[axis] = std::min(found.first[axis], index[axis]);
+          found.last[axis] = std::max(found.last[axis], index[axis]);
+        }
+      }
+    }
+  }
+  return any ? found : NodeRange{{0, 0, 0}, {-1, -1, -1}};
+}
 
 std::array<int, 8> Grid::cornersOf(int cell) const {
   const int row = cell / (size_[0] - 1);

@@ -2,23 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "robot_tissue/core/cut.h"
 #include "robot_tissue/core/material.h"
 
 namespace robot_tissue {
 namespace {
-
-Grid makeGrid(const Box& shape, double spacing) {
-  const Vec3 extent = shape.max - shape.min;
-  if (!spacingFits(extent, spacing)) {
-    std::ostringstream line;
-    line << "tissue.spacing: " << spacing << ": the shape is " << extent.x() << " x " << extent.y()
-         << " x " << extent.z() << " m; allowed: a whole number of spacings along each axis";
-    throw InputError(line.str());
-  }
-  return Grid(shape, spacing);
-}
 
 // What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any
 // cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
@@ -55,10 +44,11 @@ const char* toString(SolveStatus status) {
   return "UNCONVERGED";
 }
 
-Lattice::Lattice(const TissueConfig& config) : grid_(makeGrid(config.shape, config.spacing)) {
-  const std::vector<double> filled(at(grid_.cellCount()), 1.0);
-  placeNodes(filled);
-  placeCells(filled);
+Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config)) {}
+
+Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
+  placeNodes(tissue.filled);
+  placeCells(tissue.filled);
   placeSprings();
   weigh(config);
   fix(config.fixed);
@@ -191,6 +181,7 @@ LatticeState Lattice::restState() const {
   state.displacement.assign(index_of_.size(), Vec3::Zero());
   state.cells = cells_;
   state.severed.assign(springs_.size(), 0);
+  state.pieces = countPieces(*this, state);
   return state;
 }
 

@@ -68,11 +68,13 @@ class RimBuilder {
     }
   }
 
-  // All cells at the node lie on one side of it.
+  // All cells at the node lie on one side of it, and the material reaches up to the node: where a
+  // mesh fills cells in part, the surface runs somewhere between the nodes.
   bool isOnSurface(int node, int axis) const {
     bool below = false, above = false;
     const CellSet& cells = *state_.cells;
     for (auto met = cells.first(node); met != cells.last(node); ++met) {
+      if (lattice_.cells()[at(cells.all()[at(met->cell)].place)].share < 1.0) return false;
       ((met->corner >> axis & 1) != 0 ? below : above) = true;
     }
     return below != above;

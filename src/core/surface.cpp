@@ -187,16 +187,7 @@ void deform(const Surface& surface, const std::vector<Vec3>& displacement,
 }
 
 double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices) {
-  if (vertices.empty()) return 0.0;
-  const Vec3 origin = vertices.front();  // near the triangles, so that little cancels
-  double six_volumes = 0.0;
-  for (const auto& triangle : surface.triangles) {
-    const Vec3 a = vertices[at(triangle[0])] - origin;
-    const Vec3 b = vertices[at(triangle[1])] - origin;
-    const Vec3 c = vertices[at(triangle[2])] - origin;
-    six_volumes += a.dot(b.cross(c));
-  }
-  return six_volumes / 6.0;
+  return enclosedVolume(vertices, surface.triangles);
 }
 
 }  // namespace robot_tissue

@@ -6,6 +6,7 @@
 
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/cut.h"
+#include "robot_tissue/core/mesh_surface.h"
 #include "robot_tissue/core/registry.h"
 #include "robot_tissue/core/split_cells.h"
 
@@ -22,6 +23,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       model_(makeModel(tissue, lattice_)),
       method_(makeMethod(solver, lattice_, *model_)),
       has_gravity_(!tissue.gravity.isZero()) {
+  if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
 }
 
@@ -163,7 +165,8 @@ void Tissue::describeShape(SolveReport& report) {
 }
 
 void Tissue::rebuildSurface() {
-  surface_ = extractSurface(lattice_, state_);
+  surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
+                                     : meshSurface(lattice_, state_, mesh_);
   ++surface_version_;
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;

@@ -216,11 +216,9 @@ void ToolPatches::findOutwardNormals(const Tissue& tissue) {
     const Vec3& a = surface.rest[at(triangle[0])];
     const Vec3 area = (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
     for (const int vertex : triangle) {
-      const int node = surface.node[at(vertex)];
-      if (node < 0) continue;
-      outward_[at(node)] += area;
-      const int ghost = surface.carriers[at(vertex)].back().node;
-      if (cells_->isGhost(ghost)) outward_[at(ghost)] += area;
+      for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
+        outward_[at(carrier.node)] += carrier.weight * area;
+      }
     }
   }
   surface_version_ = tissue.surfaceVersion();

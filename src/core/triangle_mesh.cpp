@@ -1,6 +1,7 @@
 #include "robot_tissue/core/triangle_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -63,6 +64,20 @@ double enclosedVolume(const std::vector<Vec3>& vertices,
     six_volumes += a.dot(b.cross(c));
   }
   return six_volumes / 6.0;
+}
+
+bool encloses(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
+              const Vec3& point) {
+  double half_angles = 0.0;  // half of the solid angle, 2 pi inside
+  for (const MeshTriangle& triangle : triangles) {
+    const Vec3 a = vertices[at(triangle[0])] - point;
+    const Vec3 b = vertices[at(triangle[1])] - point;
+    const Vec3 c = vertices[at(triangle[2])] - point;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    half_angles +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return half_angles > M_PI;
 }
 
 TriangleMesh welded(const TriangleMesh& mesh) {

@@ -247,7 +247,10 @@ Vec3 Pipeline::wayOut(std::size_t tool, const Pose& tissue_T_tool) {
   const Box box = tissue_.lattice().bounds();
   const Vec3 center = tissue_T_tool * finder_.center(tool);
   const Vec3 below = center - box.min, above = box.max - center;
-  if (finder_.reach(tool) <= 0.0 || below.minCoeff() <= 0.0 || above.minCoeff() <= 0.0) return way;
+  if (finder_.reach(tool) <= 0.0 ||
+      !encloses(tissue_.vertices(), tissue_.surface().triangles, center)) {
+    return way;
+  }
   Eigen::Index low = 0, high = 0;
   const bool downwards = below.minCoeff(&low) < above.minCoeff(&high);
   return downwards ? Vec3(-Vec3::Unit(low)) : Vec3(Vec3::Unit(high));

@@ -67,10 +67,10 @@ void readTurns(const Entry& entry, const SolverConfig& solver, PatchConfig& patc
 }
 
 // Against the fixed nodes and against the patches that stand already.
-void checkNodes(const Entry& entry, const StandingPatch& patch, const std::vector<NodeRange>& fixed,
-                const std::vector<StandingPatch>& standing) {
+void checkNodes(const Entry& entry, const Grid& grid, const StandingPatch& patch,
+                const std::vector<NodeRange>& fixed, const std::vector<StandingPatch>& standing) {
   for (std::size_t i = 0; i < fixed.size(); ++i) {
-    if (!patch.nodes.intersects(fixed[i])) continue;
+    if (!grid.shareNode(patch.nodes, fixed[i])) continue;
     entry.fail("the patch holds nodes of tissue.fixed[" + std::to_string(i) +
                "], must hold only nodes that can move");
   }
@@ -79,7 +79,7 @@ void checkNodes(const Entry& entry, const StandingPatch& patch, const std::vecto
       entry.fail("patch " + patch.name +
                  " stands on other nodes, must be released first or keep its box");
     }
-    if (other.name != patch.name && other.nodes.intersects(patch.nodes)) {
+    if (other.name != patch.name && grid.shareNode(other.nodes, patch.nodes)) {
       entry.fail("the patch shares nodes with standing patch " + other.name +
                  ", must have nodes of its own");
     }
@@ -107,7 +107,7 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
     readDrive(patch_map, patch);
     readTurns(patch_map["turns"], solver, patch);
     const StandingPatch stands{patch.name, grid.nodesIn(patch.box)};
-    checkNodes(patch_entry, stands, fixed, standing);
+    checkNodes(patch_entry, grid, stands, fixed, standing);
     const bool again = std::any_of(standing.begin(), standing.end(),
                                    [&](const auto& other) { return other.name == patch.name; });
     if (!again) standing.push_back(stands);

@@ -64,7 +64,7 @@ Scene parseScene(const YAML::Node& root, const SceneSource& source) {
   keys.insert(keys.end(), source.other_keys.begin(), source.other_keys.end());
   const MapReader map(Entry(root, "", source.name), keys);
   Scene scene;
-  scene.tissue = readTissue(map["tissue"], scene.remarks);
+  scene.tissue = readTissue(map["tissue"], source.folder, scene.remarks);
   scene.solver = readSolver(map["solver"], scene.tissue.model, source.overrides, scene.remarks);
   readTools(map["tools"], source, scene);
   readSteps(map["steps"], source, scene);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -88,7 +89,7 @@ std::string readKind(const Entry& entry) {
 
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
                             const SolverConfig& solver) {
-  const Grid grid(tissue.shape, tissue.spacing);
+  const Grid grid = filledGrid(tissue).grid;
   std::vector<NodeRange> fixed;
   for (const Box& box : tissue.fixed) fixed.push_back(grid.nodesIn(box));
   std::vector<StandingPatch> standing;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/registry.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
@@ -14,10 +15,13 @@ namespace {
 const std::vector<std::string> kMaterialKeys = {"young_modulus", "poisson_ratio", "density",
                                                 "spring_stiffness"};
 
-Box readShape(const Entry& entry) {
+void readShape(const Entry& entry, const std::string& scene_folder, TissueConfig& tissue) {
   const MapReader any_type(entry, {"type", "min", "max", "resource", "scale"});
-  any_type["type"].choice({"box"}, {"mesh"});
-  return MapReader(entry, {"type", "min", "max"}).box(true);
+  if (any_type["type"].choice({"box", "mesh"}, {}) == "box") {
+    tissue.shape = MapReader(entry, {"type", "min", "max"}).box(true);
+  } else {
+    tissue.mesh = std::make_shared<const TriangleMesh>(readMeshShape(entry, scene_folder));
+  }
 }
 
 double physicalMemoryBytes() {
@@ -39,6 +43,15 @@ void checkNodeCount(const Entry& spacing_entry, const Vec3& extent, double spaci
   spacing_entry.fail("makes " + numberText(count) + " nodes, more than the memory of " +
                      numberText(std::round(memory / 1e6)) + " MB allows: must give at most " +
                      numberText(most) + " nodes");
+}
+
+double readMeshSpacing(const Entry& entry, const TriangleMesh& mesh) {
+  const double spacing = entry.number(Range::positive("m"));
+  requireSpacingWithin(entry, mesh);
+  const Box bounds = boundsOf(mesh.vertices);
+  const Vec3 cells = ((bounds.max - bounds.min) / spacing).array().ceil();
+  checkNodeCount(entry, cells * spacing, spacing);  // before a grid numbers them by int
+  return spacing;
 }
 
 double readSpacing(const Entry& entry, const Box& shape) {
@@ -142,7 +155,7 @@ std::string readFrame(const Entry& entry, const std::string& otherwise) {
 }
 
 void readBoxes(const MapReader& map, TissueConfig& tissue, Remarks& remarks) {
-  const Grid grid(tissue.shape, tissue.spacing);
+  const Grid grid = filledGrid(tissue).grid;
   if (map["regions"].given()) {
     for (const Entry& entry : map["regions"].list(0, "regions")) {
       tissue.regions.push_back(readRegion(entry, tissue, grid, remarks));
@@ -163,15 +176,20 @@ Box readNodeBox(const MapReader& map, const Grid& grid) {
   map.entry().fail("the box holds no node, must hold at least one; " + nodesText(grid, 0.0));
 }
 
-TissueConfig readTissue(const Entry& entry, Remarks& remarks) {
+TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, Remarks& remarks) {
   const MapReader map(
       entry, {"frame_id", "shape", "spacing", "model", "material", "regions", "fixed", "gravity"});
   TissueConfig tissue;
   tissue.frame_id = readFrame(map["frame_id"], tissue.frame_id);
-  tissue.shape = readShape(map["shape"]);
-  tissue.spacing = readSpacing(map["spacing"], tissue.shape);
+  readShape(map["shape"], scene_folder, tissue);
+  tissue.spacing = tissue.mesh ? readMeshSpacing(map["spacing"], *tissue.mesh)
+                               : readSpacing(map["spacing"], tissue.shape);
   if (map["model"].given()) tissue.model = map["model"].choice(modelNames(), {});
   tissue.material = readMaterial(map["material"], tissue.model, remarks);
+  if (tissue.mesh && tissue.material.spring_stiffness) {
+    remarks.push_back(MapReader(map["material"], kMaterialKeys)["spring_stiffness"].line(
+        "every spring has it, also those of cells that the mesh fills only in part"));
+  }
   readBoxes(map, tissue, remarks);
   tissue.gravity = map["gravity"].vec3Or(tissue.gravity, Range::any("m/s^2"));
   if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty()) {

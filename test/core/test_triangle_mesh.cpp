@@ -99,5 +99,20 @@ TEST(TriangleMesh, RefinementDoesNotMultiplyTriangles) {
   EXPECT_EQ(fine.triangles.size(), 12U * 32U * 32U);
 }
 
+TEST(TriangleMesh, EnclosesWhatItGoesAround) {
+  const TriangleMesh ball = moved(sphereMesh(1.0, 3), Vec3(5.0, 0.0, 0.0));
+  const TriangleMesh hollow =
+      joined(ball, insideOut(moved(sphereMesh(0.5, 3), Vec3(5.0, 0.0, 0.0))));
+  const auto inside = [](const TriangleMesh& mesh, double x) {
+    return encloses(mesh.vertices, mesh.triangles, Vec3(x, 0.1, 0.1));
+  };
+  EXPECT_TRUE(inside(ball, 5.0));
+  EXPECT_TRUE(inside(ball, 5.9));
+  EXPECT_FALSE(inside(ball, 6.1));
+  EXPECT_FALSE(inside(ball, -5.0));
+  EXPECT_FALSE(inside(hollow, 5.0));
+  EXPECT_TRUE(inside(hollow, 5.7));
+}
+
 }  // namespace
 }  // namespace robot_tissue

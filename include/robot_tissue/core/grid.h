@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -14,16 +15,19 @@ struct NodeRange {
   std::array<int, 3> last{};
 
   bool empty() const;
-  bool intersects(const NodeRange& other) const;
 };
 
 class Grid {
  public:
   // The shape's extent must be a whole multiple of the spacing, in reach of int.
   Grid(const Box& shape, double spacing);
+  // With only the cells that are not 0 (one entry a cell) and the nodes at their corners.
+  Grid(const Grid& whole, std::vector<std::uint8_t> cells);
 
-  // Closed box with a slack of a thousandth of the spacing.
+  // The smallest range with all nodes of the closed box, with a slack of a thousandth of the
+  // spacing. So boxes with the same nodes have the same range.
   NodeRange nodesIn(const Box& box) const;
+  bool shareNode(const NodeRange& a, const NodeRange& b) const;
   // True when the box holds the center of a cell between eight nodes: cells carry the material.
   bool holdsCell(const Box& box) const;
   const std::array<int, 3>& size() const { return size_; }  // nodes along x, y, z
@@ -36,10 +40,13 @@ class Grid {
  private:
   // Indices of the points that stand `offset` spacings above the nodes.
   NodeRange pointsIn(const Box& box, double offset) const;
+  NodeRange shrunk(const NodeRange& range) const;
 
   Box shape_;
   double spacing_;
   std::array<int, 3> size_{};
+  std::vector<std::uint8_t> cells_;  // 1 = is there; empty: all are
+  std::vector<std::uint8_t> nodes_;  // the same
 };
 
 // True when every extent is a whole multiple of the spacing to a thousandth of it.

@@ -1,6 +1,8 @@
 // The constant model: nodes on a rectangular grid, joined by one spring to each of their up to six
 // neighbors (paper, section 4.1 and figure 1). Never changes after construction; what changes is
-// in LatticeState. Own: cells, moduli, regions, fixed nodes.
+// in LatticeState. Own: cells, moduli, regions, fixed nodes, shapes by a mesh: a cell that a mesh
+// fills in part has that share of the material, spread evenly. Cells that meet in an edge or corner
+// alone are joined by their common nodes, so by a hinge; a gap thinner than a cell is bridged.
 #pragma once
 
 #include <array>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/scene.h"
@@ -66,6 +69,7 @@ class Lattice {
   LatticeState restState() const;
 
  private:
+  Lattice(const TissueConfig& config, const FilledGrid& tissue);
   void placeNodes(const std::vector<double>& filled);
   void placeCells(const std::vector<double>& filled);
   void placeSprings();

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -28,7 +30,8 @@ struct Region {
 
 struct TissueConfig {
   std::string frame_id = "tissue";
-  Box shape;
+  Box shape;                                 // unused when mesh is set
+  std::shared_ptr<const TriangleMesh> mesh;  // without fault (core/mesh_checks.h), facing outwards
   double spacing = 0.0;
   std::string model = "elastic";
   Material material;

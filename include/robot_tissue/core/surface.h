@@ -1,12 +1,12 @@
 // The displayed surface: triangles over the lattice, closed, also along cuts (own).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -20,10 +20,10 @@ struct NodeWeight {
 struct Surface {
   std::vector<Vec3> rest;                         // tissue frame (m)
   std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
-  std::vector<int> node;                          // per vertex: the lattice's node it stands at or,
-                                                  // on a cut, beside; -1 = beside several
-  std::vector<std::array<int, 3>> triangles;      // counter-clockwise seen from outside
-  std::vector<std::uint8_t> opened;               // per triangle, 1 = face opened by a cut
+  std::vector<int> node;                // per vertex: the lattice's node it stands at or, on a cut,
+                                        // beside; -1 = beside several
+  std::vector<MeshTriangle> triangles;  // counter-clockwise seen from outside
+  std::vector<std::uint8_t> opened;     // per triangle, 1 = face opened by a cut
 };
 
 // Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half

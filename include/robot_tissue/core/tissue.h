@@ -118,6 +118,7 @@ class Tissue {
   LatticeState state_;
   std::unique_ptr<TissueModel> model_;
   std::unique_ptr<SolverMethod> method_;
+  TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
   unsigned surface_version_ = 0;
   double rest_volume_ = 0.0;  // m^3

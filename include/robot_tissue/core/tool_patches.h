@@ -84,7 +84,7 @@ class ToolPatches {
   std::shared_ptr<const CellSet> cells_;  // of the tissue in the last ride
   std::vector<char> taken_;               // per node: fixed, or in a named load
   std::vector<int> left_;
-  std::vector<Vec3> outward_;  // per node: normal of the surface at rest; zero inside
+  std::vector<Vec3> outward_;  // per node: normal of the surface it carries, at rest; zero inside
   unsigned surface_version_ = 0;
 };
 

@@ -22,6 +22,11 @@ Box boundsOf(const std::vector<Vec3>& vertices);
 double enclosedVolume(const std::vector<Vec3>& vertices,
                       const std::vector<MeshTriangle>& triangles);
 
+// Whether the closed triangles go around the point, by their solid angles (Van Oosterom, Strackee
+// 1983).
+bool encloses(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
+              const Vec3& point);
+
 // Joins vertices nearer to each other than a millionth of the mesh's largest extent (STL repeats
 // them for each triangle), and leaves out the triangles that collapse and the vertices of none.
 // All vertices must be finite.

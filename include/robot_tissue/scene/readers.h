@@ -16,7 +16,8 @@ namespace robot_tissue {
 
 using Remarks = std::vector<std::string>;
 
-TissueConfig readTissue(const Entry& entry, Remarks& remarks);
+// `scene_folder`: where relative paths of a mesh start.
+TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, Remarks& remarks);
 
 // Keys min and max of a map, as nodes of the grid; refused when there are none.
 Box readNodeBox(const MapReader& map, const Grid& grid);

@@ -1,0 +1,29 @@
+// The displayed surface of a tissue that a mesh gives (own): the mesh itself, which the cells
+// carry.
+//
+// A vertex hangs on the corners of the cell it is in, with trilinear weights, so it moves as the
+// material around it. On a common face both cells give the same weights.
+#pragma once
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/surface.h"
+#include "robot_tissue/core/triangle_mesh.h"
+
+namespace robot_tissue {
+
+// The cell that holds the point at rest, or the nearest one; of several the fullest. `point`: in
+// spacings from the grid's lowest corner, in the grid to a few thousandths.
+int cellAround(const Lattice& lattice, const Vec3& point);
+
+// Of a cell's or part's corners, for a point as above; a corner without weight is left out.
+std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
+
+// `mesh`: closed, of which the lattice was made, with edges of a spacing at most.
+//
+// Cuts open it half way between nodes whose cell they part: around a split cell the mesh is cut
+// into octants (mesh_pieces.h), every octant moves with the part of the cell that owns its corner,
+// and between octants that part with each other lids close both sides. Closed by construction: a
+// lid is left out only where both sides hang on the same nodes.
+Surface meshSurface(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh);
+
+}  // namespace robot_tissue

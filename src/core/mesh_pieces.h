@@ -1,0 +1,85 @@
+// A mesh cut into pieces at the planes of a grid of half spacings, so that it can be taken apart
+// along them (own).
+//
+// An octant is the eighth of a cell around one of its corners. Every piece lies in one octant.
+// All decisions hang on which side of a plane a vertex is, which is the same for all pieces that
+// have it; points that planes cut out of a common edge are common. So where the mesh is closed, the
+// pieces of one octant and the lids on its faces are closed to the last bit, whatever the rounding.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "robot_tissue/core/triangle_mesh.h"
+
+namespace robot_tissue {
+
+// Of an octant or of a point of the grid: indices along x, y, z in half spacings.
+using HalfIndex = std::array<int, 3>;
+
+class MeshPieces {
+ public:
+  struct Piece {
+    HalfIndex octant{};
+    std::vector<int> outline;  // vertices of a convex polygon, as in the triangle
+  };
+  using Segment = std::pair<int, int>;  // directed, between vertices
+
+  // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z.
+  MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells);
+
+  // Cuts a triangle. Its pieces are kept if asked for; where it crosses the grid's lines always is.
+  void add(const MeshTriangle& triangle, bool keep_pieces);
+  // The points that planes cut out of an edge, in order, with its ends.
+  std::vector<int> subdivided(int from, int to);
+  int addVertex(const Vec3& point);
+
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  const Vec3& vertex(int index) const { return vertices_[at(index)]; }  // spacings
+  HalfIndex octantOf(const Vec3& point) const;
+
+  // Border of what the mesh encloses on the upper face of the octant along the axis, as seen from
+  // above that face: where the mesh runs in it, and the parts of the face's edges inside the mesh.
+  // All triangles must have been added, those near it with their pieces.
+  std::vector<Segment> lid(const HalfIndex& octant, int axis);
+
+ private:
+  // An edge of a polygon starts at `vertex`; `face` is 2 * axis + side of the octant's face that it
+  // runs in (side 1 = the upper one), -1 = none.
+  struct Corner {
+    int vertex = 0;
+    int face = -1;
+  };
+  using Polygon = std::vector<Corner>;
+  // Where a line of the grid passes through the mesh.
+  struct Crossing {
+    double place = 0.0;  // along the line, spacings
+    int vertex = 0;
+    int change = 0;  // +1: into the mesh, going up
+  };
+  using LineKey = std::array<int, 3>;  // axis, and the half indices along the two next ones
+
+  bool isAbove(int vertex, int axis, int plane) const;
+  int crossing(int from, int to, int axis, int plane);
+  void split(const Polygon& polygon, int axis, int plane, Polygon& below, Polygon& above);
+  void noteCrossing(const Corner& from, int axis, int plane, int vertex);
+  void cutAlong(int axis, Polygon rest, bool keep);
+  void keepPiece(const Polygon& piece);
+  int gridPoint(const HalfIndex& point);
+  void addEdge(const HalfIndex& start, int axis, bool forwards, std::vector<Segment>& border);
+
+  std::vector<Vec3> vertices_;
+  HalfIndex octants_{};  // of the grid, along x, y, z
+  HalfIndex octant_{};   // that is being cut out
+  std::vector<Piece> pieces_;
+  std::map<std::tuple<int, int, int, int>, int> crossings_;  // edge's ends, axis, plane
+  std::map<LineKey, std::vector<Crossing>> lines_;
+  std::map<std::pair<HalfIndex, int>, std::vector<Segment>> seams_;  // octant, axis: upper face
+  std::map<HalfIndex, int> grid_points_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,85 @@
+// A probe against tissue whose shape is a mesh: a ball, of which no node is on the surface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../core/mesh_fixtures.h"
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kBall = 0.033;     // radius (m)
+constexpr double kBallCell = 0.01;  // spacing (m)
+
+class PressedBall : public ::testing::Test {
+ protected:
+  Pipeline pipeline_{ball(), {}, {probe()}};
+
+  static TissueConfig ball() {
+    TissueConfig tissue;
+    tissue.mesh = std::make_shared<const TriangleMesh>(sphereMesh(kBall, 4));
+    tissue.spacing = kBallCell;
+    tissue.material.young_modulus = 1e4;
+    tissue.fixed.push_back({Vec3(-1, -1, -1), Vec3(1, 1, -0.02)});
+    return tissue;
+  }
+  // Along a way that slants into the ball, off its middle.
+  static RobotPose slanting(double depth) {
+    const Vec3 way = Vec3(0.3, -0.2, 1.0).normalized();
+    return at({(kBall + kRadius - depth) * way});
+  }
+  void go(double from, double to) {
+    const int count = static_cast<int>(std::ceil(std::abs(to - from) / 0.0005 - 1e-9));
+    for (int i = 1; i <= count; ++i) pipeline_.step(slanting(from + (to - from) * i / count));
+  }
+  const ToolReport& tool() const { return pipeline_.report().tools.front(); }
+};
+
+TEST_F(PressedBall, SurfaceStaysOutOfTheToolAndComesBackToTheLastBit) {
+  for (int time = 0; time < 3; ++time) {
+    pipeline_.step(slanting(-0.001));
+    EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+    for (double depth = 0.0; depth < 0.006; depth += 0.0005) {
+      pipeline_.step(slanting(depth));
+      const Vec3 center = slanting(depth).tools.front().translation();
+      for (const Vec3& vertex : pipeline_.tissue().vertices()) {
+        EXPECT_GT((vertex - center).norm(), kRadius - 0.01 * kBallCell);
+      }
+      EXPECT_LT(tool().max_penetration, 0.01 * kBallCell);
+    }
+    EXPECT_GT(tool().force_on_tool.normalized().dot(Vec3(0.3, -0.2, 1.0).normalized()), 0.8);
+    EXPECT_GT(greatestDisplacement(pipeline_.tissue()), 0.003);
+    go(0.006, -0.001);
+    EXPECT_TRUE(tool().nodes.empty());
+    EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+  }
+}
+
+// The ball does not reach into the corners of the grid around it.
+TEST_F(PressedBall, ToolInAnEmptyCornerOfTheGridIsOutside) {
+  const Vec3 corner = 0.999 * (kBall + kRadius) / std::sqrt(3.0) * Vec3::Ones();
+  ASSERT_LT(corner.x(), 0.04);
+  pipeline_.step(at({1.01 * corner}));
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+  pipeline_.step(at({0.97 * corner}));
+  EXPECT_GT(greatestDisplacement(pipeline_.tissue()), 0.0);
+  EXPECT_LT(tool().normal.dot(corner.normalized()), -0.9);
+}
+
+TEST_F(PressedBall, CutUnderLoadStaysClosedAndTheToolStaysOut) {
+  go(-0.001, 0.003);
+  const double volume = pipeline_.tissue().lastReport().volume_ratio;
+  const CutReport cut = pipeline_.tissue().cut(
+      {Vec3(0.001, -1, 0.0), Vec3(0.001, 1, 0.0), Vec3(0.001, 1, 1), Vec3(0.001, -1, 1)});
+  pipeline_.touch();
+  EXPECT_GT(cut.springs_cut, 0);
+  EXPECT_NEAR(cut.solve.volume_ratio, volume, 0.05);
+  go(0.003, 0.005);
+  EXPECT_LT(tool().max_penetration, 0.05 * kBallCell);
+  go(0.005, -0.001);
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+}
+
+}  // namespace
+}  // namespace robot_tissue

@@ -1,0 +1,102 @@
+// Scenes whose tissue is a mesh: only nodes and cells that there are count.
+#include <gtest/gtest.h>
+
+#include "../core/mesh_fixtures.h"
+#include "bad_scene.h"
+#include "mesh_files.h"
+#include "robot_tissue/core/lattice.h"
+
+namespace robot_tissue {
+namespace {
+
+// A ball of radius 33 mm: nodes from -35 to 35 mm, none in the corners of that box.
+const std::string kBallScene = R"(tissue:
+  shape: {type: mesh, resource: ball.stl, scale: 0.001}
+  spacing: 0.01
+  material: {young_modulus: 10000.0}
+  regions:
+    - {min: [-0.01, -0.01, -0.01], max: [0.01, 0.01, 0.01], young_modulus: 1.0e+5}
+  fixed:
+    - {min: [-1.0, -1.0, -1.0], max: [1.0, 1.0, -0.02]}
+steps:
+  - load:
+      patches:
+        - {name: punch, min: [-0.01, -0.01, 0.02], max: [0.01, 0.01, 0.04], displacement: [0.0, 0.0, -0.005]}
+        - {name: side, min: [0.02, -0.01, -0.01], max: [0.04, 0.01, 0.04], force: [0.1, 0.0, 0.0]}
+)";
+
+class BallScene : public ::testing::Test {
+ protected:
+  void SetUp() override { writeFile("ball.stl", stlText(sphereMesh(33.0, 3))); }
+
+  static Scene parsed(const std::string& text) {
+    SceneSource source;
+    source.name = "ball.yaml";
+    source.folder = meshFolder();
+    return parseScene(YAML::Load(text), source);
+  }
+  static void expectRefusal(const std::string& from, const std::string& to,
+                            const std::vector<std::string>& fragments) {
+    const std::string text = replaced(kBallScene, from, to);
+    ASSERT_NE(text, "") << "the scene has no place '" << from << "'";
+    std::string message;
+    try {
+      parsed(text);
+    } catch (const InputError& error) {
+      message = error.what();
+    }
+    EXPECT_EQ(message.rfind("ball.yaml:", 0), 0U) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    for (const std::string& fragment : fragments) {
+      EXPECT_NE(message.find(fragment), std::string::npos)
+          << "'" << fragment << "' is not in: " << message;
+    }
+  }
+};
+
+TEST_F(BallScene, GivesTheMeshAndItsLattice) {
+  const Scene scene = parsed(kBallScene);
+  ASSERT_NE(scene.tissue.mesh, nullptr);
+  EXPECT_EQ(scene.tissue.mesh->triangles.size(), 512U);
+  EXPECT_NEAR(boundsOf(scene.tissue.mesh->vertices).max.x(), 0.033, 1e-8);
+  const Lattice lattice(scene.tissue);
+  EXPECT_NEAR(lattice.bounds().min.x(), -0.035, 1e-8);
+  EXPECT_EQ(lattice.size(), (std::array<int, 3>{8, 8, 8}));
+  EXPECT_LT(lattice.nodeCount(), 8 * 8 * 8);
+}
+
+TEST_F(BallScene, SpacingThatIsTooLargeOrMakesTooManyNodes) {
+  expectRefusal("spacing: 0.01", "spacing: 0.07",
+                {"tissue.spacing = 0.07", "at most the mesh's smallest extent, 0.066"});
+  expectRefusal("spacing: 0.01", "spacing: 1.0e-8",
+                {"tissue.spacing = 1.0e-8", "e+20 nodes", "must give at most"});
+  expectRefusal("spacing: 0.01", "spacing: 1.0e-12", {"tissue.spacing = 1.0e-12", "nodes"});
+}
+
+// (0.03, 0.03, 0.03) is in the grid, but the ball has no cell there.
+TEST_F(BallScene, BoxInAnEmptyCornerOfTheGridHoldsNoNode) {
+  expectRefusal("max: [1.0, 1.0, -0.02]", "max: [-0.03, -0.03, -0.03]",
+                {"tissue.fixed[0] = {min", "no node", "every 0.01 m"});
+  expectRefusal("min: [-0.01, -0.01, 0.02], max: [0.01, 0.01, 0.04]",
+                "min: [0.03, 0.03, 0.03], max: [0.04, 0.04, 0.04]",
+                {"steps[0].load.patches[0] = {name: punch", "no node"});
+  expectRefusal("min: [-0.01, -0.01, -0.01], max: [0.01, 0.01, 0.01], y",
+                "min: [0.025, 0.025, 0.025], max: [0.035, 0.035, 0.035], y",
+                {"tissue.regions[0] = {min", "no cell's center"});
+}
+
+// The second box reaches over the first one's, but at a height of 35 mm the ball has no node at
+// x = 35 mm.
+TEST_F(BallScene, PatchesShareOnlyNodesThatThereAre) {
+  const std::string side = "min: [0.02, -0.01, -0.01], max: [0.04, 0.01, 0.04]";
+  const std::string outer = "min: [0.03, -0.01, -0.01], max: [0.04, 0.01, 0.04]";
+  const std::string punch = "min: [-0.01, -0.01, 0.02], max: [0.01, 0.01, 0.04]";
+  const std::string wide = "min: [-0.01, -0.01, 0.03], max: [0.04, 0.01, 0.04]";
+  EXPECT_NO_THROW(parsed(replaced(replaced(kBallScene, side, outer), punch, wide)));
+  expectRefusal(
+      side, "min: [0.0, -0.01, 0.0], max: [0.04, 0.01, 0.04]",
+      {"steps[0].load.patches[1] = {name: side", "shares nodes with standing patch punch"});
+}
+
+}  // namespace
+}  // namespace robot_tissue
