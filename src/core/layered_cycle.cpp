@@ -43,7 +43,9 @@ Vec3 capped(const Vec3& step, double length) {
 bool LayeredMethod::carryOn(LoadedShape& shape, Motion& forces) const {
   if (last_way_.size() != shape.state.displacement.size()) return false;
   Motion way;
-  way.nodes = last_way_;
+  for (std::size_t node = 0; node < last_way_.size(); ++node) {
+    way.nodes.push_back(hold_.freePart(static_cast<int>(node), last_way_[node]));
+  }
   way.patches.assign(shape.patches.size(), {});
   double slope = dot(forces, way);
   if (slope < 0.0) {

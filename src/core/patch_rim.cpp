@@ -103,14 +103,21 @@ class RimBuilder {
     return moduli.shear * lattice_.spacing() * stiffness;
   }
 
-  // Of the node inside the patch's edge on this side, in spacings; infinite where there is no rim.
+  // Of the node inside the patch's edge on this side, in spacings; infinite where there is no rim,
+  // minus infinite beyond a cut.
   double depthOf(int node, int axis, int side) const {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const double rest = lattice_.restPosition(node)[axis];
     const double depth =
         (side > 0 ? box_.max[axis] - rest : rest - box_.min[axis]) / lattice_.spacing();
-    if (depth < 0.0) return depth;
-    return lattice_.neighbor(node, 2 * axis + (side > 0 ? 1 : 0)) >= 0 ? depth : kNone;
+    const int outwards = 2 * axis + (side > 0 ? 1 : 0), inwards = outwards ^ 1;
+    if (depth < 0.0) return isJoined(node, inwards) ? depth : -kNone;
+    return isJoined(node, outwards) ? depth : kNone;
+  }
+
+  bool isJoined(int node, int direction) const {
+    const int spring = lattice_.springOf(node, direction);
+    return spring >= 0 && state_.severed[at(spring)] == 0;
   }
 
   const Lattice& lattice_;

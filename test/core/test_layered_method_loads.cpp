@@ -155,6 +155,24 @@ TEST(LayeredTissue, DeepPressAgreesWithNewtonAndIsRestAfterRelease) {
   expectAtRest(layered);
 }
 
+// Solves after the first go on the way of the last one: not with what a sliding plate holds.
+TEST(LayeredTissue, SlidingPlateIsWhereItIsHeldAfterManyIncrements) {
+  const TissueConfig config = pressBlock(0.25);
+  Tissue layered = tissueOf(config, "layered"), newton = tissueOf(config, "newton");
+  PatchConfig plate =
+      displacedPatch("plate", nodeBox(config, {0, 0, 4}, {8, 8, 4}), Vec3(0.0, 0.0, -0.004));
+  plate.displacement = {{std::nullopt, std::nullopt, -0.004}};
+  LoadStep press = loadOf({plate});
+  press.increments = 4;
+  const SolveReport last = reportsOf(layered, press).back();
+  const SolveReport exact = reportsOf(newton, press).back();
+  for (const int node : layered.patches().front().nodes) {
+    EXPECT_EQ(layered.state().displacement[at(node)].z(), -0.004);
+  }
+  EXPECT_EQ(last.status, SolveStatus::kOk);
+  EXPECT_NEAR(last.patches.front().force.z() / exact.patches.front().force.z(), 1.0, 5e-3);
+}
+
 TEST(LayeredTissue, CutTissueAgreesWithNewton) {
   const TissueConfig config = pressBlock(0.45);
   Tissue layered = tissueOf(config, "layered"), newton = tissueOf(config, "newton");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "elastic_fixtures.h"
+#include "robot_tissue/core/cut.h"
 #include "robot_tissue/core/patch_rim.h"
 #include "robot_tissue/core/rim_law.h"
 
@@ -74,6 +75,20 @@ TEST_F(RimOfBlock, ThereIsNoneWhereTheTissueEndsWithThePatch) {
 TEST_F(RimOfBlock, PatchesInsideAndThickOnesAreHard) {
   EXPECT_TRUE(rim({kSpacing * Vec3(2, 2, 2), kSpacing * Vec3(6, 6, 2)}).empty());
   EXPECT_TRUE(rim({kSpacing * Vec3(2, 2, 3), kSpacing * Vec3(6, 6, 4)}).empty());
+}
+
+// The banks of a cut end the tissue, for the rim too.
+TEST_F(RimOfBlock, DoesNotReachAcrossACut) {
+  const Box box = onTop(2, 6.5, 2, 6);
+  ASSERT_NE(find(rim(box), 7, 4, 4), nullptr);
+  const double x = 6.3 * kSpacing;
+  sever(lattice_,
+        springsAcross(lattice_, state_, {{x, -1, 0.02}, {x, 1, 0.02}, {x, 1, 1}, {x, -1, 1}}),
+        state_, SplitCells::kParted);
+  const auto springs = rim(box);
+  EXPECT_EQ(find(springs, 7, 4, 4), nullptr) << "the other bank";
+  EXPECT_EQ(find(springs, 6, 4, 4), nullptr) << "this bank is hard";
+  EXPECT_NE(find(springs, 6, 2, 4), nullptr) << "the edge that runs to the cut";
 }
 
 // On a side face the law turns with the face.
