@@ -95,6 +95,7 @@ ReferenceError errorAgainst(const ReferenceCase& reference, const std::string& m
   config.fixed.push_back({Vec3::Zero(), Vec3(kExtent.x(), kExtent.y(), 0.0)});
   SolverConfig solver;
   solver.method = method;
+  solver.tolerance = 1e-3;
   Tissue tissue(config, solver);
   LoadStep step;
   step.patches.push_back(patchOf(reference));

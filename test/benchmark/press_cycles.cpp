@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/registry.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {
@@ -90,13 +91,16 @@ double greatestDisplacement(const Tissue& tissue) {
   return greatest;
 }
 
-void run(const Probe& probe, int cycles, double depth, double speed) {
+void run(const Probe& probe, int cycles, double depth, double speed, const std::string& model) {
   TissueConfig tissue;
+  tissue.model = model;
   tissue.shape.max = Vec3(0.1, 0.1, kTop);
   tissue.spacing = 0.005;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back({Vec3(-1, -1, -1e-6), Vec3(1, 1, 1e-6)});
-  Pipeline pipeline(tissue, {}, {{probe.name, probe.name, 0.0, {probe.shape}}});
+  SolverConfig solver;
+  solver.method = methodsFor(model).front();
+  Pipeline pipeline(tissue, solver, {{probe.name, probe.name, 0.0, {probe.shape}}});
   const double way = depth + kClearance;
   const int updates = static_cast<int>(std::ceil(way / (speed * kUpdatePeriod)));
   double deepest = 0.0, left = 0.0, greatest_force = 0.0;
@@ -119,6 +123,7 @@ void run(const Probe& probe, int cycles, double depth, double speed) {
   std::printf("%s,%d,%.1f,%.4f,%.3g,%.3f,%.2f,%.2f\n", probe.name.c_str(), cycles, 1e3 * depth,
               1e3 * deepest, 1e3 * left, greatest_force, times_ms[times_ms.size() / 2],
               times_ms[times_ms.size() * 99 / 100]);
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -128,12 +133,13 @@ int main(int argc, char** argv) {
   const int cycles = argc > 1 ? std::atoi(argv[1]) : 20;
   const double depth = 1e-3 * (argc > 2 ? std::atof(argv[2]) : 10.0);
   const double speed = 1e-3 * (argc > 3 ? std::atof(argv[3]) : 20.0);
+  const std::string model = argc > 4 ? argv[4] : "elastic";
   std::printf(
       "tool,cycles,depth_mm,deepest_in_surface_mm,left_mm,greatest_force_n,median_ms,p99_ms\n");
   for (const auto& probe : {robot_tissue::sphere(0.01), robot_tissue::box(0.02, 0.04),
                             robot_tissue::cylinder("cylinder", 0.004, 0.04),
                             robot_tissue::cylinder("needle", 0.0005, 0.04)}) {
-    robot_tissue::run(probe, cycles, depth, speed);
+    robot_tissue::run(probe, cycles, depth, speed, model);
   }
   return 0;
 }

@@ -53,15 +53,27 @@ TEST(Accuracy, NearlyIncompressibleTissueKeepsItsVolume) {
   EXPECT_GT(volumeRatioUnderPress(true, 0.01, 0.49), 0.98);
 }
 
-// At a spacing of 5 mm; bounds as doc/accuracy.md states them.
+// At a spacing of 5 mm. The reference of press_d10 is itself off by up to 3.5 % (its README).
 TEST(Accuracy, ForceAndShapeAreThoseOfFiniteElements) {
   for (const ReferenceCase& reference : readReferenceCases(ROBOT_TISSUE_SOURCE_DIR)) {
-    if (reference.name == "press_d10") continue;  // not converged; see its README
-    const bool drag = reference.name == "drag_d5";
-    const ReferenceError error = errorAgainst(reference, "newton", 0.005);
     SCOPED_TRACE(reference.name + ", " + std::to_string(reference.poisson_ratio));
-    EXPECT_LT(std::abs(error.force), drag ? 0.05 : 0.03);
-    EXPECT_LT(error.field, 0.04);
+    const bool deep = reference.name == "press_d10", drag = reference.name == "drag_d5";
+    const ReferenceError error = errorAgainst(reference, "layered", 0.005);
+    EXPECT_LT(std::abs(error.force), deep || drag ? 0.05 : 0.03);
+    EXPECT_LT(error.field, deep ? 0.06 : 0.04);
+    if (reference.name != "press_d1") continue;
+    const ReferenceError exact = errorAgainst(reference, "newton", 0.005);
+    EXPECT_NEAR(error.force, exact.force, 3e-3);
+    EXPECT_NEAR(error.field, exact.field, 1e-3);
+  }
+}
+
+TEST(Accuracy, GrowsAsTheLatticeGetsFiner) {
+  for (const ReferenceCase& reference : readReferenceCases(ROBOT_TISSUE_SOURCE_DIR)) {
+    if (reference.name != "press_d1" && reference.name != "shear") continue;
+    SCOPED_TRACE(reference.name + ", " + std::to_string(reference.poisson_ratio));
+    const double coarse = errorAgainst(reference, "layered", 0.005).field;
+    EXPECT_LT(errorAgainst(reference, "layered", 0.0025).field, 0.5 * coarse);
   }
 }
 
