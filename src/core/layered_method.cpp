@@ -334,7 +334,9 @@ void LayeredMethod::describe(const LoadedShape& shape, const Motion& forces, Sol
     for (const int node : layer) {
       const double force = forces.nodes[at(node)].norm();
       unbalanced = std::max(unbalanced, force);
-      if (force > kRounding * stiffness_[at(node)] * lattice_.spacing()) pending_.push_back(node);
+      const double firm = stiffness_[at(node)] * lattice_.spacing();
+      if (force > kRounding * firm) pending_.push_back(node);
+      held = std::max(held, kStill * firm);  // what no force holds is off by rounding alone
     }
   }
   std::sort(pending_.begin(), pending_.end());

@@ -2,7 +2,7 @@
 // the motion at 100 Hz. Prints the greatest depth of the tool inside the displayed surface, found
 // by sampling every triangle densely against the tool's own formula, not by the contact search;
 // what is left of the displacement; and the times. usage: press_cycles [CYCLES] [DEPTH_MM]
-// [SPEED_MM_PER_S]
+// [SPEED_MM_PER_S] [MODEL]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
