@@ -107,7 +107,10 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   report_.contact_ms = 0.0;
   report_.solve_ms = 0.0;
   report_.substeps = 0;
-  if (standsStill(pose) && !touched_) return report_;
+  if (standsStill(pose) && !touched_) {
+    if (tissue_.lastReport().status == SolveStatus::kLate) carryOn();
+    return report_;
+  }
   report_.changed = report_.changed || !tissue_.isUntouched();
   if (checkpoints_.empty()) startAnew(pose);
   goBackTo(pose);
@@ -148,6 +151,14 @@ void Pipeline::advance(const RobotPose& pose) {
     if (deepest(contacts) <= kDeepEnough * tissue_.lattice().spacing()) break;
   }
   describeTools(pose, contacts);
+}
+
+// What the last solve had no time for.
+void Pipeline::carryOn() {
+  if (!tissue_.isUntouched()) return advance(*last_pose_);
+  const Stopwatch watch(report_.solve_ms);
+  tissue_.settle();
+  report_.changed = true;
 }
 
 void Pipeline::solve() {

@@ -172,6 +172,25 @@ TEST_P(PressedBlock, OutOfTimeItCatchesUpInLaterSteps) {
   EXPECT_FALSE(pipeline_.step(pressed(0.006)).changed);
 }
 
+// What a solve has no time for is carried on while the tool stands.
+TEST(LateBlock, GoesOnUntilItIsInBalance) {
+  SolverConfig solver = methodOf("elastic");
+  solver.tolerance = 1e-4;
+  solver.max_ms = 1e-3;
+  Pipeline pipeline(block(), solver, {probe()});
+  pipeline.step(pressed(-0.001));
+  pipeline.step(pressed(0.003));
+  const auto status = [&] { return pipeline.tissue().lastReport().status; };
+  ASSERT_EQ(status(), SolveStatus::kLate);
+  int more = 0;
+  while (status() == SolveStatus::kLate && more < 100) {
+    EXPECT_TRUE(pipeline.step(pressed(0.003)).changed);
+    ++more;
+  }
+  EXPECT_EQ(status(), SolveStatus::kOk);
+  EXPECT_FALSE(pipeline.step(pressed(0.003)).changed);
+}
+
 TEST_P(PressedBlock, TremorBelowAThousandthOfTheSpacingIsNoMotion) {
   walk(pipeline_, 0.0, 0.004);
   EXPECT_FALSE(pipeline_.step(pressed(0.004 + 4e-6)).changed);

@@ -84,6 +84,7 @@ class Pipeline {
   bool standsStill(const RobotPose& pose) const;
   double longestWay(const RobotPose& from, const RobotPose& to) const;
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
+  void carryOn();
   void solve();
   void pushToolsOut(const RobotPose& pose);
   void describeTools(const RobotPose& pose, const ContactSet& contacts);
