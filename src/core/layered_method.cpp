@@ -313,20 +313,37 @@ void LayeredMethod::rememberWay(const std::vector<Vec3>& from, const std::vector
   for (std::size_t node = 0; node < to.size(); ++node) last_way_[node] = to[node] - from[node];
 }
 
+// The shape that one more cycle would give. What a patch meets is read off it: the force is then
+// wrong by what is left of the error after that cycle, and the shape itself stays.
+LatticeState LayeredMethod::balancedAhead(const LoadedShape& shape, const Motion& forces) const {
+  LatticeState ahead = shape.state;
+  if (shape.patches.empty() || outOfBudget() || greatest(forces) == 0.0) return ahead;
+  const Motion motion = cycle(shape);
+  if (!std::isfinite(longest(motion))) return ahead;
+  for (const auto& layer : layers_.all()) {
+    for (const int node : layer) ahead.displacement[at(node)] += motion.nodes[at(node)];
+  }
+  return ahead;
+}
+
 void LayeredMethod::describe(const LoadedShape& shape, const Motion& forces, SolveReport& report) {
   const std::vector<Vec3>& displacement = shape.state.displacement;
-  std::vector<Vec3> raw(displacement.size(), Vec3::Zero());
+  const LatticeState ahead = balancedAhead(shape, forces);
   double held = 0.0, unbalanced = 0.0;
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
+    const LoadingPatch& patch = shape.patches[index];
+    const LatticeState& state = byForce(patch) ? shape.state : ahead;
+    std::vector<Vec3> raw(displacement.size(), Vec3::Zero());
     for (const int node : hold_.hardOf(index)) {
-      raw[at(node)] = model_.nodeForce(shape.state, node);
+      raw[at(node)] = model_.nodeForce(state, node);
       held = std::max(held, raw[at(node)].norm());
     }
-    for (const RimSpring& spring : shape.patches[index].rim) {
-      const Vec3 stretch = spring.anchor - displacement[at(spring.node)];
-      held = std::max(held, (stiffnessOf(shape.patches[index], spring) * stretch).norm());
+    for (const RimSpring& spring : patch.rim) {
+      const Vec3 stretch = spring.anchor - state.displacement[at(spring.node)];
+      held = std::max(held, (stiffnessOf(patch, spring) * stretch).norm());
     }
-    report.patches.push_back(answerOf(shape.patches[index], raw, displacement));
+    report.patches.push_back(answerOf(patch, raw, state.displacement));
+    report.patches.back().displacement = meanDisplacement(patch, displacement);
     unbalanced = std::max(unbalanced, forces.patches[index].shift.norm());
   }
   pending_.clear();

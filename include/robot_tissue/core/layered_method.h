@@ -107,6 +107,7 @@ class LayeredMethod : public SolverMethod {
   double greatest(const Motion& forces) const;
   double displacementLength(const LoadedShape& shape) const;
   double longest(const Motion& motion) const;
+  LatticeState balancedAhead(const LoadedShape& shape, const Motion& forces) const;
   void describe(const LoadedShape& shape, const Motion& forces, SolveReport& report);
   double elapsedMs() const;
   bool outOfBudget() const;
