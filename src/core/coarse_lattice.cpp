@@ -22,12 +22,6 @@ std::array<double, kCorners> weightsAt(const std::array<int, 3>& offset) {
   return weights;
 }
 
-Eigen::Matrix3d crossMatrix(const Vec3& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
 Eigen::Matrix3d freeBlock(Eigen::Matrix3d block, unsigned rows_held, unsigned columns_held) {
   for (int axis = 0; axis < 3; ++axis) {
     if ((rows_held >> axis & 1) != 0) block.row(axis).setZero();
@@ -174,7 +168,7 @@ void CoarseLattice::numberPatches(const LoadedShape& shape) {
   groups_ = coarse_count_;
   first_group_.clear();
   for (const LoadingPatch& patch : shape.patches) {
-    const bool by_force = patch.drive == LoadingPatch::Drive::kForce;
+    const bool by_force = byForce(patch);
     first_group_.push_back(by_force ? groups_ : -1);
     if (by_force) groups_ += patch.turns ? 2 : 1;
   }

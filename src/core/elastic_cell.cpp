@@ -40,12 +40,6 @@ std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
   return weights;
 }
 
-Eigen::Matrix3d crossMatrix(const Vec3& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
-
 }  // namespace
 
 ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement)

@@ -10,20 +10,12 @@ namespace {
 using Share = Unknowns::Share;
 using Shares = Unknowns::Shares;
 
-bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
-
 // The nearest matrix without a negative eigenvalue.
 CellHessian positivePart(const CellHessian& hessian) {
   const Eigen::SelfAdjointEigenSolver<CellHessian> solver(hessian);
   if (solver.eigenvalues().minCoeff() >= 0.0) return hessian;
   const auto values = solver.eigenvalues().cwiseMax(0.0);
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
-}
-
-Eigen::Matrix3d crossMatrix(const Vec3& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
 }
 
 class Assembly {

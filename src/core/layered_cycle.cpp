@@ -16,8 +16,6 @@ constexpr int kTrials = 8;            // of the length along it
 constexpr double kMostTurn = 0.2;     // of a patch in one visit (rad)
 constexpr double kProbe = 1e-4;       // motion that measures a patch's stiffness, in spacings
 
-bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
-
 // Without directions that are soft or negative, which cells pressed flat may have.
 Eigen::Matrix3d firm(const Eigen::Matrix3d& block) {
   const double area = block(0, 0) * block(1, 1) - block(0, 1) * block(1, 0);

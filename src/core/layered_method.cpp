@@ -16,8 +16,6 @@ constexpr std::size_t kLongestPast = 8;  // cycles
 constexpr double kBlownUp = 100.0;       // times the length left when a solve begins
 constexpr int kPlainCycles = 8;
 
-bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
-
 }  // namespace
 
 LayeredMethod::LayeredMethod(const Lattice& lattice, const EnergyModel& model,

@@ -22,8 +22,10 @@ Vec3 stretch(const RimSpring& spring, const std::vector<Vec3>& displacement) {
 
 }  // namespace
 
+bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
+
 bool holds(const LoadingPatch& patch, std::size_t axis) {
-  return patch.drive == LoadingPatch::Drive::kForce || !patch.free_axis[axis];
+  return byForce(patch) || !patch.free_axis[axis];
 }
 
 std::vector<int> hardNodes(const LoadingPatch& patch) {

@@ -69,7 +69,7 @@ void NewtonMethod::carryPatches(LoadedShape& shape) {
   bool any = false;
   LoadedShape placed = shape;
   for (const LoadingPatch& patch : shape.patches) {
-    if (patch.drive != LoadingPatch::Drive::kDisplacement) continue;
+    if (byForce(patch)) continue;
     any = any || !patch.rim.empty();
     for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
       const std::size_t node = at(patch.nodes[i]);

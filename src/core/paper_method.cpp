@@ -79,7 +79,7 @@ void PaperMethod::unlockNodes(const std::vector<LoadingPatch>& patches) {
 void PaperMethod::placeDisplacedPatches(const std::vector<LoadingPatch>& patches,
                                         LatticeState& state) const {
   for (const LoadingPatch& patch : patches) {
-    if (patch.drive != LoadingPatch::Drive::kDisplacement) continue;
+    if (byForce(patch)) continue;
     const AxisMask mask = maskOf(patch);
     for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
       Vec3& displacement = state.displacement[at(patch.nodes[i])];

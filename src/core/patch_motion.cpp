@@ -31,7 +31,7 @@ void PatchHold::bind(LoadedShape& shape) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (holds(patch, axis)) held_[at(node)] |= static_cast<std::uint8_t>(1U << axis);
       }
-      if (patch.drive == LoadingPatch::Drive::kForce) carriers_[at(node)] = static_cast<int>(index);
+      if (byForce(patch)) carriers_[at(node)] = static_cast<int>(index);
     }
     for (std::size_t spring = 0; spring < patch.rim.size(); ++spring) {
       int& first = first_rim_[at(patch.rim[spring].node)];
@@ -43,7 +43,7 @@ void PatchHold::bind(LoadedShape& shape) {
 
 void PatchHold::place(LoadedShape& shape) const {
   for (const LoadingPatch& patch : shape.patches) {
-    if (patch.drive != LoadingPatch::Drive::kDisplacement) continue;
+    if (byForce(patch)) continue;
     std::size_t spring = 0;
     for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
       const int node = patch.nodes[i];

@@ -185,7 +185,7 @@ Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* st
     }
     if (standing->drive == target.drive) ramp.start.place = standing->place;
   }
-  if (target.drive == LoadingPatch::Drive::kForce) {
+  if (byForce(target)) {
     ramp.start.force = patchForce(ramp.start);
     return ramp;
   }
@@ -198,7 +198,7 @@ Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* st
 int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
   double steps = 1.0;
   for (const Ramp& ramp : ramps) {
-    if (ramp.target.drive == LoadingPatch::Drive::kForce) {
+    if (byForce(ramp.target)) {
       double stiffness = 0.0;
       for (const int node : ramp.target.nodes) {
         stiffness += model_->nodeStiffness(state_, node).mean();
@@ -228,7 +228,7 @@ void Tissue::goAlong(const Ramp& ramp, double share, LoadingPatch& patch) {
     return share < 1.0 ? Vec3(start + share * (target - start)) : target;
   };
   patch.force = between(ramp.start.force, ramp.target.force);
-  if (patch.drive == LoadingPatch::Drive::kForce) return;
+  if (byForce(patch)) return;
   for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
     patch.displacement[i] = between(ramp.start.displacement[i], ramp.target.displacement[i]);
   }

@@ -8,8 +8,6 @@ namespace {
 
 constexpr int kOwn = 0;  // until the unknowns are numbered
 
-bool byForce(const LoadingPatch& patch) { return patch.drive == LoadingPatch::Drive::kForce; }
-
 }  // namespace
 
 Unknowns::Unknowns(const Lattice& lattice, const TissueModel& model, const LoadedShape& shape)

@@ -42,6 +42,9 @@ struct LoadingPatch {
   PatchPlace place;            // kForce: the solver moves it, with its nodes and anchors
 };
 
+// A force moves the patch, not a given displacement.
+bool byForce(const LoadingPatch& patch);
+
 // True when the patch's nodes do not move along the axis by themselves.
 bool holds(const LoadingPatch& patch, std::size_t axis);
 

@@ -16,6 +16,13 @@ using Pose = Eigen::Isometry3d;
 // Index of a node, spring or vertex as containers want it.
 constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
+// The matrix M with M w = v x w.
+inline Eigen::Matrix3d crossMatrix(const Vec3& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
 // Closed axis-aligned box (m).
 struct Box {
   Vec3 min = Vec3::Zero();
