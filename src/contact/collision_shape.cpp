@@ -1,21 +1,15 @@
 #include "collision_shape.h"
 
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
-#include <fcl/narrowphase/collision.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
+#include <limits>
 
 namespace robot_tissue {
 namespace {
 
-// A mesh with less volume than this share of its hull's is reported as not convex.
-constexpr double kConvexShare = 0.95;
+using Type = ToolShape::Type;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string number(double value) {
   char text[32];
@@ -28,133 +22,105 @@ double positive(double value, const char* what, const std::string& owner) {
   throw InputError(owner + ": " + what + " is " + number(value) + "; allowed is > 0 (m)");
 }
 
-std::unique_ptr<fcl::Sphered> makeProbe(double radius) {
-  auto probe = std::make_unique<fcl::Sphered>(radius);
-  probe->computeLocalAABB();
-  return probe;
-}
-
-std::unique_ptr<fcl::Convexd> makeConvex(const ConvexHull& hull, double fcl_units_per_m) {
-  auto vertices = std::make_shared<std::vector<Vec3>>();
-  for (const Vec3& vertex : hull.vertices) vertices->push_back(vertex * fcl_units_per_m);
-  auto faces = std::make_shared<std::vector<int>>();
-  for (const HullFace& face : hull.faces) {
-    faces->push_back(3);
-    faces->insert(faces->end(), face.vertices.begin(), face.vertices.end());
-  }
-  return std::make_unique<fcl::Convexd>(vertices, static_cast<int>(hull.faces.size()), faces);
-}
-
-fcl::Transform3d movedTo(const Vec3& point) {
-  fcl::Transform3d transform = fcl::Transform3d::Identity();
-  transform.translation() = point;
-  return transform;
-}
-
 }  // namespace
 
-struct CollisionShape::FclObjects {
-  std::unique_ptr<fcl::CollisionGeometryd> shape;
-  std::unique_ptr<fcl::Sphered> probe;  // a surface point; its radius is the padding
-  // The tolerances of libccd are absolute and made for shapes about one unit wide.
-  double units_per_m = 1.0;
-};
-
-CollisionShape::~CollisionShape() = default;
-CollisionShape::CollisionShape(CollisionShape&&) noexcept = default;
-
-CollisionShape::CollisionShape(const ToolShape& shape, double padding, const std::string& owner,
+CollisionShape::CollisionShape(const ToolShape& shape, const std::string& owner,
                                std::vector<std::string>& warnings)
-    : pose_in_link_(shape.pose), padding_(padding), fcl_(std::make_unique<FclObjects>()) {
-  if (!(padding >= 0.0 && std::isfinite(padding))) {
-    throw InputError(owner + ": padding is " + number(padding) + "; allowed is >= 0 (m)");
+    : shape_(shape) {
+  if (!(shape.padding >= 0.0 && std::isfinite(shape.padding))) {
+    throw InputError(owner + ": padding is " + number(shape.padding) + "; allowed is >= 0 (m)");
   }
   if (!shape.pose.matrix().allFinite()) {
     throw InputError(owner + ": its pose has a number that is not finite");
   }
-  if (shape.type == ToolShape::Type::kMesh) {
-    buildHull(shape, owner, warnings);
+  if (shape.type == Type::kMesh) {
+    measureMesh(owner, warnings);
   } else {
-    buildPrimitive(shape, owner);
+    measurePrimitive(owner);
   }
-  fcl_->probe = makeProbe(padding * fcl_->units_per_m);
-  fcl_->shape->computeLocalAABB();
-  thickness_ += 2.0 * padding;
-  const Vec3 reach = Vec3::Constant(padding);
-  bounds_.min = fcl_->shape->aabb_local.min_ / fcl_->units_per_m - reach;
-  bounds_.max = fcl_->shape->aabb_local.max_ / fcl_->units_per_m + reach;
+  thickness_ += 2.0 * shape.padding;
+  bounds_.min.array() -= shape.padding;
+  bounds_.max.array() += shape.padding;
 }
 
-void CollisionShape::buildPrimitive(const ToolShape& shape, const std::string& owner) {
-  if (shape.type == ToolShape::Type::kBox) {
-    for (int axis = 0; axis < 3; ++axis) positive(shape.size[axis], "box size", owner);
-    fcl_->shape = std::make_unique<fcl::Boxd>(shape.size);
-    thickness_ = shape.size.minCoeff();
-  } else if (shape.type == ToolShape::Type::kCylinder) {
-    const double radius = positive(shape.radius, "cylinder radius", owner);
-    const double length = positive(shape.length, "cylinder length", owner);
-    fcl_->shape = std::make_unique<fcl::Cylinderd>(radius, length);
-    thickness_ = std::min(2.0 * radius, length);
+void CollisionShape::measurePrimitive(const std::string& owner) {
+  if (shape_.type == Type::kPlane) {
+    thickness_ = kInfinity;
+    bounds_ = {Vec3::Constant(-kInfinity), Vec3(kInfinity, kInfinity, 0.0)};
+    return;
+  }
+  Vec3 reach;
+  if (shape_.type == Type::kBox) {
+    for (int axis = 0; axis < 3; ++axis) positive(shape_.size[axis], "box size", owner);
+    reach = 0.5 * shape_.size;
+  } else if (shape_.type == Type::kCylinder) {
+    const double radius = positive(shape_.radius, "cylinder radius", owner);
+    reach = Vec3(radius, radius, 0.5 * positive(shape_.length, "cylinder length", owner));
   } else {
-    const double radius = positive(shape.radius, "sphere radius", owner);
-    fcl_->shape = std::make_unique<fcl::Sphered>(radius);
-    thickness_ = 2.0 * radius;
+    reach = Vec3::Constant(positive(shape_.radius, "sphere radius", owner));
   }
+  thickness_ = 2.0 * reach.minCoeff();
+  bounds_ = {-reach, reach};
 }
 
-void CollisionShape::buildHull(const ToolShape& shape, const std::string& owner,
-                               std::vector<std::string>& warnings) {
-  hull_ = loadHull(shape.resource, shape.scale, owner);
-  const double share = hull_->mesh_volume / hull_->volume;
-  if (share < kConvexShare) {
-    warnings.push_back(owner + ": mesh '" + shape.resource + "' is not convex and fills " +
-                       number(std::round(100.0 * share)) +
-                       " % of its convex hull; the hull is what touches");
-  }
-  thickness_ = hull_->thickness();
-  fcl_->units_per_m = 1.0 / thickness_;
-  fcl_->shape = makeConvex(*hull_, fcl_->units_per_m);
+void CollisionShape::measureMesh(const std::string& owner, std::vector<std::string>& warnings) {
+  mesh_ = std::make_shared<const ToolMesh>(shape_.resource, shape_.scale, owner, warnings);
+  thickness_ = mesh_->thickness();
+  bounds_ = mesh_->bounds();
 }
 
-std::optional<WayOut> CollisionShape::wayOut(const Vec3& point) const {
+SignedDistance CollisionShape::unpadded(const Vec3& point) const {
+  switch (shape_.type) {
+    case Type::kSphere:
+      return distanceToSphere(shape_.radius, point);
+    case Type::kBox:
+      return distanceToBox(0.5 * shape_.size, point);
+    case Type::kCylinder:
+      return distanceToCylinder(shape_.radius, 0.5 * shape_.length, point);
+    case Type::kPlane:
+      return distanceToPlane(point);
+    case Type::kMesh:
+      break;
+  }
+  return mesh_->distance(point, kInfinity).value_or(SignedDistance{kInfinity, Vec3::Zero()});
+}
+
+SignedDistance CollisionShape::distance(const Vec3& point) const {
+  SignedDistance distance = unpadded(point);
+  distance.value -= shape_.padding;
+  return distance;
+}
+
+std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) const {
   // Written so that a point that is not finite is outside.
-  const bool in_bounds =
-      (point.array() >= bounds_.min.array()).all() && (point.array() <= bounds_.max.array()).all();
-  if (!in_bounds) return std::nullopt;
-  if (!hull_) return wayOutOfPrimitive(point);
-  // libccd tells overlap with a polytope well, but its depth is not the least one: the hull's
-  // faces give that.
-  if (!overlaps(point)) return std::nullopt;
-  return hull_->wayOut(point, padding_);
+  const bool near = (point.array() >= bounds_.min.array() - reach).all() &&
+                    (point.array() <= bounds_.max.array() + reach).all();
+  if (!near || !point.allFinite()) return std::nullopt;
+  if (isMesh()) return wayOutOfMesh(point, reach);
+  const SignedDistance found = distance(point);
+  if (found.value > reach) return std::nullopt;
+  return WayOut{-found.value, found.slope};
 }
 
-bool CollisionShape::overlaps(const Vec3& point) const {
-  const fcl::CollisionRequestd request(1, false);
-  fcl::CollisionResultd result;
-  try {
-    fcl::collide(fcl_->probe.get(), movedTo(point * fcl_->units_per_m), fcl_->shape.get(),
-                 fcl::Transform3d::Identity(), request, result);
-  } catch (const std::exception&) {
-    return true;  // FCL gives up on degenerate positions: left to the hull's faces
+// A point deep inside is always asked, one far outside never.
+std::optional<WayOut> CollisionShape::wayOutOfMesh(const Vec3& point, double reach) const {
+  const auto found = mesh_->distance(point, reach + shape_.padding);
+  if (!found) return std::nullopt;
+  return WayOut{shape_.padding - found->value, found->slope};
+}
+
+Vec3 CollisionShape::farthest(const Vec3& direction) const {
+  Vec3 corner = Vec3::Zero();
+  if (shape_.type == Type::kSphere) {
+    corner = shape_.radius * direction;
+  } else if (shape_.type == Type::kBox) {
+    for (int k = 0; k < 3; ++k) corner[k] = std::copysign(0.5 * shape_.size[k], direction[k]);
+  } else {
+    const double radial = direction.head<2>().norm();
+    if (radial > 0.0) corner.head<2>() = direction.head<2>() * (shape_.radius / radial);
+    corner.z() = std::copysign(0.5 * shape_.length, direction.z());
   }
-  return result.isCollision();
-}
-
-// FCL has closed formulas for a sphere against a sphere, a box and a cylinder.
-std::optional<WayOut> CollisionShape::wayOutOfPrimitive(const Vec3& point) const {
-  const fcl::CollisionRequestd request(1, true);
-  fcl::CollisionResultd result;
-  fcl::collide(fcl_->probe.get(), movedTo(point), fcl_->shape.get(), fcl::Transform3d::Identity(),
-               request, result);
-  if (!result.isCollision()) return std::nullopt;
-  const fcl::Contactd& contact = result.getContact(0);
-  const double depth = contact.penetration_depth;
-  if (!(depth > 0.0 && std::isfinite(depth))) return std::nullopt;
-  // FCL's normal goes from the probe into the shape; it is zero at the center of a sphere.
-  WayOut out{depth, -contact.normal};
-  const double length = out.normal.norm();
-  out.normal = length > 0.5 ? Vec3(out.normal / length) : Vec3::Zero();
-  return out;
+  return corner + shape_.padding * direction;
 }
 
 }  // namespace robot_tissue

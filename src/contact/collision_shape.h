@@ -1,4 +1,4 @@
-// One collision shape of a tool: an FCL object that is built once and asked point by point.
+// One collision shape of a link, asked point by point for its signed distance.
 // Padding is extra reach: a point is inside when it is nearer than the padding. This is exact for
 // every type of shape; a padded box or cylinder has rounded edges.
 #pragma once
@@ -8,43 +8,47 @@
 #include <string>
 #include <vector>
 
-#include "convex_hull.h"
+#include "robot_tissue/contact/contact_finder.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/types.h"
+#include "signed_distance.h"
+#include "tool_mesh.h"
 
 namespace robot_tissue {
 
 class CollisionShape {
  public:
   // `owner` begins messages and warnings. Throws InputError: a measure that is not positive, a
-  // mesh that cannot be loaded or has no volume.
-  CollisionShape(const ToolShape& shape, double padding, const std::string& owner,
+  // padding that is negative, a mesh that cannot be loaded or has no inside.
+  CollisionShape(const ToolShape& shape, const std::string& owner,
                  std::vector<std::string>& warnings);
-  ~CollisionShape();
-  CollisionShape(CollisionShape&&) noexcept;
 
-  // For a point in the shape's own frame (m); nothing when it is outside the padded shape.
-  std::optional<WayOut> wayOut(const Vec3& point) const;
+  // For points in the shape's own frame (m). Distances are from the padded shape.
+  SignedDistance distance(const Vec3& point) const;
+  // Nothing when the point is farther than `reach` (m), or not finite.
+  std::optional<WayOut> wayOut(const Vec3& point, double reach) const;
+  // Where the padded shape reaches farthest in a unit direction; not for meshes and planes.
+  Vec3 farthest(const Vec3& direction) const;
 
-  const Pose& poseInLink() const { return pose_in_link_; }
-  const Box& bounds() const { return bounds_; }    // padded, shape's own frame (m)
-  double thickness() const { return thickness_; }  // padded, smallest width (m)
+  bool isMesh() const { return mesh_ != nullptr; }
+  bool isPlane() const { return shape_.type == ToolShape::Type::kPlane; }
+  const ToolMesh& mesh() const { return *mesh_; }
+  const ToolShape& measures() const { return shape_; }
+  double padding() const { return shape_.padding; }
+  const Pose& poseInLink() const { return shape_.pose; }
+  const Box& bounds() const { return bounds_; }    // padded, shape's own frame (m); may be infinite
+  double thickness() const { return thickness_; }  // padded, smallest width (m); infinite: plane
 
  private:
-  struct FclObjects;
+  void measurePrimitive(const std::string& owner);
+  void measureMesh(const std::string& owner, std::vector<std::string>& warnings);
+  SignedDistance unpadded(const Vec3& point) const;
+  std::optional<WayOut> wayOutOfMesh(const Vec3& point, double reach) const;
 
-  void buildPrimitive(const ToolShape& shape, const std::string& owner);
-  void buildHull(const ToolShape& shape, const std::string& owner,
-                 std::vector<std::string>& warnings);
-  bool overlaps(const Vec3& point) const;
-  std::optional<WayOut> wayOutOfPrimitive(const Vec3& point) const;
-
-  Pose pose_in_link_;
-  double padding_;
-  double thickness_ = 0.0;
+  ToolShape shape_;
   Box bounds_;
-  std::unique_ptr<FclObjects> fcl_;
-  std::optional<ConvexHull> hull_;  // meshes
+  double thickness_ = 0.0;
+  std::shared_ptr<const ToolMesh> mesh_;
 };
 
 }  // namespace robot_tissue

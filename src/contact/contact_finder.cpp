@@ -1,216 +1,213 @@
 #include "robot_tissue/contact/contact_finder.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <optional>
 
 #include "collision_shape.h"
-#include "triangle_samples.h"
+#include "link_contacts.h"
+#include "link_penetration.h"
+#include "placed_link.h"
+#include "shape_gap.h"
 
 namespace robot_tissue {
 namespace {
 
-// An edge or a corner of a tool presses between samples by up to their distance.
-constexpr int kEdgeSubdivisions = 4;
-constexpr double kRigidSlack = 1e-6;
-
-bool isRigid(const Pose& pose) {
-  if (!pose.matrix().allFinite()) return false;
-  const Eigen::Matrix3d rotation = pose.linear();
-  return (rotation.transpose() * rotation).isIdentity(kRigidSlack) && rotation.determinant() > 0.0;
-}
-
-// A shape where it is now.
-struct PlacedShape {
-  const CollisionShape* shape = nullptr;
-  Pose tissue_T_shape = Pose::Identity();
-  Pose shape_T_tissue = Pose::Identity();
-};
-
-struct Tool {
+struct Link {
+  int tool = 0;
   std::vector<CollisionShape> shapes;
-  double sample_spacing = 0.0;  // m
-  int least_subdivisions = 1;   // of a triangle's edge
+  std::vector<GapShape> gap_shapes;               // as shapes
+  std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
 };
 
-Box emptyBox() {
-  const double infinity = std::numeric_limits<double>::infinity();
-  return {Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-}
-
-// Grows `box` by the axis-aligned box around a placed shape.
-void growBy(const PlacedShape& placed, Box& box) {
-  const Box& bounds = placed.shape->bounds();
-  const Vec3 center = placed.tissue_T_shape * Vec3(0.5 * (bounds.min + bounds.max));
-  const Vec3 reach = placed.tissue_T_shape.linear().cwiseAbs() * (0.5 * (bounds.max - bounds.min));
-  box.min = box.min.cwiseMin(center - reach);
-  box.max = box.max.cwiseMax(center + reach);
-}
-
-// One bit for each side of the box that the point is beyond.
-std::uint8_t sidesBeyond(const Vec3& point, const Box& box) {
-  unsigned sides = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    sides |= (point[axis] < box.min[axis] ? 1U : 0U) << (2 * axis);
-    sides |= (point[axis] > box.max[axis] ? 1U : 0U) << (2 * axis + 1);
+Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geometry,
+              std::vector<std::string>& warnings) {
+  Link link;
+  link.tool = tool;
+  const std::string owner =
+      "tool '" + tool_name + "'" + (geometry.link.empty() ? "" : ", link '" + geometry.link + "'");
+  for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
+    link.shapes.emplace_back(geometry.shapes[i], owner + ", shape " + std::to_string(i + 1),
+                             warnings);
+    link.gap_shapes.emplace_back(link.shapes.back());
+    link.surface_points.push_back(surfacePoints(link.shapes.back()));
   }
-  return static_cast<std::uint8_t>(sides);
+  return link;
 }
 
-// The deepest of the tool's shapes at a point; normal in the tissue frame.
-std::optional<WayOut> deepest(const std::vector<PlacedShape>& shapes, const Vec3& point) {
-  std::optional<WayOut> best;
-  for (const PlacedShape& placed : shapes) {
-    const auto out = placed.shape->wayOut(placed.shape_T_tissue * point);
-    if (!out || (best && out->depth_m <= best->depth_m)) continue;
-    best = WayOut{out->depth_m, placed.tissue_T_shape.linear() * out->normal};
+void requireVertices(const Surface& surface, const std::vector<Vec3>& vertices) {
+  if (vertices.size() == surface.rest.size()) return;
+  throw InputError("surface: has " + std::to_string(vertices.size()) +
+                   " deformed vertices; allowed is one for each of its " +
+                   std::to_string(surface.rest.size()) + " vertices");
+}
+
+void requireLinks(const RobotPose& pose, std::size_t links) {
+  if (pose.links.size() == links) return;
+  throw InputError("robot pose: has " + std::to_string(pose.links.size()) +
+                   " links; allowed is one for each of the " + std::to_string(links) +
+                   " links of the scene's tools");
+}
+
+// The tree over a surface: made from its rest shape, so that it depends on nothing before, and
+// moved to the deformed one.
+class SurfaceTree {
+ public:
+  const TriangleTree& of(const Surface& surface, const std::vector<Vec3>& vertices) {
+    if (!tree_ || surface.rest != rest_ || surface.triangles != triangles_) {
+      rest_ = surface.rest;
+      triangles_ = surface.triangles;
+      tree_.emplace(rest_, triangles_);
+      vertices_.clear();
+    }
+    if (vertices != vertices_) {
+      vertices_ = vertices;
+      tree_->moveTo(vertices_);
+    }
+    return *tree_;
   }
-  return best;
-}
 
-bool hasEdges(const ToolGeometry& geometry) {
-  return std::any_of(geometry.shapes.begin(), geometry.shapes.end(),
-                     [](const ToolShape& shape) { return shape.type != ToolShape::Type::kSphere; });
-}
-
-// Into the tissue: for a point that every way leads out of the tool alike.
-Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 area = (b - a).cross(c - a);
-  const double length = area.norm();
-  return length > 0.0 ? Vec3(-area / length) : Vec3(-Vec3::UnitZ());
-}
+ private:
+  std::vector<Vec3> rest_, vertices_;
+  std::vector<MeshTriangle> triangles_;
+  std::optional<TriangleTree> tree_;
+};
 
 }  // namespace
 
 struct ContactFinder::Impl {
-  std::vector<Tool> tools;
-  double touch_margin = 0.0;  // m, part of the shapes' padding
+  std::vector<Link> links;
   std::vector<std::string> warnings;
 
-  // Scratch, kept to spare allocations.
-  std::vector<PlacedShape> placed;
-  std::vector<Vec3> centers;               // of the placed shapes, tissue frame (m)
-  std::vector<std::uint8_t> beyond;        // per vertex: sidesBeyond() the tool's box
-  std::vector<std::uint8_t> vertex_asked;  // per vertex, 1 = tested against this tool
-  std::vector<Vec3> samples;
-
-  void place(const Tool& tool, const Pose& tissue_T_tool, const std::vector<Vec3>& vertices);
-  void findOnTriangle(int tool, int triangle, const Surface& surface,
-                      const std::vector<Vec3>& vertices, ContactSet& found);
+  // Scratch.
+  LinkContacts contacts;
+  SurfaceTree surface_tree;
 };
 
 ContactFinder::~ContactFinder() = default;
 ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
 ContactFinder& ContactFinder::operator=(ContactFinder&&) noexcept = default;
 
-ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools, double touch_margin)
+ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
     : impl_(std::make_unique<Impl>()) {
-  impl_->touch_margin = touch_margin;
-  for (const ToolGeometry& geometry : tools) {
-    Tool tool;
-    double thinnest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
-      const std::string owner = "tool '" + geometry.name + "', shape " + std::to_string(i + 1);
-      tool.shapes.emplace_back(geometry.shapes[i], geometry.padding + touch_margin, owner,
-                               impl_->warnings);
-      thinnest = std::min(thinnest, tool.shapes.back().thickness());
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    for (const LinkGeometry& link : tools[t].links) {
+      impl_->links.push_back(makeLink(static_cast<int>(t), tools[t].name, link, impl_->warnings));
     }
-    tool.sample_spacing = 0.5 * thinnest;
-    if (hasEdges(geometry)) tool.least_subdivisions = kEdgeSubdivisions;
-    impl_->tools.push_back(std::move(tool));
   }
 }
 
-double ContactFinder::reach(std::size_t tool) const {
+std::size_t ContactFinder::linkCount() const { return impl_->links.size(); }
+
+double ContactFinder::reach(std::size_t link) const {
   double farthest = 0.0;
-  for (const CollisionShape& shape : impl_->tools[tool].shapes) {
-    const Vec3 corner = shape.bounds().min.cwiseAbs().cwiseMax(shape.bounds().max.cwiseAbs());
-    farthest = std::max(farthest, shape.poseInLink().translation().norm() + corner.norm());
+  for (const CollisionShape& shape : impl_->links[link].shapes) {
+    if (shape.isPlane()) continue;
+    const Box& box = shape.bounds();
+    const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min + box.max));
+    const Vec3 half = 0.5 * (box.max - box.min);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                       (corner & 4) != 0 ? 1.0 : -1.0);
+      const Vec3 away = middle + shape.poseInLink().linear() * half.cwiseProduct(signs);
+      farthest = std::max(farthest, away.norm());
+    }
   }
   return farthest;
 }
 
-Vec3 ContactFinder::center(std::size_t tool) const {
+Vec3 ContactFinder::center(std::size_t link) const {
   Vec3 sum = Vec3::Zero();
-  const auto& shapes = impl_->tools[tool].shapes;
+  const auto& shapes = impl_->links[link].shapes;
   for (const CollisionShape& shape : shapes) sum += shape.poseInLink().translation();
   return shapes.empty() ? sum : Vec3(sum / static_cast<double>(shapes.size()));
+}
+
+double ContactFinder::thickness(std::size_t link) const {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const CollisionShape& shape : impl_->links[link].shapes) {
+    thinnest = std::min(thinnest, shape.thickness());
+  }
+  return thinnest;
+}
+
+Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {
+  return boundsOf(placed(impl_->links[link].shapes, tissue_T_link));
 }
 
 const std::vector<std::string>& ContactFinder::warnings() const { return impl_->warnings; }
 
 ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
-                               const std::vector<Vec3>& vertices) {
-  if (pose.tools.size() != impl_->tools.size()) {
-    throw InputError("robot pose: has " + std::to_string(pose.tools.size()) +
-                     " tools; allowed is one for each of the " +
-                     std::to_string(impl_->tools.size()) + " tools of the scene");
-  }
-  if (vertices.size() != surface.rest.size()) {
-    throw InputError("surface: has " + std::to_string(vertices.size()) +
-                     " deformed vertices; allowed is one for each of its " +
-                     std::to_string(surface.rest.size()) + " vertices");
-  }
+                               const std::vector<Vec3>& vertices, double margin) const {
+  requireLinks(pose, impl_->links.size());
+  requireVertices(surface, vertices);
   ContactSet found;
-  for (std::size_t t = 0; t < impl_->tools.size(); ++t) {
-    const Tool& tool = impl_->tools[t];
-    if (tool.shapes.empty() || !isRigid(pose.tools[t])) continue;
-    impl_->place(tool, pose.tools[t], vertices);
-    for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
-      impl_->findOnTriangle(static_cast<int>(t), static_cast<int>(k), surface, vertices, found);
-    }
+  for (std::size_t i = 0; i < impl_->links.size(); ++i) {
+    const Link& link = impl_->links[i];
+    impl_->contacts.find(placed(link.shapes, pose.links[i]), link.tool, static_cast<int>(i),
+                         surface, vertices, margin, found);
   }
   return found;
 }
 
-// Broad phase: the tool's shapes where they are now, and which vertices are out of their box.
-void ContactFinder::Impl::place(const Tool& tool, const Pose& tissue_T_tool,
-                                const std::vector<Vec3>& vertices) {
-  placed.clear();
-  centers.clear();
-  Box box = emptyBox();
-  for (const CollisionShape& shape : tool.shapes) {
-    PlacedShape at{&shape, tissue_T_tool * shape.poseInLink(), Pose::Identity()};
-    at.shape_T_tissue = at.tissue_T_shape.inverse();
-    growBy(at, box);
-    centers.push_back(at.tissue_T_shape * Vec3(0.5 * (shape.bounds().min + shape.bounds().max)));
-    placed.push_back(at);
-  }
-  beyond.resize(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) beyond[i] = sidesBeyond(vertices[i], box);
-  vertex_asked.assign(vertices.size(), 0);
+std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue_T_link,
+                                            const Vec3& point, double reach) const {
+  return robot_tissue::wayOut(placed(impl_->links[link].shapes, tissue_T_link), point, reach);
 }
 
-void ContactFinder::Impl::findOnTriangle(int tool, int triangle, const Surface& surface,
-                                         const std::vector<Vec3>& vertices, ContactSet& found) {
-  const auto& corners = surface.triangles[static_cast<std::size_t>(triangle)];
-  const auto a_index = static_cast<std::size_t>(corners[0]);
-  const auto b_index = static_cast<std::size_t>(corners[1]);
-  const auto c_index = static_cast<std::size_t>(corners[2]);
-  if ((beyond[a_index] & beyond[b_index] & beyond[c_index]) != 0) return;
-  const Vec3& a = vertices[a_index];
-  const Vec3& b = vertices[b_index];
-  const Vec3& c = vertices[c_index];
-  if (!(a.allFinite() && b.allFinite() && c.allFinite())) return;
-
-  const auto ask = [&](const Vec3& weights) {
-    const Vec3 point = weights[0] * a + weights[1] * b + weights[2] * c;
-    const auto out = deepest(placed, point);
-    if (!out) return;
-    const Vec3 normal = out->normal.isZero() ? inward(a, b, c) : out->normal;
-    found.contacts.push_back({tool, triangle, weights, point, normal, out->depth_m - touch_margin});
-  };
-  for (int k = 0; k < 3; ++k) {
-    const auto vertex = static_cast<std::size_t>(corners[static_cast<std::size_t>(k)]);
-    if (vertex_asked[vertex] != 0) continue;
-    vertex_asked[vertex] = 1;
-    if (beyond[vertex] == 0) ask(Vec3::Unit(k));
+// Sphere tracing: from a point at a signed distance the way out is at least as long as that.
+std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& tissue_T_link,
+                                                 const Vec3& point, const Vec3& direction,
+                                                 double clear, double reach,
+                                                 double farthest) const {
+  constexpr double kLeastStep = 0.1;  // of `clear`
+  double gone = 0.0;
+  while (gone <= farthest) {
+    const Vec3 probe = point + gone * direction;
+    const auto out = wayOut(link, tissue_T_link, probe, std::max(reach, 2.0 * clear));
+    if (!out) return std::nullopt;
+    if (out->depth_m <= -0.9 * clear) {
+      return WayOut{out->depth_m + gone * out->normal.dot(direction), out->normal};
+    }
+    gone += std::max(out->depth_m + clear, kLeastStep * clear);
   }
-  const Tool& asking = tools[static_cast<std::size_t>(tool)];
-  const SampleGrid grid{asking.sample_spacing, asking.least_subdivisions};
-  sampleTriangle(corners, vertices, grid, centers, samples);
-  for (const Vec3& weights : samples) ask(weights);
+  return std::nullopt;
+}
+
+double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
+                                  const Surface& surface, const std::vector<Vec3>& vertices) const {
+  requireVertices(surface, vertices);
+  const PlacedLink here = placed(impl_->links[link].shapes, tissue_T_link);
+  Box surface_box = emptyBox();
+  for (const Vec3& vertex : vertices) {
+    if (vertex.allFinite()) growBy({vertex, vertex}, surface_box);
+  }
+  if (here.empty() || !boxesMeet(boundsOf(here), surface_box, 0.0)) return 0.0;
+  ContactSet found;
+  impl_->contacts.find(here, 0, 0, surface, vertices, 0.0, found);
+  double deepest = 0.0;
+  for (const Contact& contact : found.contacts) deepest = std::max(deepest, contact.depth_m);
+  const TriangleTree& tree = impl_->surface_tree.of(surface, vertices);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    deepest = deepestInside(here[i], impl_->links[link].surface_points[i], tree, deepest);
+  }
+  return deepest;
+}
+
+double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {
+  requireLinks(pose, impl_->links.size());
+  const Link& a = impl_->links[link];
+  const Link& b = impl_->links[other];
+  const PlacedLink a_here = placed(a.shapes, pose.links[link]);
+  const PlacedLink b_here = placed(b.shapes, pose.links[other]);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < a_here.size(); ++i) {
+    for (std::size_t j = 0; j < b_here.size(); ++j) {
+      least = std::min(least, gapBetween({&a_here[i], &a.gap_shapes[i], &a.surface_points[i]},
+                                         {&b_here[j], &b.gap_shapes[j], &b.surface_points[j]}));
+    }
+  }
+  return least;
 }
 
 }  // namespace robot_tissue

@@ -12,7 +12,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kLinksToList = 8;
+constexpr std::size_t kNamesToList = 8;
 
 struct ParsedUrdf {
   std::shared_ptr<const urdf::ModelInterface> model;
@@ -34,17 +34,21 @@ ParsedUrdf parseUrdf(const std::string& urdf_xml) {
   return {model, console.errors()};
 }
 
-std::string listLinks(const urdf::ModelInterface& model) {
+std::string listed(const std::vector<std::string>& names) {
   std::string list;
-  std::size_t listed = 0;
-  for (const auto& [name, link] : model.links_) {
-    if (listed == kLinksToList) {
-      return list + ", ... (" + std::to_string(model.links_.size() - listed) + " more)";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == kNamesToList) {
+      return list + ", ... (" + std::to_string(names.size() - i) + " more)";
     }
-    list += (listed == 0 ? "" : ", ") + name;
-    ++listed;
+    list += (i == 0 ? "" : ", ") + names[i];
   }
   return list;
+}
+
+std::string listLinks(const urdf::ModelInterface& model) {
+  std::vector<std::string> names;
+  for (const auto& [name, link] : model.links_) names.push_back(name);
+  return listed(names);
 }
 
 Pose toPose(const urdf::Pose& urdf_pose) {
@@ -85,14 +89,30 @@ ToolShape toShape(const urdf::Geometry& geometry, const urdf::Pose& origin) {
   return shape;
 }
 
-std::vector<ToolShape> collisionShapes(const urdf::Link& link) {
+// Each with the padding of its name; the link's own is not in it yet.
+std::vector<ToolShape> collisionShapes(const urdf::Link& link, const ToolLink& config) {
   std::vector<ToolShape> shapes;
   for (const auto& collision : link.collision_array) {
-    if (collision && collision->geometry) {
-      shapes.push_back(toShape(*collision->geometry, collision->origin));
-    }
+    if (!collision || !collision->geometry) continue;
+    shapes.push_back(toShape(*collision->geometry, collision->origin));
+    const auto padding = config.collision_padding.find(collision->name);
+    if (padding != config.collision_padding.end()) shapes.back().padding = padding->second;
   }
   return shapes;
+}
+
+void requirePaddedCollisions(const urdf::Link& link, const ToolLink& config,
+                             const std::string& key) {
+  std::vector<std::string> names;
+  for (const auto& collision : link.collision_array) {
+    if (collision && !collision->name.empty()) names.push_back(collision->name);
+  }
+  for (const auto& [name, padding] : config.collision_padding) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw InputError(
+        key + ".collision_padding: '" + name + "' is no name of a collision of link '" + link.name +
+        (names.empty() ? "', whose collisions have no names" : "'; it has: " + listed(names)));
+  }
 }
 
 // urdfdom gives up on a link at its first faulty element and hands out what came before.
@@ -104,32 +124,110 @@ void refuseHalfReadLink(const std::vector<std::string>& errors, const std::strin
   }
 }
 
-std::string toolKey(std::size_t index) { return "tools[" + std::to_string(index) + "]"; }
+std::string linkKey(std::size_t tool, std::size_t link) {
+  return "tools[" + std::to_string(tool) + "].links[" + std::to_string(link) + "]";
+}
+
+// All but the links.
+ToolGeometry toolOf(const ToolConfig& config, std::size_t index) {
+  if (config.links.empty()) {
+    throw InputError("tools[" + std::to_string(index) +
+                     "].links: is empty; allowed is one link or more");
+  }
+  ToolGeometry tool;
+  tool.name = config.name.empty() ? config.links.front().link : config.name;
+  tool.role = config.role;
+  tool.patch = config.patch;
+  tool.friction = config.friction;
+  tool.max_force = config.max_force;
+  tool.grasp = config.grasp;
+  return tool;
+}
+
+LinkGeometry linkOf(const ToolLink& config, std::vector<ToolShape> shapes) {
+  for (ToolShape& shape : shapes) shape.padding += config.padding;
+  return {config.link, std::move(shapes)};
+}
+
+void warnOfUselessPadding(const ToolLink& config, const std::string& key,
+                          std::vector<std::string>& warnings) {
+  if (config.collision_padding.empty()) return;
+  warnings.push_back(key +
+                     ".collision_padding: is not used, as no collision geometry of a URDF is; the "
+                     "shapes have a padding of their own");
+}
+
+urdf::LinkConstSharedPtr findLink(const ParsedUrdf& urdf, const ToolLink& config,
+                                  const std::string& tool, const std::string& key) {
+  const urdf::LinkConstSharedPtr link = urdf.model->getLink(config.link);
+  if (link) return link;
+  throw InputError(key + ".link: '" + config.link + "' of tool '" + tool +
+                   "' is no link of the robot '" + urdf.model->getName() +
+                   "'; it has: " + listLinks(*urdf.model));
+}
+
+LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std::string& tool,
+                      const std::string& key, std::vector<std::string>& warnings) {
+  const auto link = findLink(urdf, config, tool, key);
+  if (!config.shapes.empty()) {
+    warnOfUselessPadding(config, key, warnings);
+    return linkOf(config, config.shapes);
+  }
+  refuseHalfReadLink(urdf.errors, config.link);
+  requirePaddedCollisions(*link, config, key);
+  LinkGeometry loaded = linkOf(config, collisionShapes(*link, config));
+  if (loaded.shapes.empty()) {
+    warnings.push_back("tool '" + tool + "': its link '" + config.link +
+                       "' touches nothing, as it has no collision geometry in the URDF; give it "
+                       "some under " +
+                       key + ".shapes");
+  }
+  return loaded;
+}
+
+// A grasper's own link is its frame, and touches nothing without shapes of the scene.
+bool isFrameOnly(const ToolConfig& tool, std::size_t link) {
+  return tool.role == ToolConfig::Role::kGrasper && link + 2 < tool.links.size() &&
+         tool.links[link].shapes.empty();
+}
 
 }  // namespace
 
 LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>& configs) {
   LoadedTools loaded;
   if (configs.empty()) return loaded;
-  const auto [model, errors] = parseUrdf(urdf_xml);
+  const ParsedUrdf urdf = parseUrdf(urdf_xml);
   for (std::size_t i = 0; i < configs.size(); ++i) {
-    const ToolConfig& config = configs[i];
-    const auto link = model->getLink(config.link);
-    ToolGeometry tool{config.name.empty() ? config.link : config.name, config.link, config.padding,
-                      config.shapes};
-    if (!link) {
-      throw InputError(toolKey(i) + ".link: '" + config.link + "' of tool '" + tool.name +
-                       "' is no link of the robot '" + model->getName() +
-                       "'; it has: " + listLinks(*model));
+    ToolGeometry tool = toolOf(configs[i], i);
+    for (std::size_t j = 0; j < configs[i].links.size(); ++j) {
+      const ToolLink& link = configs[i].links[j];
+      if (isFrameOnly(configs[i], j)) {
+        if (!link.link.empty()) findLink(urdf, link, tool.name, linkKey(i, j));
+        tool.links.push_back({link.link, {}});
+        continue;
+      }
+      tool.links.push_back(loadLink(urdf, link, tool.name, linkKey(i, j), loaded.warnings));
     }
-    if (tool.shapes.empty()) {
-      refuseHalfReadLink(errors, tool.link);
-      tool.shapes = collisionShapes(*link);
+    loaded.tools.push_back(std::move(tool));
+  }
+  return loaded;
+}
+
+LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
+  LoadedTools loaded;
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    ToolGeometry tool = toolOf(configs[i], i);
+    for (std::size_t j = 0; j < configs[i].links.size(); ++j) {
+      const ToolLink& link = configs[i].links[j];
+      warnOfUselessPadding(link, linkKey(i, j), loaded.warnings);
+      tool.links.push_back(linkOf(link, link.shapes));
     }
-    if (tool.shapes.empty()) {
-      loaded.warnings.push_back("tool '" + tool.name + "' touches nothing: its link '" + tool.link +
-                                "' has no collision geometry in the URDF; give it some under " +
-                                toolKey(i) + ".shapes");
+    const bool bare = std::all_of(tool.links.begin(), tool.links.end(),
+                                  [](const LinkGeometry& link) { return link.shapes.empty(); });
+    if (bare) {
+      loaded.warnings.push_back("tool '" + tool.name +
+                                "' touches nothing: it has no shapes; give it some under " +
+                                linkKey(i, 0) + ".shapes");
     }
     loaded.tools.push_back(std::move(tool));
   }

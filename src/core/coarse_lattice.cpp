@@ -30,52 +30,75 @@ Eigen::Matrix3d freeBlock(Eigen::Matrix3d block, unsigned rows_held, unsigned co
   return block;
 }
 
+bool samePattern(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
+  return a.rows() == b.rows() && a.nonZeros() == b.nonZeros() &&
+         std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize(), b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr());
+}
+
 }  // namespace
 
 CoarseLattice::CoarseLattice(const Lattice& lattice, const EnergyModel& model)
     : lattice_(lattice), model_(model) {}
 
 void CoarseLattice::build(const LoadedShape& shape, const PatchHold& hold) {
-  std::vector<double> rims;
+  std::vector<double> springs;
   for (const LoadingPatch& patch : shape.patches) {
-    rims.push_back(patch.turns ? -2.0 : -1.0);
+    springs.push_back(patch.turns ? -2.0 : -1.0);
     for (const RimSpring& spring : patch.rim) {
-      rims.push_back(spring.node);
-      rims.insert(rims.end(), spring.stiffness.data(), spring.stiffness.data() + 3);
+      springs.push_back(spring.node);
+      springs.insert(springs.end(), spring.stiffness.data(), spring.stiffness.data() + 3);
+    }
+    for (const ContactSpring& spring : patch.contacts) {
+      if (normalForceOf(spring, shape.state.displacement) <= 0.0) continue;
+      for (const NodeWeight& carrier : spring.carriers) springs.push_back(carrier.node);
     }
   }
   const bool same_cells = cells_ == shape.state.cells;
-  if (same_cells && held_ == hold.held() && carriers_ == hold.carriers() && rims_ == rims) return;
+  const bool same_hold = held_ == hold.held() && carriers_ == hold.carriers();
+  if (same_cells && same_hold && springs_ == springs) return;
   if (!same_cells) {
     lay(shape.state);
     about_ = shape.state;
     std::fill(about_.displacement.begin(), about_.displacement.end(), Vec3::Zero());
   }
+  if (fillChanged(shape, hold)) sumBlocks();
+  cells_ = shape.state.cells;
+  held_ = hold.held();
+  carriers_ = hold.carriers();
+  springs_ = std::move(springs);
+  assemble(shape, hold);
+}
+
+// Whether a block is another one now.
+bool CoarseLattice::fillChanged(const LoadedShape& shape, const PatchHold& hold) {
+  const bool same_cells = cells_ == shape.state.cells;
+  bool any = false;
   for (Block& block : blocks_) {
-    const auto changed = [&](int node) {
+    const auto unchanged = [&](int node) {
       return same_cells && held_[at(node)] == hold.held()[at(node)] &&
              carriers_[at(node)] == hold.carriers()[at(node)];
     };
     const bool same = std::all_of(block.cells.begin(), block.cells.end(), [&](int cell) {
       const auto& nodes = shape.state.cells->all()[at(cell)].nodes;
-      return std::all_of(nodes.begin(), nodes.end(), changed);
+      return std::all_of(nodes.begin(), nodes.end(), unchanged);
     });
-    if (!same) fill(block, about_, hold);
+    if (same) continue;
+    fill(block, about_, hold);
+    any = true;
   }
-  cells_ = shape.state.cells;
-  held_ = hold.held();
-  carriers_ = hold.carriers();
-  rims_ = std::move(rims);
-  assemble(shape, hold);
+  return any;
 }
 
 void CoarseLattice::renew(const LoadedShape& shape, const PatchHold& hold) {
   about_.displacement = shape.state.displacement;
   for (Block& block : blocks_) fill(block, about_, hold);
+  sumBlocks();
   assemble(shape, hold);
   if (usable_) return;
   std::fill(about_.displacement.begin(), about_.displacement.end(), Vec3::Zero());
   for (Block& block : blocks_) fill(block, about_, hold);
+  sumBlocks();
   assemble(shape, hold);
 }
 
@@ -84,6 +107,7 @@ void CoarseLattice::assemble(const LoadedShape& shape, const PatchHold& hold) {
   entries_.clear();
   addCarried(shape, about_, hold);
   addRims(shape, hold);
+  addContacts(shape, hold);
   factorize();
 }
 
@@ -247,7 +271,32 @@ void CoarseLattice::addRims(const LoadedShape& shape, const PatchHold& hold) {
   }
 }
 
-void CoarseLattice::factorize() {
+void CoarseLattice::addContacts(const LoadedShape& shape, const PatchHold& hold) {
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const ContactSpring& spring : patch.contacts) {
+      const Eigen::Matrix3d stiffness = stiffnessOf(spring, shape.state.displacement);
+      if (stiffness.isZero(0.0)) continue;
+      std::vector<Share> point;
+      for (const NodeWeight& carrier : spring.carriers) {
+        for (Share share : sharesOf(shape, hold, carrier.node)) {
+          share.weight *= carrier.weight;
+          const auto same = std::find_if(point.begin(), point.end(), [&](const Share& other) {
+            return other.group == share.group;
+          });
+          if (same == point.end()) {
+            point.push_back(share);
+          } else {
+            same->weight += share.weight;
+          }
+        }
+      }
+      add(point, point, stiffness);
+    }
+  }
+}
+
+void CoarseLattice::sumBlocks() {
+  std::vector<Eigen::Triplet<double>> entries;
   for (const Block& block : blocks_) {
     for (int a = 0; a < kCorners; ++a) {
       for (int b = 0; b < kCorners; ++b) {
@@ -255,14 +304,22 @@ void CoarseLattice::factorize() {
         if (row < column) continue;
         for (int i = 0; i < 3; ++i) {
           for (int j = 0; j < (row == column ? i + 1 : 3); ++j) {
-            entries_.emplace_back(3 * row + i, 3 * column + j, block.matrix(3 * a + i, 3 * b + j));
+            entries.emplace_back(3 * row + i, 3 * column + j, block.matrix(3 * a + i, 3 * b + j));
           }
         }
       }
     }
   }
-  Eigen::SparseMatrix<double> matrix(3 * groups_, 3 * groups_);
-  matrix.setFromTriplets(entries_.begin(), entries_.end());
+  sum_.resize(3 * coarse_count_, 3 * coarse_count_);
+  sum_.setFromTriplets(entries.begin(), entries.end());
+}
+
+void CoarseLattice::factorize() {
+  Eigen::SparseMatrix<double> of_patches(3 * groups_, 3 * groups_);
+  of_patches.setFromTriplets(entries_.begin(), entries_.end());
+  Eigen::SparseMatrix<double> matrix = sum_;
+  matrix.conservativeResize(3 * groups_, 3 * groups_);
+  matrix += of_patches;
   std::vector<Eigen::Triplet<double>> holds;
   const Eigen::VectorXd diagonal = matrix.diagonal();
   const double most = std::max(diagonal.size() > 0 ? diagonal.maxCoeff() : 0.0, 1e-300);
@@ -273,8 +330,9 @@ void CoarseLattice::factorize() {
   Eigen::SparseMatrix<double> hold(3 * groups_, 3 * groups_);
   hold.setFromTriplets(holds.begin(), holds.end());
   matrix += hold;
-  factor_.analyze(matrix);
-  usable_ = factor_.factorize(matrix);
+  if (!samePattern(matrix, matrix_)) factor_.analyze(matrix);
+  matrix_.swap(matrix);
+  usable_ = factor_.factorize(matrix_);
   entries_.clear();
 }
 

@@ -29,6 +29,7 @@ class Assembly {
     addCells(moved, convex, curvature.carried);
     for (std::size_t patch = 0; patch < shape_.patches.size(); ++patch) {
       for (const RimSpring& spring : shape_.patches[patch].rim) addSpring(patch, spring, convex);
+      for (const ContactSpring& spring : shape_.patches[patch].contacts) addContact(spring);
       if (!convex) addTurnedForces(patch);
     }
     // An entry on every diagonal place, for what a method adds there.
@@ -116,11 +117,27 @@ class Assembly {
     add(translation, turn, -cross.transpose());
   }
 
-  // What the tissue's forces on hard nodes add when these turn.
+  void addContact(const ContactSpring& spring) {
+    const Eigen::Matrix3d stiffness = stiffnessOf(spring, shape_.state.displacement);
+    for (const NodeWeight& row : spring.carriers) {
+      for (const NodeWeight& column : spring.carriers) {
+        add(sharesOf(row.node), sharesOf(column.node), row.weight * column.weight * stiffness);
+      }
+    }
+  }
+
+  // What the forces of the tissue and of contacts on hard nodes add when these turn.
   void addTurnedForces(std::size_t patch) {
     if (unknowns_.turnOf(patch, 0).unknown == Unknowns::kHeld) return;
+    if (contact_forces_.empty()) {
+      contact_forces_.assign(shape_.state.displacement.size(), Vec3::Zero());
+      for (const LoadingPatch& other : shape_.patches) {
+        addContactForces(other, shape_.state.displacement, contact_forces_);
+      }
+    }
     for (const int node : hardNodes(shape_.patches[patch])) {
-      addTurn(patch, unknowns_.position(shape_, node), -model_.nodeForce(shape_.state, node));
+      const Vec3 force = model_.nodeForce(shape_.state, node) + contact_forces_[at(node)];
+      addTurn(patch, unknowns_.position(shape_, node), -force);
     }
   }
 
@@ -141,6 +158,7 @@ class Assembly {
   const Unknowns& unknowns_;
   const LoadedShape& shape_;
   std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<Vec3> contact_forces_;  // per node (N), when asked for
 };
 
 }  // namespace
@@ -149,6 +167,7 @@ double potentialOf(const EnergyModel& model, const LoadedShape& shape) {
   double potential = model.energy(shape.state);
   for (const LoadingPatch& patch : shape.patches) {
     potential += rimEnergy(patch, shape.state.displacement);
+    potential += contactEnergy(patch, shape.state.displacement);
     if (byForce(patch)) potential -= patch.force.dot(patch.place.displacement);
   }
   return potential;
@@ -174,6 +193,10 @@ Balance balanceOf(const EnergyModel& model, const Unknowns& unknowns, const Load
         }
       }
       if (!byForce(patch)) held_squared += pull.squaredNorm();
+    }
+    addContactForces(patch, shape.state.displacement, forces);
+    for (const ContactSpring& spring : patch.contacts) {
+      held_squared += forceOf(spring, shape.state.displacement).squaredNorm();
     }
     if (!byForce(patch)) continue;
     pushed = std::max(pushed, patch.force.norm());

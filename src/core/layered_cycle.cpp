@@ -167,7 +167,7 @@ void LayeredMethod::sweep(LoadedShape& shape, bool outwards, Motion& moved) cons
 // One Newton step of the node alone.
 void LayeredMethod::balanceNode(LoadedShape& shape, int node) const {
   NodeBalance balance = model_.nodeBalance(shape.state, node);
-  hold_.addRims(shape, node, balance);
+  hold_.addSprings(shape, node, balance);
   const std::uint8_t held = hold_.held()[at(node)];
   Eigen::Matrix3d block = firm(balance.block);
   for (int axis = 0; held != 0 && axis < 3; ++axis) {

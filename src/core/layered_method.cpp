@@ -35,7 +35,6 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   LoadedShape shape{state, patches};
   hold_.bind(shape);
   findDisturbed(shape, disturbed);
-  const std::vector<Vec3> start = shape.state.displacement;
   hold_.place(shape);
   goes_on_ =
       !past_.empty() && shape.state.cells == left_cells_ && shape.state.displacement == left_;
@@ -43,11 +42,24 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   report.status = iterate(shape, report);
   state = std::move(shape.state);
   patches = std::move(shape.patches);
-  rememberWay(start, state.displacement);
+  first_of_step_ = false;
   left_ = state.displacement;
   left_cells_ = state.cells;
   report.wall_ms = elapsedMs();
   return report;
+}
+
+// Remembers the way of the last step, if anything moved in it.
+void LayeredMethod::beginStep(const LatticeState& state) {
+  first_of_step_ = true;
+  const std::vector<Vec3>& now = state.displacement;
+  if (step_start_.size() == now.size() && step_start_ != now) {
+    last_way_.resize(now.size());
+    for (std::size_t node = 0; node < now.size(); ++node) {
+      last_way_[node] = now[node] - step_start_[node];
+    }
+  }
+  step_start_ = now;
 }
 
 void LayeredMethod::forget() {
@@ -56,6 +68,7 @@ void LayeredMethod::forget() {
   pending_.clear();
   patch_nodes_.clear();
   past_.clear();
+  step_start_.clear();
   last_way_.clear();
   left_.clear();
   left_cells_.reset();
@@ -106,6 +119,7 @@ void LayeredMethod::layOut(const LoadedShape& shape) {
     first.insert(first.end(), hard.begin(), hard.end());  // those that slide
     for (const RimSpring& spring : shape.patches[patch].rim) first.push_back(spring.node);
   }
+  first.insert(first.end(), hold_.touched().begin(), hold_.touched().end());
   patch_nodes_ = first;
   if (seeds.empty() && first.empty()) first = pending_;
   layers_.start(shape.state.cells, hold_.held(), seeds, first);
@@ -152,7 +166,7 @@ Motion LayeredMethod::forcesOf(const LoadedShape& shape) const {
     for (const int node : layer) {
       NodeBalance balance;
       balance.force = raw[at(node)];
-      hold_.addRims(shape, node, balance);
+      hold_.addSprings(shape, node, balance);
       forces.nodes[at(node)] = hold_.freePart(node, balance.force);
     }
   }
@@ -234,7 +248,7 @@ SolveStatus LayeredMethod::iterate(LoadedShape& shape, SolveReport& report) {
   course.forces = forcesOf(shape);
   greatest_ = greatest(course.forces);
   SolveStatus status = look(shape, course);
-  if (status != SolveStatus::kOk && !goes_on_ && carryOn(shape, course.forces)) {
+  if (status != SolveStatus::kOk && !goes_on_ && first_of_step_ && carryOn(shape, course.forces)) {
     course.past.clear();
     status = look(shape, course);
   }
@@ -284,7 +298,9 @@ SolveStatus LayeredMethod::look(const LoadedShape& shape, Course& course) {
     course.best_error = course.error;
     course.best_cycle = course.cycles;
   }
-  if (course.error <= options_.tolerance) return SolveStatus::kOk;
+  // Contacts change in ways that are small beside the displacement, but not to them.
+  const bool untried = course.cycles == 0 && !hold_.touched().empty();
+  if (course.error <= options_.tolerance && !untried) return SolveStatus::kOk;
   const bool hopeless =
       course.cycles >= options_.max_cycles || course.cycles > course.best_cycle + options_.patience;
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
@@ -304,24 +320,20 @@ double LayeredMethod::displacementLength(const LoadedShape& shape) const {
   return std::sqrt(squared);
 }
 
-// Of a solve in which something moved.
-void LayeredMethod::rememberWay(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-  if (from == to) return;
-  last_way_.resize(to.size());
-  for (std::size_t node = 0; node < to.size(); ++node) last_way_[node] = to[node] - from[node];
-}
-
 // The shape that one more cycle would give. What a patch meets is read off it: the force is then
-// wrong by what is left of the error after that cycle, and the shape itself stays.
+// wrong by what is left of the error after that cycle, and the shape itself stays. A cycle that
+// runs into contacts may lead away: then the shape it is.
 LatticeState LayeredMethod::balancedAhead(const LoadedShape& shape, const Motion& forces) const {
   LatticeState ahead = shape.state;
   if (shape.patches.empty() || outOfBudget() || greatest(forces) == 0.0) return ahead;
   const Motion motion = cycle(shape);
   if (!std::isfinite(longest(motion))) return ahead;
+  LoadedShape next = shape;
   for (const auto& layer : layers_.all()) {
-    for (const int node : layer) ahead.displacement[at(node)] += motion.nodes[at(node)];
+    for (const int node : layer) next.state.displacement[at(node)] += motion.nodes[at(node)];
   }
-  return ahead;
+  const bool nearer = localLength(forcesOf(next)) < localLength(forces);
+  return nearer ? next.state : ahead;
 }
 
 void LayeredMethod::describe(const LoadedShape& shape, const Motion& forces, SolveReport& report) {
@@ -332,15 +344,22 @@ void LayeredMethod::describe(const LoadedShape& shape, const Motion& forces, Sol
     const LoadingPatch& patch = shape.patches[index];
     const LatticeState& state = byForce(patch) ? shape.state : ahead;
     std::vector<Vec3> raw(displacement.size(), Vec3::Zero());
+    std::vector<Vec3> contact_forces(displacement.size(), Vec3::Zero());
+    for (const LoadingPatch& other : shape.patches) {
+      addContactForces(other, state.displacement, contact_forces);
+    }
     for (const int node : hold_.hardOf(index)) {
-      raw[at(node)] = model_.nodeForce(state, node);
+      raw[at(node)] = model_.nodeForce(state, node) + contact_forces[at(node)];
       held = std::max(held, raw[at(node)].norm());
     }
     for (const RimSpring& spring : patch.rim) {
       const Vec3 stretch = spring.anchor - state.displacement[at(spring.node)];
       held = std::max(held, (stiffnessOf(patch, spring) * stretch).norm());
     }
-    report.patches.push_back(answerOf(patch, raw, state.displacement));
+    for (const ContactSpring& spring : patch.contacts) {
+      held = std::max(held, forceOf(spring, state.displacement).norm());
+    }
+    report.patches.push_back(answerOf(lattice_, state, patch, raw));
     report.patches.back().displacement = meanDisplacement(patch, displacement);
     unbalanced = std::max(unbalanced, forces.patches[index].shift.norm());
   }

@@ -100,16 +100,44 @@ void movePatch(const Lattice& lattice, LoadingPatch& patch, const Vec3& translat
   if (turns) patch.place.rotation = rotation * patch.place.rotation;
 }
 
-PatchAnswer answerOf(const LoadingPatch& patch, const std::vector<Vec3>& tissue_forces,
-                     const std::vector<Vec3>& displacement) {
-  PatchAnswer answer;
-  answer.displacement = meanDisplacement(patch, displacement);
-  for (const int node : hardNodes(patch)) answer.force -= tissue_forces[at(node)];
-  for (const RimSpring& spring : patch.rim) {
-    answer.force += stiffnessOf(patch, spring) * stretch(spring, displacement);
+void addContactForces(const LoadingPatch& patch, const std::vector<Vec3>& displacement,
+                      std::vector<Vec3>& forces) {
+  for (const ContactSpring& spring : patch.contacts) {
+    const Vec3 force = forceOf(spring, displacement);
+    if (force.isZero(0.0)) continue;
+    for (const NodeWeight& carrier : spring.carriers) {
+      forces[at(carrier.node)] += carrier.weight * force;
+    }
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!holds(patch, at(axis))) answer.force[axis] = 0.0;
+}
+
+double contactEnergy(const LoadingPatch& patch, const std::vector<Vec3>& displacement) {
+  double energy = 0.0;
+  for (const ContactSpring& spring : patch.contacts) energy += energyOf(spring, displacement);
+  return energy;
+}
+
+PatchAnswer answerOf(const Lattice& lattice, const LatticeState& state, const LoadingPatch& patch,
+                     const std::vector<Vec3>& tissue_forces) {
+  PatchAnswer answer;
+  const std::vector<Vec3>& displacement = state.displacement;
+  answer.displacement = meanDisplacement(patch, displacement);
+  const auto add = [&](const Vec3& point, Vec3 force) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!holds(patch, at(axis))) force[axis] = 0.0;
+    }
+    answer.force += force;
+    answer.torque += point.cross(force);
+  };
+  const auto position = [&](int node) -> Vec3 {
+    return restPosition(lattice, *state.cells, node) + displacement[at(node)];
+  };
+  for (const int node : hardNodes(patch)) add(position(node), -tissue_forces[at(node)]);
+  for (const RimSpring& spring : patch.rim) {
+    add(position(spring.node), stiffnessOf(patch, spring) * stretch(spring, displacement));
+  }
+  for (const ContactSpring& spring : patch.contacts) {
+    add(pointOf(spring, displacement), forceOf(spring, displacement));
   }
   return answer;
 }

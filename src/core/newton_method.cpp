@@ -53,6 +53,9 @@ void NewtonMethod::countUnknowns(const LoadedShape& shape) {
   std::vector<int> rims;
   for (const LoadingPatch& patch : shape.patches) {
     for (const RimSpring& spring : patch.rim) rims.push_back(spring.node);
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) rims.push_back(carrier.node);
+    }
     rims.push_back(-1);
   }
   if (analyzed_ && unknowns == unknowns_ && rims == rims_ && shape.state.cells == cells_) return;
@@ -189,9 +192,10 @@ double NewtonMethod::capped(const LoadedShape& shape, const Eigen::VectorXd& ste
 void NewtonMethod::describe(const LoadedShape& shape, SolveReport& report) {
   report.residual = relative_;
   const std::vector<Vec3>& displacement = shape.state.displacement;
-  const std::vector<Vec3> forces = model_.nodeForces(shape.state);
+  std::vector<Vec3> forces = model_.nodeForces(shape.state);
+  for (const LoadingPatch& patch : shape.patches) addContactForces(patch, displacement, forces);
   for (const LoadingPatch& patch : shape.patches) {
-    report.patches.push_back(answerOf(patch, forces, displacement));
+    report.patches.push_back(answerOf(lattice_, shape.state, patch, forces));
   }
   double moved_squared = 0.0;
   for (int node = 0; node < static_cast<int>(displacement.size()); ++node) {

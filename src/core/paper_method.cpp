@@ -272,11 +272,10 @@ double PaperMethod::referenceForce(const std::vector<LoadingPatch>& patches,
 void PaperMethod::describe(const std::vector<LoadingPatch>& patches, const LatticeState& state,
                            SolveReport& report) const {
   report.active_nodes = static_cast<int>(active_.size());
+  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
   for (const LoadingPatch& patch : patches) {
-    PatchAnswer answer;
-    answer.force = patchForce(patch, state);
-    answer.displacement = meanDisplacement(patch, state.displacement);
-    report.patches.push_back(answer);
+    for (const int node : patch.nodes) forces[at(node)] = model_.nodeForce(state, node);
+    report.patches.push_back(answerOf(lattice_, state, patch, forces));
     if (maskOf(patch) == kAllAxes) report.active_nodes += static_cast<int>(patch.nodes.size());
   }
   double greatest_force = 0.0, missing_squared = 0.0, moved_squared = 0.0;

@@ -9,6 +9,16 @@ bool isLoose(const CellSet& cells, int node) { return cells.first(node) == cells
 
 }  // namespace
 
+void PatchHold::SpringList::clear(std::size_t nodes) {
+  all.clear();
+  first.assign(nodes, -1);
+}
+
+void PatchHold::SpringList::add(int node, std::size_t patch, std::size_t spring, double weight) {
+  all.push_back({patch, spring, weight, first[at(node)]});
+  first[at(node)] = static_cast<int>(all.size()) - 1;
+}
+
 PatchHold::PatchHold(const Lattice& lattice, const EnergyModel& model)
     : lattice_(lattice), model_(model) {}
 
@@ -16,8 +26,8 @@ void PatchHold::bind(LoadedShape& shape) {
   const std::size_t nodes = shape.state.displacement.size();
   held_.assign(nodes, 0);
   carriers_.assign(nodes, -1);
-  first_rim_.assign(nodes, -1);
-  rims_.clear();
+  rims_.clear(nodes);
+  contacts_.clear(nodes);
   hard_.clear();
   for (std::size_t node = 0; node < nodes; ++node) {
     const int index = static_cast<int>(node);
@@ -34,10 +44,21 @@ void PatchHold::bind(LoadedShape& shape) {
       if (byForce(patch)) carriers_[at(node)] = static_cast<int>(index);
     }
     for (std::size_t spring = 0; spring < patch.rim.size(); ++spring) {
-      int& first = first_rim_[at(patch.rim[spring].node)];
-      rims_.push_back({index, spring, first});
-      first = static_cast<int>(rims_.size()) - 1;
+      rims_.add(patch.rim[spring].node, index, spring, 1.0);
     }
+    for (std::size_t spring = 0; spring < patch.contacts.size(); ++spring) {
+      for (const NodeWeight& carrier : patch.contacts[spring].carriers) {
+        contacts_.add(carrier.node, index, spring, carrier.weight);
+      }
+    }
+  }
+  findTouched();
+}
+
+void PatchHold::findTouched() {
+  touched_.clear();
+  for (std::size_t node = 0; node < contacts_.first.size(); ++node) {
+    if (contacts_.first[node] >= 0) touched_.push_back(static_cast<int>(node));
   }
 }
 
@@ -65,10 +86,21 @@ Vec3 PatchHold::freePart(int node, const Vec3& vector) const {
   return free;
 }
 
-void PatchHold::addRims(const LoadedShape& shape, int node, NodeBalance& balance) const {
-  for (int rim = first_rim_[at(node)]; rim >= 0; rim = rims_[at(rim)].next) {
-    const LoadingPatch& patch = shape.patches[rims_[at(rim)].patch];
-    const RimSpring& spring = patch.rim[rims_[at(rim)].spring];
+void PatchHold::addContacts(const LoadedShape& shape, int node, NodeBalance& balance) const {
+  const std::vector<Vec3>& displacement = shape.state.displacement;
+  for (int index = contacts_.first[at(node)]; index >= 0; index = contacts_.all[at(index)].next) {
+    const SpringPlace& place = contacts_.all[at(index)];
+    const ContactSpring& spring = shape.patches[place.patch].contacts[place.spring];
+    balance.force += place.weight * forceOf(spring, displacement);
+    balance.block += place.weight * place.weight * stiffnessOf(spring, displacement);
+  }
+}
+
+void PatchHold::addSprings(const LoadedShape& shape, int node, NodeBalance& balance) const {
+  addContacts(shape, node, balance);
+  for (int index = rims_.first[at(node)]; index >= 0; index = rims_.all[at(index)].next) {
+    const LoadingPatch& patch = shape.patches[rims_.all[at(index)].patch];
+    const RimSpring& spring = patch.rim[rims_.all[at(index)].spring];
     const Eigen::Matrix3d stiffness = stiffnessOf(patch, spring);
     balance.force += stiffness * (spring.anchor - shape.state.displacement[at(node)]);
     balance.block += stiffness;
@@ -95,7 +127,11 @@ Motion::OfPatch PatchHold::forceOn(const LoadedShape& shape, std::size_t index,
     on_patch.shift += force;
     if (patch.turns) on_patch.turn += armOf(shape, index, node).cross(force);
   };
-  for (const int node : hard_[index]) add(node, forces[at(node)]);
+  for (const int node : hard_[index]) {
+    NodeBalance contacts;
+    addContacts(shape, node, contacts);
+    add(node, forces[at(node)] + contacts.force);
+  }
   for (const RimSpring& spring : patch.rim) {
     const Vec3& displacement = shape.state.displacement[at(spring.node)];
     add(spring.node, -(stiffnessOf(patch, spring) * (spring.anchor - displacement)));

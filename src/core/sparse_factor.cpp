@@ -4,8 +4,34 @@
 
 // Of OpenBLAS, which CHOLMOD may call as its BLAS; null with another one.
 extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
+// Of OpenMP, which CHOLMOD may be built with.
+extern "C" int omp_get_max_active_levels(void) __attribute__((weak));
+extern "C" void omp_set_max_active_levels(int levels) __attribute__((weak));
 
 namespace robot_tissue {
+
+namespace {
+
+// CHOLMOD's threads wait in a busy loop, too, and it does not ask how many it may start: while this
+// lives, OpenMP starts none.
+class OneThread {
+ public:
+  OneThread() {
+    if (omp_set_max_active_levels == nullptr || omp_get_max_active_levels == nullptr) return;
+    levels_ = omp_get_max_active_levels();
+    omp_set_max_active_levels(0);
+  }
+  ~OneThread() {
+    if (levels_ >= 0) omp_set_max_active_levels(levels_);
+  }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_ = -1;
+};
+
+}  // namespace
 
 struct SparseFactor::Library {
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
@@ -25,11 +51,13 @@ void SparseFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
 }
 
 bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
+  const OneThread one_thread;
   library_->cholesky.factorize(matrix);
   return library_->cholesky.info() == Eigen::Success;
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_hand_side) const {
+  const OneThread one_thread;
   return library_->cholesky.solve(right_hand_side);
 }
 

@@ -14,6 +14,9 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kToolStep = 0.2;  // of the spacing
+constexpr int kContactRounds = 8;  // in which the shape is what was solved for
+constexpr int kMostRounds = 30;
+constexpr int kMostIterations = 600;  // of the rounds of one load step
 
 }  // namespace
 
@@ -25,6 +28,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       has_gravity_(!tissue.gravity.isZero()) {
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
+  for (int node = 0; node < lattice_.nodeCount(); ++node) weight_ += nodeForce(node);
 }
 
 Tissue::~Tissue() = default;
@@ -38,16 +42,39 @@ double Tissue::stepLength() const {
 
 SolveReport Tissue::settle() { return solve(freeNodes()); }
 
+Vec3 Tissue::weight() const { return weight_; }
+
+// What holds them: minus what the tissue, and springs in contact, do to them.
+Vec3 Tissue::forceOfFixedNodes() const {
+  const CellSet& cells = *state_.cells;
+  Vec3 force = Vec3::Zero();
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (isFixed(lattice_, cells, node)) force -= nodeForce(node);
+  }
+  for (const LoadingPatch& patch : patches_) {
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) {
+        if (!isFixed(lattice_, cells, carrier.node)) continue;
+        force -= carrier.weight * robot_tissue::forceOf(spring, state_.displacement);
+      }
+    }
+  }
+  return force;
+}
+
+double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+
 SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
-                           const std::vector<int>& disturbed) {
+                           const std::vector<int>& disturbed, bool lies) {
   const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
   const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
     return std::none_of(tool_patches.begin(), tool_patches.end(),
                         [&](const LoadingPatch& now) { return now.name == earlier.name; });
   });
-  patches_.erase(first_tool, patches_.end());
-  std::move(tool_patches.begin(), tool_patches.end(), std::back_inserter(patches_));
-  return one_left ? solveFromRest() : solve(disturbed);
+  putToolPatches(std::move(tool_patches));
+  const bool last_left = one_left && patches_.size() == named_patches_;
+  const bool from_rest = method_->findsEquilibrium() ? last_left && !lies : one_left;
+  return from_rest ? solveFromRest() : solve(disturbed);
 }
 
 void Tissue::restore(const Shape& shape) {
@@ -72,6 +99,8 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   }
   sever(lattice_, crossing, state_, model_->splitCells());
   rebuildSurface();
+  deform(surface_, shownDisplacement(), vertices_);
+  renewContacts();
   report.pieces = state_.pieces;
   report.solve = solve(disturbed);
   return report;
@@ -102,7 +131,54 @@ std::vector<Vec3> Tissue::shownDisplacement() const {
   return shown;
 }
 
+// The surface is another one: touches are found anew where it is now.
+void Tissue::renewContacts() {
+  std::vector<LoadingPatch> of_tools;
+  if (contact_rounds_.renew && contact_rounds_.renew(of_tools, true, false)) {
+    putToolPatches(std::move(of_tools));
+  }
+}
+
+void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
+  patches_.erase(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patches_.end());
+  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
+}
+
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
+  method_->beginStep(state_);
+  std::vector<Vec3> before = state_.displacement;
+  SolveReport report = solveOnce(disturbed);
+  if (!contact_rounds_.renew) return report;
+  std::vector<LoadingPatch> of_tools;
+  for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
+    const bool whole = !goBack(before);
+    if (whole) ++whole_rounds;
+    const bool last = whole_rounds == kContactRounds || rounds == kMostRounds ||
+                      report.iterations > kMostIterations;
+    if (!contact_rounds_.renew(of_tools, whole, last)) break;
+    putToolPatches(std::move(of_tools));
+    before = state_.displacement;
+    const SolveReport earlier = report;
+    report = solveOnce({});
+    report.wall_ms += earlier.wall_ms;
+    report.iterations += earlier.iterations;
+    last_report_ = report;
+  }
+  return report;
+}
+
+// As far as the contacts allow. False: there is no need to.
+bool Tissue::goBack(const std::vector<Vec3>& before) {
+  const double share = contact_rounds_.share(before);
+  if (share >= 1.0) return false;
+  for (std::size_t node = 0; node < before.size(); ++node) {
+    state_.displacement[node] = before[node] + share * (state_.displacement[node] - before[node]);
+  }
+  deform(surface_, shownDisplacement(), vertices_);
+  return true;
+}
+
+SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const std::vector<Vec3> last_good = state_.displacement;
   const std::vector<LoadingPatch> last_good_patches = patches_;
   SolveReport report = method_->solve(patches_, disturbed, state_);
@@ -126,10 +202,11 @@ SolveReport Tissue::solveFromRest() {
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   SolveReport report;
   if (has_gravity_) {
-    std::vector<LoadingPatch> none;
-    patches_.swap(none);
+    const std::size_t named = std::exchange(named_patches_, 0);
+    patches_.clear();
     report = settle();
-    patches_.swap(none);
+    patches_.insert(patches_.begin(), standing.begin(), standing.end());
+    named_patches_ = named;
   }
   std::vector<Ramp> ramps;
   for (std::size_t patch = 0; patch < standing.size(); ++patch) {

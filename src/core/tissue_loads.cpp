@@ -53,7 +53,8 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
     patches_.erase(named(name));
     --named_patches_;
   }
-  return solveFromRest();
+  const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
+  return unique ? solve(freeNodes()) : solveFromRest();
 }
 
 PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
@@ -72,13 +73,13 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
                   [this](int node) { return lattice_.isFixed(node); })) {
     refuse(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
-  if (method_->joinsRims()) {
+  if (method_->findsEquilibrium()) {
     patch.rim = rimOf(lattice_, *model_, state_, config.box, patch.nodes);
   }
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
-    if (config.turns && !method_->joinsRims()) {
+    if (config.turns && !method_->findsEquilibrium()) {
       refuse(config.name, "turns: this method moves patches without turning them",
              "turns false, or another method");
     }
@@ -258,7 +259,8 @@ SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
 Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
   std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
   for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
-  return robot_tissue::answerOf(patch, forces, state_.displacement).force;
+  for (const LoadingPatch& other : patches_) addContactForces(other, state_.displacement, forces);
+  return robot_tissue::answerOf(lattice_, state_, patch, forces).force;
 }
 
 }  // namespace robot_tissue

@@ -23,13 +23,14 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
   if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
   left_.clear();
   for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
-    const Pose& tissue_T_tool = pose.tools[tool];
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
       const int node = seat->first;
+      const Pose& tissue_T_link = pose.links[at(seat->second.link)];
       const Vec3 moved =
-          tissue_T_tool * seat->second.point - restPosition(*lattice_, *cells_, node);
-      const Vec3 way_out = tissue_T_tool.linear() * seat->second.pushed;
-      if (taken_[at(node)] != 0 || letsGo(node, moved, way_out, tissue)) {
+          tissue_T_link * seat->second.point - restPosition(*lattice_, *cells_, node);
+      const Vec3 way_out = tissue_T_link.linear() * seat->second.pushed;
+      const bool leaves = !seat->second.grasped && letsGo(node, moved, way_out, tissue);
+      if (taken_[at(node)] != 0 || leaves) {
         left_.push_back(node);
         seat = seats_[tool].erase(seat);
       } else {
@@ -50,7 +51,7 @@ void ToolPatches::keepTouching(const ContactSet& contacts, const Tissue& tissue)
   for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
       const int node = seat->first;
-      if (touching[tool].count(node) != 0) {
+      if (seat->second.grasped || touching[tool].count(node) != 0) {
         ++seat;
         continue;
       }
@@ -78,14 +79,16 @@ void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
     motion = motionOf(pushes);
     if (deepest <= kPushedOut * lattice_->spacing()) break;
   }
-  std::map<int, std::size_t> tools;
+  std::map<int, const Contact*> pushed_by;
   for (const Push& push : pushes) {
     if (push.multiplier <= 0.0) continue;
     for (const Carrier& carrier : push.support) {
-      tools.emplace(carrier.node, at(push.contact->tool));
+      pushed_by.emplace(carrier.node, push.contact);
     }
   }
-  for (const auto& [node, tool] : tools) seat(node, tool, motion.at(node), pose);
+  for (const auto& [node, contact] : pushed_by) {
+    seat(node, at(contact->tool), contact->link, motion.at(node), pose);
+  }
 }
 
 // A node that sits on a tool, or is itself a point inside it, has its place there; those around it
@@ -153,19 +156,14 @@ bool ToolPatches::empty() const {
   return std::all_of(seats_.begin(), seats_.end(), [](const auto& seats) { return seats.empty(); });
 }
 
-std::vector<LoadingPatch> ToolPatches::loadingPatches() const {
-  std::vector<LoadingPatch> patches;
-  for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
-    if (seats_[tool].empty()) continue;
-    LoadingPatch patch;
-    patch.name = names_[tool];
-    for (const auto& [node, seat] : seats_[tool]) {
-      patch.nodes.push_back(node);
-      patch.displacement.push_back(displacement_[at(node)]);
-    }
-    patches.push_back(std::move(patch));
+LoadingPatch ToolPatches::loadingPatch(int tool) const {
+  LoadingPatch patch;
+  patch.name = names_[at(tool)];
+  for (const auto& [node, seat] : seats_[at(tool)]) {
+    patch.nodes.push_back(node);
+    patch.displacement.push_back(displacement_[at(node)]);
   }
-  return patches;
+  return patch;
 }
 
 std::vector<int> ToolPatches::nodes(int tool) const {
@@ -174,10 +172,45 @@ std::vector<int> ToolPatches::nodes(int tool) const {
   return nodes;
 }
 
-Vec3 ToolPatches::normal(int tool, const Pose& tissue_T_tool) const {
+Vec3 ToolPatches::pushed(int tool, const RobotPose& pose) const {
   Vec3 sum = Vec3::Zero();
-  for (const auto& [node, seat] : seats_[at(tool)]) sum += tissue_T_tool.linear() * seat.pushed;
-  return sum.norm() > 1e-12 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
+  for (const auto& [node, seat] : seats_[at(tool)]) {
+    sum += pose.links[at(seat.link)].linear() * seat.pushed;
+  }
+  return sum;
+}
+
+void ToolPatches::hold(int tool, int link, const Pose& tissue_T_link, const std::vector<int>& nodes,
+                       const Tissue& tissue) {
+  const Pose link_T_tissue = tissue_T_link.inverse();
+  const std::vector<std::uint8_t> held = heldNodes(tissue);
+  for (const int node : nodes) {
+    if (held[at(node)] != 0) continue;
+    Seat& seat = seats_[at(tool)][node];
+    seat.link = link;
+    seat.grasped = true;
+    seat.point = link_T_tissue * tissue.nodePosition(node);
+  }
+}
+
+void ToolPatches::letGo(int tool) { seats_[at(tool)].clear(); }
+
+bool ToolPatches::holds(int tool) const { return !seats_[at(tool)].empty(); }
+
+std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) const {
+  const CellSet& cells = *tissue.state().cells;
+  std::vector<std::uint8_t> held(at(cells.nodeCount()), 0);
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (isFixed(*lattice_, cells, node)) held[at(node)] = 1;
+  }
+  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
+    if (byForce(tissue.patches()[patch])) continue;
+    for (const int node : hardNodes(tissue.patches()[patch])) held[at(node)] = 1;
+  }
+  for (const auto& seats : seats_) {
+    for (const auto& [node, seat] : seats) held[at(node)] = seat.grasped ? kGrasped : 1;
+  }
+  return held;
 }
 
 std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
@@ -197,13 +230,18 @@ std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
 }
 
 // A node that another tool holds keeps that seat, at its new place.
-void ToolPatches::seat(int node, std::size_t tool, const Vec3& moved, const RobotPose& pose) {
+void ToolPatches::seat(int node, std::size_t tool, int link, const Vec3& moved,
+                       const RobotPose& pose) {
   displacement_[at(node)] += moved;
   for (std::size_t other = 0; other < seats_.size(); ++other) {
-    if (seats_[other].count(node) != 0) tool = other;
+    const auto earlier = seats_[other].find(node);
+    if (earlier == seats_[other].end()) continue;
+    tool = other;
+    link = earlier->second.link;
   }
-  const Pose tool_T_tissue = pose.tools[tool].inverse();
+  const Pose tool_T_tissue = pose.links[at(link)].inverse();
   Seat& seat = seats_[tool][node];
+  seat.link = link;
   seat.point =
       tool_T_tissue * Vec3(restPosition(*lattice_, *cells_, node) + displacement_[at(node)]);
   seat.pushed += tool_T_tissue.linear() * moved;

@@ -1,306 +1,272 @@
 #include "robot_tissue/pipeline/pipeline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <utility>
+
+#include "stopwatch.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kMostSubsteps = 200;
-constexpr std::size_t kMostCheckpoints = 64;
-constexpr int kPushPasses = 4;         // a curved tool's way out turns as the surface moves
-constexpr int kContactRounds = 3;      // nodes that the solve moved into the tool are pushed again
-constexpr double kDeepEnough = 0.01;   // of the spacing: penetration that is worth another round
-constexpr double kTouches = 0.02;      // of the spacing: a gap that is none
-constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
+constexpr int kPushPasses = 4;        // a curved tool's way out turns as the surface moves
+constexpr int kRigidRounds = 3;       // nodes that the solve moved into a rigid tool go out again
+constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that is worth another round
+constexpr double kTouches = 0.02;     // of the spacing: a gap that is none
+constexpr double kMostLeap = 4.0;     // of the spacing, of a node in a load step
 
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total_ms) : total_ms_(total_ms) {}
-  ~Stopwatch() {
-    const std::chrono::duration<double, std::milli> elapsed =
-        std::chrono::steady_clock::now() - start_;
-    total_ms_ += elapsed.count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& total_ms_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::vector<std::string> namesOf(const std::vector<ToolGeometry>& tools) {
-  std::vector<std::string> names;
-  for (const ToolGeometry& tool : tools) names.push_back(tool.name);
-  return names;
+ToolGeometry asTool(const SupportConfig& support) {
+  ToolGeometry tool;
+  tool.name = support.name;
+  tool.friction = support.friction;
+  tool.links.push_back({"", {support.shape}});
+  return tool;
 }
 
-double touchMargin(double spacing) { return kTouches * spacing; }
-
-double deepest(const ContactSet& contacts) {
-  double depth = 0.0;
-  for (const Contact& contact : contacts.contacts) depth = std::max(depth, contact.depth_m);
-  return depth;
-}
-
-// Longest way (m) that a point of the tool goes between two poses.
-double motion(const Pose& from, const Pose& to, double reach) {
-  const double angle = Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
-  return (to.translation() - from.translation()).norm() + std::abs(angle) * reach;
-}
-
-RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
-  RobotPose between = to;
-  for (std::size_t tool = 0; tool < to.tools.size(); ++tool) {
-    const Pose& start = from.tools[tool];
-    const Pose& end = to.tools[tool];
-    Pose& pose = between.tools[tool];
-    pose.linear() = Eigen::Quaterniond(start.linear())
-                        .slerp(share, Eigen::Quaterniond(end.linear()))
-                        .toRotationMatrix();
-    pose.translation() = start.translation() + share * (end.translation() - start.translation());
-  }
-  return between;
-}
-
-Pose farAway() {
-  Pose pose = Pose::Identity();
-  pose.translation().setConstant(1e6);  // m
-  return pose;
-}
-
-void requireFinite(const RobotPose& pose) {
-  for (const Pose& tool : pose.tools) {
-    if (!tool.matrix().allFinite()) {
-      throw InputError("pose: a tool's transform is not finite; allowed: finite numbers");
-    }
-  }
+std::vector<ToolGeometry> withSupports(std::vector<ToolGeometry> tools,
+                                       const std::vector<SupportConfig>& supports) {
+  for (const SupportConfig& support : supports) tools.push_back(asTool(support));
+  return tools;
 }
 
 }  // namespace
 
 Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
-                   const std::vector<ToolGeometry>& tools)
+                   const std::vector<ToolGeometry>& tools,
+                   const std::vector<SupportConfig>& supports)
     : tissue_(tissue, solver),
-      finder_(tools, touchMargin(tissue.spacing)),
-      patches_(tissue_.lattice(), namesOf(tools)) {
-  report_.tools.resize(tools.size());
+      supports_(supports),
+      finder_({}),
+      patches_(tissue_.lattice(), {}),
+      contacts_({}, {}) {
+  surface_version_ = tissue_.surfaceVersion();
+  takeTools(tools);
+  tissue_.setContactRounds({[this](const auto& before) { return contactShare(before); },
+                            [this](auto& patches, bool whole, bool last) {
+                              return contactRound(patches, whole, last);
+                            }});
 }
 
-void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
-  finder_ = ContactFinder(tools, touchMargin(tissue_.lattice().spacing()));
-  patches_ = ToolPatches(tissue_.lattice(), namesOf(tools));
-  if (!tissue_.isUntouched()) tissue_.follow({}, {});
-  last_pose_.reset();
-  checkpoints_.clear();
-  touched_ = true;
+void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
+  tools_ = tools;
+  names_.clear();
+  first_link_ = {0};
+  any_rigid_ = false;
+  std::vector<double> friction;
+  const std::vector<ToolGeometry> all = withSupports(tools, supports_);
+  for (const ToolGeometry& tool : all) {
+    const bool rigid = tool.patch == ToolConfig::Patch::kRigid;
+    any_rigid_ = any_rigid_ || rigid;
+    names_.push_back(tool.name);
+    friction.push_back(rigid ? -1.0 : tool.friction);
+    first_link_.push_back(first_link_.back() + tool.links.size());
+  }
+  finder_ = ContactFinder(all);
+  patches_ = ToolPatches(tissue_.lattice(), names_);
+  std::vector<double> thickness;
+  for (std::size_t link = 0; link < finder_.linkCount(); ++link) {
+    thickness.push_back(finder_.thickness(link));
+  }
+  contacts_ = ToolContacts(friction, thickness);
+  drives_.assign(tools.size(), {});
+  closed_.assign(tools.size(), false);
+  pose_ = complete({});
   report_ = StepReport();
   report_.tools.resize(tools.size());
 }
 
-const StepReport& Pipeline::step(const RobotPose& pose) {
-  requireFinite(pose);
-  report_.changed = touched_;
-  report_.too_fast = false;
-  report_.contact_ms = 0.0;
-  report_.solve_ms = 0.0;
-  report_.substeps = 0;
-  if (standsStill(pose) && !touched_) {
-    if (tissue_.lastReport().status == SolveStatus::kLate) carryOn();
-    return report_;
-  }
-  report_.changed = report_.changed || !tissue_.isUntouched();
-  if (checkpoints_.empty()) startAnew(pose);
-  goBackTo(pose);
-  last_pose_ = walk(pose);
-  touched_ = report_.too_fast;  // there is a way left to go
-  return report_;
-}
-
-// Whole load steps, each kept, and the rest of the way. Returns how far it came in time.
-RobotPose Pipeline::walk(const RobotPose& pose) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(budget_s_);
-  const RobotPose start = checkpoints_.back().pose;
-  const double steps = longestWay(start, pose) / tissue_.stepLength();
-  for (int step = 1; step <= static_cast<int>(steps); ++step) {
-    const RobotPose on_the_way = between(start, pose, step / steps);
-    advance(on_the_way);
-    checkIn(on_the_way);
-    if (std::chrono::steady_clock::now() > deadline) {
-      report_.too_fast = true;
-      return on_the_way;
-    }
-  }
-  advance(pose);
-  if (tissue_.isUntouched()) checkIn(pose);
-  return pose;
-}
-
-// One load step, the line of the package. A second round only if the solve moved nodes into a tool.
-void Pipeline::advance(const RobotPose& pose) {
-  ++report_.substeps;
-  ContactSet contacts;
-  for (int round = 0; round < kContactRounds; ++round) {
-    patches_.ride(pose, tissue_);  // patches move with their tools
-    pushToolsOut(pose);            // robot pose -> contacts -> loading patches
-    if (tissue_.isUntouched() && patches_.empty()) break;
-    solve();  // loading patches -> solve
-    contacts = contactsAt(pose, tissue_.state().displacement);
-    if (deepest(contacts) <= kDeepEnough * tissue_.lattice().spacing()) break;
-  }
-  describeTools(pose, contacts);
-}
-
-// What the last solve had no time for.
-void Pipeline::carryOn() {
-  if (!tissue_.isUntouched()) return advance(*last_pose_);
-  const Stopwatch watch(report_.solve_ms);
-  tissue_.settle();
-  report_.changed = true;
-}
-
-void Pipeline::solve() {
-  const Stopwatch watch(report_.solve_ms);
-  tissue_.follow(patches_.loadingPatches(), patches_.left());
-  report_.changed = true;
-}
-
-void Pipeline::reset() {
-  patches_.clear();
-  tissue_.reset();
+void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
+  takeTools(tools);
+  lieDown();
+  last_pose_.reset();
   checkpoints_.clear();
   touched_ = true;
 }
 
-ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
-  const Stopwatch watch(report_.contact_ms);
-  deform(tissue_.surface(), displacement, vertices_);
-  return finder_.find(pose, tissue_.surface(), vertices_);
+const StepReport& Pipeline::step(const RobotPose& pose) {
+  const RobotPose goal = driven(pose);
+  report_.changed = touched_;
+  report_.too_fast = report_.was_inside = report_.torn_off = report_.lost = false;
+  report_.contact_ms = report_.solve_ms = 0.0;
+  report_.substeps = 0;
+  if (standsStill(goal) && !touched_) {
+    if (tissue_.lastReport().status == SolveStatus::kLate) carryOn();
+    return report_;
+  }
+  report_.changed = report_.changed || !tissue_.isUntouched();
+  if (!last_pose_ || checkpoints_.empty()) {
+    startAnew(goal);
+  } else {
+    comeAndGo(goal);
+  }
+  goBackTo(goal);
+  last_pose_ = walk(goal);
+  touched_ = report_.too_fast || drive(pose);  // there is a way left to go
+  describeTools();
+  return report_;
 }
 
-void Pipeline::pushToolsOut(const RobotPose& pose) {
+// One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
+// with a rigid patch; for the others the solver asks for the contacts itself (contactRound).
+void Pipeline::advance(const RobotPose& pose) {
+  ++report_.substeps;
+  pose_ = pose;
+  grasp();
+  contacts_.ride(pose, tissue_);  // patches move with their tools
+  for (int round = 0; round < kRigidRounds; ++round) {
+    patches_.ride(pose, tissue_);
+    if (round == 0) contacts_.meet(touchesAt(pose), pose, tissue_, patches_.heldNodes(tissue_));
+    pushRigid(pose);  // robot pose -> contacts -> loading patches
+    std::vector<LoadingPatch> patches = patchesOfTools();
+    const std::vector<LoadingPatch>& before = tissue_.patches();
+    if (!anyToolIn(patches) && !anyToolIn(before)) break;
+    if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
+    follow(std::move(patches));  // loading patches -> solve
+    if (!any_rigid_) break;
+    const ContactSet left = contactsAt(pose, tissue_.state().displacement);
+    if (deepest(left) <= kDeepEnough * tissue_.lattice().spacing()) break;
+  }
+  contacts_.commit(pose, tissue_);
+  tearOff();
+}
+
+// When no shape can follow the tools, as where they squeeze tissue flat, the last good one stays,
+// with what it touched.
+void Pipeline::follow(std::vector<LoadingPatch> patches) {
+  const Stopwatch watch(report_.solve_ms);
+  const Tissue::Shape good = tissue_.shape();
+  const ToolContacts good_contacts = contacts_;
+  tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
+  report_.changed = true;
+  const std::vector<Vec3>& now = tissue_.state().displacement;
+  double farthest = 0.0;
+  for (std::size_t node = 0; !any_rigid_ && node < now.size(); ++node) {
+    farthest = std::max(farthest, (now[node] - good.displacement[node]).norm());
+  }
+  const bool inverted = tissue_.lastReport().inverted_cells > good.report.inverted_cells;
+  const bool leapt = farthest > kMostLeap * tissue_.lattice().spacing() && !tissue_.isUntouched();
+  if (!leapt && !(inverted && !any_rigid_)) return;
+  report_.lost = true;
+  tissue_.restore(good);
+  contacts_ = good_contacts;
+}
+
+bool Pipeline::isRigid(int tool) const {
+  return at(tool) < tools_.size() && tools_[at(tool)].patch == ToolConfig::Patch::kRigid;
+}
+
+// Nodes under a tool with a rigid patch go out of it.
+void Pipeline::pushRigid(const RobotPose& pose) {
+  if (!any_rigid_) return;
   for (int pass = 0; pass < kPushPasses; ++pass) {
-    const ContactSet contacts = contactsAt(pose, patches_.displacement());
+    ContactSet contacts = contactsAt(pose, patches_.displacement());
+    auto& all = contacts.contacts;
+    const double touches = kTouches * tissue_.lattice().spacing();
+    const auto is_others = [&](const Contact& contact) {
+      return !isRigid(contact.tool) || contact.depth_m < -touches;
+    };
+    all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
     if (pass == 0) patches_.keepTouching(contacts, tissue_);
     if (deepest(contacts) <= 0.0) return;
     patches_.pushOut(contacts, tissue_.surface(), pose);
   }
 }
 
+// Of each tool that holds or pushes, and of each support that is near.
+std::vector<LoadingPatch> Pipeline::patchesOfTools() const {
+  std::vector<LoadingPatch> patches;
+  for (std::size_t tool = 0; tool < names_.size(); ++tool) {
+    const int index = static_cast<int>(tool);
+    const bool may_push = tool >= tools_.size() || contacts_.pushes(index, tissue_);
+    const std::vector<ContactSpring> springs =
+        may_push ? contacts_.springsOf(index) : std::vector<ContactSpring>();
+    if (springs.empty() && !patches_.holds(index)) continue;
+    patches.push_back(patches_.loadingPatch(index));
+    patches.back().contacts = springs;
+  }
+  return patches;
+}
+
+// Supports are no tools: they alone disturb nothing.
+bool Pipeline::anyToolIn(const std::vector<LoadingPatch>& patches) const {
+  const auto end = names_.begin() + static_cast<std::ptrdiff_t>(tools_.size());
+  const std::size_t named = &patches == &tissue_.patches() ? tissue_.namedPatches() : 0;
+  return std::any_of(
+      patches.begin() + static_cast<std::ptrdiff_t>(named), patches.end(),
+      [&](const auto& patch) { return std::find(names_.begin(), end, patch.name) != end; });
+}
+
+// What the last solve had no time for.
+void Pipeline::carryOn() {
+  if (!tissue_.isUntouched()) {
+    advance(*last_pose_);
+  } else {
+    const Stopwatch watch(report_.solve_ms);
+    tissue_.settle();
+    report_.changed = true;
+  }
+  describeTools();
+}
+
+SolveReport Pipeline::settle() {
+  contacts_.ride(pose_, tissue_);
+  patches_.ride(pose_, tissue_);
+  contacts_.meet(touchesAt(pose_), pose_, tissue_, patches_.heldNodes(tissue_));
+  std::vector<int> free;
+  for (int node = 0; node < tissue_.lattice().nodeCount(); ++node) {
+    if (!tissue_.lattice().isFixed(node)) free.push_back(node);
+  }
+  const SolveReport report = tissue_.follow(patchesOfTools(), free, true);
+  touch();
+  return report;
+}
+
+void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
+                    int most_increments) {
+  tissue_.load(
+      step,
+      [&](int increment, int increments, const SolveReport& report) {
+        contacts_.commit(pose_, tissue_);
+        contacts_.ride(pose_, tissue_);
+        describeTools();
+        if (on_increment) on_increment(increment, increments, report);
+      },
+      most_increments);
+  touch();
+}
+
+SolveReport Pipeline::release(const std::vector<std::string>& names) {
+  const SolveReport report = tissue_.release(names);
+  touch();
+  return report;
+}
+
+CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
+  const CutReport report = tissue_.cut(corners);
+  touch();
+  return report;
+}
+
+void Pipeline::reset() {
+  patches_.clear();
+  contacts_.clear();
+  closed_.assign(tools_.size(), false);
+  drives_.assign(tools_.size(), {});
+  tissue_.reset();
+  checkpoints_.clear();
+  last_pose_.reset();
+  pose_ = complete({});
+  touched_ = true;
+  describeTools();
+}
+
+// After the tissue changed by other means than the tools' motion.
 void Pipeline::touch() {
+  contacts_.commit(pose_, tissue_);
   touched_ = true;
   checkpoints_.clear();
   if (last_pose_) checkIn(*last_pose_);
-}
-
-void Pipeline::checkIn(const RobotPose& pose) {
-  if (tissue_.isUntouched()) checkpoints_.clear();
-  if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
-  checkpoints_.push_back({pose, tissue_.shape(), patches_.seats()});
-}
-
-// Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
-void Pipeline::goBackTo(const RobotPose& pose) {
-  std::size_t nearest = checkpoints_.size() - 1;
-  double shortest = longestWay(checkpoints_[nearest].pose, pose);
-  for (std::size_t earlier = nearest; earlier-- > 0;) {
-    const double way = longestWay(checkpoints_[earlier].pose, pose);
-    if (way < shortest) {
-      shortest = way;
-      nearest = earlier;
-    }
-  }
-  checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
-                     checkpoints_.end());
-  tissue_.restore(checkpoints_.back().shape);
-  patches_.restore(checkpoints_.back().seats);
-  if (shortest > kMostSubsteps * tissue_.stepLength()) {
-    report_.too_fast = true;
-    startAnew(pose);
-  }
-}
-
-// The tools let go, and come in from outside.
-void Pipeline::startAnew(const RobotPose& pose) {
-  patches_.clear();
-  if (!tissue_.isUntouched()) tissue_.follow({}, {});
-  checkpoints_.clear();
-  checkIn(outside(pose));
-}
-
-// Each tool drawn back from the pose, step by step, until it is out of the tissue.
-RobotPose Pipeline::outside(const RobotPose& pose) {
-  RobotPose drawn_back = pose;
-  for (std::size_t tool = 0; tool < pose.tools.size(); ++tool) {
-    Vec3 way = wayOut(tool, pose.tools[tool]);
-    for (int step = 0; step < kMostSubsteps && !way.isZero(); ++step) {
-      drawn_back.tools[tool].translation() += tissue_.stepLength() * way;
-      if (wayOut(tool, drawn_back.tools[tool]).isZero()) break;
-    }
-  }
-  return drawn_back;
-}
-
-// Unit direction out of the tissue for a tool that is in it; zero for one that is outside. Against
-// the contacts' normals; for a tool wholly beneath the surface, to the nearest side.
-Vec3 Pipeline::wayOut(std::size_t tool, const Pose& tissue_T_tool) {
-  RobotPose alone;
-  alone.tools.assign(report_.tools.size(), farAway());
-  alone.tools[tool] = tissue_T_tool;
-  Vec3 way = Vec3::Zero();
-  for (const Contact& contact :
-       finder_.find(alone, tissue_.surface(), tissue_.vertices()).contacts) {
-    way -= std::max(0.0, contact.depth_m) * contact.normal;
-  }
-  if (way.norm() > 0.0) return way.normalized();
-  const Box box = tissue_.lattice().bounds();
-  const Vec3 center = tissue_T_tool * finder_.center(tool);
-  const Vec3 below = center - box.min, above = box.max - center;
-  if (finder_.reach(tool) <= 0.0 ||
-      !encloses(tissue_.vertices(), tissue_.surface().triangles, center)) {
-    return way;
-  }
-  Eigen::Index low = 0, high = 0;
-  const bool downwards = below.minCoeff(&low) < above.minCoeff(&high);
-  return downwards ? Vec3(-Vec3::Unit(low)) : Vec3(Vec3::Unit(high));
-}
-
-bool Pipeline::standsStill(const RobotPose& pose) const {
-  return last_pose_ && longestWay(*last_pose_, pose) <= kStandsStill * tissue_.lattice().spacing();
-}
-
-double Pipeline::longestWay(const RobotPose& from, const RobotPose& to) const {
-  double longest = 0.0;
-  for (std::size_t tool = 0; tool < to.tools.size(); ++tool) {
-    longest = std::max(longest, motion(from.tools[tool], to.tools[tool], finder_.reach(tool)));
-  }
-  return longest;
-}
-
-void Pipeline::describeTools(const RobotPose& pose, const ContactSet& contacts) {
-  for (std::size_t tool = 0; tool < report_.tools.size(); ++tool) {
-    ToolReport report;
-    const Pose& tissue_T_tool = pose.tools[tool];
-    report.nodes = patches_.nodes(static_cast<int>(tool));
-    report.normal = patches_.normal(static_cast<int>(tool), tissue_T_tool);
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    for (const int node : report.nodes) {
-      const Vec3 position = tissue_.nodePosition(node);
-      const Vec3 node_force = tissue_.nodeForce(node);
-      report.point += position / static_cast<double>(report.nodes.size());
-      force += node_force;
-      torque += (position - tissue_T_tool.translation()).cross(node_force);
-    }
-    report.force_on_tool = tissue_T_tool.linear().transpose() * force;
-    report.torque_on_tool = tissue_T_tool.linear().transpose() * torque;
-    for (const Contact& contact : contacts.contacts) {
-      if (contact.tool != static_cast<int>(tool)) continue;
-      report.max_penetration = std::max(report.max_penetration, contact.depth_m);
-    }
-    report_.tools[tool] = std::move(report);
-  }
+  describeTools();
 }
 
 }  // namespace robot_tissue

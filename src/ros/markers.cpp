@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/tool_forces.h"
 
 namespace robot_tissue {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kWireWidth = 0.0004;    // m
 constexpr double kNodeDiameter = 0.2;    // of the spacing
 constexpr double kNormalLength = 3.0;    // spacings
 constexpr double kShaftDiameter = 0.25;  // of the spacing
+constexpr double kPlaneThickness = 0.2;  // of the spacing
 constexpr double kSmallestForce = 1e-9;  // N; no arrow below
 
 void setColor(Marker& marker, double red, double green, double blue, double alpha = 1.0) {
@@ -22,6 +24,8 @@ void setColor(Marker& marker, double red, double green, double blue, double alph
   marker.color.b = static_cast<float>(blue);
   marker.color.a = static_cast<float>(alpha);
 }
+
+geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Constant(diameter)); }
 
 // rviz refuses an empty list: the marker is taken away instead.
 void add(Marker marker, MarkerArray& array) {
@@ -33,17 +37,19 @@ void add(Marker marker, MarkerArray& array) {
 
 }  // namespace
 
-MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale)
-    : frame_id_(std::move(frame_id)), force_scale_(force_scale) {}
+MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
+                             std::vector<SupportConfig> supports)
+    : frame_id_(std::move(frame_id)), force_scale_(force_scale), supports_(std::move(supports)) {}
 
-MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const RobotPose& pose,
-                                 const ros::Time& stamp) {
+MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp) {
   stamp_ = stamp;
   MarkerArray array;
   addSurface(pipeline.tissue(), array);
   addWireframe(pipeline.tissue(), array);
-  addNodes(pipeline.tissue(), array);
-  addContacts(pipeline, pose, array);
+  addFixedNodes(pipeline.tissue(), array);
+  addLoadedNodes(pipeline, array);
+  addContacts(pipeline, array);
+  addSupports(pipeline.tissue().lattice(), array);
   return array;
 }
 
@@ -106,26 +112,59 @@ void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
   springs_version_ = tissue.surfaceVersion();
 }
 
-void MarkerBuilder::addNodes(const Tissue& tissue, MarkerArray& array) const {
-  const double diameter = kNodeDiameter * tissue.lattice().spacing();
+void MarkerBuilder::addFixedNodes(const Tissue& tissue, MarkerArray& array) const {
   Marker fixed = make("fixed_nodes", 0, Marker::SPHERE_LIST);
-  Marker loaded = make("loading_patches", 0, Marker::SPHERE_LIST);
-  fixed.scale.x = fixed.scale.y = fixed.scale.z = diameter;
-  loaded.scale.x = loaded.scale.y = loaded.scale.z = 2.0 * diameter;
+  fixed.scale = sphereScale(kNodeDiameter * tissue.lattice().spacing());
   setColor(fixed, 0.25, 0.25, 0.30);
-  setColor(loaded, 1.0, 0.80, 0.10);
   for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
     if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
   }
-  for (const LoadingPatch& patch : tissue.patches()) {
-    for (const int node : patch.nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
-  }
   add(std::move(fixed), array);
+}
+
+void MarkerBuilder::addLoadedNodes(const Pipeline& pipeline, MarkerArray& array) const {
+  const Tissue& tissue = pipeline.tissue();
+  Marker loaded = make("loading_patches", 0, Marker::SPHERE_LIST);
+  loaded.scale = sphereScale(2.0 * kNodeDiameter * tissue.lattice().spacing());
+  setColor(loaded, 1.0, 0.80, 0.10);
+  const auto addNodes = [&](const std::vector<int>& nodes) {
+    for (const int node : nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
+  };
+  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
+    addNodes(tissue.patches()[patch].nodes);
+  }
+  for (const ToolReport& tool : pipeline.report().tools) addNodes(tool.nodes);
   add(std::move(loaded), array);
 }
 
-void MarkerBuilder::addContacts(const Pipeline& pipeline, const RobotPose& pose,
-                                MarkerArray& array) const {
+// They never move; the planes' boxes are as long as the tissue's diagonal.
+void MarkerBuilder::addSupports(const Lattice& lattice, MarkerArray& array) const {
+  const Box bounds = lattice.bounds();
+  for (std::size_t i = 0; i < supports_.size(); ++i) {
+    const ToolShape& shape = supports_[i].shape;
+    Vec3 size = shape.size;
+    Vec3 center = shape.pose.translation();
+    if (shape.type == ToolShape::Type::kPlane) {
+      const double length = (bounds.max - bounds.min).norm();
+      size = Vec3(length, length, kPlaneThickness * lattice.spacing());
+      Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min + bounds.max));
+      in_plane.z() = -0.5 * size.z();
+      center = shape.pose * in_plane;
+    }
+    Marker support = make("supports", static_cast<int>(i), Marker::CUBE);
+    const Eigen::Quaterniond turn(shape.pose.linear());
+    support.pose.position = toPoint(center);
+    support.pose.orientation.x = turn.x();
+    support.pose.orientation.y = turn.y();
+    support.pose.orientation.z = turn.z();
+    support.pose.orientation.w = turn.w();
+    support.scale = toVector3(size);
+    setColor(support, 0.45, 0.50, 0.55);
+    array.markers.push_back(std::move(support));
+  }
+}
+
+void MarkerBuilder::addContacts(const Pipeline& pipeline, MarkerArray& array) const {
   const double spacing = pipeline.tissue().lattice().spacing();
   for (std::size_t tool = 0; tool < pipeline.report().tools.size(); ++tool) {
     const ToolReport& report = pipeline.report().tools[tool];
@@ -138,8 +177,8 @@ void MarkerBuilder::addContacts(const Pipeline& pipeline, const RobotPose& pose,
     }
     setColor(normal, 0.10, 0.45, 0.85);
     setColor(force, 0.10, 0.65, 0.20);
-    if (!report.nodes.empty() && tool < pose.tools.size()) {
-      const Vec3 force_on_tissue = -(pose.tools[tool].linear() * report.force_on_tool);
+    if (report.contacts > 0) {
+      const Vec3 force_on_tissue = forceOnTissue(pipeline, tool);
       const Vec3 start = report.point - kNormalLength * spacing * report.normal;
       if (!report.normal.isZero()) normal.points = {toPoint(start), toPoint(report.point)};
       if (force_on_tissue.norm() > kSmallestForce) {

@@ -15,11 +15,13 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kLowestRate = 0.01;      // Hz
-constexpr double kHighestRate = 10000.0;  // Hz
+constexpr double kLowestRate = 0.01;           // Hz
+constexpr double kHighestRate = 10000.0;       // Hz
+constexpr double kHighestWrenchRate = 1000.0;  // Hz
 
 const std::vector<std::string> kOwnKeys = {"rate",
                                            "marker_rate",
+                                           "wrench_rate",
                                            "tf_timeout",
                                            "force_scale",
                                            "robot_description_param",
@@ -79,6 +81,9 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   const Range rate{kLowestRate, kHighestRate, false, false, "Hz"};
   parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
   parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
+  parameters.wrench_rate_hz =
+      own("wrench_rate")
+          .numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, false, false, "Hz"});
   parameters.tf_timeout_s =
       own("tf_timeout").numberOr(parameters.tf_timeout_s, Range::positive("s"));
   parameters.force_scale =

@@ -1,6 +1,7 @@
 #include "robot_tissue/ros/tissue_node.h"
 
 #include <string>
+#include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
 
@@ -16,7 +17,7 @@ constexpr double kRateTolerance = 0.1;
 TissueNode::TissueNode(const ros::NodeHandle& private_node)
     : private_node_(private_node),
       parameters_(readNodeParameters(private_node_)),
-      pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}),
+      pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
       listener_(buffer_),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_),
@@ -29,7 +30,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   const double budget_ms = parameters_.scene.solver.max_ms;
   pipeline_.setBudget(budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate);
   robotIsKnown();
-  if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
+  settleFromRest();
   advertiseServices();
   diagnostics_.setHardwareID("none");
   diagnostics_.add(frequency_);
@@ -52,14 +53,28 @@ void TissueNode::update() {
     return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});
   }
   try {
-    pipeline_.step(last_look_up_.pose);
+    follow();
   } catch (const InputError& error) {
-    return report({"NO_TRANSFORM", error.what()});
+    last_look_up_.status = PoseLookUp::Status::kNoTransform;
+    last_look_up_.message = error.what();
+    report({"NO_TRANSFORM", error.what()});
   }
-  const StepReport& step = pipeline_.report();
+}
+
+// At a good pose.
+void TissueNode::follow() {
+  const StepReport& step = pipeline_.step(last_look_up_.pose);
   status_ = statusOf(step);
-  if (step.too_fast) ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
-  publisher_.publish(pipeline_, last_look_up_.pose, last_look_up_.stamp, status_);
+  if (step.too_fast || step.was_inside || step.torn_off) {
+    ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
+  }
+  publisher_.publish(pipeline_, last_look_up_.stamp, status_);
+}
+
+// What acts without tools: gravity and the supports.
+void TissueNode::settleFromRest() {
+  const Scene& scene = parameters_.scene;
+  if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline_.settle();
 }
 
 // Loads the tools once the robot's description is there; without tools none is needed.
@@ -79,7 +94,10 @@ bool TissueNode::robotIsKnown() {
     for (const std::string& warning : pipeline_.toolWarnings()) ROS_WARN_STREAM(warning);
     publisher_.setTools(loaded.tools);
     std::vector<std::string> links;
-    for (const ToolGeometry& tool : loaded.tools) links.push_back(tool.link);
+    for (const ToolGeometry& tool : loaded.tools) {
+      const std::vector<std::string> frames = linkFrames(tool);
+      links.insert(links.end(), frames.begin(), frames.end());
+    }
     tool_poses_.setLinks(links);
   }
   robot_is_known_ = true;
@@ -90,27 +108,42 @@ bool TissueNode::robotIsKnown() {
 void TissueNode::report(const NodeStatus& status) {
   if (status.status != status_.status) ROS_WARN_STREAM(status.status << ": " << status.message);
   status_ = status;
-  const ros::Time now = ros::Time::now();
-  publisher_.publishMarkers(pipeline_, last_look_up_.pose, now);
-  publisher_.publishStatus(pipeline_, now, status_);
+  publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_);
 }
 
+// The first word that applies; the message has all.
 NodeStatus TissueNode::statusOf(const StepReport& report) const {
+  NodeStatus status;
+  const auto say = [&status](const std::string& word, const std::string& message) {
+    if (status.status == "OK") status.status = word;
+    status.message += (status.message.empty() ? "" : "; ") + message;
+  };
+  if (report.was_inside) {
+    say("INSIDE", "a tool appeared inside the tissue and was walked in from outside");
+  }
+  if (report.torn_off) {
+    say("TORN_OFF", "a grasper was pulled harder than it holds (grasp.max_force) and lost it");
+  }
   if (report.too_fast) {
-    return {"TOO_FAST", "a tool moved further than could be followed in time: catching up"};
+    say("TOO_FAST", "a tool moved further than could be followed in time: catching up");
+  }
+  if (report.lost) {
+    say("UNCONVERGED",
+        "no shape follows a tool, as between tools that meet: the last good one stays");
   }
   const SolveReport& solve = pipeline_.tissue().lastReport();
-  switch (solve.status) {
-    case SolveStatus::kOk:
-      return {};
-    case SolveStatus::kLate:
-      return {"LATE", "the solver ran out of its budget (solver.max_ms)"};
-    case SolveStatus::kUnconverged:
-      return {"UNCONVERGED", "a layer or patch did not come to balance"};
-    case SolveStatus::kInverted:
-      return {"INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted"};
+  if (solve.status == SolveStatus::kLate) {
+    say("LATE", "the solver ran out of its budget (solver.max_ms)");
+  } else if (solve.status == SolveStatus::kUnconverged) {
+    say("UNCONVERGED", "a layer or patch did not come to balance");
+  } else if (solve.status == SolveStatus::kInverted) {
+    say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted");
   }
-  return {};
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    if (!report.tools[tool].jaws_overlap) continue;
+    say("OK", "the jaws of '" + pipeline_.tools()[tool].name + "' touch or overlap");
+  }
+  return status;
 }
 
 void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) {

@@ -1,18 +1,27 @@
 #include "robot_tissue/ros/tissue_publisher.h"
 
-#include <geometry_msgs/WrenchStamped.h>
 #include <robot_tissue/ContactArray.h>
 #include <robot_tissue/TissueState.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/tool_forces.h"
 
 namespace robot_tissue {
 namespace {
 
 const ros::Duration kStatePeriod(1.0);  // of the state while nothing changes
+
+void addBalance(const ForceBalance& balance, TissueState& message) {
+  message.force_of_tools = toVector3(balance.tools);
+  message.force_of_supports = toVector3(balance.supports);
+  message.force_of_loads = toVector3(balance.loads);
+  message.force_of_fixed = toVector3(balance.fixed);
+  message.weight = toVector3(balance.weight);
+  message.unbalanced_force = balance.unbalanced().norm();
+}
 
 TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
   const StepReport& report = pipeline.report();
@@ -32,9 +41,13 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
   message.pieces = lattice.pieces;
   message.springs_cut = lattice.springs_cut;
   message.substeps = report.substeps;
-  for (const ToolReport& tool : report.tools) {
-    message.max_penetration = std::max(message.max_penetration, tool.max_penetration);
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    const ToolReport& met = report.tools[tool];
+    message.max_penetration = std::max(message.max_penetration, met.max_penetration);
+    message.saturated = message.saturated || met.saturated;
+    if (met.grasps) message.grasping.push_back(pipeline.tools()[tool].name);
   }
+  addBalance(pipeline.forceBalance(), message);
   return message;
 }
 
@@ -43,8 +56,9 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
 TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters)
     : private_node_(private_node),
       frame_id_(parameters.scene.tissue.frame_id),
-      marker_builder_(frame_id_, parameters.force_scale),
-      marker_period_(1.0 / parameters.marker_rate_hz) {
+      marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
+      marker_period_(1.0 / parameters.marker_rate_hz),
+      wrenches_(private_node_, parameters.wrench_rate_hz) {
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) { shapeChanged(); };
   markers_ = private_node_.advertise<visualization_msgs::MarkerArray>(
       "markers", 1, someone_came, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), true);
@@ -52,82 +66,69 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
   state_ = private_node_.advertise<TissueState>("state", 10);
 }
 
-void TissuePublisher::setTools(const std::vector<ToolGeometry>& tools) {
-  tools_ = tools;
-  wrenches_.clear();
-  for (const ToolGeometry& tool : tools) {
-    wrenches_.push_back(
-        private_node_.advertise<geometry_msgs::WrenchStamped>(tool.name + "/measured_cf", 1));
-  }
-}
-
-void TissuePublisher::publish(const Pipeline& pipeline, const RobotPose& pose,
-                              const ros::Time& stamp, const NodeStatus& status) {
+void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
+                              const NodeStatus& status) {
   const auto start = std::chrono::steady_clock::now();
   if (pipeline.report().changed) shapeChanged();
-  publishWrenches(pipeline, stamp);
-  publishContacts(pipeline, pose, stamp);
-  publishMarkers(pipeline, pose, stamp);
-  publishStatus(pipeline, stamp, status);
+  if (status.message != last_status_.message) last_state_ = ros::Time();
+  wrenches_.publish(pipeline.report().tools, stamp);
+  publishContacts(pipeline, stamp);
+  publishMarkers(pipeline, stamp);
+  publishState(pipeline, stamp, status);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   publish_ms_ = elapsed.count();
 }
 
-void TissuePublisher::publishStatus(const Pipeline& pipeline, const ros::Time& now,
-                                    const NodeStatus& status) {
-  const bool news = status.status != last_status_.status || last_state_.isZero() ||
-                    now - last_state_ >= kStatePeriod || now < last_state_;
-  if (!news) return;
-  TissueState message = stateMessage(pipeline, status);
-  message.header.stamp = now;
-  message.header.frame_id = frame_id_;
-  message.publish_ms = publish_ms_;
-  message.pose_age_ms = 1e3 * (ros::Time::now() - now).toSec();
-  state_.publish(message);
-  last_status_ = status;
-  last_state_ = now;
+void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Time& now,
+                                         const NodeStatus& status) {
+  wrenches_.fallSilent();
+  publishMarkers(pipeline, now);
+  publishState(pipeline, now, status);
 }
 
-void TissuePublisher::publishMarkers(const Pipeline& pipeline, const RobotPose& pose,
-                                     const ros::Time& stamp) {
+void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& stamp,
+                                   const NodeStatus& status) {
+  const bool news = status.status != last_status_.status || last_state_.isZero() ||
+                    stamp - last_state_ >= kStatePeriod || stamp < last_state_;
+  if (!news) return;
+  TissueState message = stateMessage(pipeline, status);
+  message.header.stamp = stamp;
+  message.header.frame_id = frame_id_;
+  message.publish_ms = publish_ms_;
+  message.pose_age_ms = 1e3 * (ros::Time::now() - stamp).toSec();
+  state_.publish(message);
+  last_status_ = status;
+  last_state_ = stamp;
+}
+
+void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {
   const ros::Time now = ros::Time::now();
   const bool listened = markers_.getNumSubscribers() > 0 || !latched_markers_are_out_;
   const bool too_soon = now >= last_markers_ && now - last_markers_ < marker_period_;
   if (!markers_due_ || !listened || too_soon) return;
-  markers_.publish(marker_builder_.build(pipeline, pose, stamp));
+  markers_.publish(marker_builder_.build(pipeline, stamp));
   latched_markers_are_out_ = true;
   markers_due_ = false;
   last_markers_ = now;
 }
 
-void TissuePublisher::publishWrenches(const Pipeline& pipeline, const ros::Time& stamp) {
-  for (std::size_t tool = 0; tool < wrenches_.size(); ++tool) {
-    geometry_msgs::WrenchStamped message;
-    message.header.stamp = stamp;
-    message.header.frame_id = tools_[tool].link;
-    message.wrench.force = toVector3(pipeline.report().tools[tool].force_on_tool);
-    message.wrench.torque = toVector3(pipeline.report().tools[tool].torque_on_tool);
-    wrenches_[tool].publish(message);
-  }
-}
-
-void TissuePublisher::publishContacts(const Pipeline& pipeline, const RobotPose& pose,
-                                      const ros::Time& stamp) {
+void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time& stamp) {
   if (contacts_.getNumSubscribers() == 0) return;
   ContactArray array;
   array.header.stamp = stamp;
   array.header.frame_id = frame_id_;
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+  for (std::size_t tool = 0; tool < pipeline.tools().size(); ++tool) {
     const ToolReport& report = pipeline.report().tools[tool];
-    if (report.nodes.empty()) continue;
+    if (report.contacts == 0) continue;
     TissueContact contact;
-    contact.tool = tools_[tool].name;
+    contact.tool = pipeline.tools()[tool].name;
     contact.nodes.assign(report.nodes.begin(), report.nodes.end());
     contact.point = toPoint(report.point);
     contact.normal = toVector3(report.normal);
     contact.depth = report.max_penetration;
-    contact.force = toVector3(-(pose.tools[tool].linear() * report.force_on_tool));
+    contact.force = toVector3(forceOnTissue(pipeline, tool));
+    contact.saturated = report.saturated;
     array.contacts.push_back(contact);
   }
   contacts_.publish(array);

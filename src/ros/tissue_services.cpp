@@ -54,11 +54,13 @@ void TissueNode::advertiseServices() {
   reset_service_ = private_node_.advertiseService("reset", &TissueNode::onReset, this);
   cut_service_ = private_node_.advertiseService("cut", &TissueNode::onCut, this);
   load_service_ = private_node_.advertiseService("apply_load", &TissueNode::onApplyLoad, this);
+  grasp_service_ = private_node_.advertiseService("grasp", &TissueNode::onGrasp, this);
+  release_service_ = private_node_.advertiseService("release", &TissueNode::onRelease, this);
 }
 
 bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   pipeline_.reset();
-  if (parameters_.scene.tissue.gravity != Vec3::Zero()) pipeline_.tissue().settle();
+  settleFromRest();
   publisher_.shapeChanged();
   response.success = true;
   response.message = "rest shape, no cuts, no loads";
@@ -70,8 +72,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
     const Pose tissue_T_blade = tool_poses_.frame(request.header.frame_id);
     std::vector<Vec3> corners;
     for (const auto& corner : request.corners) corners.push_back(tissue_T_blade * toVec3(corner));
-    const CutReport cut = pipeline_.tissue().cut(corners);
-    pipeline_.touch();
+    const CutReport cut = pipeline_.cut(corners);
     publisher_.shapeChanged();
     response.success = true;
     response.springs_cut = cut.springs_cut;
@@ -89,34 +90,40 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
 
 bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
   try {
-    if (request.name.empty()) throw InputError("name: empty; allowed: the name of a patch");
-    for (const ToolConfig& tool : parameters_.scene.tools) {
-      if (tool.name == request.name) {
-        throw InputError("name: '" + request.name + "' is a tool; allowed: another name");
-      }
-    }
-    if (request.displacement.empty() && request.force.empty()) {
-      pipeline_.tissue().release({request.name});
-      response.message = "released";
+    if (request.name.empty()) throw InputError("name: empty; allowed: the name of a patch or tool");
+    if (isTool(request.name)) {
+      pushTool(request, response);
     } else {
-      SolveReport last;
-      LoadStep step;
-      step.patches.push_back(patchOf(request));
-      const auto keep = [&](int, int, const SolveReport& report) { last = report; };
-      pipeline_.tissue().load(step, keep, kMostIncrements);
-      const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
-      response.force = toVector3(answer.force);
-      response.displacement = toVector3(answer.displacement);
-      response.message = "loaded" + solved(last);
+      loadPatch(request, response);
     }
     response.success = true;
-    pipeline_.touch();
     publisher_.shapeChanged();
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
   }
   return true;
+}
+
+void TissueNode::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
+  for (const SupportConfig& support : parameters_.scene.supports) {
+    if (support.name != request.name) continue;
+    throw InputError("name: '" + request.name + "' is a support; allowed: another name");
+  }
+  if (request.displacement.empty() && request.force.empty()) {
+    pipeline_.release({request.name});
+    response.message = "released";
+    return;
+  }
+  SolveReport last;
+  LoadStep step;
+  step.patches.push_back(patchOf(request));
+  const auto keep = [&](int, int, const SolveReport& report) { last = report; };
+  pipeline_.load(step, keep, kMostIncrements);
+  const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
+  response.force = toVector3(answer.force);
+  response.displacement = toVector3(answer.displacement);
+  response.message = "loaded" + solved(last);
 }
 
 }  // namespace robot_tissue

@@ -3,7 +3,7 @@
 #include <tf2/exceptions.h>
 #include <tf2_eigen/tf2_eigen.h>
 
-#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace robot_tissue {
@@ -14,43 +14,52 @@ bool isStatic(const ros::Time& stamp) { return stamp.isZero(); }
 
 }  // namespace
 
+std::vector<std::string> linkFrames(const ToolGeometry& tool) {
+  std::vector<std::string> frames;
+  for (std::size_t link = 0; link < tool.links.size(); ++link) {
+    const bool unnamed = tool.links[link].link.empty() && link + 1 < tool.links.size();
+    frames.push_back(tool.links[unnamed ? link + 1 : link].link);
+  }
+  return frames;
+}
+
 ToolPoses::ToolPoses(const tf2_ros::Buffer& buffer, std::string tissue_frame, double timeout_s)
     : buffer_(buffer), tissue_frame_(std::move(tissue_frame)), timeout_s_(timeout_s) {}
 
 PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
   PoseLookUp found;
+  std::string looked_up, oldest;
   try {
     ros::Time common;
     for (const std::string& link : links_) {
+      looked_up = link;
       const ros::Time newest =
           buffer_.lookupTransform(tissue_frame_, link, ros::Time(0)).header.stamp;
-      if (isStatic(newest)) continue;
-      common = isStatic(common) ? newest : std::min(common, newest);
-    }
-    for (const std::string& link : links_) {
-      found.pose.tools.push_back(
-          tf2::transformToEigen(buffer_.lookupTransform(tissue_frame_, link, common)));
+      if (isStatic(newest) || (!isStatic(common) && newest >= common)) continue;
+      common = newest;
+      oldest = link;
     }
     found.stamp = isStatic(common) ? now : common;
-    found.pose.stamp_s = found.stamp.toSec();
     found.age_s = (now - found.stamp).toSec();
+    if (std::abs(found.age_s) > timeout_s_) {
+      found.status = PoseLookUp::Status::kStale;
+      found.message = "the pose of link '" + oldest + "' is " +
+                      std::to_string(std::abs(found.age_s)) + " s " +
+                      (found.age_s > 0.0 ? "old" : "in the future") +
+                      "; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
+      return found;
+    }
+    for (const std::string& link : links_) {
+      looked_up = link;
+      found.pose.links.push_back(
+          tf2::transformToEigen(buffer_.lookupTransform(tissue_frame_, link, common)));
+    }
   } catch (const tf2::TransformException& error) {
     found.message =
-        std::string("no transform from a tool to '") + tissue_frame_ + "': " + error.what();
+        "no transform from link '" + looked_up + "' to '" + tissue_frame_ + "': " + error.what();
     return found;
   }
-  if (found.age_s > timeout_s_) {
-    found.status = PoseLookUp::Status::kStale;
-    found.message = "the tools' pose is " + std::to_string(found.age_s) +
-                    " s old; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
-    return found;
-  }
-  if (found.age_s < -timeout_s_) {
-    found.status = PoseLookUp::Status::kStale;
-    found.message = "the tools' pose is " + std::to_string(-found.age_s) +
-                    " s in the future; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
-    return found;
-  }
+  found.pose.stamp_s = found.stamp.toSec();
   found.status = PoseLookUp::Status::kOk;
   return found;
 }

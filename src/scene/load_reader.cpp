@@ -92,7 +92,7 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
                   const SolverConfig& solver, std::vector<StandingPatch>& standing) {
   const MapReader map(entry, {"increments", "patches"});
   LoadStep step;
-  if (map["increments"].given()) step.increments = map["increments"].integer(1, 100000);
+  if (map["increments"].given()) step.increments = map["increments"].integer(1, kMostIncrements);
   std::vector<std::string> names;
   for (const Entry& patch_entry : map["patches"].list(1, "patches")) {
     const MapReader patch_map(patch_entry,

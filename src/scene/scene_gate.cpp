@@ -39,19 +39,10 @@ YAML::Node parseYaml(const std::string& text, const std::string& path) {
   }
 }
 
-void readTools(const Entry& tools, const SceneSource& source, Scene& scene) {
-  if (!tools.given()) return;
-  if (source.user == SceneUser::kNode) {
-    scene.tools = readTools(tools, source.folder);
-  } else if (!tools.list(0, "tools").empty()) {
-    tools.fail("not available yet in the offline runner, must be [] or left out");
-  }
-}
-
 void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
   if (!steps.given()) return;
   if (source.user == SceneUser::kRunner) {
-    scene.steps = readSteps(steps, scene.tissue, scene.solver);
+    scene.steps = readSteps(steps, scene.tissue, scene.solver, scene.tools);
   } else if (!steps.list(0, "steps").empty()) {
     steps.fail("only the offline runner takes steps, must be [] or left out");
   }
@@ -60,13 +51,19 @@ void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
 }  // namespace
 
 Scene parseScene(const YAML::Node& root, const SceneSource& source) {
-  std::vector<std::string> keys = {"tissue", "solver", "tools", "steps"};
+  std::vector<std::string> keys = {"tissue", "solver", "tools", "supports", "steps"};
   keys.insert(keys.end(), source.other_keys.begin(), source.other_keys.end());
   const MapReader map(Entry(root, "", source.name), keys);
   Scene scene;
-  scene.tissue = readTissue(map["tissue"], source.folder, scene.remarks);
+  const bool supported = map["supports"].given() && map["supports"].node().size() > 0;
+  scene.tissue = readTissue(map["tissue"], source.folder, supported, scene.remarks);
   scene.solver = readSolver(map["solver"], scene.tissue.model, source.overrides, scene.remarks);
-  readTools(map["tools"], source, scene);
+  if (map["tools"].given()) {
+    scene.tools = readTools(map["tools"], source, scene.tissue, scene.remarks);
+  }
+  if (map["supports"].given()) {
+    scene.supports = readSupports(map["supports"], scene.tissue.model);
+  }
   readSteps(map["steps"], source, scene);
   return scene;
 }

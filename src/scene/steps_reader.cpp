@@ -8,8 +8,20 @@
 namespace robot_tissue {
 namespace {
 
-const std::vector<std::string> kSteps = {"settle", "load", "cut", "release", "reset"};
-const std::vector<std::string> kPlannedSteps = {"suture", "move"};
+const std::vector<std::string> kSteps = {"settle", "load",  "cut",     "move",
+                                         "push",   "grasp", "release", "reset"};
+const std::vector<std::string> kPlannedSteps = {"suture"};
+
+// What the steps are read against, and what stands on the way through them.
+struct Program {
+  const TissueConfig& tissue;
+  const SolverConfig& solver;
+  const std::vector<ToolConfig>& tools;
+  Grid grid;
+  std::vector<NodeRange> fixed;
+  std::vector<StandingPatch> patches;
+  std::set<std::string> placed_tools;
+};
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -53,21 +65,39 @@ CutStep readCut(const Entry& entry, double spacing) {
   return step;
 }
 
-ReleaseStep readRelease(const Entry& entry, std::vector<StandingPatch>& standing) {
-  const MapReader map(entry, {"patches"});
+std::string readReleasedPatch(const Entry& entry, std::vector<StandingPatch>& standing) {
+  const std::string name = entry.word("the name of a standing patch");
+  const auto patch = std::find_if(standing.begin(), standing.end(),
+                                  [&name](const auto& other) { return other.name == name; });
+  if (patch == standing.end()) {
+    std::vector<std::string> names;
+    for (const StandingPatch& other : standing) names.push_back(other.name);
+    entry.fail(names.empty() ? "no patch stands at this step, must not release any"
+                             : "must be one of the standing patches: " + joined(names));
+  }
+  standing.erase(patch);
+  return name;
+}
+
+ReleaseStep readRelease(const Entry& entry, Program& program) {
+  const MapReader map(entry, {"patches", "tools"});
+  const Entry patches = map["patches"];
+  const Entry tools = map["tools"];
+  if (!patches.given() && !tools.given()) entry.fail("must have patches, tools or both");
   ReleaseStep step;
-  for (const Entry& name_entry : map["patches"].list(1, "patch names")) {
-    const std::string name = name_entry.word("the name of a standing patch");
-    const auto patch = std::find_if(standing.begin(), standing.end(),
-                                    [&name](const auto& other) { return other.name == name; });
-    if (patch == standing.end()) {
-      std::vector<std::string> names;
-      for (const StandingPatch& other : standing) names.push_back(other.name);
-      name_entry.fail(names.empty() ? "no patch stands at this step, must not release any"
-                                    : "must be one of the standing patches: " + joined(names));
+  if (patches.given()) {
+    for (const Entry& name : patches.list(1, "patch names")) {
+      step.patches.push_back(readReleasedPatch(name, program.patches));
     }
-    standing.erase(patch);
-    step.patches.push_back(name);
+  }
+  if (tools.given()) {
+    for (const Entry& name_entry : tools.list(1, "tool names")) {
+      const std::string name = name_entry.word("the name of a tool");
+      requireStands(name_entry, name, program.placed_tools);
+      if (contains(step.tools, name))
+        name_entry.fail("the tool stands here twice, must stand once");
+      step.tools.push_back(name);
+    }
   }
   return step;
 }
@@ -85,32 +115,33 @@ std::string readKind(const Entry& entry) {
   return kind;
 }
 
+Step readStep(const std::string& kind, const Entry& entry, Program& program) {
+  if (kind == "load") {
+    return readLoad(entry, program.grid, program.fixed, program.solver, program.patches);
+  }
+  if (kind == "cut") return readCut(entry, program.tissue.spacing);
+  if (kind == "move") return readMove(entry, program.tools, program.placed_tools);
+  if (kind == "push") return readPush(entry, program.tools, program.placed_tools);
+  if (kind == "grasp") return readGraspStep(entry, program.tools, program.placed_tools);
+  if (kind == "release") return readRelease(entry, program);
+  MapReader(entry, {});
+  if (kind == "settle") return SettleStep();
+  program.patches.clear();
+  program.placed_tools.clear();
+  return ResetStep();
+}
+
 }  // namespace
 
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
-                            const SolverConfig& solver) {
-  const Grid grid = filledGrid(tissue).grid;
-  std::vector<NodeRange> fixed;
-  for (const Box& box : tissue.fixed) fixed.push_back(grid.nodesIn(box));
-  std::vector<StandingPatch> standing;
+                            const SolverConfig& solver, const std::vector<ToolConfig>& tools) {
+  Program program{tissue, solver, tools, filledGrid(tissue).grid, {}, {}, {}};
+  for (const Box& box : tissue.fixed) program.fixed.push_back(program.grid.nodesIn(box));
   std::vector<Step> steps;
   for (const Entry& step_entry : entry.list(0, "steps")) {
     const std::string kind = readKind(step_entry);
     const MapReader map(step_entry, kSteps);
-    if (kind == "load") {
-      steps.push_back(readLoad(map[kind], grid, fixed, solver, standing));
-    } else if (kind == "cut") {
-      steps.push_back(readCut(map[kind], tissue.spacing));
-    } else if (kind == "release") {
-      steps.push_back(readRelease(map[kind], standing));
-    } else if (kind == "settle") {
-      MapReader(map[kind], {});
-      steps.push_back(SettleStep());
-    } else {
-      MapReader(map[kind], {});
-      standing.clear();
-      steps.push_back(ResetStep());
-    }
+    steps.push_back(readStep(kind, map[kind], program));
   }
   return steps;
 }

@@ -176,7 +176,8 @@ Box readNodeBox(const MapReader& map, const Grid& grid) {
   map.entry().fail("the box holds no node, must hold at least one; " + nodesText(grid, 0.0));
 }
 
-TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, Remarks& remarks) {
+TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
+                        Remarks& remarks) {
   const MapReader map(
       entry, {"frame_id", "shape", "spacing", "model", "material", "regions", "fixed", "gravity"});
   TissueConfig tissue;
@@ -192,8 +193,9 @@ TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, Rem
   }
   readBoxes(map, tissue, remarks);
   tissue.gravity = map["gravity"].vec3Or(tissue.gravity, Range::any("m/s^2"));
-  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty()) {
-    map["gravity"].fail("must be zero unless tissue.fixed holds nodes, the tissue would fall");
+  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty() && !supported) {
+    map["gravity"].fail(
+        "must be zero unless tissue.fixed holds nodes or supports bear it, the tissue would fall");
   }
   return tissue;
 }

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cctype>
-#include <map>
 
 #include "robot_tissue/scene/readers.h"
 
 namespace robot_tissue {
 namespace {
 
-// A tool's name becomes part of a topic.
+const std::string kNameRule = "letters, digits and _, starting with a letter";
+
 bool isGraphName(const std::string& name) {
   const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
   return !name.empty() && letter(name.front()) &&
@@ -15,85 +15,96 @@ bool isGraphName(const std::string& name) {
                      [&letter](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-// Roll, pitch, yaw about the fixed axes x, y, z, as in URDF.
-Pose readPose(const MapReader& map) {
-  const Vec3 rpy = map["rpy"].vec3Or(Vec3::Zero(), Range::any("rad"));
-  Pose pose = Pose::Identity();
-  pose.translation() = map["xyz"].vec3Or(Vec3::Zero(), Range::any("m"));
-  pose.linear() =
-      (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-       Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-          .toRotationMatrix();
-  return pose;
-}
-
-std::string readToolName(const MapReader& map, const std::string& link) {
-  const std::string allowed = "letters, digits and _, starting with a letter";
-  const Entry entry = map["name"];
-  if (entry.given()) {
-    const std::string name = entry.word(allowed);
-    if (!isGraphName(name)) entry.fail("must be " + allowed);
-    return name;
-  }
+// The first link's name when the scene gives none.
+std::string readToolName(const Entry& entry, const ToolLinks& links) {
+  const std::string& link = links.links.front().link;
+  if (entry.given() || link.empty()) return readGraphName(entry);
   if (!isGraphName(link)) {
-    map["link"].fail("needs a name beside it, as the tool's name must be " + allowed);
+    links.first_name.fail("needs a name beside it, as the tool's name must be " + kNameRule);
   }
   return link;
 }
 
-ToolConfig readTool(const Entry& entry, const std::string& scene_folder) {
-  const MapReader map(entry, {"name", "link", "role", "padding", "friction", "shapes"});
-  if (map["friction"].given()) {
-    map["friction"].fail(
-        "sliding contact is not available yet, a patch sticks to its tool; the key must be left "
-        "out");
+ToolConfig::Role readRole(const Entry& entry, const std::string& model) {
+  if (!entry.given() || entry.choice({"push", "grasper"}, {"blade"}) == "push") {
+    return ToolConfig::Role::kPush;
   }
-  if (map["role"].given()) map["role"].choice({"push"}, {"blade", "grasper"});
+  if (hardPatchesOnly(model)) {
+    entry.fail("with tissue.model " + model + " must be push, its method moves hard patches only");
+  }
+  return ToolConfig::Role::kGrasper;
+}
+
+ToolConfig::Patch readPatch(const Entry& entry, const std::string& model) {
+  if (!entry.given()) {
+    return hardPatchesOnly(model) ? ToolConfig::Patch::kRigid : ToolConfig::Patch::kConforming;
+  }
+  if (entry.choice({"conforming", "rigid"}, {}) == "rigid") return ToolConfig::Patch::kRigid;
+  if (hardPatchesOnly(model)) {
+    entry.fail("with tissue.model " + model + " must be rigid, its method moves hard patches only");
+  }
+  return ToolConfig::Patch::kConforming;
+}
+
+void readContact(const MapReader& map, const std::string& model, ToolConfig& tool,
+                 Remarks& remarks) {
+  tool.patch = readPatch(map["patch"], model);
+  const Entry friction = map["friction"];
+  tool.friction = friction.numberOr(tool.friction, Range::atLeastZero(""));
+  if (friction.given() && tool.patch == ToolConfig::Patch::kRigid) {
+    remarks.push_back(friction.line("ignored, a rigid patch sticks to its tool"));
+  }
+  tool.max_force = map["max_force"].numberOr(tool.max_force, Range::atLeastZero("N"));
+}
+
+GraspConfig readGrasp(const Entry& entry, double spacing, SceneUser user, Remarks& remarks) {
+  const Entry given = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
+  const MapReader map(given, {"close_gap", "open_gap", "max_force", "opening_axis"});
+  GraspConfig grasp;
+  grasp.close_gap = map["close_gap"].numberOr(spacing, Range::positive("m"));
+  grasp.open_gap = map["open_gap"].numberOr(
+      1.5 * grasp.close_gap, {grasp.close_gap, kLargestNumber, false, false, "m, the close_gap"});
+  grasp.max_force = map["max_force"].numberOr(grasp.max_force, Range::atLeastZero("N"));
+  const Entry axis = map["opening_axis"];
+  if (axis.given()) grasp.opening_axis = readNonZero(axis, "").normalized();
+  if (axis.given() && user == SceneUser::kNode) {
+    remarks.push_back(axis.line("ignored, the robot's joints move the jaws"));
+  }
+  return grasp;
+}
+
+ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueConfig& tissue,
+                    Remarks& remarks) {
+  const MapReader map(
+      entry, {"name", "link", "links", "jaws", "role", "padding", "collision_padding", "friction",
+              "patch", "max_force", "grasp", "shapes"});
   ToolConfig tool;
-  tool.link = map["link"].word("the name of a link of the URDF");
-  tool.name = readToolName(map, tool.link);
-  tool.padding = map["padding"].numberOr(tool.padding, Range::atLeastZero("m"));
-  if (map["shapes"].given()) {
-    for (const Entry& shape : map["shapes"].list(0, "shapes")) {
-      tool.shapes.push_back(readToolShape(shape, scene_folder));
-    }
+  tool.role = readRole(map["role"], tissue.model);
+  const ToolLinks links = readToolLinks(map, source.folder, source.user, tool.role, remarks);
+  tool.links = links.links;
+  tool.name = readToolName(map["name"], links);
+  readContact(map, tissue.model, tool, remarks);
+  if (tool.role == ToolConfig::Role::kGrasper) {
+    tool.grasp = readGrasp(map["grasp"], tissue.spacing, source.user, remarks);
+  } else if (map["grasp"].given()) {
+    map["grasp"].fail("must be left out, only role grasper holds tissue");
   }
   return tool;
 }
 
 }  // namespace
 
-ToolShape readToolShape(const Entry& entry, const std::string& scene_folder) {
-  const MapReader any_type(entry,
-                           {"type", "radius", "length", "size", "resource", "scale", "xyz", "rpy"});
-  const std::string type = any_type["type"].choice({"sphere", "cylinder", "box", "mesh"}, {});
-  static const std::map<std::string, std::vector<std::string>> kKeys = {
-      {"sphere", {"type", "radius", "xyz", "rpy"}},
-      {"cylinder", {"type", "radius", "length", "xyz", "rpy"}},
-      {"box", {"type", "size", "xyz", "rpy"}},
-      {"mesh", {"type", "resource", "scale", "xyz", "rpy"}}};
-  const MapReader map(entry, kKeys.at(type));
-  ToolShape shape;
-  shape.pose = readPose(map);
-  if (type == "box") {
-    shape.type = ToolShape::Type::kBox;
-    shape.size = map["size"].vec3(Range::positive("m"));
-  } else if (type == "mesh") {
-    shape.type = ToolShape::Type::kMesh;
-    shape.resource = readResource(map["resource"], scene_folder);
-    shape.scale = readScale(map["scale"]);
-  } else {
-    shape.type = type == "sphere" ? ToolShape::Type::kSphere : ToolShape::Type::kCylinder;
-    shape.radius = map["radius"].number(Range::positive("m"));
-    if (type == "cylinder") shape.length = map["length"].number(Range::positive("m"));
-  }
-  return shape;
+std::string readGraphName(const Entry& entry) {
+  const std::string name = entry.word(kNameRule);
+  if (!isGraphName(name)) entry.fail("must be " + kNameRule);
+  return name;
 }
 
-std::vector<ToolConfig> readTools(const Entry& entry, const std::string& scene_folder) {
+std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
+                                  const TissueConfig& tissue, Remarks& remarks) {
   std::vector<ToolConfig> tools;
   for (const Entry& tool_entry : entry.list(0, "tools")) {
-    const ToolConfig tool = readTool(tool_entry, scene_folder);
+    const ToolConfig tool = readTool(tool_entry, source, tissue, remarks);
     for (const ToolConfig& other : tools) {
       if (other.name != tool.name) continue;
       tool_entry.fail("the name " + tool.name + " is an earlier tool's, must be unique");

@@ -81,8 +81,14 @@ std::string incrementsCsv(const RunResult& result) {
   return csv;
 }
 
-std::string toolsCsv() {
-  return "step,increment,tool,fx,fy,fz,tx,ty,tz,contacts,max_penetration\n";
+std::string toolsCsv(const RunResult& result) {
+  std::string csv = "step,increment,tool,fx,fy,fz,tx,ty,tz,contacts,max_penetration\n";
+  for (const ToolRow& row : result.tools) {
+    csv += text(row.step, row.increment) + ',' + row.tool + ',' + text(row.force) + ',' +
+           text(row.torque) + ',' + std::to_string(row.contacts) + ',' + text(row.max_penetration) +
+           '\n';
+  }
+  return csv;
 }
 
 std::string surfaceStl(const RunResult& result) {

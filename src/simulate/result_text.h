@@ -11,7 +11,7 @@ namespace robot_tissue {
 std::string nodesCsv(const RunResult& result);
 std::string patchesCsv(const RunResult& result);
 std::string incrementsCsv(const RunResult& result);
-std::string toolsCsv();  // the header: the runner has no tools yet
+std::string toolsCsv(const RunResult& result);
 std::string surfaceStl(const RunResult& result);
 
 }  // namespace robot_tissue

@@ -23,13 +23,25 @@ struct PatchRow {
   PatchAnswer answer;
 };
 
+struct ToolRow {
+  int step = 0;
+  int increment = 1;
+  std::string tool;
+  Vec3 force = Vec3::Zero();   // of the tissue on the tool, tissue frame (N)
+  Vec3 torque = Vec3::Zero();  // about the tool's origin, tissue frame (N m)
+  int contacts = 0;
+  double max_penetration = 0.0;  // m
+};
+
 struct RunResult {
   std::vector<IncrementRow> increments;
   std::vector<PatchRow> patches;
+  std::vector<ToolRow> tools;      // of those that stand somewhere
   std::vector<Vec3> rest;          // per node (m, tissue frame)
   std::vector<Vec3> displacement;  // per node (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
   std::vector<std::array<int, 3>> triangles;
+  std::vector<std::string> remarks;  // lines the user should see, e.g. a tool that missed its force
 
   bool allOk() const;
 };
@@ -37,7 +49,7 @@ struct RunResult {
 // Called after each increment: the row and how many increments its step has.
 using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 
-// Throws InputError when the tissue refuses a step; the message names the step.
+// Throws InputError when a tool's shapes or a step are refused; the message names the step.
 RunResult runScene(const Scene& scene, const OnRow& on_row = {});
 
 }  // namespace robot_tissue

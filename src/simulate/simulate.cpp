@@ -51,7 +51,7 @@ void write(const RunResult& result, OutputFolder& folder) {
   folder.write("nodes.csv", nodesCsv(result));
   folder.write("patches.csv", patchesCsv(result));
   folder.write("increments.csv", incrementsCsv(result));
-  folder.write("tools.csv", toolsCsv());
+  folder.write("tools.csv", toolsCsv(result));
   folder.write("surface.stl", surfaceStl(result));
   folder.commit();
 }
@@ -75,7 +75,10 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const RunResult result =
       runNamed(scene, arguments.scene, progress ? progressOn(err, scene.steps.size()) : OnRow());
   write(result, folder);
-  if (!arguments.quiet) tellNotOk(result, err);
+  if (!arguments.quiet) {
+    for (const std::string& remark : result.remarks) err << "simulate: " << remark << '\n';
+    tellNotOk(result, err);
+  }
   return result.allOk() ? kExitOk : kExitNotAllOk;
 }
 

@@ -322,7 +322,8 @@ void printModesOf(const std::string& name, const Job& job, bool patch_held, doub
   if (depth > 0.0) {
     patch.drive = Drive::kDisplacement;
     patch.displacement.assign(patch.nodes.size(), Vec3(0.0, 0.0, -depth));
-    PaperMethod(lattice, model, setup.options).solve({patch}, {}, state);
+    std::vector<LoadingPatch> patches = {patch};
+    PaperMethod(lattice, model, setup.options).solve(patches, {}, state);
   }
   const Eigen::MatrixXd matrix =
       stiffnessMatrix(lattice, model, state, patch_held ? patch.nodes : std::vector<int>());

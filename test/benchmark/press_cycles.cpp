@@ -100,7 +100,11 @@ void run(const Probe& probe, int cycles, double depth, double speed, const std::
   tissue.fixed.push_back({Vec3(-1, -1, -1e-6), Vec3(1, 1, 1e-6)});
   SolverConfig solver;
   solver.method = methodsFor(model).front();
-  Pipeline pipeline(tissue, solver, {{probe.name, probe.name, 0.0, {probe.shape}}});
+  ToolGeometry tool;
+  tool.name = probe.name;
+  tool.links.push_back({probe.name, {probe.shape}});
+  if (model != "elastic") tool.patch = ToolConfig::Patch::kRigid;  // all that it can do
+  Pipeline pipeline(tissue, solver, {tool});
   const double way = depth + kClearance;
   const int updates = static_cast<int>(std::ceil(way / (speed * kUpdatePeriod)));
   double deepest = 0.0, left = 0.0, greatest_force = 0.0;
@@ -109,13 +113,13 @@ void run(const Probe& probe, int cycles, double depth, double speed, const std::
     for (int i = 0; i <= 2 * updates; ++i) {
       const double gone = way * (i <= updates ? i : 2 * updates - i) / updates;
       RobotPose pose;
-      pose.tools.push_back(Pose::Identity());
-      pose.tools[0].translation() = kUnder + Vec3(0, 0, kClearance - gone);
+      pose.links.push_back(Pose::Identity());
+      pose.links[0].translation() = kUnder + Vec3(0, 0, kClearance - gone);
       const StepReport& report = pipeline.step(pose);
       times_ms.push_back(report.contact_ms + report.solve_ms);
       greatest_force = std::max(greatest_force, report.tools[0].force_on_tool.norm());
       deepest =
-          std::max(deepest, deepestSample(pipeline.tissue(), probe, pose.tools[0].translation()));
+          std::max(deepest, deepestSample(pipeline.tissue(), probe, pose.links[0].translation()));
     }
     left = std::max(left, greatestDisplacement(pipeline.tissue()));
   }

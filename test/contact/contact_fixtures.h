@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,46 @@ inline Sheet makeSheet(int cells, double spacing) {
       sheet.addTriangle(corner, corner + cells + 2, corner + cells + 1);
     }
   }
+  return sheet;
+}
+
+// The closed surface of a block with its top at z = 0, outside outwards.
+inline Sheet makeBlock(const Eigen::Vector3i& cells, double spacing) {
+  Sheet sheet;
+  std::map<std::array<int, 3>, int> numbers;
+  const auto vertex = [&](const Eigen::Vector3i& at_node) {
+    const auto [known, is_new] = numbers.try_emplace({at_node.x(), at_node.y(), at_node.z()},
+                                                     static_cast<int>(sheet.vertices.size()));
+    if (is_new) sheet.addVertex(spacing * Vec3(at_node.x(), at_node.y(), at_node.z() - cells.z()));
+    return known->second;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (const int side : {0, cells[axis]}) {
+      for (int i = 0; i < cells[u]; ++i) {
+        for (int j = 0; j < cells[v]; ++j) {
+          std::array<int, 4> quad;
+          for (int k = 0; k < 4; ++k) {
+            Eigen::Vector3i node;
+            node[axis] = side;
+            node[u] = i + (k == 1 || k == 2 ? 1 : 0);
+            node[v] = j + (k >= 2 ? 1 : 0);
+            quad[static_cast<std::size_t>(k)] = vertex(node);
+          }
+          if (side == 0) std::swap(quad[1], quad[3]);
+          sheet.addTriangle(quad[0], quad[1], quad[2]);
+          sheet.addTriangle(quad[0], quad[2], quad[3]);
+        }
+      }
+    }
+  }
+  return sheet;
+}
+
+inline Sheet makeTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Sheet sheet;
+  for (const Vec3& corner : {a, b, c}) sheet.addVertex(corner);
+  sheet.addTriangle(0, 1, 2);
   return sheet;
 }
 
@@ -84,8 +125,23 @@ inline ToolShape mesh(const std::string& resource) {
   return shape;
 }
 
-inline ToolGeometry makeTool(const std::vector<ToolShape>& shapes, double padding = 0.0) {
-  return {"probe", "tip", padding, shapes};
+inline ToolShape plane() {
+  ToolShape shape;
+  shape.type = ToolShape::Type::kPlane;
+  return shape;
+}
+
+inline ToolShape placedAt(const Pose& pose, ToolShape shape) {
+  shape.pose = pose;
+  return shape;
+}
+
+inline ToolGeometry makeTool(std::vector<ToolShape> shapes, double padding = 0.0) {
+  ToolGeometry tool;
+  tool.name = "probe";
+  for (ToolShape& shape : shapes) shape.padding += padding;
+  tool.links = {{"tip", std::move(shapes)}};
+  return tool;
 }
 
 inline Pose makePose(const Vec3& position, double angle = 0.0, const Vec3& axis = Vec3::UnitZ()) {
@@ -97,7 +153,7 @@ inline Pose makePose(const Vec3& position, double angle = 0.0, const Vec3& axis 
 
 inline RobotPose at(const Pose& pose) {
   RobotPose robot;
-  robot.tools = {pose};
+  robot.links = {pose};
   return robot;
 }
 
@@ -118,6 +174,69 @@ inline std::vector<Triangle> boxTriangles(const Vec3& size, const Vec3& center =
     triangles.push_back({{corner(quad[0]), corner(quad[2]), corner(quad[3])}});
   }
   return triangles;
+}
+
+// A closed ball of 2 rings x 2 rings - 2 bands of triangles; its corners are on the sphere.
+inline std::vector<Triangle> ballTriangles(int rings, double radius) {
+  std::vector<Triangle> triangles;
+  const auto point = [&](int ring, int step) -> Vec3 {
+    const double polar = M_PI * ring / rings;
+    const double azimuth = M_PI * step / rings;
+    return radius * Vec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                         std::cos(polar));
+  };
+  for (int i = 0; i < rings; ++i) {
+    for (int j = 0; j < 2 * rings; ++j) {
+      if (i > 0) triangles.push_back({{point(i, j), point(i + 1, j), point(i, j + 1)}});
+      if (i + 1 < rings) {
+        triangles.push_back({{point(i, j + 1), point(i + 1, j), point(i + 1, j + 1)}});
+      }
+    }
+  }
+  return triangles;
+}
+
+// A prism: an outline in the x-z plane, counter-clockwise seen from -y, drawn out along y; `caps`
+// divides the outline into triangles of its corners.
+inline std::vector<Triangle> prismTriangles(const std::vector<Eigen::Vector2d>& outline,
+                                            const std::vector<std::array<int, 3>>& caps,
+                                            double width) {
+  const auto corner = [&](std::size_t i, double y) {
+    return Vec3(outline[i].x(), y, outline[i].y());
+  };
+  const double y = 0.5 * width;
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const std::size_t next = (i + 1) % outline.size();
+    triangles.push_back({{corner(i, -y), corner(i, y), corner(next, y)}});
+    triangles.push_back({{corner(i, -y), corner(next, y), corner(next, -y)}});
+  }
+  for (const auto& cap : caps) {
+    const auto a = static_cast<std::size_t>(cap[0]), b = static_cast<std::size_t>(cap[1]),
+               c = static_cast<std::size_t>(cap[2]);
+    triangles.push_back({{corner(a, -y), corner(b, -y), corner(c, -y)}});
+    triangles.push_back({{corner(a, y), corner(c, y), corner(b, y)}});
+  }
+  return triangles;
+}
+
+// Two prongs that point to -z, joined above; `prong` wide, `notch` apart, `height` long.
+inline std::vector<Triangle> forkTriangles(double prong, double notch, double height,
+                                           double width) {
+  const double x = 0.5 * notch, out = 0.5 * notch + prong, top = height + prong;
+  const std::vector<Eigen::Vector2d> outline = {
+      {-out, 0.0}, {-x, 0.0},     {-x, height}, {x, height}, {x, 0.0},
+      {out, 0.0},  {out, height}, {out, top},   {-out, top}, {-out, height}};
+  return prismTriangles(outline,
+                        {{{0, 1, 2}},
+                         {{0, 2, 9}},
+                         {{4, 5, 6}},
+                         {{4, 6, 3}},
+                         {{9, 2, 8}},
+                         {{2, 3, 8}},
+                         {{3, 7, 8}},
+                         {{3, 6, 7}}},
+                        width);
 }
 
 // Writes an ASCII STL to the tests' temporary directory; returns its file:// address.

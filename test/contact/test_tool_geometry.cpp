@@ -14,9 +14,9 @@ using testing::internal::GetCapturedStderr;
 const char* const kRobot = R"(<robot name="arm">
   <link name="base"/>
   <link name="tip">
-    <collision><origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/>
+    <collision name="ball"><origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/>
       <geometry><sphere radius="0.01"/></geometry></collision>
-    <collision><geometry><box size="0.1 0.2 0.3"/></geometry></collision>
+    <collision name="brick"><geometry><box size="0.1 0.2 0.3"/></geometry></collision>
     <collision><origin xyz="0 0 -0.5"/>
       <geometry><cylinder radius="0.004" length="0.05"/></geometry></collision>
     <collision>
@@ -29,7 +29,8 @@ const char* const kRobot = R"(<robot name="arm">
 ToolConfig toolOn(const std::string& link) {
   ToolConfig config;
   config.name = "probe";
-  config.link = link;
+  config.links.resize(1);
+  config.links[0].link = link;
   return config;
 }
 
@@ -38,15 +39,13 @@ bool isOneLine(const std::string& text) {
 }
 
 TEST(ToolGeometry, TakesEveryCollisionElementWithItsOrigin) {
-  ToolConfig config = toolOn("tip");
-  config.padding = 0.002;
-  const LoadedTools loaded = loadTools(kRobot, {config});
+  const LoadedTools loaded = loadTools(kRobot, {toolOn("tip")});
   EXPECT_TRUE(loaded.warnings.empty());
   ASSERT_EQ(loaded.tools.size(), 1U);
-  const ToolGeometry& tool = loaded.tools[0];
-  EXPECT_EQ(tool.name, "probe");
+  EXPECT_EQ(loaded.tools[0].name, "probe");
+  ASSERT_EQ(loaded.tools[0].links.size(), 1U);
+  const LinkGeometry& tool = loaded.tools[0].links[0];
   EXPECT_EQ(tool.link, "tip");
-  EXPECT_EQ(tool.padding, 0.002);
   ASSERT_EQ(tool.shapes.size(), 4U);
 
   EXPECT_EQ(tool.shapes[0].type, ToolShape::Type::kSphere);
@@ -70,28 +69,28 @@ TEST(ToolGeometry, TakesEveryCollisionElementWithItsOrigin) {
 
 TEST(ToolGeometry, OverlayTakesThePlaceOfTheUrdfGeometry) {
   ToolConfig config = toolOn("tip");
-  config.shapes = {sphere(0.03)};
+  config.links[0].shapes = {sphere(0.03)};
   const LoadedTools loaded = loadTools(kRobot, {config});
-  ASSERT_EQ(loaded.tools[0].shapes.size(), 1U);
-  EXPECT_DOUBLE_EQ(loaded.tools[0].shapes[0].radius, 0.03);
+  ASSERT_EQ(loaded.tools[0].links[0].shapes.size(), 1U);
+  EXPECT_DOUBLE_EQ(loaded.tools[0].links[0].shapes[0].radius, 0.03);
 }
 
 TEST(ToolGeometry, OverlayGivesGeometryToABareLinkWithoutWarning) {
   ToolConfig config = toolOn("base");
-  config.shapes = {sphere(0.03)};
+  config.links[0].shapes = {sphere(0.03)};
   const LoadedTools loaded = loadTools(kRobot, {config});
   EXPECT_TRUE(loaded.warnings.empty());
-  EXPECT_EQ(loaded.tools[0].shapes.size(), 1U);
+  EXPECT_EQ(loaded.tools[0].links[0].shapes.size(), 1U);
 }
 
 TEST(ToolGeometry, BareLinkIsKeptAndWarnedOf) {
   const LoadedTools loaded = loadTools(kRobot, {toolOn("tip"), toolOn("base")});
   ASSERT_EQ(loaded.tools.size(), 2U);
-  EXPECT_TRUE(loaded.tools[1].shapes.empty());
+  EXPECT_TRUE(loaded.tools[1].links[0].shapes.empty());
   ASSERT_EQ(loaded.warnings.size(), 1U);
   const std::string& warning = loaded.warnings[0];
   EXPECT_TRUE(isOneLine(warning));
-  for (const char* word : {"'probe'", "'base'", "tools[1].shapes"}) {
+  for (const char* word : {"'probe'", "'base'", "tools[1].links[0].shapes"}) {
     EXPECT_NE(warning.find(word), std::string::npos) << warning;
   }
 }
@@ -104,10 +103,10 @@ TEST(ToolGeometry, ToolWithoutNameIsCalledLikeItsLink) {
 
 TEST(ToolGeometry, UnknownLinkIsRefusedAndTheLinksThatExistAreListed) {
   ToolConfig config = toolOn("tool_tipp");
-  config.shapes = {sphere(0.01)};  // an overlay does not make a link
+  config.links[0].shapes = {sphere(0.01)};  // an overlay does not make a link
   const std::string error = inputErrorOf([&] { loadTools(kRobot, {config}); });
   EXPECT_TRUE(isOneLine(error));
-  for (const char* word : {"tools[0].link", "'probe'", "'tool_tipp'", "base, tip"}) {
+  for (const char* word : {"tools[0].links[0].link", "'probe'", "'tool_tipp'", "base, tip"}) {
     EXPECT_NE(error.find(word), std::string::npos) << error;
   }
 }
@@ -148,11 +147,121 @@ TEST(ToolGeometry, FaultyCollisionElementIsRefusedUnlessOverlaid) {
   for (const char* word : {"'tip'", "radius"}) {
     EXPECT_NE(error.find(word), std::string::npos) << error;
   }
-  config.shapes = {sphere(0.03)};
-  EXPECT_EQ(loadTools(robot, {config}).tools[0].shapes.size(), 1U);
+  config.links[0].shapes = {sphere(0.03)};
+  EXPECT_EQ(loadTools(robot, {config}).tools[0].links[0].shapes.size(), 1U);
 }
 
 TEST(ToolGeometry, NoToolsNeedNoUrdf) { EXPECT_TRUE(loadTools("", {}).tools.empty()); }
+
+TEST(ToolGeometry, PaddingsAddUp) {
+  ToolConfig config = toolOn("tip");
+  config.links[0].padding = 0.002;
+  config.links[0].collision_padding = {{"brick", 0.0005}};
+  const auto shapes = loadTools(kRobot, {config}).tools[0].links[0].shapes;
+  ASSERT_EQ(shapes.size(), 4U);
+  EXPECT_DOUBLE_EQ(shapes[0].padding, 0.002);
+  EXPECT_DOUBLE_EQ(shapes[1].padding, 0.0025);
+  EXPECT_DOUBLE_EQ(shapes[3].padding, 0.002);
+
+  config = toolOn("tip");
+  config.links[0].padding = 0.002;
+  config.links[0].shapes = {sphere(0.03), sphere(0.01)};
+  config.links[0].shapes[1].padding = 0.001;
+  for (const LoadedTools& loaded : {loadTools(kRobot, {config}), toolsOf({config})}) {
+    EXPECT_DOUBLE_EQ(loaded.tools[0].links[0].shapes[0].padding, 0.002);
+    EXPECT_DOUBLE_EQ(loaded.tools[0].links[0].shapes[1].padding, 0.003);
+  }
+}
+
+TEST(ToolGeometry, UnknownPaddedCollisionIsRefusedAndTheNamesAreListed) {
+  ToolConfig config = toolOn("base");
+  config.links.resize(2);
+  config.links[1].link = "tip";
+  config.links[1].collision_padding = {{"ball", 0.001}, {"brik", 0.001}};
+  const std::string error = inputErrorOf([&] { loadTools(kRobot, {toolOn("tip"), config}); });
+  EXPECT_TRUE(isOneLine(error));
+  for (const char* word :
+       {"tools[1].links[1].collision_padding", "'brik'", "'tip'", "ball, brick"}) {
+    EXPECT_NE(error.find(word), std::string::npos) << error;
+  }
+  config = toolOn("base");
+  config.links[0].collision_padding = {{"ball", 0.001}};
+  EXPECT_NE(inputErrorOf([&] { loadTools(kRobot, {config}); }).find("no names"), std::string::npos);
+}
+
+TEST(ToolGeometry, PaddingOfCollisionsThatAnOverlayReplacesIsWarnedOf) {
+  ToolConfig config = toolOn("tip");
+  config.links[0].shapes = {sphere(0.03)};
+  config.links[0].collision_padding = {{"ball", 0.001}};
+  for (const LoadedTools& loaded : {loadTools(kRobot, {config}), toolsOf({config})}) {
+    ASSERT_EQ(loaded.warnings.size(), 1U);
+    EXPECT_NE(loaded.warnings[0].find("tools[0].links[0].collision_padding"), std::string::npos);
+    EXPECT_EQ(loaded.tools[0].links[0].shapes[0].padding, 0.0);
+  }
+}
+
+TEST(ToolGeometry, EveryLinkAndEntryIsTakenOver) {
+  ToolConfig config = toolOn("base");
+  config.name.clear();
+  config.links.resize(3, config.links[0]);
+  config.links[2].link = "tip";
+  for (ToolLink& link : config.links) link.shapes = {sphere(0.01)};
+  config.role = ToolConfig::Role::kGrasper;
+  config.patch = ToolConfig::Patch::kRigid;
+  config.friction = 0.7;
+  config.max_force = 5.0;
+  config.grasp.close_gap = 0.001;
+  for (const LoadedTools& loaded : {loadTools(kRobot, {config}), toolsOf({config})}) {
+    const ToolGeometry& tool = loaded.tools[0];
+    EXPECT_EQ(tool.name, "base");
+    ASSERT_EQ(tool.links.size(), 3U);
+    EXPECT_EQ(tool.links[2].link, "tip");
+    EXPECT_EQ(tool.role, ToolConfig::Role::kGrasper);
+    EXPECT_EQ(tool.patch, ToolConfig::Patch::kRigid);
+    EXPECT_EQ(tool.friction, 0.7);
+    EXPECT_EQ(tool.max_force, 5.0);
+    EXPECT_EQ(tool.grasp.close_gap, 0.001);
+  }
+}
+
+TEST(ToolGeometry, GraspersOwnLinkIsAFrameUnlessItHasShapes) {
+  ToolConfig grasper = toolOn("tip");
+  grasper.role = ToolConfig::Role::kGrasper;
+  grasper.links = {{"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}};
+  LoadedTools loaded = loadTools(kRobot, {grasper});
+  EXPECT_TRUE(loaded.warnings.empty());
+  EXPECT_EQ(loaded.tools[0].links[0].link, "tip");
+  EXPECT_TRUE(loaded.tools[0].links[0].shapes.empty());
+  EXPECT_FALSE(loaded.tools[0].links[1].shapes.empty());
+
+  grasper.links[0].link = "";
+  loaded = loadTools(kRobot, {grasper});
+  EXPECT_TRUE(loaded.warnings.empty());
+  EXPECT_EQ(loaded.tools[0].links.size(), 3U);
+
+  grasper.links[0].link = "hand";
+  EXPECT_THROW(loadTools(kRobot, {grasper}), InputError);
+
+  grasper.links[0] = {"tip", 0.0, {}, {ToolShape{}}};
+  EXPECT_EQ(loadTools(kRobot, {grasper}).tools[0].links[0].shapes.size(), 1U);
+}
+
+TEST(ToolGeometry, WithoutUrdfToolsWithoutShapesAreWarnedOf) {
+  ToolConfig bare = toolOn("");
+  ToolConfig shaped = toolOn("");
+  shaped.links[0].shapes = {sphere(0.01)};
+  const LoadedTools loaded = toolsOf({shaped, bare});
+  ASSERT_EQ(loaded.tools.size(), 2U);
+  ASSERT_EQ(loaded.warnings.size(), 1U);
+  EXPECT_NE(loaded.warnings[0].find("tools[1].links[0].shapes"), std::string::npos);
+}
+
+TEST(ToolGeometry, ToolWithoutLinksIsRefused) {
+  ToolConfig config;
+  EXPECT_NE(inputErrorOf([&] { toolsOf({config}); }).find("tools[0].links"), std::string::npos);
+  EXPECT_NE(inputErrorOf([&] { loadTools(kRobot, {config}); }).find("tools[0].links"),
+            std::string::npos);
+}
 
 }  // namespace
 }  // namespace robot_tissue

@@ -1,6 +1,8 @@
 // Potential, unbalanced forces and second derivative of a loaded shape agree by differences.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "elastic_fixtures.h"
 #include "robot_tissue/core/equilibrium.h"
 #include "robot_tissue/core/patch_rim.h"
@@ -10,15 +12,24 @@ namespace {
 
 constexpr double kSpacing = 0.01;
 
+struct Loads {
+  std::string name;
+  bool turns = false;
+  bool contacts = false;          // springs in contact beside the patch
+  bool contact_on_patch = false;  // one of them on a node that is hard in it
+};
+
 // A shaken block with a patch of 3 x 3 nodes on top that was pushed and turned.
-class ShakenBlock : public ::testing::TestWithParam<bool> {
+class ShakenBlock : public ::testing::TestWithParam<Loads> {
  protected:
   ShakenBlock()
       : lattice_(withFixedBottom(elasticBlockOf(4, 4, 2, 0.4))), model_(lattice_, config()) {
     shape_.state = lattice_.restState();
     LoadingPatch patch = forced(lattice_.nodesIn(box()), Vec3(0.01, -0.02, -0.1));
-    patch.turns = GetParam();
-    patch.rim = rimOf(lattice_, model_, shape_.state, box(), patch.nodes);
+    patch.turns = GetParam().turns;
+    if (!GetParam().contact_on_patch) {  // or only its middle node is hard
+      patch.rim = rimOf(lattice_, model_, shape_.state, box(), patch.nodes);
+    }
     for (const int node : patch.nodes) patch.center += lattice_.restPosition(node) / 9.0;
     shape_.patches.push_back(patch);
     const Unknowns unknowns(lattice_, model_, shape_);
@@ -27,7 +38,42 @@ class ShakenBlock : public ::testing::TestWithParam<bool> {
         shape_.state.displacement[at(node)] = shaker_.displacement(0.1 * kSpacing);
     }
     movePatch(lattice_, shape_.patches.front(), Vec3(0.1, 0.2, -0.3) * kSpacing,
-              GetParam() ? Vec3(0.2, -0.1, 0.3) : Vec3(0.0, 0.0, 0.0), shape_.state);
+              GetParam().turns ? Vec3(0.2, -0.1, 0.3) : Vec3(0.0, 0.0, 0.0), shape_.state);
+    if (GetParam().contacts) touch();
+  }
+
+  // Springs at points of the side x = 0, with one fixed carrier each: stuck, sliding and open.
+  void touch() {
+    LoadingPatch tool;
+    tool.name = "tool";
+    for (int j = 0; j < 4; ++j) {
+      tool.contacts.push_back(springAt({{lattice_.node(0, j, 0), 0.2},
+                                        {lattice_.node(0, j, 1), 0.3},
+                                        {lattice_.node(0, j + 1, 2), 0.5}},
+                                       j == 3 ? 2e-3 : -1e-3));
+      tool.contacts.back().most_drag = 0.1 * j;
+      tool.contacts.back().multiplier = 0.01 * j;
+    }
+    if (GetParam().contact_on_patch) {
+      tool.contacts.push_back(
+          springAt({{lattice_.node(3, 1, 2), 0.6}, {lattice_.node(3, 0, 2), 0.4}}, -4e-3));
+    }
+    shape_.patches.push_back(tool);
+  }
+
+  ContactSpring springAt(const std::vector<NodeWeight>& carriers, double gap) const {
+    ContactSpring spring;
+    spring.carriers = carriers;
+    for (const NodeWeight& carrier : carriers) {
+      spring.rest += carrier.weight * lattice_.restPosition(carrier.node);
+    }
+    spring.normal = Vec3(0.8, 0.36, -0.48);
+    const Vec3 point = pointOf(spring, shape_.state.displacement);
+    spring.foot = point - gap * spring.normal;
+    spring.stiffness = 200.0;
+    spring.drag_stiffness = 100.0;
+    spring.anchor = point + Vec3(-1e-3, 1e-3, 1e-3);
+    return spring;
   }
 
   static TissueConfig config() { return withFixedBottom(elasticBlockOf(4, 4, 2, 0.4)); }
@@ -82,7 +128,13 @@ TEST_P(ShakenBlock, MatrixIsTheUnbalancedForcesSlope) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Patch, ShakenBlock, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Patch, ShakenBlock,
+                         ::testing::Values(Loads{"Straight"}, Loads{"Turning", true},
+                                           Loads{"StraightWithContacts", false, true},
+                                           Loads{"TurningWithContacts", true, true},
+                                           Loads{"StraightInContact", false, true, true},
+                                           Loads{"TurningInContact", true, true, true}),
+                         [](const auto& row) { return row.param.name; });
 
 }  // namespace
 }  // namespace robot_tissue

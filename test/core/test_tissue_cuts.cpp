@@ -113,7 +113,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   ASSERT_GT(tissue_.cut(upright(1.5, 0.5)).springs_cut, 0);
   ToolPatches patches(tissue_.lattice(), {"probe"});
   RobotPose pose;
-  pose.tools = {Pose::Identity()};
+  pose.links = {Pose::Identity()};
   const Surface& surface = tissue_.surface();
   const int beside = tissue_.lattice().node(1, 1, 3);
   const auto isAtEdge = [&](int vertex) {
@@ -142,17 +142,17 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   ASSERT_EQ(held.size(), 2u);
   EXPECT_EQ(held[0], beside);
   EXPECT_TRUE(tissue_.state().cells->isGhost(held[1]));
-  const SolveReport report = tissue_.follow(patches.loadingPatches(), {});
+  const SolveReport report = tissue_.follow({patches.loadingPatch(0)}, {});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_LT(report.patches[0].force.z(), -1e-3);
   EXPECT_NEAR(tissue_.vertices()[at(edge)].z(), contact.point.z() - 1e-3, 1e-6);
 
   // The tool goes on, another cut is made, a load put on: the ghost rides along.
-  pose.tools[0].translation().z() = -1e-3;
+  pose.links[0].translation().z() = -1e-3;
   ASSERT_GT(tissue_.cut(level(1.5)).springs_cut, 0);
   patches.ride(pose, tissue_);
   EXPECT_EQ(patches.nodes(0), held);
-  EXPECT_EQ(tissue_.follow(patches.loadingPatches(), {}).status, SolveStatus::kOk);
+  EXPECT_EQ(tissue_.follow({patches.loadingPatch(0)}, {}).status, SolveStatus::kOk);
   for (const int node : held) {
     EXPECT_LT(tissue_.state().displacement[at(node)].z(), -1.9e-3);
     EXPECT_NEAR(tissue_.nodePosition(node).z(),

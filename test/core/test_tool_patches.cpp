@@ -24,7 +24,7 @@ class ToolPatchesTest : public ::testing::Test {
  protected:
   ToolPatchesTest()
       : tissue_(kBlock, paperSolver()), patches_(tissue_.lattice(), {"probe", "jaw"}) {
-    pose_.tools = {poseAt(Vec3(0.03, 0.03, 0.05)), poseAt(Vec3(0.0, 0.1, 0.05), 0.4)};
+    pose_.links = {poseAt(Vec3(0.03, 0.03, 0.05)), poseAt(Vec3(0.0, 0.1, 0.05), 0.4)};
   }
 
   int node(int i, int j, int k) const { return tissue_.lattice().node(i, j, k); }
@@ -47,7 +47,7 @@ class ToolPatchesTest : public ::testing::Test {
   Contact contact(int triangle, const Vec3& barycentric, double depth, const Vec3& normal = kInto,
                   int tool = 0) const {
     Contact made;
-    made.tool = tool;
+    made.tool = made.link = tool;
     made.triangle = triangle;
     made.barycentric = barycentric;
     made.normal = normal;
@@ -93,7 +93,18 @@ class ToolPatchesTest : public ::testing::Test {
     patches_.pushOut(set, tissue_.surface(), pose_);
   }
 
-  SolveReport follow() { return tissue_.follow(patches_.loadingPatches(), patches_.left()); }
+  std::vector<LoadingPatch> loadingPatches() const {
+    std::vector<LoadingPatch> patches;
+    for (int tool = 0; tool < 2; ++tool) {
+      if (patches_.holds(tool)) patches.push_back(patches_.loadingPatch(tool));
+    }
+    return patches;
+  }
+
+  SolveReport follow() { return tissue_.follow(loadingPatches(), patches_.left()); }
+
+  // The jaw, tool and link 1, holds nodes from where they are.
+  void grasp(const std::vector<int>& nodes) { patches_.hold(1, 1, pose_.links[1], nodes, tissue_); }
 
   Tissue tissue_;
   ToolPatches patches_;
@@ -103,9 +114,10 @@ class ToolPatchesTest : public ::testing::Test {
 TEST_F(ToolPatchesTest, WithoutContactThereIsNoPatch) {
   push({});
   EXPECT_TRUE(patches_.empty());
-  EXPECT_TRUE(patches_.loadingPatches().empty());
+  EXPECT_FALSE(patches_.holds(0));
+  EXPECT_TRUE(patches_.loadingPatch(0).nodes.empty());
   EXPECT_TRUE(patches_.nodes(0).empty());
-  EXPECT_TRUE(patches_.normal(0, pose_.tools[0]).isZero());
+  EXPECT_TRUE(patches_.pushed(0, pose_).isZero());
   EXPECT_EQ(patches_.displacement(), tissue_.state().displacement);
 }
 
@@ -116,14 +128,14 @@ TEST_F(ToolPatchesTest, ContactAtAVertexIsPushedOutByItsDepth) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{middle}));
   EXPECT_TRUE(patches_.nodes(1).empty());
   EXPECT_LT((patches_.displacement()[at(middle)] - 1e-3 * normal).norm(), 1e-15);
-  EXPECT_LT((patches_.normal(0, pose_.tools[0]) - normal).norm(), 1e-12);
-  const auto loads = patches_.loadingPatches();
-  ASSERT_EQ(loads.size(), 1u);
-  EXPECT_EQ(loads[0].name, "probe");
-  EXPECT_EQ(loads[0].drive, LoadingPatch::Drive::kDisplacement);
-  EXPECT_EQ(loads[0].nodes, (std::vector<int>{middle}));
-  ASSERT_EQ(loads[0].displacement.size(), 1u);
-  EXPECT_EQ(loads[0].displacement[0], patches_.displacement()[at(middle)]);
+  EXPECT_LT((patches_.pushed(0, pose_) - 1e-3 * normal).norm(), 1e-15);
+  const LoadingPatch load = patches_.loadingPatch(0);
+  EXPECT_EQ(load.name, "probe");
+  EXPECT_EQ(load.drive, LoadingPatch::Drive::kDisplacement);
+  EXPECT_EQ(load.nodes, (std::vector<int>{middle}));
+  ASSERT_EQ(load.displacement.size(), 1u);
+  EXPECT_EQ(load.displacement[0], patches_.displacement()[at(middle)]);
+  EXPECT_FALSE(patches_.holds(1));
 }
 
 TEST_F(ToolPatchesTest, ContactInsideATriangleIsPushedOutByItsDepth) {
@@ -198,9 +210,9 @@ TEST_F(ToolPatchesTest, NodesRideRigidlyWithTheirTool) {
   for (const int each : held) hits.push_back(atNode(each, 1e-3));
   push(hits);
   follow();
-  const Pose before = pose_.tools[0];
+  const Pose before = pose_.links[0];
   const Pose motion = poseAt(Vec3(2e-3, -1e-3, -3e-3), 0.3, Vec3(0.2, 0.1, 1.0));
-  pose_.tools[0] = motion * before;
+  pose_.links[0] = motion * before;
   patches_.ride(pose_, tissue_);
   ASSERT_EQ(patches_.nodes(0), held);
   for (const int each : held) {
@@ -208,7 +220,8 @@ TEST_F(ToolPatchesTest, NodesRideRigidlyWithTheirTool) {
     const Vec3 moved = motion * Vec3(rest + 1e-3 * kInto);
     EXPECT_LT((rest + patches_.displacement()[at(each)] - moved).norm(), 1e-14);
   }
-  EXPECT_LT((patches_.normal(0, pose_.tools[0]) - motion.linear() * kInto).norm(), 1e-12);
+  const Vec3 way_out = motion.linear() * (3e-3 * kInto);  // the sum over its nodes
+  EXPECT_LT((patches_.pushed(0, pose_) - way_out).norm(), 1e-15);
 }
 
 TEST_F(ToolPatchesTest, RidingOfOneToolLeavesTheOther) {
@@ -216,14 +229,12 @@ TEST_F(ToolPatchesTest, RidingOfOneToolLeavesTheOther) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(2, 2, 3)}));
   EXPECT_EQ(patches_.nodes(1), (std::vector<int>{node(5, 5, 3)}));
   follow();
-  pose_.tools[0].translation() += Vec3(0.0, 0.0, -1e-3);
+  pose_.links[0].translation() += Vec3(0.0, 0.0, -1e-3);
   patches_.ride(pose_, tissue_);
   EXPECT_NEAR(patches_.displacement()[at(node(2, 2, 3))].z(), -2e-3, 1e-14);
   EXPECT_NEAR(patches_.displacement()[at(node(5, 5, 3))].z(), -5e-4, 1e-14);
-  const auto loads = patches_.loadingPatches();
-  ASSERT_EQ(loads.size(), 2u);
-  EXPECT_EQ(loads[0].name, "probe");
-  EXPECT_EQ(loads[1].name, "jaw");
+  EXPECT_EQ(patches_.loadingPatch(0).name, "probe");
+  EXPECT_EQ(patches_.loadingPatch(1).name, "jaw");
 }
 
 TEST_F(ToolPatchesTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
@@ -231,7 +242,7 @@ TEST_F(ToolPatchesTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
   push({atNode(middle, 1e-3)});
   follow();
   ASSERT_GT(tissue_.nodeForce(middle).z(), 0.0);  // the tissue pushes back
-  pose_.tools[0].translation().z() += 1.5e-3;     // 0.5 mm above rest
+  pose_.links[0].translation().z() += 1.5e-3;     // 0.5 mm above rest
   patches_.ride(pose_, tissue_);
   EXPECT_TRUE(patches_.empty());
   EXPECT_EQ(patches_.left(), (std::vector<int>{middle}));
@@ -247,7 +258,7 @@ TEST_F(ToolPatchesTest, NodePulledAwayOnTheNearSideOfItsRestPlaceIsLetGo) {
   const int middle = node(3, 3, 3);
   push({atNode(middle, 1e-3, Vec3(0.8, 0.0, -0.6))});
   follow();
-  pose_.tools[0].translation().x() -= 2.0e-3;
+  pose_.links[0].translation().x() -= 2.0e-3;
   patches_.ride(pose_, tissue_);
   ASSERT_EQ(patches_.nodes(0), (std::vector<int>{middle}));  // still pushed against the tool
   follow();
@@ -264,7 +275,7 @@ TEST_F(ToolPatchesTest, NodeHeldBelowItsRestPlaceStays) {
   const int middle = node(3, 3, 3);
   push({atNode(middle, 1e-3)});
   follow();
-  pose_.tools[0].translation() += Vec3(1e-3, 0.0, 0.5e-3);
+  pose_.links[0].translation() += Vec3(1e-3, 0.0, 0.5e-3);
   for (int i = 0; i < 3; ++i) {
     patches_.ride(pose_, tissue_);
     follow();
@@ -279,7 +290,109 @@ TEST_F(ToolPatchesTest, ClearLetsEveryNodeGo) {
   ASSERT_FALSE(patches_.empty());
   patches_.clear();
   EXPECT_TRUE(patches_.empty());
-  EXPECT_TRUE(patches_.loadingPatches().empty());
+  EXPECT_TRUE(loadingPatches().empty());
+}
+
+TEST_F(ToolPatchesTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
+  const std::vector<int> grasped = {node(3, 3, 3), node(4, 3, 3), node(3, 3, 2)};
+  push({atNode(grasped.front(), 1e-3)});
+  follow();
+  patches_.clear();  // the probe hands over what it pressed
+  std::vector<Vec3> places;
+  for (const int each : grasped) places.push_back(tissue_.nodePosition(each));
+  grasp(grasped);
+  EXPECT_TRUE(patches_.holds(1));
+  EXPECT_FALSE(patches_.holds(0));
+  const Pose motion = poseAt(Vec3(2e-3, -1e-3, 3e-3), 0.2, Vec3(0.2, 0.1, 1.0));
+  pose_.links[1] = motion * pose_.links[1];
+  patches_.ride(pose_, tissue_);
+  const LoadingPatch jaw = patches_.loadingPatch(1);
+  ASSERT_EQ(jaw.nodes.size(), grasped.size());
+  for (std::size_t i = 0; i < grasped.size(); ++i) {
+    const Vec3 now =
+        tissue_.lattice().restPosition(grasped[i]) + patches_.displacement()[at(grasped[i])];
+    EXPECT_LT((now - motion * places[i]).norm(), 1e-14);
+  }
+  EXPECT_TRUE(patches_.pushed(1, pose_).isZero());  // it was not pushed out of the jaw
+}
+
+TEST_F(ToolPatchesTest, GraspedNodesStayAlsoWhereTheTissuePullsThemOff) {
+  const std::vector<int> grasped = {node(3, 3, 3), node(4, 3, 3)};
+  patches_.ride(pose_, tissue_);
+  grasp(grasped);
+  for (int step = 1; step <= 3; ++step) {
+    pose_.links[1].translation() += Vec3(0.0, 0.0, 1e-3);  // above its rest place
+    patches_.ride(pose_, tissue_);
+    patches_.keepTouching({}, tissue_);  // nothing touches it
+    ASSERT_EQ(patches_.nodes(1), grasped);
+    EXPECT_TRUE(patches_.left().empty());
+    follow();
+    EXPECT_LT(tissue_.nodeForce(grasped[0]).z(), 0.0);
+    EXPECT_NEAR(tissue_.state().displacement[at(grasped[1])].z(), 1e-3 * step, 1e-14);
+  }
+}
+
+TEST_F(ToolPatchesTest, LetGoLeavesOtherToolsNodes) {
+  push({atNode(node(2, 2, 3), 1e-3)});
+  grasp({node(5, 5, 3)});
+  patches_.letGo(1);
+  EXPECT_FALSE(patches_.holds(1));
+  EXPECT_TRUE(patches_.nodes(1).empty());
+  EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(2, 2, 3)}));
+}
+
+TEST_F(ToolPatchesTest, TissueThatIsLetGoComesToRest) {
+  patches_.ride(pose_, tissue_);
+  grasp({node(3, 3, 3), node(4, 3, 3)});
+  pose_.links[1].translation() += Vec3(1e-3, 0.0, 1e-3);
+  patches_.ride(pose_, tissue_);
+  follow();
+  ASSERT_TRUE(isDeformed(tissue_));
+  patches_.letGo(1);
+  patches_.ride(pose_, tissue_);
+  follow();
+  expectAtRest(tissue_);
+}
+
+TEST_F(ToolPatchesTest, FixedLoadedAndSeatedNodesAreNotGrasped) {
+  const Box box = nodeBox(kBlock, {1, 1, 3}, {2, 2, 3});
+  tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
+  push({atNode(node(4, 4, 3), 1e-3)});
+  grasp({node(3, 3, 0), node(1, 1, 3), node(4, 4, 3), node(5, 5, 3)});
+  EXPECT_EQ(patches_.nodes(1), (std::vector<int>{node(5, 5, 3)}));
+  EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(4, 4, 3)}));
+}
+
+TEST_F(ToolPatchesTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
+  tissue_.load(
+      loadOf({displacedPatch("way", nodeBox(kBlock, {1, 1, 3}, {1, 2, 3}), Vec3(0.0, 0.0, -5e-4)),
+              forcedPatch("force", nodeBox(kBlock, {5, 1, 3}, {5, 2, 3}), Vec3(0.0, 0.0, -1e-3))}));
+  push({atNode(node(3, 3, 3), 1e-3)});
+  grasp({node(5, 5, 3)});
+  const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
+  ASSERT_EQ(held.size(), at(tissue_.lattice().nodeCount()));
+  for (int each = 0; each < tissue_.lattice().nodeCount(); ++each) {
+    const bool loaded = each == node(1, 1, 3) || each == node(1, 2, 3);
+    const bool of_tool = each == node(3, 3, 3) || each == node(5, 5, 3);
+    EXPECT_EQ(held[at(each)] != 0, tissue_.lattice().isFixed(each) || loaded || of_tool)
+        << "node " << each;
+  }
+  EXPECT_EQ(held[at(node(5, 5, 3))], ToolPatches::kGrasped);
+  EXPECT_NE(held[at(node(3, 3, 3))], ToolPatches::kGrasped);
+}
+
+// A gripper with two jaws: each node goes with the link that holds it.
+TEST_F(ToolPatchesTest, NodesOfOneToolRideOnDifferentLinks) {
+  ToolPatches gripper(tissue_.lattice(), {"gripper"});
+  gripper.ride(pose_, tissue_);
+  gripper.hold(0, 0, pose_.links[0], {node(2, 3, 3)}, tissue_);
+  gripper.hold(0, 1, pose_.links[1], {node(4, 3, 3)}, tissue_);
+  pose_.links[0].translation() += Vec3(1e-3, 0.0, 0.0);
+  pose_.links[1].translation() += Vec3(-1e-3, 0.0, 0.0);
+  gripper.ride(pose_, tissue_);
+  EXPECT_EQ(gripper.nodes(0).size(), 2u);
+  EXPECT_NEAR(gripper.displacement()[at(node(2, 3, 3))].x(), 1e-3, 1e-14);
+  EXPECT_NEAR(gripper.displacement()[at(node(4, 3, 3))].x(), -1e-3, 1e-14);
 }
 
 }  // namespace

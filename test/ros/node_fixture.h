@@ -1,5 +1,6 @@
-// A tissue node under a real master, with this test as its robot: it publishes the transform of the
-// tool and listens to all that the node says. Waiting is always for a condition, with a deadline.
+// A tissue node under a real master, with this test as its robot: it publishes the transforms of
+// the tools and listens to all that the node says. Waiting is always for a condition, with a
+// deadline.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -9,6 +10,7 @@
 #include <robot_tissue/ContactArray.h>
 #include <robot_tissue/Cut.h>
 #include <robot_tissue/TissueState.h>
+#include <robot_tissue/Tool.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/static_transform_broadcaster.h>
@@ -31,13 +33,19 @@ class NodeTest : public ::testing::Test {
  protected:
   using Points = std::vector<geometry_msgs::Point>;
 
-  NodeTest() {
-    subscribe<TissueState>("state", state_);
-    subscribe<geometry_msgs::WrenchStamped>("probe/measured_cf", wrench_);
+  explicit NodeTest(const std::string& tool = "probe") {
+    subscribers_.push_back(node_.subscribe<TissueState>("/tissue/state", 100,
+                                                        [this](const TissueStateConstPtr& state) {
+                                                          state_ = state;
+                                                          said_[state->status] = state->message;
+                                                        }));
+    subscribe<geometry_msgs::WrenchStamped>(tool + "/measured_cf", wrench_);
     subscribe<ContactArray>("contacts", contacts_);
     subscribers_.push_back(node_.subscribe<visualization_msgs::MarkerArray>(
         "/tissue/markers", 10, [this](const visualization_msgs::MarkerArrayConstPtr& array) {
-          for (const auto& marker : array->markers) markers_[marker.ns] = marker;
+          for (const auto& marker : array->markers) {
+            markers_[marker.id == 0 ? marker.ns : marker.ns + std::to_string(marker.id)] = marker;
+          }
         }));
     subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
         "/diagnostics", 10, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& array) {
@@ -52,11 +60,11 @@ class NodeTest : public ::testing::Test {
         [&latest](const boost::shared_ptr<const Message>& message) { latest = message; }));
   }
 
-  // Spins, with the tool where it is, until the condition holds; false after the deadline.
+  // Spins, with the tools where they are, until the condition holds; false after the deadline.
   bool waitFor(const std::function<bool()>& condition, double deadline = kDeadline) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(deadline);
     while (ros::WallTime::now() < end) {
-      if (publishes_transform_) sendTransform();
+      if (publishes_transform_) broadcaster_.sendTransform(transforms());
       ros::spinOnce();
       if (condition()) return true;
       ros::WallDuration(0.002).sleep();
@@ -64,28 +72,46 @@ class NodeTest : public ::testing::Test {
     return false;
   }
 
-  // The base stands 1 m beside the tissue; the probe's frame is turned upside down, its z down.
-  void sendTransform() {
-    geometry_msgs::TransformStamped tissue, tool;
-    tissue.header.stamp = tool.header.stamp = ros::Time::now();
-    tissue.header.frame_id = tool.header.frame_id = "base";
-    tissue.child_frame_id = "tissue";
-    tissue.transform.translation.x = 1.0;
-    tissue.transform.rotation.w = 1.0;
-    tool.child_frame_id = "probe";
-    tool.transform.translation.x = 1.05;
-    tool.transform.translation.y = 0.05;
-    tool.transform.translation.z = kTop + kRadius - depth_;
-    tool.transform.rotation.x = 1.0;
-    broadcaster_.sendTransform(std::vector<geometry_msgs::TransformStamped>{tissue, tool});
+  geometry_msgs::TransformStamped transform(const std::string& child, double x, double y,
+                                            double z) const {
+    geometry_msgs::TransformStamped transform;
+    transform.header.stamp = ros::Time::now();
+    transform.header.frame_id = "base";
+    transform.child_frame_id = child;
+    transform.transform.translation.x = x;
+    transform.transform.translation.y = y;
+    transform.transform.translation.z = z;
+    transform.transform.rotation.w = 1.0;
+    return transform;
   }
 
-  // Moves the probe to a depth, waits until the node has seen it there, and returns the wrench.
+  // The base stands 1 m beside the tissue; the probe's frame is turned upside down, its z down.
+  virtual std::vector<geometry_msgs::TransformStamped> transforms() const {
+    auto probe = transform("probe", 1.05, 0.05, kTop + kRadius - depth_);
+    probe.transform.rotation.x = 1.0;
+    probe.transform.rotation.w = 0.0;
+    return {transform("tissue", 1.0, 0.0, 0.0), probe};
+  }
+
+  // Waits until the node has followed the tools to where they are now, and returns the wrench. On
+  // the way there the wrench differs from update to update.
+  geometry_msgs::WrenchStamped follow() {
+    const ros::Time moved = ros::Time::now();
+    boost::shared_ptr<const geometry_msgs::WrenchStamped> before;
+    EXPECT_TRUE(waitFor([&] {
+      if (!wrench_ || wrench_->header.stamp <= moved) return false;
+      if (before && wrench_->header.stamp == before->header.stamp) return false;
+      const bool stands = before && wrench_->wrench == before->wrench;
+      before = wrench_;
+      return stands && state_ && state_->status != "TOO_FAST";
+    }));
+    return wrench_ ? *wrench_ : geometry_msgs::WrenchStamped();
+  }
+
+  // Moves the probe to a depth and waits until the node has followed it there.
   geometry_msgs::WrenchStamped press(double depth) {
     depth_ = depth;
-    const ros::Time moved = ros::Time::now();
-    EXPECT_TRUE(waitFor([&] { return wrench_ && wrench_->header.stamp > moved; }));
-    return wrench_ ? *wrench_ : geometry_msgs::WrenchStamped();
+    return follow();
   }
 
   bool waitForMarkers(const std::function<bool()>& condition) {
@@ -116,6 +142,22 @@ class NodeTest : public ::testing::Test {
     return call.response;
   }
 
+  static ApplyLoad::Response applyLoad(const ApplyLoad::Request& request) {
+    ApplyLoad call;
+    call.request = request;
+    EXPECT_TRUE(ros::service::call("/tissue/apply_load", call));
+    return call.response;
+  }
+
+  // Of a tool: ~grasp and ~release.
+  static Tool::Response ask(const std::string& service, const std::string& tool) {
+    Tool call;
+    call.request.tool = tool;
+    EXPECT_TRUE(ros::service::call("/tissue/" + service, call));
+    EXPECT_EQ(call.response.message.find('\n'), std::string::npos);
+    return call.response;
+  }
+
   bool reset() {
     std_srvs::Trigger call;
     return ros::service::call("/tissue/reset", call) && call.response.success;
@@ -127,9 +169,10 @@ class NodeTest : public ::testing::Test {
   bool publishes_transform_ = true;
   double depth_ = -0.01;
   boost::shared_ptr<const TissueState> state_;
+  std::map<std::string, std::string> said_;  // status and its last message, of all states so far
   boost::shared_ptr<const geometry_msgs::WrenchStamped> wrench_;
   boost::shared_ptr<const ContactArray> contacts_;
-  std::map<std::string, visualization_msgs::Marker> markers_;
+  std::map<std::string, visualization_msgs::Marker> markers_;  // by namespace, with ids above 0
   std::map<std::string, diagnostic_msgs::DiagnosticStatus> diagnostics_;
 };
 

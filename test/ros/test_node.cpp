@@ -17,24 +17,36 @@ class RunningNode : public NodeTest {
     ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
   }
 
-  ApplyLoad::Response load(const std::string& name, double low, double high, double down) {
-    ApplyLoad call;
-    call.request.name = name;
-    call.request.min.x = call.request.min.y = low;
-    call.request.max.x = call.request.max.y = high;
-    call.request.min.z = call.request.max.z = kTop;
-    geometry_msgs::Vector3 displacement;
-    displacement.z = -down;
-    call.request.displacement.push_back(displacement);
-    EXPECT_TRUE(ros::service::call("/tissue/apply_load", call));
-    return call.response;
+  // The surface is not in the probe, which its flat triangles touch no farther than a spacing from
+  // their corners.
+  void expectPressed(double depth) {
+    constexpr double kOff = 0.005 * 0.005 / (2.0 * kRadius);  // of such a corner (m)
+    EXPECT_LT(lowestOfTop(), kTop - depth + 1e-4);
+    EXPECT_GT(lowestOfTop(), kTop - depth - kOff);
+  }
+
+  static ApplyLoad::Response load(const std::string& name, double low, double high, double down) {
+    ApplyLoad::Request request;
+    request.name = name;
+    request.min.x = request.min.y = low;
+    request.max.x = request.max.y = high;
+    request.min.z = request.max.z = kTop;
+    request.displacement.emplace_back();
+    request.displacement.front().z = -down;
+    return applyLoad(request);
+  }
+
+  static ApplyLoad::Response release(const std::string& name) {
+    ApplyLoad::Request request;
+    request.name = name;
+    return applyLoad(request);
   }
 };
 
 TEST_F(RunningNode, MovingLinkDeformsTheMarkers) {
   press(0.005);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0045; }));
-  EXPECT_NEAR(lowestOfTop(), kTop - 0.005, 0.0005);  // a tenth of the spacing
+  expectPressed(0.005);
   EXPECT_FALSE(markers_["loading_patches"].points.empty());
   EXPECT_EQ(markers_["contact_forces"].action, visualization_msgs::Marker::ADD);
   press(-0.01);
@@ -116,10 +128,8 @@ TEST_F(RunningNode, LoadStandsUntilItIsReleased) {
   EXPECT_LT(loaded.force.z, -0.1);
   EXPECT_DOUBLE_EQ(loaded.displacement.z, -0.003);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0025; }));
-  ApplyLoad release;
-  release.request.name = "punch";
-  ASSERT_TRUE(ros::service::call("/tissue/apply_load", release));
-  EXPECT_TRUE(release.response.success) << release.response.message;
+  const auto released = release("punch");
+  EXPECT_TRUE(released.success) << released.message;
   EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
 }
 
@@ -135,10 +145,7 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
     EXPECT_FALSE(refused.message.empty());
     EXPECT_EQ(refused.message.find('\n'), std::string::npos);
   }
-  ApplyLoad unknown;
-  unknown.request.name = "unknown";
-  ASSERT_TRUE(ros::service::call("/tissue/apply_load", unknown));
-  EXPECT_FALSE(unknown.response.success);
+  EXPECT_FALSE(release("unknown").success);
   ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
   ASSERT_TRUE(waitForMarkers([] { return true; }));
   EXPECT_TRUE(markers_["surface"].points == shape);
@@ -150,7 +157,7 @@ TEST_F(RunningNode, OldTransformsAreReportedAndTheShapeStays) {
   publishes_transform_ = false;
   ASSERT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
   EXPECT_FALSE(state_->message.empty());
-  EXPECT_NEAR(lowestOfTop(), kTop - 0.004, 0.0005);
+  expectPressed(0.004);
   publishes_transform_ = true;
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
 }

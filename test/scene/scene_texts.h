@@ -54,6 +54,41 @@ tools:
   - {link: other_tip}
 )";
 
+// Accepted by the runner: tools with and without links, supports, and every step that a tool takes.
+inline const std::string kToolScene = R"(tissue:
+  shape: {type: box, min: [0.0, 0.0, 0.0], max: [0.1, 0.1, 0.05]}
+  spacing: 0.01
+  material: {young_modulus: 10000.0}
+tools:
+  - name: probe
+    friction: 0.4
+    max_force: 5.0
+    shapes:
+      - {type: sphere, radius: 0.01, padding: 0.0005}
+  - name: fork
+    patch: rigid
+    links:
+      - {padding: 0.001, shapes: [{type: sphere, radius: 0.002, xyz: [0.01, 0.0, 0.0]}]}
+      - {shapes: [{type: sphere, radius: 0.003}]}
+  - name: forceps
+    role: grasper
+    jaws: [{shapes: [{type: box, size: [0.01, 0.002, 0.02]}]}, {shapes: [{type: sphere, radius: 0.004}]}]
+    grasp: {close_gap: 0.004, open_gap: 0.009, max_force: 2.0, opening_axis: [0.0, 0.0, -3.0]}
+  - links: [wrist, {link: tip, padding: 0.002, collision_padding: {fin: 0.003, rib-1: 0.0}}]
+  - {link: gripper, role: grasper, jaws: [left_jaw, {link: right_jaw, shapes: [{type: sphere, radius: 0.003}]}]}
+supports:
+  - {name: table, type: plane, point: [0.05, 0.04, -0.01], normal: [0.0, 0.0, 2.0], friction: 0.5}
+  - {type: box, min: [0.1, 0.0, 0.0], max: [0.12, 0.1, 0.06]}
+steps:
+  - move: {tool: probe, from: {xyz: [0.05, 0.05, 0.07], rpy: [0.0, 0.0, 1.5707963267948966]}, to: {xyz: [0.05, 0.05, 0.055]}, increments: 20}
+  - push: {tool: probe, force: [0.0, 0.5, -1.0], increments: 4}
+  - move: {tool: forceps, from: {xyz: [0.02, 0.02, 0.08], opening: 0.01}, to: {xyz: [0.02, 0.02, 0.05]}}
+  - grasp: {tool: forceps}
+  - move: {tool: forceps, to: {xyz: [0.02, 0.02, 0.06], opening: 0.002}}
+  - release: {tools: [forceps, probe]}
+  - reset: {}
+)";
+
 // One place of a scene changed; an empty text when the place is not there.
 inline std::string replaced(std::string scene, const std::string& from, const std::string& to) {
   const std::size_t at = scene.find(from);

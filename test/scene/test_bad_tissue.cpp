@@ -99,7 +99,7 @@ const std::vector<BadScene> kBadTissues = {
     {"GravityFloating",
      "  fixed:\n    - {min: [-1.0, -1.0, -1.0e-6], max: [1.0, 1.0, 1.0e-6]}\n",
      "",
-     {"tissue.gravity = [0.0, 0.0, -9.81]", "must be zero unless tissue.fixed"}},
+     {"tissue.gravity = [0.0, 0.0, -9.81]", "must be zero unless tissue.fixed", "supports"}},
     {"GravityNumber", "[0.0, 0.0, -9.81]", "-9.81", {"tissue.gravity = -9.81", "m/s^2"}},
     {"GravityInf", "-9.81", "-.inf", {"tissue.gravity[2] = -.inf", "a finite number"}},
     {"FixedIsMap",
@@ -217,10 +217,6 @@ const std::vector<BadScene> kBadSolvers = {
      "solver: {method: paper, tolerance: 0.02, max_ms: 8, threads: 1}",
      "solver:",
      {"solver = (nothing)", "must be a map"}},
-    {"RunnerWithTools",
-     "tools: []",
-     "tools: [{link: tip}]",
-     {"tools = [{link: tip}]", "not available yet in the offline runner", "must be []"}},
     {"ToolsAreMap", "tools: []", "tools: {}", {"tools = {}", "must be a list"}},
 };
 

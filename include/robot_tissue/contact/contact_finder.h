@@ -1,16 +1,15 @@
-// Finds the points of the deformed surface that are inside a tool.
+// Finds where the tools touch the deformed surface.
 // In: tool poses (tissue frame), deformed surface vertices (m, tissue frame).
-// Out: contacts with depth > -touch_margin; normal from the tool into the tissue. In order of
-// tools, then of triangles; a point in several shapes of a tool is one contact, with the deepest of
-// them. FCL objects are built once, in the constructor. A mesh touches with its convex hull.
-// Sampled: vertices; points on triangles, at most half of the thinnest shape apart and, for a tool
-// with edges, a quarter of a triangle's edge (down to an eighth of it); and the points of the
-// triangles nearest to the shapes' centers.
-// Does not find a tool that lies wholly beneath the surface. A tool whose pose is not finite and
-// rigid touches nothing.
+// Shapes and their trees are built once, in the constructor; meshes touch as they are, concave
+// parts too. Depths are signed distances by closed formulas and, of a mesh, to its nearest triangle
+// (own); the deepest point of a triangle by cutting planes (Kelley 1960), to 0.5 % of its longest
+// edge or 2 % of the shape's thickness, whichever is less, 1e-5 m at least; of a mesh that is not
+// convex, a local one. A link whose pose is not finite and rigid touches nothing. Keeps scratch:
+// not for several threads at once.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,26 +20,63 @@
 
 namespace robot_tissue {
 
+// How far a point is from leaving a shape, and which way.
+struct WayOut {
+  double depth_m = 0.0;        // > 0: inside the padded shape; < 0: that far from it
+  Vec3 normal = Vec3::Zero();  // unit, away from the shape; zero when every way is as good
+};
+
 class ContactFinder {
  public:
-  // Points up to touch_margin (m) outside a tool are found, too, with a depth <= 0.
-  // Throws InputError: a mesh that cannot be loaded or has no volume, a measure that is not > 0.
-  explicit ContactFinder(const std::vector<ToolGeometry>& tools, double touch_margin = 0.0);
+  // Throws InputError: a mesh that cannot be loaded, is not closed or has no volume, a measure that
+  // is not > 0, a padding < 0.
+  explicit ContactFinder(const std::vector<ToolGeometry>& tools);
   ~ContactFinder();
   ContactFinder(ContactFinder&&) noexcept;
   ContactFinder& operator=(ContactFinder&&) noexcept;
 
-  // Farthest that a point of the tool is from the tool's origin (m); 0 without shapes.
-  double reach(std::size_t tool) const;
+  std::size_t linkCount() const;
+  // Farthest that a point of the link is from the link's origin (m); 0 without shapes, and for a
+  // plane.
+  double reach(std::size_t link) const;
+  // Mean place of the link's shapes, link frame (m).
+  Vec3 center(std::size_t link) const;
+  // Smallest width of the link's thinnest shape (m); infinite without shapes.
+  double thickness(std::size_t link) const;
+  // Axis-aligned box around the link's shapes in the tissue's frame (m); empty (min > max) without,
+  // infinite with a plane.
+  Box bounds(std::size_t link, const Pose& tissue_T_link) const;
 
-  // Mean place of the tool's shapes, tool frame (m).
-  Vec3 center(std::size_t tool) const;
-
-  // One line each, e.g. a mesh that is not convex.
+  // One line each.
   const std::vector<std::string>& warnings() const;
 
-  // Throws InputError when the pose has not one entry a tool or the surface not one vertex each.
-  ContactSet find(const RobotPose& pose, const Surface& surface, const std::vector<Vec3>& vertices);
+  // Contacts with depth > -margin (m), in order of links, then triangles: of each vertex, and of
+  // each triangle the deepest point when that is neither a vertex nor, by more than a hair, less
+  // deep than one of them. A point of an edge is found once.
+  // Throws InputError when the pose has not one entry a link or the surface not one vertex each.
+  ContactSet find(const RobotPose& pose, const Surface& surface, const std::vector<Vec3>& vertices,
+                  double margin) const;
+
+  // Of a point (m, tissue frame) and a link; nothing when it is farther than `reach` from it.
+  std::optional<WayOut> wayOut(std::size_t link, const Pose& tissue_T_link, const Vec3& point,
+                               double reach) const;
+
+  // The same for a point from which there is one way out, in a unit direction: seen from where that
+  // way is `clear` (m) off the link, so that the normal does not jump at the link's edges. The
+  // depth is that of the point below the plane found there. Nothing when it is farther than `reach`
+  // from the link, or the way is longer than `farthest` (m).
+  std::optional<WayOut> wayOutAlong(std::size_t link, const Pose& tissue_T_link, const Vec3& point,
+                                    const Vec3& direction, double clear, double reach,
+                                    double farthest) const;
+
+  // Deepest point of the link inside the surface or of the surface inside the link (m), 0 when they
+  // do not overlap: points of the surface as in find, and corners, edges and rims of the link.
+  double penetration(std::size_t link, const Pose& tissue_T_link, const Surface& surface,
+                     const std::vector<Vec3>& vertices) const;
+
+  // Distance between two links (m), e.g. jaws; 0 when they overlap, infinite when one has no shapes
+  // or no rigid pose.
+  double gap(std::size_t link, std::size_t other, const RobotPose& pose) const;
 
  private:
   struct Impl;

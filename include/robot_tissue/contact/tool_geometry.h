@@ -8,11 +8,20 @@
 
 namespace robot_tissue {
 
+struct LinkGeometry {
+  std::string link;
+  std::vector<ToolShape> shapes;  // in the link's frame, all paddings in ToolShape::padding; none:
+                                  // the link touches nothing
+};
+
 struct ToolGeometry {
   std::string name;
-  std::string link;
-  double padding = 0.0;           // m
-  std::vector<ToolShape> shapes;  // placed in the link's frame; none: the tool touches nothing
+  std::vector<LinkGeometry> links;  // as in ToolConfig
+  ToolConfig::Role role = ToolConfig::Role::kPush;
+  ToolConfig::Patch patch = ToolConfig::Patch::kConforming;
+  double friction = 0.3;
+  double max_force = 0.0;  // N, 0 = none
+  GraspConfig grasp;
 };
 
 struct LoadedTools {
@@ -20,9 +29,13 @@ struct LoadedTools {
   std::vector<std::string> warnings;  // one line each, e.g. a link without collision geometry
 };
 
-// In: the URDF's text, the scene's tools. A tool's overlay takes the place of its link's geometry;
-// the link has to exist all the same. Meshes are named here and loaded by ContactFinder.
-// Throws InputError: URDF that does not parse, a link it does not have. No tools: no URDF needed.
+// In: the URDF's text, the scene's tools. A link's overlay takes the place of its collision
+// geometry; the link has to exist all the same. Meshes are named here and loaded by ContactFinder.
+// Throws InputError: URDF that does not parse, a link or a padded collision that it does not have.
+// No tools: no URDF needed.
 LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>& configs);
+
+// Without a URDF: the overlays alone.
+LoadedTools toolsOf(const std::vector<ToolConfig>& configs);
 
 }  // namespace robot_tissue

@@ -53,12 +53,15 @@ class CoarseLattice {
     std::array<double, kCorners> weight{};
   };
 
+  bool fillChanged(const LoadedShape& shape, const PatchHold& hold);
+  void sumBlocks();
   void assemble(const LoadedShape& shape, const PatchHold& hold);
   void lay(const LatticeState& state);
   void fill(Block& block, const LatticeState& rest, const PatchHold& hold);
   bool isCarried(const Cell& cell, const PatchHold& hold) const;
   void addCarried(const LoadedShape& shape, const LatticeState& rest, const PatchHold& hold);
   void addRims(const LoadedShape& shape, const PatchHold& hold);
+  void addContacts(const LoadedShape& shape, const PatchHold& hold);
   void numberPatches(const LoadedShape& shape);
   void factorize();
 
@@ -76,14 +79,16 @@ class CoarseLattice {
   std::shared_ptr<const CellSet> cells_;
   std::vector<std::uint8_t> held_;
   std::vector<int> carriers_;
-  std::vector<double> rims_;  // nodes and stiffnesses
-  LatticeState about_;        // the shape whose second derivative it is
+  std::vector<double> springs_;  // of rims and contacts: nodes and stiffnesses
+  LatticeState about_;           // the shape whose second derivative it is
   std::vector<Block> blocks_;
   std::vector<Place> places_;
   std::vector<int> first_group_;  // per patch: of its shift, then its turn; -1 = none
   int coarse_count_ = 0;
   int groups_ = 0;  // of three unknowns
   bool usable_ = false;
+  Eigen::SparseMatrix<double> sum_;     // of the blocks, lower triangle
+  Eigen::SparseMatrix<double> matrix_;  // and of patches
   std::vector<Eigen::Triplet<double>> entries_;
   SparseFactor factor_;
 };

@@ -1,24 +1,33 @@
 // Data between stages, 2 of 4: where the tools touch the deformed surface.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
 
-// A point of the surface that is inside a tool, or touches it.
+// A point of the surface that is inside a tool, or near it.
 struct Contact {
-  int tool = 0;                     // index into RobotPose::tools
+  int tool = 0;                     // index into the scene's tools
+  int link = 0;                     // index into RobotPose::links
   int triangle = 0;                 // index into Surface::triangles
   Vec3 barycentric = Vec3::Zero();  // of the point in that triangle, sums to 1
   Vec3 point = Vec3::Zero();        // tissue frame, m
   Vec3 normal = Vec3::Zero();       // unit, from the tool into the tissue: the way out of the tool
-  double depth_m = 0.0;             // penetration depth along the normal; <= 0: touches only
+  double depth_m = 0.0;             // penetration depth along the normal; < 0: a gap
 };
 
 struct ContactSet {
   std::vector<Contact> contacts;
 };
+
+// Of the deepest of them (m); 0 when none is inside a tool.
+inline double deepest(const ContactSet& contacts) {
+  double depth = 0.0;
+  for (const Contact& contact : contacts.contacts) depth = std::max(depth, contact.depth_m);
+  return depth;
+}
 
 }  // namespace robot_tissue

@@ -1,7 +1,8 @@
 // The balance of a loaded shape in its unknowns: potential, unbalanced forces, second derivative
 // (own).
 //
-// potential = energy of the tissue + of the rims' springs - work of the patches' forces
+// potential = energy of the tissue + of the rims' springs and those in contact - work of the
+// patches' forces
 #pragma once
 
 #include <Eigen/Core>

@@ -43,8 +43,9 @@ class LayeredMethod : public SolverMethod {
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
+  void beginStep(const LatticeState& state) override;
   void forget() override;
-  bool joinsRims() const override { return true; }
+  bool findsEquilibrium() const override { return true; }
   double patchStep() const override;
 
  private:
@@ -93,7 +94,6 @@ class LayeredMethod : public SolverMethod {
   SolveStatus iterate(LoadedShape& shape, SolveReport& report);
   SolveStatus look(const LoadedShape& shape, Course& course);
   bool carryOn(LoadedShape& shape, Motion& forces) const;
-  void rememberWay(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
   bool advance(LoadedShape& shape, Motion& forces, Search& search) const;
   bool goAlong(const Motion& direction, double slope, LoadedShape& shape, Motion& forces) const;
   Motion cycle(const LoadedShape& shape) const;
@@ -126,7 +126,9 @@ class LayeredMethod : public SolverMethod {
   std::vector<int> patch_nodes_;          // of the last solve: hard or in a rim
   std::vector<Past> past_;                // of the last solve, if it ran out of time
   bool goes_on_ = false;                  // the solve under way is where that one stopped
-  std::vector<Vec3> last_way_;            // of all nodes in the last solve (m)
+  std::vector<Vec3> step_start_;          // displacement when the load step began (m)
+  std::vector<Vec3> last_way_;            // of all nodes in the last load step (m)
+  bool first_of_step_ = false;            // the next solve is
   std::vector<Vec3> left_;                // displacement that the last solve left
   std::shared_ptr<const CellSet> left_cells_;
   std::chrono::steady_clock::time_point started_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -26,13 +27,15 @@ struct PatchPlace {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
 };
 
-// Nodes that move as one hard piece (paper, section 4.3: "a single hard surface patch").
+// Nodes that move as one hard piece (paper, section 4.3: "a single hard surface patch"), and points
+// of the surface that a tool pushes without holding them.
 struct LoadingPatch {
   enum class Drive { kDisplacement, kForce };
 
   std::string name;
   std::vector<int> nodes;      // ascending
   std::vector<RimSpring> rim;  // ascending; nodes of the patch, and some next to it
+  std::vector<ContactSpring> contacts;
   Drive drive = Drive::kDisplacement;
   std::vector<Vec3> displacement;  // kDisplacement: per node, from rest (m)
   std::array<bool, 3> free_axis = {{false, false, false}};  // kDisplacement: nodes slide along it
@@ -62,6 +65,11 @@ void addRimForces(const LoadingPatch& patch, const std::vector<Vec3>& displaceme
                   std::vector<Vec3>& forces);
 double rimEnergy(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
 
+// Of the springs in contact on the nodes (N), added to what the nodes have. Energy in J.
+void addContactForces(const LoadingPatch& patch, const std::vector<Vec3>& displacement,
+                      std::vector<Vec3>& forces);
+double contactEnergy(const LoadingPatch& patch, const std::vector<Vec3>& displacement);
+
 // Matrix of a rim spring's stiffness in the tissue frame (N/m).
 Eigen::Matrix3d stiffnessOf(const LoadingPatch& patch, const RimSpring& spring);
 
@@ -73,11 +81,12 @@ void movePatch(const Lattice& lattice, LoadingPatch& patch, const Vec3& translat
 // What a patch met, in the order of the patches.
 struct PatchAnswer {
   Vec3 force = Vec3::Zero();         // of the patch on the tissue (N)
+  Vec3 torque = Vec3::Zero();        // of that about the tissue frame's origin (N m)
   Vec3 displacement = Vec3::Zero();  // mean over its nodes, from rest (m)
 };
 
-// From the tissue's forces on its nodes (N; without the rim's).
-PatchAnswer answerOf(const LoadingPatch& patch, const std::vector<Vec3>& tissue_forces,
-                     const std::vector<Vec3>& displacement);
+// From the forces of the tissue, and of others' contacts, on its nodes (N; without those of rims).
+PatchAnswer answerOf(const Lattice& lattice, const LatticeState& state, const LoadingPatch& patch,
+                     const std::vector<Vec3>& tissue_forces);
 
 }  // namespace robot_tissue

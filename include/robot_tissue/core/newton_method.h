@@ -36,7 +36,7 @@ class NewtonMethod : public SolverMethod {
   // `disturbed` is not needed: all free nodes are solved for.
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
-  bool joinsRims() const override { return true; }
+  bool findsEquilibrium() const override { return true; }
   double patchStep() const override;
 
  private:

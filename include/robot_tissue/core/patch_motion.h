@@ -36,13 +36,15 @@ class PatchHold {
   void place(LoadedShape& shape) const;
 
   const std::vector<std::uint8_t>& held() const { return held_; }
+  // Nodes that a contact hangs on, ascending.
+  const std::vector<int>& touched() const { return touched_; }
   // Per node: index of the patch by force in which it is hard, -1 = none.
   const std::vector<int>& carriers() const { return carriers_; }
   const std::vector<int>& hardOf(std::size_t patch) const { return hard_[patch]; }
   Vec3 freePart(int node, const Vec3& vector) const;
 
-  // Adds what rim springs do to the node.
-  void addRims(const LoadedShape& shape, int node, NodeBalance& balance) const;
+  // Adds what rim springs and contacts do to the node.
+  void addSprings(const LoadedShape& shape, int node, NodeBalance& balance) const;
 
   // Of the patch's own force, its hard nodes and its rim (N, N m about its center).
   Motion::OfPatch forceOn(const LoadedShape& shape, std::size_t patch) const;
@@ -54,10 +56,23 @@ class PatchHold {
   Vec3 armOf(const LoadedShape& shape, std::size_t patch, int node) const;
 
  private:
-  struct RimPlace {
+  void findTouched();
+  void addContacts(const LoadedShape& shape, int node, NodeBalance& balance) const;
+
+  // Where a spring of a node stands.
+  struct SpringPlace {
     std::size_t patch = 0;
     std::size_t spring = 0;
-    int next = -1;  // of the same node
+    double weight = 1.0;  // of the node, in a contact
+    int next = -1;        // of the same node
+  };
+  // Per node: its springs.
+  struct SpringList {
+    std::vector<SpringPlace> all;
+    std::vector<int> first;  // per node, into all, -1 = none
+
+    void clear(std::size_t nodes);
+    void add(int node, std::size_t patch, std::size_t spring, double weight);
   };
 
   const Lattice& lattice_;
@@ -65,8 +80,9 @@ class PatchHold {
   std::vector<std::uint8_t> held_;
   std::vector<int> carriers_;
   std::vector<std::vector<int>> hard_;  // per patch
-  std::vector<RimPlace> rims_;
-  std::vector<int> first_rim_;  // per node, into rims_, -1 = none
+  SpringList rims_;
+  SpringList contacts_;
+  std::vector<int> touched_;
 };
 
 }  // namespace robot_tissue

@@ -8,8 +8,8 @@
 namespace robot_tissue {
 
 struct RobotPose {
-  double stamp_s = 0.0;     // one common stamp for all tools
-  std::vector<Pose> tools;  // tissue_T_tool, one per tool, in the order of the scene's tools
+  double stamp_s = 0.0;     // one common stamp for all links
+  std::vector<Pose> links;  // tissue_T_link: the links of the first tool, of the second, ...
 };
 
 }  // namespace robot_tissue

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -67,33 +68,90 @@ struct CutStep {
 };
 struct ReleaseStep {
   std::vector<std::string> patches;
+  std::vector<std::string> tools;  // graspers that let go, tools that a push drives
 };
 struct ResetStep {};
-using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep>;
+// A tool goes from one pose to another, straight and at an even rate.
+struct MoveStep {
+  struct Place {
+    Pose pose = Pose::Identity();  // tissue_T_tool
+    double opening = 0.0;          // of a grasper's jaws, m
+  };
+  std::string tool;
+  std::optional<Place> from;  // empty: from where it stands
+  Place to;
+  std::optional<int> increments;  // empty: one a load step
+};
+// A force drives a tool from where it stands, along the force, until the tissue's answer equals it.
+struct PushStep {
+  std::string tool;
+  Vec3 force = Vec3::Zero();      // of the tool on the tissue, tissue frame (N); not zero
+  std::optional<int> increments;  // empty: 1
+};
+// A grasper without joints holds what is between its jaws.
+struct GraspStep {
+  std::string tool;
+};
+using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, PushStep,
+                          GraspStep>;
 
 // One collision shape of a tool, placed in the frame of its link.
 struct ToolShape {
-  enum class Type { kSphere, kBox, kCylinder, kMesh };
+  enum class Type { kSphere, kBox, kCylinder, kMesh, kPlane };
   Type type = Type::kSphere;
-  double radius = 0.0;        // sphere, cylinder
-  double length = 0.0;        // cylinder, along its z axis
-  Vec3 size = Vec3::Zero();   // box: full edge lengths
-  std::string resource;       // mesh: package:// or file://
-  Vec3 scale = Vec3::Ones();  // mesh
-  Pose pose = Pose::Identity();
+  double radius = 0.0;           // sphere, cylinder
+  double length = 0.0;           // cylinder, along its z axis
+  Vec3 size = Vec3::Zero();      // box: full edge lengths
+  std::string resource;          // mesh: package:// or file://
+  Vec3 scale = Vec3::Ones();     // mesh
+  Pose pose = Pose::Identity();  // plane: solid below its x-y plane
+  double padding = 0.0;          // m, of this shape; added to its link's
+};
+
+// A link of the robot that touches the tissue.
+struct ToolLink {
+  std::string link;      // of the URDF; empty in the runner, where the pose is the tool's
+  double padding = 0.0;  // m, added to every shape
+  std::map<std::string, double> collision_padding;  // m, by the name of a collision of the URDF
+  std::vector<ToolShape> shapes;  // overlay: used instead of the URDF's collision geometry
+};
+
+// When a grasper holds. The gap is the distance between its two jaws.
+struct GraspConfig {
+  double close_gap = 0.0;             // m: jaws nearer than this hold what is between them
+  double open_gap = 0.0;              // m: jaws farther than this let go; >= close_gap
+  double max_force = 0.0;             // N: a stronger pull tears the tissue off; 0 = never
+  Vec3 opening_axis = Vec3::UnitY();  // runner: the jaws move apart along it, tool frame
 };
 
 struct ToolConfig {
-  std::string name;               // the link's name when the scene names none
-  std::string link;               // URDF link
-  double padding = 0.0;           // m, added to every shape
-  std::vector<ToolShape> shapes;  // overlay: used instead of the URDF's collision geometry
+  enum class Role { kPush, kGrasper };
+  // kConforming: each point of the tissue slides along the tool in its friction cone.
+  // kRigid: what it touches moves with it as one hard piece (paper, section 4.3).
+  enum class Patch { kConforming, kRigid };
+
+  std::string name;  // the first link's name when the scene names none
+  std::vector<ToolLink>
+      links;  // the first one's frame is the tool's; a grasper's last two: its jaws
+  Role role = Role::kPush;
+  Patch patch = Patch::kConforming;
+  double friction = 0.3;   // Coulomb's, >= 0
+  double max_force = 0.0;  // N: a stronger wrench is told as this one, and flagged; 0 = none
+  GraspConfig grasp;       // role grasper
+};
+
+// What the tissue rests on: a box or a plane that never moves.
+struct SupportConfig {
+  std::string name;
+  ToolShape shape;  // kBox or kPlane, in the tissue's frame
+  double friction = 0.3;
 };
 
 struct Scene {
   TissueConfig tissue;
   SolverConfig solver;
   std::vector<ToolConfig> tools;
+  std::vector<SupportConfig> supports;
   std::vector<Step> steps;
   std::vector<std::string> remarks;  // lines the user should see, e.g. an entry the model ignores
 };

@@ -17,11 +17,15 @@ class SolverMethod {
   virtual SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                             LatticeState& state) = 0;
 
+  // The solves that follow, up to the next call, are of one load step.
+  virtual void beginStep(const LatticeState&) {}
+
   // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
   virtual void forget() {}
 
-  // Whether patches may have rim springs and may turn; if not, all their nodes are hard.
-  virtual bool joinsRims() const { return false; }
+  // Whether it finds the equilibrium of an energy: then patches may turn and have springs, at their
+  // rims and in contact; if not, all their nodes are hard.
+  virtual bool findsEquilibrium() const { return false; }
 
   // Longest motion of a patch in one solve that the method follows well (m).
   virtual double patchStep() const = 0;

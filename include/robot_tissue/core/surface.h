@@ -12,11 +12,6 @@
 namespace robot_tissue {
 
 // A vertex follows the nodes it hangs on: x = rest + sum of weight * displacement of node.
-struct NodeWeight {
-  int node = 0;
-  double weight = 0.0;
-};
-
 struct Surface {
   std::vector<Vec3> rest;                         // tissue frame (m)
   std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1

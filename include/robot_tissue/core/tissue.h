@@ -55,7 +55,22 @@ class Tissue {
   std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
   Vec3 nodeForce(int node) const;
-  Vec3 nodePosition(int node) const;  // deformed (m)
+  Vec3 weight() const;                   // of the whole tissue (N)
+  Vec3 forceOfFixedNodes() const;        // on the tissue (N)
+  double nodeStiffness(int node) const;  // mean, at rest (N/m)
+  Vec3 nodePosition(int node) const;     // deformed (m)
+
+  // What is asked after each solve while tools touch.
+  struct ContactRounds {
+    // Share of the way from these displacements to the present ones that may be gone at once: the
+    // rest is solved for anew, with the contacts at that shape.
+    std::function<double(const std::vector<Vec3>& before)> share;
+    // When the contacts are no longer those that the shape was solved for, puts the tools' new
+    // patches in and returns true: it is solved again. `whole`: the shape is what was solved for.
+    // `last`: there is no next time.
+    std::function<bool(std::vector<LoadingPatch>& of_tools, bool whole, bool last)> renew;
+  };
+  void setContactRounds(ContactRounds rounds) { contact_rounds_ = std::move(rounds); }
 
   // Equilibrium under what acts now.
   SolveReport settle();
@@ -68,8 +83,10 @@ class Tissue {
   // Takes patches away; the shape is found anew from rest under the loads that stay.
   SolveReport release(const std::vector<std::string>& names);
   // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
-  // left a patch.
-  SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed);
+  // left a patch. When the last tool has left, the shape is found anew from rest, unless the tissue
+  // `lies` on a support, which it may have slid along.
+  SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed,
+                     bool lies = false);
   // The shape and its loads, to come back to; cuts are not part of it: those made since stay.
   struct Shape {
     std::vector<Vec3> displacement;
@@ -96,6 +113,10 @@ class Tissue {
   };
 
   SolveReport solve(const std::vector<int>& disturbed);
+  void renewContacts();
+  bool goBack(const std::vector<Vec3>& before);
+  void putToolPatches(std::vector<LoadingPatch> of_tools);
+  SolveReport solveOnce(const std::vector<int>& disturbed);
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
   bool hasOnlyFiniteNumbers(const SolveReport& report) const;
@@ -121,12 +142,14 @@ class Tissue {
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
   unsigned surface_version_ = 0;
-  double rest_volume_ = 0.0;  // m^3
+  double rest_volume_ = 0.0;    // m^3
+  Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;
   std::vector<Vec3> vertices_;  // deformed, of the surface
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
   SolveReport last_report_;
+  ContactRounds contact_rounds_;
 };
 
 }  // namespace robot_tissue

@@ -1,14 +1,16 @@
 // Contacts -> loading patches (own; the paper takes the loading area as given).
 //
-// The contacts of one tool make one patch. A node that a contact pushed out of the tool rides on
-// it from then on, as part of one hard piece, and so sticks sideways. It leaves the patch when the
-// tool has lifted it above the surface's rest place, when it is on the near side of its rest place
-// and the tissue pulls it away from the tool, or when nothing around it touches the tool.
-// In: contacts (tissue frame, normals from the tool into the tissue), tool poses.
-// Out: one patch a touching tool, displacements from rest (m). Fixed nodes and the nodes of named
-// loads are never taken.
+// The hard part of a tool's patch, for tools with rigid patches and for graspers.
+// Rigid: a node that a contact pushed out of the tool rides on it from then on, as part of one hard
+// piece, and so sticks sideways. It leaves the patch when the tool has lifted it above the
+// surface's rest place, when it is on the near side of its rest place and the tissue pulls it away
+// from the tool, or when nothing around it touches the tool. Grasped: nodes ride on a jaw until
+// they are let go. In: contacts of tools with rigid patches (tissue frame, normals from the tool
+// into the tissue), poses of the links. Out: one patch a tool that has nodes, displacements from
+// rest (m). Fixed nodes and the nodes of named loads are never taken.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +20,7 @@
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
+#include "robot_tissue/core/tool_contacts.h"
 
 namespace robot_tissue {
 
@@ -31,8 +34,16 @@ class ToolPatches {
   void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.
   void pushOut(const ContactSet& contacts, const Surface& surface, const RobotPose& pose);
-  // Where a node sits on its tool, tool frame.
+  // Grasped: the nodes ride on the link from where they are.
+  void hold(int tool, int link, const Pose& tissue_T_link, const std::vector<int>& nodes,
+            const Tissue& tissue);
+  void letGo(int tool);
+  bool holds(int tool) const;
+
+  // Where a node sits on a link, that link's frame.
   struct Seat {
+    int link = 0;  // index into RobotPose::links
+    bool grasped = false;
     Vec3 point = Vec3::Zero();
     Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
   };
@@ -45,14 +56,19 @@ class ToolPatches {
   void restore(const Seats& seats) { seats_ = seats; }
 
   bool empty() const;
-  std::vector<LoadingPatch> loadingPatches() const;
+  // The tool's patch; without nodes when it holds none.
+  LoadingPatch loadingPatch(int tool) const;
   // Nodes that left a patch in the last ride.
   const std::vector<int>& left() const { return left_; }
   // The tissue's displacements (m), with the patches where they are now.
   const std::vector<Vec3>& displacement() const { return displacement_; }
   std::vector<int> nodes(int tool) const;
-  // Mean way out of the tool over its nodes (unit, tissue frame; zero without contact).
-  Vec3 normal(int tool, const Pose& tissue_T_tool) const;
+  // Sum of the ways out of the tool over its nodes (m, tissue frame).
+  Vec3 pushed(int tool, const RobotPose& pose) const;
+  // Per node, not 0 = it does not give way: fixed, hard in a named load by displacement, or in one
+  // of these patches; kGrasped: it moves with a grasper.
+  static constexpr std::uint8_t kGrasped = ToolContacts::kGrasped;
+  std::vector<std::uint8_t> heldNodes(const Tissue& tissue) const;
 
  private:
   // A free node that carries a contact's point.
@@ -72,7 +88,7 @@ class ToolPatches {
   void scale(std::vector<Push>& pushes) const;
   double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
   static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
-  void seat(int node, std::size_t tool, const Vec3& moved, const RobotPose& pose);
+  void seat(int node, std::size_t tool, int link, const Vec3& moved, const RobotPose& pose);
   void holdNamedLoads(const Tissue& tissue);
   void findOutwardNormals(const Tissue& tissue);
   bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue) const;

@@ -23,6 +23,12 @@ inline Eigen::Matrix3d crossMatrix(const Vec3& v) {
   return matrix;
 }
 
+// A node's share of a point.
+struct NodeWeight {
+  int node = 0;
+  double weight = 0.0;
+};
+
 // Closed axis-aligned box (m).
 struct Box {
   Vec3 min = Vec3::Zero();

@@ -1,12 +1,15 @@
 // The straight line of one update:
 //   robot pose -> contacts -> loading patches -> solve (-> publish, in the ros layer)
-// Contacts at a pose look at the shape of the step before.
 //
-// The tools' way is walked in load steps of a fixed length, the longest that the method follows
-// well. What is left of the way, less than a step, is solved from the end of the last whole step,
-// and anew at the next update: so the shape depends on the way, not on the rate of the updates.
-// The shapes at the ends of the steps are kept while a tool touches: going back the way it came, it
-// finds the shapes that it left. A tool that appears inside the tissue is walked in from outside.
+// The tools' way is walked in load steps: a fifth of the spacing, less for a thin tool, so that no
+// tool is through before it is met. Within a step the solver asks for the contacts at the shape it
+// came to and goes on until they stand. Where nothing is near, a step is as long as the way that is
+// free. A tool that appears inside the tissue is walked in from outside.
+//
+// With rigid patches, as in the paper, the shape depends on the steps. Then what is left of the
+// way, less than a step, is solved from the end of the last whole step and anew at the next update,
+// and the shapes at the ends of the steps are kept while a tool touches: going back the way it
+// came, it finds the shapes that it left.
 #pragma once
 
 #include <limits>
@@ -19,52 +22,98 @@
 #include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
+#include "robot_tissue/core/tool_contacts.h"
 #include "robot_tissue/core/tool_patches.h"
 
 namespace robot_tissue {
 
-// What one tool met, after the solve.
+// What one tool met, after the solve. Its frame is that of its first link.
 struct ToolReport {
   Vec3 force_on_tool = Vec3::Zero();   // of the tissue on the tool, tool frame (N)
   Vec3 torque_on_tool = Vec3::Zero();  // about the tool's origin, tool frame (N m)
-  std::vector<int> nodes;              // of its patch
+  bool saturated = false;              // the wrench was longer than the tool's max_force
+  std::vector<int> nodes;              // of its patch: held, or under a touch that pushes
+  int contacts = 0;                    // touches that push, and held nodes
   Vec3 point = Vec3::Zero();           // centroid of those, tissue frame (m)
-  Vec3 normal = Vec3::Zero();          // from the tool into the tissue, tissue frame
-  double max_penetration = 0.0;        // deepest point of the surface inside the tool (m)
+  Vec3 normal = Vec3::Zero();          // from the tool into the tissue, mean, tissue frame
+  double max_penetration = 0.0;        // deepest point of the tool inside the surface (m)
+  bool grasps = false;
+  bool jaws_overlap = false;   // a grasper's jaws touch each other or are inside one another
+  Vec3 offset = Vec3::Zero();  // of a tool that a force drives, from its pose, tissue frame (m)
 };
 
 struct StepReport {
-  bool changed = false;   // false: the shape is as it was
-  bool too_fast = false;  // the tools moved further than could be followed in time
-  int substeps = 0;       // solves that the way took
+  bool changed = false;     // false: the shape is as it was
+  bool too_fast = false;    // the tools moved further than could be followed in time
+  bool was_inside = false;  // a tool appeared inside the tissue and was walked in from outside
+  bool torn_off = false;    // a grasper lost what it held
+  bool lost = false;        // no shape could follow a tool: the last good one stays
+  int substeps = 0;         // load steps that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
   std::vector<ToolReport> tools;  // in the order of the tools
+};
+
+// Sums of the forces on the tissue (N, tissue frame).
+struct ForceBalance {
+  Vec3 tools = Vec3::Zero();
+  Vec3 supports = Vec3::Zero();
+  Vec3 loads = Vec3::Zero();  // named patches
+  Vec3 fixed = Vec3::Zero();  // nodes
+  Vec3 weight = Vec3::Zero();
+  Vec3 unbalanced() const { return tools + supports + loads + fixed + weight; }
 };
 
 class Pipeline {
  public:
   // Throws InputError.
   Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
-           const std::vector<ToolGeometry>& tools);
+           const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports = {});
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  // Where a tool is that stands nowhere; coming from there it comes in from outside the tissue.
+  static Pose away();
 
   // Puts other tools in the place of the present ones; what these held is let go.
   void setTools(const std::vector<ToolGeometry>& tools);
-  // One line each, e.g. a mesh of which only the convex hull is used.
+  // One line each, e.g. a mesh that cuts itself.
   const std::vector<std::string>& toolWarnings() const { return finder_.warnings(); }
+  const std::vector<ToolGeometry>& tools() const { return tools_; }
 
-  // Follows the tools to their new pose. Poses with a non-finite number throw InputError.
+  // Follows the tools to their new pose, one entry a link of the tools. Poses with a non-finite
+  // number throw InputError.
   const StepReport& step(const RobotPose& pose);
+  // Load steps that the tools' way to the pose takes; 0 before the first step. With more of them a
+  // step is a jump, too fast to be followed.
+  double stepsTo(const RobotPose& pose) const;
+  static constexpr int kMostLoadSteps = 400;
   // Time that a step may take (s), after which it leaves the rest of the way to the next one.
   void setBudget(double seconds) { budget_s_ = seconds; }
+
+  // As Tissue's, with the tools and supports where they are.
+  SolveReport settle();
+  void load(const LoadStep& step, const Tissue::OnIncrement& on_increment = {},
+            int most_increments = 100000);
+  SolveReport release(const std::vector<std::string>& names);
+  CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
-  // To be called after the tissue changed by other means (cut, load).
-  void touch();
 
-  Tissue& tissue() { return tissue_; }
+  // A grasper holds what is between its jaws now, or lets go. Throws InputError: no grasper, no
+  // pose yet, nothing between the jaws.
+  void grasp(std::size_t tool);
+  void letGo(std::size_t tool);
+  // From the next step on the tool is where its force on the tissue equals this one (N, tissue
+  // frame), along the force from its pose; empty: at its pose again.
+  void push(std::size_t tool, const std::optional<Vec3>& force);
+
   const Tissue& tissue() const { return tissue_; }
   const StepReport& report() const { return report_; }
+  // Where the links are, those that a force drives where it drove them. Empty before the first
+  // step.
+  const std::optional<RobotPose>& pose() const { return last_pose_; }
+  ForceBalance forceBalance() const;
 
  private:
   // Where a whole load step ended.
@@ -72,31 +121,84 @@ class Pipeline {
     RobotPose pose;
     Tissue::Shape shape;
     ToolPatches::Seats seats;
+    ToolContacts contacts;
+  };
+  // A tool that a force drives.
+  struct Drive {
+    std::optional<Vec3> force;  // N
+    double way = 0.0;           // along the force, from its pose (m)
   };
 
-  RobotPose walk(const RobotPose& pose);
+  // pipeline.cpp
+  void takeTools(const std::vector<ToolGeometry>& tools);
   void advance(const RobotPose& pose);
+  void follow(std::vector<LoadingPatch> patches);
+  std::vector<LoadingPatch> patchesOfTools() const;
+  void pushRigid(const RobotPose& pose);
+  bool isRigid(int tool) const;
+  bool anyToolIn(const std::vector<LoadingPatch>& patches) const;
+  void carryOn();
+  void touch();
+
+  // contact_rounds.cpp
+  double contactShare(const std::vector<Vec3>& before);
+  bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
+  ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
+  ContactSet touchesAt(const RobotPose& pose);
+  bool turnOut(const RobotPose& pose, Contact& contact) const;
+  std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
+  bool wouldTouchAtRest(const RobotPose& pose);
+  std::vector<LoadingPatch> lastTouches() const;
+
+  // tools_way.cpp
+  static bool isAway(const Pose& pose);
+  RobotPose walk(const RobotPose& pose);
+  RobotPose complete(const RobotPose& pose) const;
   void checkIn(const RobotPose& pose);
   void goBackTo(const RobotPose& pose);
   void startAnew(const RobotPose& pose);
-  RobotPose outside(const RobotPose& pose);
-  Vec3 wayOut(std::size_t tool, const Pose& tissue_T_tool);
+  void lieDown();
+  void comeAndGo(const RobotPose& pose);
+  void drawOut(std::size_t tool, RobotPose& pose);
+  Vec3 wayOut(std::size_t tool, const RobotPose& pose);
   bool standsStill(const RobotPose& pose) const;
-  double longestWay(const RobotPose& from, const RobotPose& to) const;
-  ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
-  void carryOn();
-  void solve();
-  void pushToolsOut(const RobotPose& pose);
-  void describeTools(const RobotPose& pose, const ContactSet& contacts);
+  double stepsBetween(const RobotPose& from, const RobotPose& to) const;
+  double freeSteps(const RobotPose& pose) const;
+  double stepOf(std::size_t link) const;
+
+  // tool_actions.cpp
+  void grasp();
+  void tearOff();
+  std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw) const;
+  RobotPose driven(const RobotPose& pose) const;
+  bool drive(const RobotPose& pose);
+  std::size_t hold(std::size_t tool);
+
+  // tool_reports.cpp
+  void describeTools();
+  ToolReport describe(std::size_t tool) const;
+  bool jawsOverlap(std::size_t tool) const;
+  PatchAnswer answerOf(std::size_t tool) const;
 
   Tissue tissue_;
-  ContactFinder finder_;
+  std::vector<SupportConfig> supports_;
+  std::vector<ToolGeometry> tools_;      // the supports' are not among them
+  std::vector<std::string> names_;       // of tools and supports
+  std::vector<std::size_t> first_link_;  // per tool and support, and the end
+  ContactFinder finder_;                 // of tools and supports
   ToolPatches patches_;
+  ToolContacts contacts_;
+  std::vector<Drive> drives_;
+  std::vector<bool> closed_;  // per tool: its jaws were when last seen
+  bool any_rigid_ = false;
+  unsigned surface_version_ = 0;
+  RobotPose pose_;  // of the load step under way
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
-  bool touched_ = true;  // the reports are to be brought up to date
-  std::vector<Vec3> vertices_;
+  bool touched_ = true;         // the reports are to be brought up to date
+  std::vector<Vec3> vertices_;  // of the last contacts
+  std::vector<Vec3> outwards_;  // their normals
   StepReport report_;
 };
 

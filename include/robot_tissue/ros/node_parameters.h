@@ -13,6 +13,7 @@ struct NodeParameters {
   Scene scene;
   double rate_hz = 100.0;        // ~rate: updates, upper bound
   double marker_rate_hz = 30.0;  // ~marker_rate: markers, upper bound
+  double wrench_rate_hz = 0.0;   // ~wrench_rate: wrenches; 0: one an update
   double tf_timeout_s = 0.5;     // ~tf_timeout: an older pose is stale
   double force_scale = 0.02;     // ~force_scale: length of a force arrow (m/N)
   std::string robot_description_param = "robot_description";  // ~robot_description_param

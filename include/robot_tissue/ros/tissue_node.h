@@ -1,17 +1,21 @@
 // The node: reads the robot's pose, steps the pipeline, publishes, answers services. It holds no
-// mechanics. Everything runs in one thread, the spinner's.
+// mechanics. Everything runs in one thread, the spinner's, but for wrenches with a rate of their
+// own (WrenchPublisher).
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <diagnostic_updater/update_functions.h>
 #include <robot_tissue/ApplyLoad.h>
 #include <robot_tissue/Cut.h>
+#include <robot_tissue/Tool.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/timer.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
+
+#include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/node_parameters.h"
@@ -28,7 +32,9 @@ class TissueNode {
 
  private:
   void update();
+  void follow();
   bool robotIsKnown();
+  void settleFromRest();
   void report(const NodeStatus& status);
   NodeStatus statusOf(const StepReport& report) const;
   void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -37,6 +43,14 @@ class TissueNode {
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onCut(Cut::Request& request, Cut::Response& response);
   bool onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response);
+  void loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response);
+  // tool_services.cpp
+  bool onGrasp(Tool::Request& request, Tool::Response& response);
+  bool onRelease(Tool::Request& request, Tool::Response& response);
+  void pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response);
+  std::string followPush(std::size_t tool, const Vec3& force);
+  bool isTool(const std::string& name) const;
+  std::size_t toolIndex(const std::string& name) const;
   void advertiseServices();
 
   ros::NodeHandle private_node_;
@@ -54,7 +68,7 @@ class TissueNode {
   double lowest_rate_hz_ = 0.0;
   double highest_rate_hz_ = 0.0;
   diagnostic_updater::FrequencyStatus frequency_;
-  ros::ServiceServer reset_service_, cut_service_, load_service_;
+  ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
   ros::Timer timer_;
 };
 

@@ -12,6 +12,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/markers.h"
 #include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/ros/wrench_publisher.h"
 
 namespace robot_tissue {
 
@@ -25,16 +26,13 @@ class TissuePublisher {
  public:
   TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters);
 
-  // One wrench topic a tool; link names are the frames of the wrenches.
-  void setTools(const std::vector<ToolGeometry>& tools);
+  // One wrench topic a tool.
+  void setTools(const std::vector<ToolGeometry>& tools) { wrenches_.setTools(tools); }
 
   // After an update at a good pose. `stamp` is the pose's.
-  void publish(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp,
-               const NodeStatus& status);
-  // When there is no good pose: what is wrong, with the last good shape.
-  void publishStatus(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status);
-  // The shape without a robot: markers that are due.
-  void publishMarkers(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp);
+  void publish(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  // When there is no good pose: what is wrong, with the last good shape; no wrenches.
+  void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status);
 
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {
@@ -43,8 +41,9 @@ class TissuePublisher {
   }
 
  private:
-  void publishWrenches(const Pipeline& pipeline, const ros::Time& stamp);
-  void publishContacts(const Pipeline& pipeline, const RobotPose& pose, const ros::Time& stamp);
+  void publishMarkers(const Pipeline& pipeline, const ros::Time& stamp);
+  void publishContacts(const Pipeline& pipeline, const ros::Time& stamp);
+  void publishState(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
 
   ros::NodeHandle private_node_;
   std::string frame_id_;
@@ -56,10 +55,8 @@ class TissuePublisher {
   NodeStatus last_status_;
   ros::Time last_state_;
   double publish_ms_ = 0.0;
-  bool contacts_were_empty_ = false;
-  std::vector<ToolGeometry> tools_;
   ros::Publisher markers_, contacts_, state_;
-  std::vector<ros::Publisher> wrenches_;
+  WrenchPublisher wrenches_;
 };
 
 }  // namespace robot_tissue

@@ -1,4 +1,5 @@
-// Where the tools are, from TF: every tool at one common stamp, in the tissue's frame.
+// Where the tools are, from TF: every link of every tool at one common stamp, in the tissue's
+// frame.
 #pragma once
 
 #include <ros/time.h>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/core/robot_pose.h"
 
 namespace robot_tissue {
@@ -21,10 +23,15 @@ struct PoseLookUp {
   double age_s = 0.0;
 };
 
+// The frames of a tool's links; a grasper's own link without a name stands where its first jaw is.
+// The first one is the tool's frame.
+std::vector<std::string> linkFrames(const ToolGeometry& tool);
+
 class ToolPoses {
  public:
   ToolPoses(const tf2_ros::Buffer& buffer, std::string tissue_frame, double timeout_s);
 
+  // In the order of RobotPose::links.
   void setLinks(const std::vector<std::string>& links) { links_ = links; }
   PoseLookUp lookUp(const ros::Time& now) const;
   // tissue_T_frame at the newest stamp; throws InputError when there is none.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,12 @@ namespace robot_tissue {
 
 using Remarks = std::vector<std::string>;
 
-// `scene_folder`: where relative paths of a mesh start.
-TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, Remarks& remarks);
+// The paper's method moves patches as one hard piece: nothing slides, nothing is held by contact.
+inline bool hardPatchesOnly(const std::string& model) { return model == "six_spring"; }
+
+// `scene_folder`: where relative paths of a mesh start. `supported`: the scene has supports.
+TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
+                        Remarks& remarks);
 
 // Keys min and max of a map, as nodes of the grid; refused when there are none.
 Box readNodeBox(const MapReader& map, const Grid& grid);
@@ -25,9 +30,11 @@ Box readNodeBox(const MapReader& map, const Grid& grid);
 SolverConfig readSolver(const Entry& entry, const std::string& model,
                         const SolverOverrides& overrides, Remarks& remarks);
 
-// Follows the program through: which patches stand, and whose nodes they hold.
+// Follows the program through: which patches stand, whose nodes they hold, which tools stand.
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
-                            const SolverConfig& solver);
+                            const SolverConfig& solver, const std::vector<ToolConfig>& tools);
+
+constexpr int kMostIncrements = 100000;  // of one step
 
 // A standing patch on the way through the steps.
 struct StandingPatch {
@@ -37,7 +44,38 @@ struct StandingPatch {
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
                   const SolverConfig& solver, std::vector<StandingPatch>& standing);
 
-std::vector<ToolConfig> readTools(const Entry& entry, const std::string& scene_folder);
+// `standing`: names of the tools that a move has placed.
+MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
+                  std::set<std::string>& standing);
+PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
+                  const std::set<std::string>& standing);
+GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
+                        const std::set<std::string>& standing);
+void requireStands(const Entry& entry, const std::string& tool,
+                   const std::set<std::string>& standing);
+
+std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
+                                  const TissueConfig& tissue, Remarks& remarks);
+
+// Links in the order of ToolConfig::links.
+struct ToolLinks {
+  std::vector<ToolLink> links;
+  Entry first_name;  // where the first link's name stands, or would
+};
+ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, SceneUser user,
+                        ToolConfig::Role role, Remarks& remarks);
+
+std::vector<SupportConfig> readSupports(const Entry& entry, const std::string& model);
+
+// A name that may be part of a topic's.
+std::string readGraphName(const Entry& entry);
+
+// Keys xyz (m) and rpy (rad; roll, pitch, yaw about the fixed axes x, y, z, as in URDF), each zero
+// when not given.
+Pose readPose(const MapReader& map);
+
+// Refuses a vector too short to have a direction.
+Vec3 readNonZero(const Entry& entry, const std::string& unit);
 
 // Address of a mesh file: package:// stays as it is; a path must be an existing file, relative to
 // the scene's folder, and becomes file://.

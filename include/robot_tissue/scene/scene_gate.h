@@ -13,7 +13,7 @@
 
 namespace robot_tissue {
 
-// The runner has steps and no tools, the node tools and no steps.
+// The runner has steps and no URDF; the node no steps, and a link of the URDF for every tool.
 enum class SceneUser { kRunner, kNode };
 
 // Values of the command line, as typed; each takes the place of the scene's solver entry.

@@ -1,0 +1,49 @@
+// A point of the surface that a tool may push: a spring that never pulls, with friction (own; the
+// augmented Lagrangian of Simo and Laursen 1992, with Tresca's bound on the drag).
+//
+//   point of the surface    x = sum of weight * (rest + displacement) over its carriers
+//   gap                     g = n . (x - foot)
+//   normal force            f = max(0, multiplier - k g)
+//   drag                    t = drag - k_t (1 - n n^T) (x - anchor), cut to most_drag in length
+//   force on the tissue     f n + t, at x
+//
+// Between solves the multiplier takes f and most_drag the friction's share of f: then the gap goes
+// to zero whatever k is, and the drag obeys Coulomb's law. In a solve both are constant, so that
+// the spring has an energy, convex in x.
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+struct ContactSpring {
+  std::vector<NodeWeight> carriers;  // weights sum to 1
+  Vec3 rest = Vec3::Zero();          // of the point (m)
+  Vec3 normal = Vec3::Zero();        // unit, from the tool into the tissue
+  Vec3 foot = Vec3::Zero();          // a point of the tool's surface (m)
+  double stiffness = 0.0;            // k (N/m)
+  double multiplier = 0.0;           // N
+  Vec3 anchor = Vec3::Zero();        // where the point would be, did it stick (m)
+  Vec3 drag = Vec3::Zero();          // across the normal, when it was at the anchor (N)
+  double drag_stiffness = 0.0;       // k_t (N/m)
+  double most_drag = 0.0;            // N; 0: slides freely
+};
+
+// Deformed place of the point (m).
+Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);
+
+double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // m
+
+double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
+
+// On the tissue (N).
+Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);
+
+double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // J
+
+// Second derivative of the energy in x (N/m); not negative in any direction.
+Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);
+
+}  // namespace robot_tissue

@@ -1,0 +1,51 @@
+// The wrench of the tissue on each tool, in the tool's frame, about its origin (N, N m).
+//
+// With a rate of its own a thread sends the last wrench solved again and again, so that the rate
+// stays while a solve takes long; the stamp is that of the pose that was solved.
+#pragma once
+
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/time.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "robot_tissue/pipeline/pipeline.h"
+
+namespace robot_tissue {
+
+class WrenchPublisher {
+ public:
+  // rate_hz 0: once an update.
+  WrenchPublisher(const ros::NodeHandle& private_node, double rate_hz);
+  ~WrenchPublisher();
+  WrenchPublisher(const WrenchPublisher&) = delete;
+  WrenchPublisher& operator=(const WrenchPublisher&) = delete;
+
+  // One topic a tool.
+  void setTools(const std::vector<ToolGeometry>& tools);
+  // After an update at a good pose; one report a tool. `stamp` is the pose's.
+  void publish(const std::vector<ToolReport>& reports, const ros::Time& stamp);
+  // No good pose: nothing is sent until there is one again.
+  void fallSilent();
+
+ private:
+  void repeat();
+  void send();
+  void stop();
+
+  ros::NodeHandle private_node_;
+  double rate_hz_;
+  std::vector<ros::Publisher> publishers_;  // do not change while the thread runs
+  std::mutex mutex_;                        // of the messages
+  std::vector<geometry_msgs::WrenchStamped> messages_;
+  bool silent_ = true;
+  std::atomic<bool> stops_{false};
+  std::thread thread_;
+};
+
+}  // namespace robot_tissue

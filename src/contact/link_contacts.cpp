@@ -1,0 +1,213 @@
+#include "link_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mesh_minima.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kOnEdge = 1e-9;     // weight
+constexpr double kSameAlong = 0.02;  // share of an edge, of a mesh's contacts
+constexpr double kDeeper = 1e-12;    // m, than another shape of the link
+
+// One bit for each side of the box that the point is beyond.
+std::uint8_t sidesBeyond(const Vec3& point, const Box& box) {
+  unsigned sides = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    sides |= (point[axis] < box.min[axis] ? 1U : 0U) << (2 * axis);
+    sides |= (point[axis] > box.max[axis] ? 1U : 0U) << (2 * axis + 1);
+  }
+  return static_cast<std::uint8_t>(sides);
+}
+
+// Into the tissue: for a point that every way leads out of the tool alike.
+Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 area = (b - a).cross(c - a);
+  const double length = area.norm();
+  return length > 0.0 ? Vec3(-area / length) : Vec3(-Vec3::UnitZ());
+}
+
+}  // namespace
+
+void LinkContacts::find(const PlacedLink& link, int tool_index, int link_index,
+                        const Surface& surface, const std::vector<Vec3>& vertices, double margin,
+                        ContactSet& found) {
+  if (link.empty()) return;
+  link_ = &link;
+  surface_ = &surface;
+  vertices_ = &vertices;
+  margin_ = margin;
+  tool_ = tool_index;
+  link_index_ = link_index;
+  Box box = boundsOf(link);
+  box.min.array() -= margin;
+  box.max.array() += margin;
+  beyond_.resize(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) beyond_[i] = sidesBeyond(vertices[i], box);
+  vertex_asked_.assign(vertices.size(), 0);
+  ++search_;
+  seen_.resize(std::max(seen_.size(), link.size()));
+  for (std::size_t i = 0; i < link.size(); ++i) seen_[i].resize(vertices.size());
+  edge_places_.clear();
+  for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
+    const auto& [a, b, c] = surface.triangles[k];
+    if ((beyond_[at(a)] & beyond_[at(b)] & beyond_[at(c)]) != 0) continue;
+    askTriangle(static_cast<int>(k), found);
+  }
+}
+
+void LinkContacts::askTriangle(int triangle, ContactSet& found) {
+  triangle_ = triangle;
+  const MeshTriangle& corners = surface_->triangles[at(triangle)];
+  Box box = emptyBox();
+  for (const int vertex : corners) {
+    const Vec3& corner = (*vertices_)[at(vertex)];
+    if (!corner.allFinite()) return;
+    growBy({corner, corner}, box);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int vertex = corners[at(k)];
+    if (vertex_asked_[at(vertex)] != 0) continue;
+    vertex_asked_[at(vertex)] = 1;
+    if (beyond_[at(vertex)] == 0) askVertex(vertex, Vec3::Unit(k), found);
+  }
+  if ((box.max - box.min).isZero(0.0)) return;
+  for (std::size_t shape = 0; shape < link_->size(); ++shape) {
+    // Of a plane, a vertex is the deepest point.
+    if ((*link_)[shape].shape->isPlane()) continue;
+    if (boxesMeet((*link_)[shape].bounds, box, margin_)) askShape(shape, corners, found);
+  }
+}
+
+const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
+  Seen& seen = seen_[shape][at(vertex)];
+  if (seen.search == search_) return seen;
+  const PlacedShape& placed = (*link_)[shape];
+  seen.search = search_;
+  seen.point = placed.shape_T_tissue * (*vertices_)[at(vertex)];
+  if (placed.shape->isMesh()) {
+    const auto out = placed.shape->wayOut(seen.point, margin_);
+    seen.is_near = out.has_value();
+    if (out) seen.distance = {-out->depth_m, out->normal};
+  } else {
+    seen.is_near = true;
+    seen.distance = placed.shape->distance(seen.point);
+  }
+  return seen;
+}
+
+// The deepest of the link's shapes.
+void LinkContacts::askVertex(int vertex, const Vec3& weights, ContactSet& found) {
+  std::optional<SignedDistance> least;
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t shape = 0; shape < link_->size(); ++shape) {
+    const Seen& here = seen(shape, vertex);
+    if (!here.is_near || (least && here.distance.value >= least->value)) continue;
+    least = here.distance;
+    normal = (*link_)[shape].tissue_T_shape.linear() * least->slope;
+  }
+  if (least && least->value < margin_) add(weights, -least->value, normal, found);
+}
+
+std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
+                                                    const MeshTriangle& triangle) {
+  const CollisionShape& asked = *(*link_)[shape].shape;
+  Corners corners;
+  std::array<SignedDistance, 3> distances;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Seen& corner = seen(shape, triangle[k]);
+    corners[k] = corner.point;
+    distances[k] = corner.distance;
+  }
+  // One half for the search, one for taking a vertex instead.
+  const double accuracy = 0.5 * accuracyFor(asked, corners);
+  std::vector<TriangleMinimum> minima;
+  if (asked.isMesh()) {
+    minima = meshMinima(asked, corners, accuracy, margin_);
+  } else {
+    minima = {convexMinimum(asked, corners, distances, accuracy, margin_)};
+  }
+  minima.erase(std::remove_if(minima.begin(), minima.end(),
+                              [&](const TriangleMinimum& minimum) {
+                                return !(minimum.distance.value < margin_) ||
+                                       isVertexAlready(minimum, shape, triangle, accuracy);
+                              }),
+               minima.end());
+  return minima;
+}
+
+void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, ContactSet& found) {
+  const PlacedShape& placed = (*link_)[shape];
+  const Corners corners = {(*vertices_)[at(triangle[0])], (*vertices_)[at(triangle[1])],
+                           (*vertices_)[at(triangle[2])]};
+  for (const TriangleMinimum& minimum : minimaOf(shape, triangle)) {
+    // Where another shape of the link is deeper, that one's deepest point speaks for both.
+    if (link_->size() > 1) {
+      const auto deepest = wayOut(*link_, pointOf(corners, minimum.weights), margin_);
+      if (deepest && deepest->depth_m > -minimum.distance.value + kDeeper) continue;
+    }
+    if (isOnKnownEdge(minimum.weights, shape, triangle)) continue;
+    add(minimum.weights, -minimum.distance.value,
+        placed.tissue_T_shape.linear() * minimum.distance.slope, found);
+  }
+}
+
+// Convex: whether one of the corners is as deep, but for the accuracy. Mesh: a corner that is also
+// near the place.
+bool LinkContacts::isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
+                                   const MeshTriangle& triangle, double accuracy) {
+  const bool is_mesh = (*link_)[shape].shape->isMesh();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Seen& corner = seen(shape, triangle[k]);
+    if (!corner.is_near || !(corner.distance.value < margin_)) continue;
+    if (corner.distance.value > minimum.distance.value + accuracy) continue;
+    if (!is_mesh) return true;
+    const Vec3 place = (*vertices_)[at(triangle[0])] * minimum.weights[0] +
+                       (*vertices_)[at(triangle[1])] * minimum.weights[1] +
+                       (*vertices_)[at(triangle[2])] * minimum.weights[2];
+    const double apart = (place - (*vertices_)[at(triangle[k])]).norm();
+    if (apart <= std::max(accuracy, -corner.distance.value)) return true;
+  }
+  return false;
+}
+
+// A convex shape has one deepest point on an edge; a mesh may have several.
+bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
+                                 const MeshTriangle& triangle) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (weights[static_cast<int>(k)] > kOnEdge) continue;
+    const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+    const bool ascending = triangle[next] < triangle[last];
+    const double along = weights[static_cast<int>(ascending ? last : next)];
+    auto& places = edge_places_[std::minmax(triangle[next], triangle[last])];
+    const bool is_mesh = (*link_)[shape].shape->isMesh();
+    for (const EdgePlace& known : places) {
+      if (known.shape != shape) continue;
+      if (!is_mesh || std::abs(known.along - along) <= kSameAlong) return true;
+    }
+    places.push_back({shape, along});
+    return false;
+  }
+  return false;
+}
+
+void LinkContacts::add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found) {
+  const MeshTriangle& triangle = surface_->triangles[at(triangle_)];
+  const Vec3& a = (*vertices_)[at(triangle[0])];
+  const Vec3& b = (*vertices_)[at(triangle[1])];
+  const Vec3& c = (*vertices_)[at(triangle[2])];
+  Contact contact;
+  contact.tool = tool_;
+  contact.link = link_index_;
+  contact.triangle = triangle_;
+  contact.barycentric = weights;
+  contact.point = weights[0] * a + weights[1] * b + weights[2] * c;
+  contact.normal = normal.isZero() ? inward(a, b, c) : normal;
+  contact.depth_m = depth;
+  found.contacts.push_back(contact);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,62 @@
+// Contacts of one link with the deformed surface.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "placed_link.h"
+#include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/surface.h"
+#include "triangle_minimum.h"
+
+namespace robot_tissue {
+
+class LinkContacts {
+ public:
+  // Adds the contacts with depth > -margin (m) of a link to `found`; tool and link are written into
+  // them. Keeps its arrays from call to call, to spare allocations.
+  void find(const PlacedLink& link, int tool_index, int link_index, const Surface& surface,
+            const std::vector<Vec3>& vertices, double margin, ContactSet& found);
+
+ private:
+  // A vertex seen from a shape, asked once.
+  struct Seen {
+    std::uint64_t search = 0;  // the one that asked; 0: none
+    bool is_near = false;      // of a mesh: not farther than the margin; else always
+    Vec3 point = Vec3::Zero();
+    SignedDistance distance;
+  };
+
+  void askTriangle(int triangle, ContactSet& found);
+  void askVertex(int vertex, const Vec3& weights, ContactSet& found);
+  void askShape(std::size_t shape, const MeshTriangle& triangle, ContactSet& found);
+  const Seen& seen(std::size_t shape, int vertex);
+  std::vector<TriangleMinimum> minimaOf(std::size_t shape, const MeshTriangle& triangle);
+  bool isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
+                       const MeshTriangle& triangle, double accuracy);
+  bool isOnKnownEdge(const Vec3& weights, std::size_t shape, const MeshTriangle& triangle);
+  void add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found);
+
+  const PlacedLink* link_ = nullptr;
+  const Surface* surface_ = nullptr;
+  const std::vector<Vec3>* vertices_ = nullptr;
+  double margin_ = 0.0;  // m
+  int tool_ = 0;
+  int link_index_ = 0;
+  int triangle_ = 0;
+  std::uint64_t search_ = 0;  // number of the present one
+
+  std::vector<std::uint8_t> beyond_;        // per vertex: the sides of the link's box it is beyond
+  std::vector<std::uint8_t> vertex_asked_;  // per vertex, 1 = contact told or none
+  std::vector<std::vector<Seen>> seen_;     // per shape and vertex
+  struct EdgePlace {
+    std::size_t shape;
+    double along;  // share of the edge
+  };
+  std::map<std::pair<int, int>, std::vector<EdgePlace>> edge_places_;
+};
+
+}  // namespace robot_tissue

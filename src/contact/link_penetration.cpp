@@ -1,0 +1,136 @@
+#include "link_penetration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kSpherePoints = 200;
+constexpr int kBoxSteps = 8;  // of an edge
+constexpr int kRimPoints = 16;
+constexpr int kSideRings = 8;
+constexpr int kCapRings = 2;
+constexpr int kMostMoves = 8;
+constexpr double kGain = 1e-7;  // m: a move that brings less is the last
+
+// Golden spiral.
+std::vector<Vec3> spherePoints(double radius) {
+  std::vector<Vec3> points;
+  const double turn = M_PI * (3.0 - std::sqrt(5.0));
+  for (int i = 0; i < kSpherePoints; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kSpherePoints;
+    const double across = std::sqrt(1.0 - z * z);
+    points.push_back(radius * Vec3(across * std::cos(turn * i), across * std::sin(turn * i), z));
+  }
+  return points;
+}
+
+// A grid on each face, edges and corners among them.
+std::vector<Vec3> boxPoints(const Vec3& size) {
+  std::vector<Vec3> points;
+  const auto isEnd = [](int i) { return i == 0 || i == kBoxSteps; };
+  for (int i = 0; i <= kBoxSteps; ++i) {
+    for (int j = 0; j <= kBoxSteps; ++j) {
+      for (int k = 0; k <= kBoxSteps; ++k) {
+        if (!isEnd(i) && !isEnd(j) && !isEnd(k)) continue;
+        points.push_back(size.cwiseProduct(Vec3(i, j, k) / kBoxSteps - Vec3::Constant(0.5)));
+      }
+    }
+  }
+  return points;
+}
+
+std::vector<Vec3> cylinderPoints(double radius, double length) {
+  std::vector<Vec3> points = {Vec3(0.0, 0.0, 0.5 * length), Vec3(0.0, 0.0, -0.5 * length)};
+  for (int i = 0; i < kRimPoints; ++i) {
+    const double angle = 2.0 * M_PI * i / kRimPoints;
+    const Vec3 rim(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+    for (int ring = 0; ring <= kSideRings; ++ring) {
+      const double share = static_cast<double>(ring) / kSideRings;
+      points.push_back(rim + Vec3(0.0, 0.0, (share - 0.5) * length));
+    }
+    for (int ring = 1; ring < kCapRings; ++ring) {
+      const double share = static_cast<double>(ring) / kCapRings;
+      points.push_back(share * rim + Vec3(0.0, 0.0, 0.5 * length));
+      points.push_back(share * rim - Vec3(0.0, 0.0, 0.5 * length));
+    }
+  }
+  return points;
+}
+
+std::vector<Vec3> meshPoints(const ToolMesh& mesh, double padding) {
+  std::vector<Vec3> points;
+  const auto& vertices = mesh.vertices();
+  const auto& normals = mesh.vertexNormals();
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    points.push_back(vertices[i] + padding * normals[i]);
+  }
+  for (const ToolMesh::Edge& edge : mesh.edges()) {
+    const auto [a, b] = edge.ends;
+    const Vec3 normal = (normals[at(a)] + normals[at(b)]).stableNormalized();
+    points.push_back(0.5 * (vertices[at(a)] + vertices[at(b)]) + padding * normal);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
+  const ToolShape& measures = shape.measures();
+  std::vector<Vec3> points;
+  switch (measures.type) {
+    case ToolShape::Type::kSphere:
+      return spherePoints(measures.radius + shape.padding());
+    case ToolShape::Type::kBox:
+      points = boxPoints(measures.size);
+      break;
+    case ToolShape::Type::kCylinder:
+      points = cylinderPoints(measures.radius, measures.length);
+      break;
+    case ToolShape::Type::kMesh:
+      return meshPoints(shape.mesh(), shape.padding());
+    case ToolShape::Type::kPlane:
+      break;
+  }
+  // Corners and edges move outwards between their faces.
+  const Vec3 half = 0.5 * (shape.bounds().max - shape.bounds().min);
+  for (Vec3& point : points) {
+    const Vec3 outside = point + 1e-6 * half.minCoeff() * point.cwiseQuotient(half);
+    point += shape.padding() * shape.distance(outside).slope;
+  }
+  return points;
+}
+
+double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
+                     const TriangleTree& surface, double known) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Box& box = surface.bounds();
+  double deepest = known;
+  TriangleTree::Nearest foot;
+  Vec3 place = Vec3::Zero();
+  const auto isDeeper = [&](const Vec3& point, double least) {
+    const bool in_box =
+        (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+    if (!in_box) return false;
+    const auto nearest = surface.nearest(point, infinity, least);
+    if (!nearest || nearest->distance <= least || !surface.isInside(point)) return false;
+    deepest = nearest->distance;
+    foot = *nearest;
+    place = point;
+    return true;
+  };
+  for (const Vec3& point : points) isDeeper(placed.tissue_T_shape * point, deepest);
+  if (placed.shape->isMesh() || foot.triangle < 0) return deepest;
+  for (int move = 0; move < kMostMoves; ++move) {
+    const Vec3 inwards = (place - foot.point).normalized();
+    const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
+    if (!isDeeper(placed.tissue_T_shape * placed.shape->farthest(direction), deepest + kGain)) {
+      break;
+    }
+  }
+  return deepest;
+}
+
+}  // namespace robot_tissue

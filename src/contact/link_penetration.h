@@ -1,0 +1,23 @@
+// How deep a link is inside a closed surface.
+#pragma once
+
+#include <vector>
+
+#include "placed_link.h"
+#include "triangle_tree.h"
+
+namespace robot_tissue {
+
+// Points of the padded surface in the shape's own frame (m): corners, edges and faces of a box,
+// rims, caps and sides of a cylinder, evenly spread points of a sphere, vertices and middles of the
+// edges of a mesh. None for a plane.
+std::vector<Vec3> surfacePoints(const CollisionShape& shape);
+
+// Of the points (shape's frame), the depth of the deepest inside the surface (m), or `known` when
+// none is deeper: the distance to the nearest triangle. For a convex shape the deepest one then
+// moves on to where the shape reaches farthest from that triangle, so that it is exact over a flat
+// surface.
+double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
+                     const TriangleTree& surface, double known);
+
+}  // namespace robot_tissue

@@ -1,0 +1,71 @@
+#include "mesh_minima.h"
+
+#include <algorithm>
+
+#include "mesh_seeds.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSamePlace = 0.05;  // of the longest edge
+
+// Whether a place found before stands for another, too: the ball around it that is all inside the
+// mesh holds the other, or they are side by side.
+bool standsFor(const TriangleMinimum& known, const Vec3& point, const Corners& corners) {
+  const double apart = (pointOf(corners, known.weights) - point).norm();
+  return apart <= std::max(kSamePlace * longestEdge(corners), -known.distance.value);
+}
+
+bool isKnown(const Vec3& point, double distance, const Corners& corners,
+             const std::vector<TriangleMinimum>& minima) {
+  return std::any_of(minima.begin(), minima.end(), [&](const TriangleMinimum& known) {
+    return known.distance.value <= distance && standsFor(known, point, corners);
+  });
+}
+
+// The deepest of what stands for each other stays.
+void keep(const TriangleMinimum& found, const Corners& corners,
+          std::vector<TriangleMinimum>& minima) {
+  if (isKnown(pointOf(corners, found.weights), found.distance.value, corners, minima)) return;
+  minima.erase(std::remove_if(minima.begin(), minima.end(),
+                              [&](const TriangleMinimum& known) {
+                                return standsFor(found, pointOf(corners, known.weights), corners);
+                              }),
+               minima.end());
+  minima.push_back(found);
+}
+
+}  // namespace
+
+std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
+                                        double accuracy, double limit) {
+  std::vector<TriangleMinimum> minima;
+  const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (!(area.norm() > 0.0)) return minima;
+  // A distance changes by no more than the way.
+  const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
+  const double at_center = shape.distance(center).value;
+  double widest = 0.0;
+  for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());
+  if (at_center - widest >= limit) return minima;
+
+  const ToolMesh& mesh = shape.mesh();
+  const double reach = std::max(0.0, shape.padding() + limit);
+  std::vector<int> faces;
+  mesh.tree().collectNear(corners, reach, faces);
+  if (faces.empty() && at_center >= limit) return minima;
+  std::sort(faces.begin(), faces.end());
+  for (const Vec3& seed : seedsOn(corners, mesh, faces, reach)) {
+    const Vec3 start = pointOf(corners, seed);
+    if (isKnown(start, shape.distance(start).value, corners, minima)) continue;
+    const TriangleMinimum found = localMinimum(shape, corners, seed, accuracy);
+    if (found.distance.value < limit) keep(found, corners, minima);
+  }
+  std::stable_sort(minima.begin(), minima.end(),
+                   [](const TriangleMinimum& a, const TriangleMinimum& b) {
+                     return a.distance.value < b.distance.value;
+                   });
+  return minima;
+}
+
+}  // namespace robot_tissue

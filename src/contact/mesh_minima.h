@@ -1,0 +1,17 @@
+// Where on a triangle the signed distance to a mesh is least: one place for each part of the mesh
+// that comes through the triangle or near it (own).
+#pragma once
+
+#include <vector>
+
+#include "collision_shape.h"
+#include "triangle_minimum.h"
+
+namespace robot_tissue {
+
+// Local least distances below `limit` (m), the least first; corners in the frame of the shape,
+// which is a mesh.
+std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
+                                        double accuracy, double limit);
+
+}  // namespace robot_tissue

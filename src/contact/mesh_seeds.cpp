@@ -1,0 +1,249 @@
+#include "mesh_seeds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "triangle_minimum.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kAtOnePoint = 1e-9;  // of the longest edge
+constexpr double kSquare = 1e-9;      // cosine that counts as a right angle
+
+// The triangle's plane: height over it, and weights of points in it.
+class TrianglePlane {
+ public:
+  explicit TrianglePlane(const Corners& corners) : origin_(corners[0]) {
+    const Vec3 ab = corners[1] - corners[0];
+    const Vec3 ac = corners[2] - corners[0];
+    const Vec3 area = ab.cross(ac);
+    normal_ = area.normalized();
+    to_b_ = ac.cross(area) / area.squaredNorm();
+    to_c_ = area.cross(ab) / area.squaredNorm();
+  }
+  double height(const Vec3& point) const { return normal_.dot(point - origin_); }
+  Vec3 weights(const Vec3& point) const {
+    const double b = to_b_.dot(point - origin_);
+    const double c = to_c_.dot(point - origin_);
+    return {1.0 - b - c, b, c};
+  }
+
+ private:
+  Vec3 origin_, normal_, to_b_, to_c_;
+};
+
+// Where a face of the mesh cuts the triangle.
+struct Slit {
+  int face = 0;
+  Vec3 middle = Vec3::Zero();  // weights
+  double length = 0.0;         // m
+};
+
+// The part of a segment in the plane that is on the triangle, by weights of its ends.
+std::optional<std::array<Vec3, 2>> onTriangle(const Vec3& from, const Vec3& to) {
+  double first = 0.0;
+  double last = 1.0;
+  for (int k = 0; k < 3; ++k) {
+    if (from[k] < 0.0 && to[k] < 0.0) return std::nullopt;
+    const double crossing = from[k] / (from[k] - to[k]);
+    if (from[k] < 0.0) first = std::max(first, crossing);
+    if (to[k] < 0.0) last = std::min(last, crossing);
+  }
+  if (!(first <= last)) return std::nullopt;
+  return std::array<Vec3, 2>{from + first * (to - from), from + last * (to - from)};
+}
+
+std::optional<Slit> slitOf(int face, const Corners& face_corners, const Corners& corners,
+                           const TrianglePlane& plane) {
+  std::array<double, 3> heights;
+  for (std::size_t k = 0; k < 3; ++k) heights[k] = plane.height(face_corners[k]);
+  std::array<Vec3, 2> ends;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if ((heights[k] < 0.0) == (heights[next] < 0.0)) continue;
+    const double t = heights[k] / (heights[k] - heights[next]);
+    ends[count++] = plane.weights(face_corners[k] + t * (face_corners[next] - face_corners[k]));
+  }
+  if (count < 2) return std::nullopt;
+  const auto cut = onTriangle(ends[0], ends[1]);
+  if (!cut) return std::nullopt;
+  const auto& [from, to] = *cut;
+  return Slit{face, 0.5 * (from + to), (pointOf(corners, to) - pointOf(corners, from)).norm()};
+}
+
+// Slits whose faces share an edge have the same number.
+std::vector<std::size_t> connectedParts(const std::vector<Slit>& slits, const ToolMesh& mesh) {
+  std::vector<std::pair<int, std::size_t>> slits_of_edges;
+  for (std::size_t i = 0; i < slits.size(); ++i) {
+    for (const int edge : mesh.edgesOfTriangles()[at(slits[i].face)]) {
+      slits_of_edges.emplace_back(edge, i);
+    }
+  }
+  std::sort(slits_of_edges.begin(), slits_of_edges.end());
+  std::vector<std::size_t> part(slits.size());
+  std::iota(part.begin(), part.end(), std::size_t{0});
+  const auto root = [&](std::size_t slit) {
+    while (part[slit] != slit) slit = part[slit] = part[part[slit]];
+    return slit;
+  };
+  for (std::size_t i = 1; i < slits_of_edges.size(); ++i) {
+    if (slits_of_edges[i].first != slits_of_edges[i - 1].first) continue;
+    const auto [low, high] =
+        std::minmax({root(slits_of_edges[i].second), root(slits_of_edges[i - 1].second)});
+    part[high] = low;
+  }
+  for (std::size_t& number : part) number = root(number);
+  return part;
+}
+
+Vec3 farthestFrom(const Vec3& place, const std::vector<Slit>& slits,
+                  const std::vector<std::size_t>& part, std::size_t number,
+                  const Corners& corners) {
+  Vec3 farthest = place;
+  double most = -1.0;
+  for (std::size_t i = 0; i < slits.size(); ++i) {
+    const double away = (pointOf(corners, slits[i].middle) - pointOf(corners, place)).norm();
+    if (part[i] != number || away <= most) continue;
+    most = away;
+    farthest = slits[i].middle;
+  }
+  return farthest;
+}
+
+// Of each connected part: its middle, and two places at its ends.
+void seedsOfSlits(const std::vector<Slit>& slits, const ToolMesh& mesh, const Corners& corners,
+                  std::vector<Vec3>& seeds) {
+  const std::vector<std::size_t> part = connectedParts(slits, mesh);
+  for (std::size_t number = 0; number < slits.size(); ++number) {
+    if (part[number] != number) continue;
+    Vec3 sum = Vec3::Zero();
+    double length = 0.0;
+    const double least = kAtOnePoint * longestEdge(corners);
+    for (std::size_t i = number; i < slits.size(); ++i) {
+      if (part[i] != number) continue;
+      sum += (slits[i].length + least) * slits[i].middle;
+      length += slits[i].length + least;
+    }
+    const Vec3 middle = sum / length;
+    const Vec3 end = farthestFrom(middle, slits, part, number, corners);
+    for (const Vec3& seed : {middle, end, farthestFrom(end, slits, part, number, corners)}) {
+      seeds.push_back(seed);
+    }
+  }
+}
+
+// Whether going from `place` to `other` leads, at first, not nearer to what is `away` from it.
+bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
+  const Vec3 way = other - place;
+  return way.dot(away) <= kSquare * way.norm() * away.norm();
+}
+
+std::vector<int> sortedOnce(std::vector<int> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+// Nearest points of vertices whose neighbors are all farther from the triangle; corners of the
+// triangle are asked in any case.
+void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh,
+                        const TrianglePlane& plane, double reach, const Corners& corners,
+                        std::vector<Vec3>& seeds) {
+  std::vector<int> vertices;
+  for (const int face : faces) {
+    const MeshTriangle& t = mesh.triangles()[at(face)];
+    vertices.insert(vertices.end(), t.begin(), t.end());
+  }
+  for (const int number : sortedOnce(std::move(vertices))) {
+    const Vec3& vertex = mesh.vertices()[at(number)];
+    if (std::abs(plane.height(vertex)) > reach) continue;
+    const Vec3 weights = nearestInTriangle(vertex, corners);
+    const Vec3 away = pointOf(corners, weights) - vertex;
+    if (weights.maxCoeff() == 1.0 || away.norm() > reach) continue;
+    const auto& around = mesh.neighbors()[at(number)];
+    if (std::all_of(around.begin(), around.end(), [&](int other) {
+          return leadsAway(vertex, mesh.vertices()[at(other)], away);
+        })) {
+      seeds.push_back(weights);
+    }
+  }
+}
+
+// Shares of the ways from a to b and from c to d of the nearest points of two segments; nothing
+// when one is an end (own, by the normal equations).
+std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b, const Vec3& c,
+                                                   const Vec3& d) {
+  const Vec3 ab = b - a, cd = d - c, ac = c - a;
+  const double uu = ab.squaredNorm(), uv = ab.dot(cd), vv = cd.squaredNorm();
+  const double determinant = uu * vv - uv * uv;
+  if (!(determinant > kSquare * uu * vv)) return std::nullopt;
+  const double u = (ac.dot(ab) * vv - ac.dot(cd) * uv) / determinant;
+  const double v = (ac.dot(ab) * uv - ac.dot(cd) * uu) / determinant;
+  if (u < 0.0 || u > 1.0 || v < 0.0 || v > 1.0) return std::nullopt;
+  return std::array<double, 2>{u, v};
+}
+
+// Places on the triangle's edges beside edges of the mesh, where every way on the triangle and on
+// the mesh leads apart.
+void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
+                      const TrianglePlane& plane, double reach, const Corners& corners,
+                      std::vector<Vec3>& seeds) {
+  std::vector<int> edges;
+  for (const int face : faces) {
+    const auto& own = mesh.edgesOfTriangles()[at(face)];
+    edges.insert(edges.end(), own.begin(), own.end());
+  }
+  for (const int number : sortedOnce(std::move(edges))) {
+    const ToolMesh::Edge& edge = mesh.edges()[at(number)];
+    const Vec3& from = mesh.vertices()[at(edge.ends[0])];
+    const Vec3& to = mesh.vertices()[at(edge.ends[1])];
+    const double from_height = plane.height(from), to_height = plane.height(to);
+    if (std::min(from_height, to_height) > reach || std::max(from_height, to_height) < -reach) {
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const auto shares = nearestWithin(corners[k], corners[next], from, to);
+      if (!shares) continue;
+      const Vec3 place = corners[k] + (*shares)[0] * (corners[next] - corners[k]);
+      const Vec3 beside = from + (*shares)[1] * (to - from);
+      const Vec3 away = place - beside;
+      if (away.norm() > reach || !leadsAway(place, corners[(k + 2) % 3], -away) ||
+          !leadsAway(beside, mesh.vertices()[at(edge.opposite[0])], away) ||
+          !leadsAway(beside, mesh.vertices()[at(edge.opposite[1])], away)) {
+        continue;
+      }
+      Vec3 weights = Vec3::Zero();
+      weights[static_cast<int>(next)] = (*shares)[0];
+      weights[static_cast<int>(k)] = 1.0 - (*shares)[0];
+      seeds.push_back(weights);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3> seedsOn(const Corners& corners, const ToolMesh& mesh,
+                          const std::vector<int>& faces, double reach) {
+  const TrianglePlane plane(corners);
+  std::vector<Slit> slits;
+  for (const int face : faces) {
+    if (const auto slit = slitOf(face, mesh.corners(face), corners, plane)) slits.push_back(*slit);
+  }
+  std::vector<Vec3> seeds;
+  seedsOfSlits(slits, mesh, corners, seeds);
+  if (reach > 0.0) {
+    seedsUnderVertices(faces, mesh, plane, reach, corners, seeds);
+    seedsBesideEdges(faces, mesh, plane, reach, corners, seeds);
+  }
+  seeds.push_back(Vec3::Constant(1.0 / 3.0));
+  return seeds;
+}
+
+}  // namespace robot_tissue

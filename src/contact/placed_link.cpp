@@ -1,0 +1,66 @@
+#include "placed_link.h"
+
+#include <limits>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kRigidSlack = 1e-6;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Box placedBounds(const CollisionShape& shape, const Pose& tissue_T_shape) {
+  if (shape.isPlane()) return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+  const Box& box = shape.bounds();
+  const Vec3 center = tissue_T_shape * Vec3(0.5 * (box.min + box.max));
+  const Vec3 reach = tissue_T_shape.linear().cwiseAbs() * (0.5 * (box.max - box.min));
+  return {center - reach, center + reach};
+}
+
+}  // namespace
+
+bool isRigid(const Pose& pose) {
+  if (!pose.matrix().allFinite()) return false;
+  const Eigen::Matrix3d rotation = pose.linear();
+  return (rotation.transpose() * rotation).isIdentity(kRigidSlack) && rotation.determinant() > 0.0;
+}
+
+Box emptyBox() { return {Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)}; }
+
+void growBy(const Box& other, Box& box) {
+  box.min = box.min.cwiseMin(other.min);
+  box.max = box.max.cwiseMax(other.max);
+}
+
+bool boxesMeet(const Box& a, const Box& b, double margin) {
+  return (a.min.array() - margin <= b.max.array()).all() &&
+         (b.min.array() - margin <= a.max.array()).all();
+}
+
+PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_T_link) {
+  PlacedLink link;
+  if (!isRigid(tissue_T_link)) return link;
+  for (const CollisionShape& shape : shapes) {
+    const Pose tissue_T_shape = tissue_T_link * shape.poseInLink();
+    link.push_back(
+        {&shape, tissue_T_shape, tissue_T_shape.inverse(), placedBounds(shape, tissue_T_shape)});
+  }
+  return link;
+}
+
+Box boundsOf(const PlacedLink& link) {
+  Box box = emptyBox();
+  for (const PlacedShape& shape : link) growBy(shape.bounds, box);
+  return box;
+}
+
+std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach) {
+  std::optional<WayOut> best;
+  for (const PlacedShape& placed : link) {
+    const auto out = placed.shape->wayOut(placed.shape_T_tissue * point, reach);
+    if (!out || (best && out->depth_m <= best->depth_m)) continue;
+    best = WayOut{out->depth_m, placed.tissue_T_shape.linear() * out->normal};
+  }
+  return best;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,133 @@
+#include "tool_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "robot_tissue/core/mesh_checks.h"
+#include "robot_tissue/mesh/mesh_file.h"
+
+namespace robot_tissue {
+namespace {
+
+// Nearer to the surface than this (m), the direction to its nearest point is rounding noise.
+constexpr double kOnSurface = 1e-10;
+constexpr std::size_t kWidthDirections = 400;
+
+// Turned outwards as a whole: which parts of a surface that crosses itself are cavities is not
+// told.
+TriangleMesh turnedOutwards(TriangleMesh mesh) {
+  if (enclosedVolume(mesh.vertices, mesh.triangles) >= 0.0) return mesh;
+  for (MeshTriangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
+                         std::vector<std::string>& warnings) {
+  const std::string name = owner + ": mesh '" + resource + "' ";
+  try {
+    TriangleMesh mesh = welded(loadMeshFile(resource, scale));
+    const auto fault = meshFault(mesh);
+    if (!fault) return facingOutward(std::move(mesh));
+    if (fault->rfind("intersects itself", 0) != 0) throw InputError(*fault);
+    warnings.push_back(name + *fault + "; depths near such places are only estimates");
+    return turnedOutwards(std::move(mesh));
+  } catch (const InputError& error) {
+    throw InputError(name + error.what() +
+                     "; allowed is a package:// or file:// address of a closed mesh with volume");
+  }
+}
+
+}  // namespace
+
+ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
+                   std::vector<std::string>& warnings)
+    : mesh_(checkedMesh(resource, scale, owner, warnings)), tree_(mesh_.vertices, mesh_.triangles) {
+  findEdges();
+  findNormals();
+  measureThickness();
+}
+
+Corners ToolMesh::corners(int triangle) const {
+  const MeshTriangle& t = mesh_.triangles[at(triangle)];
+  return {mesh_.vertices[at(t[0])], mesh_.vertices[at(t[1])], mesh_.vertices[at(t[2])]};
+}
+
+// Closed: each edge has two triangles.
+void ToolMesh::findEdges() {
+  std::map<std::pair<int, int>, int> numbers;
+  neighbors_.resize(mesh_.vertices.size());
+  for (const MeshTriangle& t : mesh_.triangles) {
+    std::array<int, 3> own;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = t[k], to = t[(k + 1) % 3], opposite = t[(k + 2) % 3];
+      const auto [place, is_new] =
+          numbers.try_emplace(std::minmax(from, to), static_cast<int>(edges_.size()));
+      own[k] = place->second;
+      if (is_new) {
+        edges_.push_back({{place->first.first, place->first.second}, {opposite, opposite}});
+        neighbors_[at(from)].push_back(to);
+        neighbors_[at(to)].push_back(from);
+      } else {
+        edges_[at(own[k])].opposite[1] = opposite;
+      }
+    }
+    edges_of_triangles_.push_back(own);
+  }
+}
+
+void ToolMesh::findNormals() {
+  vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
+  for (int triangle = 0; triangle < static_cast<int>(mesh_.triangles.size()); ++triangle) {
+    const Corners c = corners(triangle);
+    const Vec3 normal = (c[1] - c[0]).cross(c[2] - c[0]).stableNormalized();
+    normals_.push_back(normal);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = c[(k + 1) % 3] - c[k];
+      const Vec3 b = c[(k + 2) % 3] - c[k];
+      const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+      vertex_normals_[at(mesh_.triangles[at(triangle)][k])] += angle * normal;
+    }
+  }
+  for (Vec3& normal : vertex_normals_) normal = normal.stableNormalized();
+}
+
+void ToolMesh::measureThickness() {
+  thickness_ = std::numeric_limits<double>::infinity();
+  const std::size_t stride = 1 + normals_.size() / kWidthDirections;
+  for (std::size_t i = 0; i < normals_.size(); i += stride) {
+    if (normals_[i].isZero()) continue;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec3& vertex : mesh_.vertices) {
+      const double along = normals_[i].dot(vertex);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+    thickness_ = std::min(thickness_, high - low);
+  }
+}
+
+std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach) const {
+  const Box& box = bounds();
+  // A point in the box is asked wherever it is: it may be deep inside.
+  const bool in_box =
+      (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+  const auto nearest =
+      tree_.nearest(point, in_box ? std::numeric_limits<double>::infinity() : reach);
+  if (!nearest) return std::nullopt;
+  const bool inside = in_box && tree_.isInside(point);
+  if (!inside && nearest->distance > reach) return std::nullopt;
+  SignedDistance found;
+  found.value = inside ? -nearest->distance : nearest->distance;
+  if (nearest->distance <= kOnSurface) {
+    found.slope = normals_[at(nearest->triangle)];
+  } else {
+    found.slope = (point - nearest->point) / found.value;
+  }
+  return found;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,60 @@
+// A closed triangle mesh that touches as it is, concave parts too.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "signed_distance.h"
+#include "triangle_tree.h"
+
+namespace robot_tissue {
+
+class ToolMesh {
+ public:
+  struct Edge {
+    std::array<int, 2> ends;      // vertices, ascending
+    std::array<int, 2> opposite;  // of its two triangles
+  };
+
+  // `owner` begins the message. Throws InputError: a mesh that cannot be loaded, that is not closed
+  // or has no volume. One that intersects itself is warned of.
+  ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
+           std::vector<std::string>& warnings);
+
+  // Nothing when the point is outside and farther than `reach` (m).
+  std::optional<SignedDistance> distance(const Vec3& point, double reach) const;
+
+  const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
+  const std::vector<MeshTriangle>& triangles() const { return mesh_.triangles; }
+  const std::vector<Edge>& edges() const { return edges_; }
+  // Of each triangle, as numbers of edges(): the one from its corner k to the next is the k-th.
+  const std::vector<std::array<int, 3>>& edgesOfTriangles() const { return edges_of_triangles_; }
+  // Vertices joined by an edge with each vertex.
+  const std::vector<std::vector<int>>& neighbors() const { return neighbors_; }
+  // Mean of the normals around a vertex, weighted by their angles; unit.
+  const std::vector<Vec3>& vertexNormals() const { return vertex_normals_; }
+  const TriangleTree& tree() const { return tree_; }
+  const Box& bounds() const { return tree_.bounds(); }
+  // Smallest width over the directions of some hundred faces (m).
+  double thickness() const { return thickness_; }
+  Corners corners(int triangle) const;
+
+ private:
+  void findEdges();
+  void findNormals();
+  void measureThickness();
+
+  TriangleMesh mesh_;  // frame of the shape (m), facing outwards
+  TriangleTree tree_;
+  std::vector<Edge> edges_;
+  std::vector<std::array<int, 3>> edges_of_triangles_;
+  std::vector<std::vector<int>> neighbors_;
+  std::vector<Vec3> normals_;  // of the triangles, unit; zero without area
+  std::vector<Vec3> vertex_normals_;
+  double thickness_ = 0.0;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,171 @@
+#include "triangle_minimum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kOfEdge = 0.005;  // accuracy, of the longest edge
+constexpr double kOfThickness = 0.02;
+constexpr double kLeastAccuracy = 1e-5;  // m
+constexpr double kCertain = 1e-3;        // of the accuracy: less or not less than the limit
+constexpr std::size_t kMostLocalSteps = 24;
+constexpr double kFirstPart = 0.125;  // of the longest edge
+constexpr double kGoodShare = 0.25;   // of the gain that the planes foretold
+constexpr double kRounding = 1e-12;   // m
+
+struct Cut {
+  Vec3 point;
+  SignedDistance distance;
+
+  double heightAt(const Vec3& other) const {
+    return distance.value + distance.slope.dot(other - point);
+  }
+  Vec3 cornerValues(const Corners& corners) const {
+    return {heightAt(corners[0]), heightAt(corners[1]), heightAt(corners[2])};
+  }
+};
+
+// The part of the triangle that reaches `radius` from the point towards each edge: a smaller one of
+// the same form, by its corners' weights.
+std::array<Vec3, 3> partAround(const Corners& corners, const Vec3& weights, double radius) {
+  const double twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+  Vec3 least;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double edge = (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
+    const double share = twice_area > 0.0 ? radius * edge / twice_area : 1.0;
+    least[static_cast<int>(k)] = std::max(0.0, weights[static_cast<int>(k)] - share);
+  }
+  const double rest = 1.0 - least.sum();
+  std::array<Vec3, 3> part = {least, least, least};
+  for (std::size_t k = 0; k < 3; ++k) part[k][static_cast<int>(k)] += rest;
+  return part;
+}
+
+// What the cuts foretell in a part of the triangle.
+struct Forecast {
+  double least = 0.0;
+  Vec3 weights = Vec3::Zero();
+};
+
+Forecast forecast(const std::vector<Cut>& cuts, const Corners& corners,
+                  const std::array<Vec3, 3>& part) {
+  const Corners part_corners = {pointOf(corners, part[0]), pointOf(corners, part[1]),
+                                pointOf(corners, part[2])};
+  HighestPlane bound;
+  for (const Cut& cut : cuts) bound.add(cut.cornerValues(part_corners));
+  const Vec3& w = bound.leastWeights();
+  return {bound.least(), w[0] * part[0] + w[1] * part[1] + w[2] * part[2]};
+}
+
+}  // namespace
+
+double longestEdge(const Corners& corners) {
+  return std::sqrt(
+      std::max({(corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[1]).squaredNorm(),
+                (corners[0] - corners[2]).squaredNorm()}));
+}
+
+double accuracyFor(const CollisionShape& shape, const Corners& corners) {
+  const double accuracy =
+      std::min(kOfEdge * longestEdge(corners), kOfThickness * shape.thickness());
+  return std::max(kLeastAccuracy, accuracy);
+}
+
+// The least point of the highest plane stays when the new plane is not above it; otherwise it moves
+// to where the new plane meets others, or to a corner.
+void HighestPlane::add(const Vec3& corner_values) {
+  planes_[count_++] = corner_values;
+  if (count_ > 1 && corner_values.dot(weights_) <= least_) return;
+  least_ = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) tryPoint(Vec3::Unit(k));
+  for (std::size_t i = 0; i + 1 < count_; ++i) {
+    const Vec3 difference = corner_values - planes_[i];
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3;
+      if ((difference[a] < 0.0) == (difference[b] < 0.0)) continue;
+      Vec3 weights = Vec3::Zero();
+      weights[a] = difference[b] / (difference[b] - difference[a]);
+      weights[b] = 1.0 - weights[a];
+      tryPoint(weights);
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vec3 cross = difference.cross(corner_values - planes_[j]);
+      const double sum = cross.sum();
+      if (sum == 0.0) continue;
+      const Vec3 weights = cross / sum;
+      if (weights.minCoeff() >= 0.0) tryPoint(weights);
+    }
+  }
+}
+
+void HighestPlane::tryPoint(const Vec3& weights) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = count_; i-- > 0;) {
+    highest = std::max(highest, planes_[i].dot(weights));
+    if (highest >= least_) return;
+  }
+  least_ = highest;
+  weights_ = weights;
+}
+
+TriangleMinimum convexMinimum(const CollisionShape& shape, const Corners& corners,
+                              const std::array<SignedDistance, 3>& at_corners, double accuracy,
+                              double limit) {
+  TriangleMinimum best;
+  HighestPlane bound;
+  for (std::size_t k = 0; k < 3; ++k) {
+    bound.add(Cut{corners[k], at_corners[k]}.cornerValues(corners));
+    if (k > 0 && at_corners[k].value >= best.distance.value) continue;
+    best = {Vec3::Unit(static_cast<int>(k)), at_corners[k]};
+  }
+  // The foot of the center is the least point for a sphere, and a good one for round shapes.
+  bool foot_asked = false;
+  while (bound.size() < HighestPlane::kMost && bound.least() < limit) {
+    const double open = best.distance.value - bound.least();
+    if (open <= accuracy * (best.distance.value < limit ? 1.0 : kCertain)) break;
+    const Vec3 weights =
+        foot_asked ? bound.leastWeights() : nearestInTriangle(Vec3::Zero(), corners);
+    foot_asked = true;
+    const Vec3 point = pointOf(corners, weights);
+    const SignedDistance distance = shape.distance(point);
+    if (distance.value < best.distance.value) best = {weights, distance};
+    bound.add(Cut{point, distance}.cornerValues(corners));
+  }
+  return best;
+}
+
+TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners, const Vec3& seed,
+                             double accuracy) {
+  const Vec3 start = pointOf(corners, seed);
+  TriangleMinimum best{seed, shape.distance(start)};
+  std::vector<Cut> cuts = {{start, best.distance}};
+  double radius = std::max(kFirstPart * longestEdge(corners), -best.distance.value);
+  for (std::size_t step = 0; step < kMostLocalSteps; ++step) {
+    const Forecast next = forecast(cuts, corners, partAround(corners, best.weights, radius));
+    const double gain = best.distance.value - next.least;
+    if (gain <= accuracy) break;
+    const Vec3 point = pointOf(corners, next.weights);
+    const Cut cut{point, shape.distance(point)};
+    cuts.push_back(cut);
+    if (cut.distance.value < best.distance.value) {
+      if (cut.distance.value < best.distance.value - kGoodShare * gain) radius *= 2.0;
+      best = {next.weights, cut.distance};
+    } else if (cut.heightAt(pointOf(corners, best.weights)) > best.distance.value + kRounding) {
+      radius *= 0.5;
+    }
+    // A plane above a value that was asked for belongs to another part of the shape.
+    const Vec3 best_point = pointOf(corners, best.weights);
+    cuts.erase(std::remove_if(cuts.begin(), cuts.end(),
+                              [&](const Cut& old) {
+                                return old.heightAt(best_point) > best.distance.value + kRounding;
+                              }),
+               cuts.end());
+  }
+  return best;
+}
+
+}  // namespace robot_tissue

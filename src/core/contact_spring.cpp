@@ -1,0 +1,65 @@
+#include "robot_tissue/core/contact_spring.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+// The drag before it is cut (N).
+Vec3 trialDrag(const ContactSpring& spring, const Vec3& point) {
+  const Vec3 slip = point - spring.anchor;
+  return spring.drag - spring.drag_stiffness * (slip - spring.normal.dot(slip) * spring.normal);
+}
+
+}  // namespace
+
+Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  Vec3 point = spring.rest;
+  for (const NodeWeight& carrier : spring.carriers) {
+    point += carrier.weight * displacement[at(carrier.node)];
+  }
+  return point;
+}
+
+double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return spring.normal.dot(pointOf(spring, displacement) - spring.foot);
+}
+
+double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return std::max(0.0, spring.multiplier - spring.stiffness * gapOf(spring, displacement));
+}
+
+Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  Vec3 force = normalForceOf(spring, displacement) * spring.normal;
+  if (spring.most_drag <= 0.0) return force;
+  const Vec3 trial = trialDrag(spring, pointOf(spring, displacement));
+  const double length = trial.norm();
+  return force + (length > spring.most_drag ? Vec3(spring.most_drag / length * trial) : trial);
+}
+
+double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  const double normal_force = normalForceOf(spring, displacement);
+  const double energy = 0.5 * normal_force * normal_force / spring.stiffness;
+  if (spring.most_drag <= 0.0) return energy;
+  const double length = trialDrag(spring, pointOf(spring, displacement)).norm();
+  const double most = spring.most_drag;
+  const double of_drag = length <= most ? 0.5 * length * length : most * (length - 0.5 * most);
+  return energy + of_drag / spring.drag_stiffness;
+}
+
+Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  const Eigen::Matrix3d along = spring.normal * spring.normal.transpose();
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  if (normalForceOf(spring, displacement) > 0.0) stiffness += spring.stiffness * along;
+  if (spring.most_drag <= 0.0) return stiffness;
+  const Vec3 trial = trialDrag(spring, pointOf(spring, displacement));
+  const double length = trial.norm();
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along;
+  if (length <= spring.most_drag) return stiffness + spring.drag_stiffness * across;
+  const double share = spring.most_drag / length;
+  return stiffness +
+         spring.drag_stiffness * share * (across - trial * trial.transpose() / (length * length));
+}
+
+}  // namespace robot_tissue

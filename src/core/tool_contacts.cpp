@@ -1,0 +1,344 @@
+#include "robot_tissue/core/tool_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kFirm = 10.0;       // spring over the tissue's stiffness at its point
+constexpr double kSettled = 0.03;    // of the spacing: a depth or gap that is none, at most
+constexpr double kCertain = 0.003;   // likewise, at least
+constexpr double kOfForce = 0.1;     // of all normal force: what closing it may change
+constexpr double kLittle = 0.05;     // of all normal force: a touch that may push from afar
+constexpr double kFarOff = 0.3;      // of the spacing: a gap at which a vertex is forgotten
+constexpr double kSamePoint = 0.25;  // barycentric: a touch that has wandered
+constexpr double kWanders = 0.2;     // of the slack: deeper than a touch, a point takes its place
+constexpr double kMostTurn = 0.5;    // rad, of a touch's plane in a load step
+constexpr double kSameSide = 0.3;    // cosine: a normal that turns further has jumped
+constexpr double kSameForce = 0.03;  // of the greatest drag of all touches
+constexpr double kFirmDrag = 2.0;    // drag's spring over that stiffness, at most
+constexpr double kElasticSlip =
+    0.02;                            // of the fineness: before a point that sticks slips, at least
+constexpr double kMostSlip = 0.1;    // likewise, at most
+constexpr double kMostForce = 15.0;  // of the stiffness times the spacing
+
+bool isVertex(const Contact& contact) { return contact.barycentric.maxCoeff() > 1.0 - 1e-6; }
+
+int vertexOf(const Contact& contact, const Surface& surface) {
+  Eigen::Index corner = 0;
+  contact.barycentric.maxCoeff(&corner);
+  return surface.triangles[at(contact.triangle)][at(static_cast<int>(corner))];
+}
+
+// The unit vector `to`, or one that is as far as `most` (rad) from `from` on the way to it.
+Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
+  const double cosine = std::min(1.0, std::max(-1.0, from.dot(to)));
+  const Vec3 across = to - cosine * from;
+  if (std::acos(cosine) <= most || across.norm() < 1e-9) return to;
+  return std::cos(most) * from + std::sin(most) * across.normalized();
+}
+
+}  // namespace
+
+ToolContacts::ToolContacts(std::vector<double> friction, std::vector<double> thickness)
+    : friction_(std::move(friction)), thickness_(std::move(thickness)) {}
+
+// What is fine beside the spacing, and beside a thin link (m).
+double ToolContacts::fineness(int link, double spacing) const {
+  return std::min(spacing, thickness_[at(link)]);
+}
+
+void ToolContacts::ride(const RobotPose& pose, const Tissue& tissue) {
+  if (since_links_.size() != pose.links.size() ||
+      since_displacement_.size() != tissue.state().displacement.size()) {
+    commit(pose, tissue);
+  }
+  for (Touch& touch : touches_) {
+    const Pose moved = pose.links[at(touch.link)] * since_links_[at(touch.link)].inverse();
+    touch.spring.foot = moved * touch.spring.foot;
+    touch.spring.normal = moved.linear() * touch.spring.normal;
+    anchor(pose, touch);
+  }
+}
+
+// Where the point stuck at the last commit, gone with the link since. Its drag follows the normal
+// force: what one touch no longer carries its neighbors carry, and the drag with it.
+void ToolContacts::anchor(const RobotPose& pose, Touch& touch) const {
+  const Pose& link = pose.links[at(touch.link)];
+  const Pose moved = link * since_links_[at(touch.link)].inverse();
+  touch.spring.anchor = moved * pointOf(touch.spring, since_displacement_);
+  const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.drag_ratio);
+  touch.spring.drag = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
+}
+
+void ToolContacts::meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
+                        const Held& held) {
+  for (Touch& touch : touches_) {
+    touch.found = true;  // its plane has come with the link
+    carry(tissue, held, touch);
+  }
+  for (const Contact& contact : contacts.contacts) {
+    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
+  }
+  forgetLost(held);
+  stickFirst(tissue);
+}
+
+// Nothing is known of the normal forces of a link that has only just met the tissue: its touches
+// stick in the first solve, so that the tissue does not slide off before it is held.
+void ToolContacts::stickFirst(const Tissue& tissue) {
+  std::set<int> pushing;
+  for (const Touch& touch : touches_) {
+    if (touch.spring.multiplier > 0.0) pushing.insert(touch.link);
+  }
+  for (Touch& touch : touches_) {
+    if (friction_[at(touch.tool)] <= 0.0 || pushing.count(touch.link) != 0) continue;
+    ContactSpring& spring = touch.spring;
+    spring.drag_stiffness = kFirmDrag / kFirm * spring.stiffness;
+    spring.most_drag = kMostForce * spring.drag_stiffness * tissue.lattice().spacing();
+  }
+}
+
+bool ToolContacts::update(const std::vector<std::optional<Contact>>& tracked,
+                          const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
+                          const Held& held, bool whole) {
+  bool settled = whole && takeForces(tissue);
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
+  }
+  for (const Contact& contact : found.contacts) {
+    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (!take(contact, pose, tissue, held)) settled = false;
+  }
+  forgetLost(held);
+  return settled;
+}
+
+// The plane where the touch is now. In one load step it turns only so far: what presses from
+// beyond an edge is to be found before the touch lets go. False: the touch is below the plane, or
+// pushed from afar.
+bool ToolContacts::track(const std::optional<Contact>& contact, const RobotPose& pose,
+                         const Tissue& tissue, Touch& touch) {
+  ContactSpring& spring = touch.spring;
+  touch.found = contact.has_value();
+  if (!contact) return spring.multiplier <= 0.0;
+  touch.off = -contact->depth_m;
+  if (contact->normal.norm() > 0.5) {
+    const Vec3 since = pose.links[at(touch.link)].linear() * touch.since_normal;
+    spring.normal = turnedBy(since, contact->normal, kMostTurn);
+    spring.foot = contact->point + contact->depth_m * contact->normal;
+  }
+  anchor(pose, touch);
+  const double gap = gapOf(spring, tissue.state().displacement);
+  const double slack = slackOf(spring, tissue);
+  return gap >= -slack && (gap <= slack || spring.multiplier <= kLittle * pressed_);
+}
+
+// A depth or gap that is none (m): the tissue would not push much harder or less without it.
+double ToolContacts::slackOf(const ContactSpring& spring, const Tissue& tissue) const {
+  const double spacing = tissue.lattice().spacing();
+  const double slack =
+      spring.stiffness > 0.0 ? kOfForce * kFirm * pressed_ / spring.stiffness : 0.0;
+  return std::min(std::max(slack, kCertain * spacing), kSettled * spacing);
+}
+
+// A point that was found in a link or near it: a new touch, or one of a triangle that has wandered.
+// False: it is to be pushed out.
+bool ToolContacts::take(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                        const Held& held) {
+  Touch* touch = find(contact, tissue.surface());
+  if (touch == nullptr) {
+    add(contact, pose, tissue, held);
+    return contact.depth_m <= slackOf(touches_.back().spring, tissue);
+  }
+  const double slack = slackOf(touch->spring, tissue);
+  if (touch->vertex >= 0 || -contact.depth_m >= touch->off - kWanders * slack) return true;
+  const bool same_side = touch->spring.normal.dot(contact.normal) >= kSameSide;
+  if (contact.depth_m > kSettled * tissue.lattice().spacing() && !same_side) {
+    add(contact, pose, tissue, held);
+    return false;
+  }
+  const Vec3 normal = touch->spring.normal, foot = touch->spring.foot;
+  const Vec3 since_normal = touch->since_normal;
+  put(contact, pose, tissue, held, *touch);
+  touch->since_normal = since_normal;
+  if (!same_side) {
+    touch->spring.normal = normal;
+    touch->spring.foot = foot;
+    anchor(pose, *touch);
+  }
+  return contact.depth_m <= slack;
+}
+
+// Multipliers and bounds of drag follow the forces. Whether the bounds stay about where they were.
+bool ToolContacts::takeForces(const Tissue& tissue) {
+  const double spacing = tissue.lattice().spacing();
+  double drag_before = 0.0, drag_now = 0.0;
+  pressed_ = 0.0;
+  for (Touch& touch : touches_) {
+    touch.found = false;
+    ContactSpring& spring = touch.spring;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    const double most_drag = friction_[at(touch.tool)] * force;
+    pressed_ += force;
+    drag_before += spring.most_drag;
+    drag_now += most_drag;
+    spring.multiplier = std::min(force, kMostForce / kFirm * spring.stiffness * spacing);
+    spring.most_drag = most_drag;
+    const double fine = fineness(touch.link, spacing);
+    const double soft = kFirmDrag / kFirm * spring.stiffness;
+    spring.drag_stiffness =
+        std::min(std::max(soft, most_drag / (kMostSlip * fine)), most_drag / (kElasticSlip * fine));
+  }
+  return std::abs(drag_now - drag_before) <= kSameForce * drag_now;
+}
+
+void ToolContacts::forgetLost(const Held& held) {
+  const auto lost = [&](const Touch& touch) {
+    const auto& carriers = touch.spring.carriers;
+    const auto is = [&](auto what) {
+      return [&held, what](const NodeWeight& carrier) { return what(held[at(carrier.node)]); };
+    };
+    return !touch.found ||
+           std::all_of(carriers.begin(), carriers.end(), is([](int how) { return how != 0; })) ||
+           std::any_of(carriers.begin(), carriers.end(),
+                       is([](int how) { return how == kGrasped; }));
+  };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
+}
+
+// A vertex is one touch; on a triangle it is the nearest one not far off.
+ToolContacts::Touch* ToolContacts::find(const Contact& contact, const Surface& surface) {
+  const int vertex = isVertex(contact) ? vertexOf(contact, surface) : -1;
+  Touch* nearest = nullptr;
+  double least = kSamePoint;
+  for (Touch& touch : touches_) {
+    if (touch.link != contact.link || touch.vertex != vertex) continue;
+    if (vertex >= 0) return &touch;
+    if (touch.triangle != contact.triangle) continue;
+    const double off = (touch.barycentric - contact.barycentric).cwiseAbs().maxCoeff();
+    if (off >= least) continue;
+    least = off;
+    nearest = &touch;
+  }
+  return nearest;
+}
+
+void ToolContacts::add(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                       const Held& held) {
+  Touch touch;
+  touch.tool = contact.tool;
+  touch.link = contact.link;
+  touch.vertex = isVertex(contact) ? vertexOf(contact, tissue.surface()) : -1;
+  touch.spring.foot = contact.point;
+  touch.drag_ratio = dragRatioAround(touch);
+  touches_.push_back(touch);
+  put(contact, pose, tissue, held, touches_.back());
+}
+
+// Of the nearest touch of the link that pushes; zero when none does.
+Vec3 ToolContacts::dragRatioAround(const Touch& touch) const {
+  Vec3 ratio = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Touch& other : touches_) {
+    const double off = (other.spring.foot - touch.spring.foot).norm();
+    if (other.link != touch.link || other.spring.multiplier <= 0.0 || off >= least) continue;
+    least = off;
+    ratio = other.drag_ratio;
+  }
+  return ratio;
+}
+
+void ToolContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                       const Held& held, Touch& touch) {
+  touch.found = true;
+  touch.off = -contact.depth_m;
+  touch.triangle = contact.triangle;
+  touch.barycentric = contact.barycentric;
+  carry(tissue, held, touch);
+  touch.spring.normal = contact.normal;
+  touch.spring.foot = contact.point + contact.depth_m * contact.normal;
+  touch.since_normal = pose.links[at(touch.link)].linear().transpose() * contact.normal;
+  anchor(pose, touch);
+}
+
+// The nodes that carry the point, and how firmly.
+void ToolContacts::carry(const Tissue& tissue, const Held& held, Touch& touch) {
+  const Surface& surface = tissue.surface();
+  std::map<int, double> weights;
+  ContactSpring& spring = touch.spring;
+  spring.rest.setZero();
+  for (int corner = 0; corner < 3; ++corner) {
+    const int vertex = surface.triangles[at(touch.triangle)][at(corner)];
+    const double share = touch.barycentric[corner];
+    if (share < 1e-9) continue;
+    spring.rest += share * surface.rest[at(vertex)];
+    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
+      weights[carrier.node] += share * carrier.weight;
+    }
+  }
+  spring.carriers.clear();
+  double compliance = 0.0;  // m/N
+  for (const auto& [node, weight] : weights) {
+    spring.carriers.push_back({node, weight});
+    const double stiffness = tissue.nodeStiffness(node);
+    if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
+  }
+  spring.stiffness = compliance > 0.0 ? kFirm / compliance : 0.0;
+}
+
+void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
+  since_links_ = pose.links;
+  since_displacement_ = tissue.state().displacement;
+  for (Touch& touch : touches_) {
+    const ContactSpring& spring = touch.spring;
+    const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.link)].linear().transpose();
+    touch.since_normal = link_R_tissue * spring.normal;
+    if (spring.multiplier <= 0.0) continue;
+    const double force = normalForceOf(spring, since_displacement_);
+    const Vec3 drag = forceOf(spring, since_displacement_) - force * spring.normal;
+    touch.drag_ratio = link_R_tissue * drag / spring.multiplier;
+  }
+  for (Touch& touch : touches_) {
+    if (touch.spring.multiplier <= 0.0) touch.drag_ratio = dragRatioAround(touch);
+  }
+  const auto left = [&](const Touch& touch) {
+    if (touch.spring.multiplier > 0.0) return false;
+    const double far = touch.vertex >= 0 ? kFarOff * tissue.lattice().spacing() : 0.0;
+    return gapOf(touch.spring, since_displacement_) > far;
+  };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
+}
+
+void ToolContacts::clear() {
+  touches_.clear();
+  since_links_.clear();
+}
+
+void ToolContacts::clear(int tool) {
+  const auto its = [&](const Touch& touch) { return touch.tool == tool; };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), its), touches_.end());
+}
+
+bool ToolContacts::pushes(int tool, const Tissue& tissue) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+    return touch.tool == tool && (touch.spring.multiplier > 0.0 ||
+                                  normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
+  });
+}
+
+std::vector<ContactSpring> ToolContacts::springsOf(int tool) const {
+  std::vector<ContactSpring> springs;
+  for (const Touch& touch : touches_) {
+    if (touch.tool == tool) springs.push_back(touch.spring);
+  }
+  return springs;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,139 @@
+// Pipeline: where the tools touch, and whether that is what the shape was solved for.
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/pipeline/pipeline.h"
+#include "stopwatch.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that is worth another round
+constexpr double kNear = 0.25;        // of the spacing: a gap that a solve may close
+constexpr double kLongestWay = 0.5;   // of the spacing, of the tissue beside a tool in one round
+constexpr double kShareOfTool = 0.5;  // of a link's thickness, likewise
+constexpr double kReach = 1.0;        // of the spacing: farther from its tool, a touch is forgotten
+constexpr double kClear = 0.03;       // of the spacing: off a tool, where its edges look round
+constexpr double kFarthestOut = 4.0;  // of the spacing: longest way out along the surface's normal
+
+}  // namespace
+
+// Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
+// no vertex near a link goes farther at once than a load step of that link would.
+double Pipeline::contactShare(const std::vector<Vec3>& before) {
+  const Stopwatch watch(report_.contact_ms);
+  const double spacing = tissue_.lattice().spacing();
+  deform(tissue_.surface(), before, vertices_);
+  const std::vector<Vec3>& now = tissue_.vertices();
+  double share = 1.0;
+  for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
+    const double longest = std::min(kLongestWay * spacing, kShareOfTool * finder_.thickness(link));
+    Box box = finder_.bounds(link, pose_.links[link]);
+    box.min.array() -= spacing;
+    box.max.array() += spacing;
+    const auto inside = [&](const Vec3& point) {
+      return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+    };
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      if (!inside(now[vertex]) && !inside(vertices_[vertex])) continue;
+      const double way = (now[vertex] - vertices_[vertex]).norm();
+      if (way > longest) share = std::min(share, longest / way);
+    }
+  }
+  return share;
+}
+
+// The shape was solved for the contacts of before: are they those of the shape?
+bool Pipeline::contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last) {
+  const bool new_surface = surface_version_ != tissue_.surfaceVersion();
+  surface_version_ = tissue_.surfaceVersion();
+  if (new_surface) contacts_.clear();
+  const ContactSet contacts = touchesAt(pose_);
+  const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
+  if (new_surface) {
+    contacts_.ride(pose_, tissue_);
+    contacts_.meet(contacts, pose_, tissue_, held);
+  } else {
+    const bool settled =
+        contacts_.update(trackTouches(pose_), contacts, pose_, tissue_, held, whole);
+    if (settled || last) return false;
+  }
+  of_tools = patchesOfTools();
+  return !of_tools.empty();
+}
+
+// Where the touches are, from the links.
+std::vector<std::optional<Contact>> Pipeline::trackTouches(const RobotPose& pose) {
+  const Stopwatch watch(report_.contact_ms);
+  std::vector<std::optional<Contact>> tracked;
+  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+    Contact contact{
+        touch.tool,          touch.link, touch.triangle, touch.barycentric, Vec3::Zero(),
+        touch.spring.normal, 0.0};
+    contact.point = pointOf(touch.spring, tissue_.state().displacement);
+    const bool near = turnOut(pose, contact);
+    tracked.push_back(near ? std::optional<Contact>(contact) : std::nullopt);
+  }
+  return tracked;
+}
+
+// A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
+// also where another side of the tool is nearer, as at edges and on thin tools.
+bool Pipeline::turnOut(const RobotPose& pose, Contact& contact) const {
+  const double spacing = tissue_.lattice().spacing();
+  const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
+  Vec3 inwards = Vec3::Zero();
+  Eigen::Index corner = 0;
+  if (contact.barycentric.maxCoeff(&corner) > 1.0 - 1e-6) {
+    inwards = -outwards_[at(corners[at(static_cast<int>(corner))])];
+  } else {
+    const Vec3& a = vertices_[at(corners[0])];
+    inwards = -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);
+  }
+  if (!(inwards.norm() > 0.0)) return false;
+  const auto out = finder_.wayOutAlong(at(contact.link), pose.links[at(contact.link)],
+                                       contact.point, inwards.normalized(), kClear * spacing,
+                                       kReach * spacing, kFarthestOut * spacing);
+  if (!out || out->normal.norm() < 0.5) return out.has_value();
+  contact.normal = out->normal;
+  contact.depth_m = out->depth_m;
+  return true;
+}
+
+ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
+  const Stopwatch watch(report_.contact_ms);
+  deform(tissue_.surface(), displacement, vertices_);
+  return finder_.find(pose, tissue_.surface(), vertices_, kNear * tissue_.lattice().spacing());
+}
+
+// With the ways out that turnOut finds.
+ContactSet Pipeline::touchesAt(const RobotPose& pose) {
+  ContactSet contacts = contactsAt(pose, tissue_.state().displacement);
+  const Stopwatch watch(report_.contact_ms);
+  outwards_.assign(vertices_.size(), Vec3::Zero());
+  for (const MeshTriangle& corners : tissue_.surface().triangles) {
+    const Vec3& a = vertices_[at(corners[0])];
+    const Vec3 area = (vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);
+    for (const int corner : corners) outwards_[at(corner)] += area;
+  }
+  for (Contact& contact : contacts.contacts) turnOut(pose, contact);
+  return contacts;
+}
+
+// A tool that has left the surface behind it may still be where the surface is at rest.
+bool Pipeline::wouldTouchAtRest(const RobotPose& pose) {
+  const std::vector<Vec3> rest(tissue_.state().displacement.size(), Vec3::Zero());
+  return deepest(contactsAt(pose, rest)) > kDeepEnough * tissue_.lattice().spacing();
+}
+
+// Of the tools that touched, for the surface to come back to.
+std::vector<LoadingPatch> Pipeline::lastTouches() const {
+  std::vector<LoadingPatch> patches;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    patches.push_back(patches_.loadingPatch(static_cast<int>(tool)));
+    patches.back().contacts = contacts_.springsOf(static_cast<int>(tool));
+  }
+  return patches;
+}
+
+}  // namespace robot_tissue

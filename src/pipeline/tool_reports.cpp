@@ -1,0 +1,94 @@
+// Pipeline: what the tools met.
+#include <algorithm>
+#include <set>
+
+#include "robot_tissue/pipeline/pipeline.h"
+#include "stopwatch.h"
+
+namespace robot_tissue {
+
+void Pipeline::describeTools() {
+  const Stopwatch watch(report_.contact_ms);
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) report_.tools[tool] = describe(tool);
+}
+
+// The patch's answer in the tool's frame: its force is on the tissue, its torque about the origin.
+ToolReport Pipeline::describe(std::size_t tool) const {
+  ToolReport report;
+  const int index = static_cast<int>(tool);
+  const Pose& tissue_T_tool = pose_.links[first_link_[tool]];
+  report.grasps = tools_[tool].role == ToolConfig::Role::kGrasper && patches_.holds(index);
+  report.offset = drives_[tool].force ? Vec3(drives_[tool].way * drives_[tool].force->normalized())
+                                      : Vec3(Vec3::Zero());
+  report.jaws_overlap = jawsOverlap(tool);
+  std::set<int> nodes;
+  for (const int node : patches_.nodes(index)) {
+    report.point += tissue_.nodePosition(node);
+    nodes.insert(node);
+    ++report.contacts;
+  }
+  Vec3 way = patches_.pushed(index, pose_);
+  const std::vector<Vec3>& displacement = tissue_.state().displacement;
+  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+    const double force = touch.spring.multiplier;
+    if (touch.tool != index || force <= 0.0) continue;
+    ++report.contacts;
+    report.point += pointOf(touch.spring, displacement);
+    way += force * touch.spring.normal;
+    for (const NodeWeight& carrier : touch.spring.carriers) nodes.insert(carrier.node);
+  }
+  if (report.contacts == 0) return report;
+  report.nodes.assign(nodes.begin(), nodes.end());
+  report.point /= report.contacts;
+  if (way.norm() > 1e-12) report.normal = way.normalized();
+  const PatchAnswer answer = answerOf(tool);
+  const Vec3 force = -answer.force;
+  const Vec3 torque = -answer.torque - tissue_T_tool.translation().cross(force);
+  report.force_on_tool = tissue_T_tool.linear().transpose() * force;
+  report.torque_on_tool = tissue_T_tool.linear().transpose() * torque;
+  const double most = tools_[tool].max_force;
+  if (most > 0.0 && force.norm() > most) {
+    report.saturated = true;
+    report.torque_on_tool *= most / force.norm();
+    report.force_on_tool *= most / force.norm();
+  }
+  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    const double depth =
+        finder_.penetration(link, pose_.links[link], tissue_.surface(), tissue_.vertices());
+    report.max_penetration = std::max(report.max_penetration, depth);
+  }
+  return report;
+}
+
+bool Pipeline::jawsOverlap(std::size_t tool) const {
+  if (tools_[tool].role != ToolConfig::Role::kGrasper || !last_pose_) return false;
+  const std::size_t jaw = first_link_[tool + 1] - 2;
+  const bool bare = finder_.reach(jaw) <= 0.0 || finder_.reach(jaw + 1) <= 0.0;
+  return !bare && finder_.gap(jaw, jaw + 1, pose_) <= 0.0;
+}
+
+// What the tool's, or support's, patch exerts on the tissue; zero when it has none.
+PatchAnswer Pipeline::answerOf(std::size_t tool) const {
+  const auto& patches = tissue_.patches();
+  const auto& answers = tissue_.lastReport().patches;
+  for (std::size_t i = tissue_.namedPatches(); i < std::min(patches.size(), answers.size()); ++i) {
+    if (patches[i].name == names_[tool]) return answers[i];
+  }
+  return {};
+}
+
+ForceBalance Pipeline::forceBalance() const {
+  ForceBalance balance;
+  for (std::size_t tool = 0; tool < names_.size(); ++tool) {
+    (tool < tools_.size() ? balance.tools : balance.supports) += answerOf(tool).force;
+  }
+  const auto& answers = tissue_.lastReport().patches;
+  for (std::size_t i = 0; i < std::min(tissue_.namedPatches(), answers.size()); ++i) {
+    balance.loads += answers[i].force;
+  }
+  balance.weight = tissue_.weight();
+  balance.fixed = tissue_.forceOfFixedNodes();
+  return balance;
+}
+
+}  // namespace robot_tissue

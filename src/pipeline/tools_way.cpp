@@ -1,0 +1,252 @@
+// Pipeline: the way of the tools in load steps.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/pipeline/pipeline.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kMostCheckpoints = 64;
+constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
+constexpr double kShareOfTool = 0.25;  // of a link's thickness: its longest step
+constexpr double kFarAway = 1e6;       // m: where a tool is that stands nowhere
+
+// Longest way (m) that a point of the link goes between two poses.
+double motion(const Pose& from, const Pose& to, double reach) {
+  const double angle = Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
+  return (to.translation() - from.translation()).norm() + std::abs(angle) * reach;
+}
+
+RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
+  RobotPose between = to;
+  for (std::size_t link = 0; link < to.links.size(); ++link) {
+    const Pose& start = from.links[link];
+    const Pose& end = to.links[link];
+    Pose& pose = between.links[link];
+    pose.linear() = Eigen::Quaterniond(start.linear())
+                        .slerp(share, Eigen::Quaterniond(end.linear()))
+                        .toRotationMatrix();
+    pose.translation() = start.translation() + share * (end.translation() - start.translation());
+  }
+  return between;
+}
+
+double distance(const Box& a, const Box& b) {
+  const Vec3 apart = (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(Vec3::Zero());
+  return apart.norm();
+}
+
+}  // namespace
+
+Pose Pipeline::away() {
+  Pose away = Pose::Identity();
+  away.translation().setConstant(kFarAway);
+  return away;
+}
+
+bool Pipeline::isAway(const Pose& pose) { return pose.translation().x() >= kFarAway; }
+
+// With the supports, which stand at the origin of the tissue's frame.
+RobotPose Pipeline::complete(const RobotPose& pose) const {
+  const std::size_t of_tools = first_link_[tools_.size()];
+  RobotPose complete = pose;
+  if (pose.links.empty()) complete.links.assign(of_tools, away());
+  if (complete.links.size() != of_tools) {
+    throw InputError("pose: has " + std::to_string(pose.links.size()) +
+                     " links; allowed is one for each of the " + std::to_string(of_tools) +
+                     " links of the tools");
+  }
+  for (const Pose& link : complete.links) {
+    if (link.matrix().allFinite()) continue;
+    throw InputError("pose: a link's transform is not finite; allowed: finite numbers");
+  }
+  complete.links.resize(first_link_.back(), Pose::Identity());
+  return complete;
+}
+
+// Load steps up to the pose. Returns how far it came in time.
+RobotPose Pipeline::walk(const RobotPose& pose) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(budget_s_);
+  const RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
+  const double steps = stepsBetween(start, pose);
+  double gone = 0.0;
+  while (gone < steps) {
+    const double free = tissue_.isUntouched() ? freeSteps(between(start, pose, gone / steps)) : 0.0;
+    const bool whole = gone + std::max(1.0, free) < steps;
+    if (!whole && any_rigid_) break;
+    gone = whole ? gone + std::max(1.0, free) : steps;
+    const RobotPose on_the_way = whole ? between(start, pose, gone / steps) : pose;
+    advance(on_the_way);
+    if (any_rigid_) checkIn(on_the_way);
+    if (whole && std::chrono::steady_clock::now() > deadline) {
+      report_.too_fast = true;
+      return on_the_way;
+    }
+  }
+  if (any_rigid_ || steps == 0.0) advance(pose);
+  if (any_rigid_ && tissue_.isUntouched()) checkIn(pose);
+  return pose;
+}
+
+void Pipeline::checkIn(const RobotPose& pose) {
+  if (!any_rigid_ || tissue_.isUntouched()) checkpoints_.clear();
+  if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
+  checkpoints_.push_back({pose, tissue_.shape(), patches_.seats(), contacts_});
+}
+
+// Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
+void Pipeline::goBackTo(const RobotPose& pose) {
+  const RobotPose& from = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
+  std::size_t nearest = checkpoints_.size() - 1;
+  double shortest = stepsBetween(from, pose);
+  for (std::size_t earlier = nearest; any_rigid_ && earlier-- > 0;) {
+    const double way = stepsBetween(checkpoints_[earlier].pose, pose);
+    if (way < shortest) {
+      shortest = way;
+      nearest = earlier;
+    }
+  }
+  if (any_rigid_) {
+    checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
+                       checkpoints_.end());
+    tissue_.restore(checkpoints_.back().shape);
+    patches_.restore(checkpoints_.back().seats);
+    contacts_ = checkpoints_.back().contacts;
+  }
+  if (shortest > kMostLoadSteps) {
+    report_.too_fast = true;
+    startAnew(pose);
+  }
+}
+
+// The tools let go, and come in from outside.
+void Pipeline::startAnew(const RobotPose& pose) {
+  patches_.clear();
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) contacts_.clear(static_cast<int>(tool));
+  pose_ = complete({});
+  lieDown();
+  checkpoints_.clear();
+  last_pose_ = pose;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) drawOut(tool, *last_pose_);
+  checkIn(*last_pose_);
+}
+
+// On the supports alone.
+void Pipeline::lieDown() {
+  if (tissue_.isUntouched()) return;
+  contacts_.ride(pose_, tissue_);
+  contacts_.meet(touchesAt(pose_), pose_, tissue_, patches_.heldNodes(tissue_));
+  tissue_.follow(patchesOfTools(), {}, !supports_.empty());
+}
+
+// A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
+// stay as they are.
+void Pipeline::comeAndGo(const RobotPose& pose) {
+  RobotPose from = *last_pose_;
+  bool any = false;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    const std::size_t first = first_link_[tool], end = first_link_[tool + 1];
+    if (first == end || isAway(from.links[first]) == isAway(pose.links[first])) continue;
+    any = true;
+    std::copy(pose.links.begin() + static_cast<std::ptrdiff_t>(first),
+              pose.links.begin() + static_cast<std::ptrdiff_t>(end),
+              from.links.begin() + static_cast<std::ptrdiff_t>(first));
+    patches_.letGo(static_cast<int>(tool));
+    contacts_.clear(static_cast<int>(tool));
+    closed_[tool] = false;
+    drawOut(tool, from);
+  }
+  if (!any) return;
+  last_pose_ = from;
+  checkpoints_.clear();
+  checkIn(from);
+}
+
+// Draws the tool back, step by step, until it is out of the tissue.
+void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
+  const Vec3 way = wayOut(tool, pose);
+  if (way.isZero()) return;
+  report_.was_inside = true;
+  for (int step = 0; step < kMostLoadSteps && !wayOut(tool, pose).isZero(); ++step) {
+    for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+      pose.links[link].translation() += tissue_.stepLength() * way;
+    }
+  }
+}
+
+// Unit direction out of the tissue for a tool that is in it; zero for one that is outside. Against
+// the contacts' normals; for a tool wholly beneath the surface, to the nearest side.
+Vec3 Pipeline::wayOut(std::size_t tool, const RobotPose& pose) {
+  RobotPose alone = complete({});
+  bool beneath = false;
+  Vec3 center = Vec3::Zero();
+  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    if (isAway(pose.links[link])) return Vec3::Zero();
+    alone.links[link] = pose.links[link];
+    if (beneath || finder_.reach(link) <= 0.0) continue;
+    center = pose.links[link] * finder_.center(link);
+    beneath = encloses(tissue_.vertices(), tissue_.surface().triangles, center);
+  }
+  Vec3 way = Vec3::Zero();
+  for (const Contact& contact :
+       finder_.find(alone, tissue_.surface(), tissue_.vertices(), 0.0).contacts) {
+    if (contact.tool == static_cast<int>(tool)) way -= contact.depth_m * contact.normal;
+  }
+  if (way.norm() > 0.0) return way.normalized();
+  if (!beneath) return Vec3::Zero();
+  const Box box = tissue_.lattice().bounds();
+  const Vec3 below = center - box.min, above = box.max - center;
+  Eigen::Index low = 0, high = 0;
+  const bool downwards = below.minCoeff(&low) < above.minCoeff(&high);
+  return downwards ? Vec3(-Vec3::Unit(low)) : Vec3(Vec3::Unit(high));
+}
+
+bool Pipeline::standsStill(const RobotPose& pose) const {
+  if (!last_pose_) return false;
+  const double still = kStandsStill * tissue_.lattice().spacing();
+  for (std::size_t link = 0; link < pose.links.size(); ++link) {
+    if (motion(last_pose_->links[link], pose.links[link], finder_.reach(link)) > still) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Longest step of a link (m): no thin one is through what it meets.
+double Pipeline::stepOf(std::size_t link) const {
+  return std::min(tissue_.stepLength(), kShareOfTool * finder_.thickness(link));
+}
+
+double Pipeline::stepsTo(const RobotPose& pose) const {
+  return last_pose_ ? stepsBetween(*last_pose_, driven(pose)) : 0.0;
+}
+
+double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const {
+  double steps = 0.0;
+  for (std::size_t link = 0; link < to.links.size(); ++link) {
+    const double way = motion(from.links[link], to.links[link], finder_.reach(link));
+    steps = std::max(steps, way / stepOf(link));
+  }
+  return steps;
+}
+
+// Steps that every link may go from here before it can touch.
+double Pipeline::freeSteps(const RobotPose& pose) const {
+  Box box{tissue_.vertices().front(), tissue_.vertices().front()};
+  for (const Vec3& vertex : tissue_.vertices()) {
+    box.min = box.min.cwiseMin(vertex);
+    box.max = box.max.cwiseMax(vertex);
+  }
+  double steps = std::numeric_limits<double>::infinity();
+  for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
+    const Box of_link = finder_.bounds(link, pose.links[link]);
+    if ((of_link.min.array() > of_link.max.array()).any()) continue;
+    steps = std::min(steps, distance(of_link, box) / stepOf(link));
+  }
+  return steps;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,117 @@
+// TissueNode's services that act on a tool: a request succeeds as a whole or leaves everything as
+// it was.
+#include <string>
+
+#include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/tissue_node.h"
+#include "robot_tissue/ros/tool_forces.h"
+
+namespace robot_tissue {
+namespace {
+
+const ros::WallDuration kLongestPush(1.0);  // until a service call is answered
+constexpr double kMet = 0.95;               // of the force: the tissue answers with it
+
+std::string inQuotes(const std::string& name) { return "'" + name + "'"; }
+
+std::string listed(const std::vector<ToolConfig>& tools) {
+  std::string list;
+  for (const ToolConfig& tool : tools) list += (list.empty() ? "" : ", ") + tool.name;
+  return list.empty() ? "none, the scene has no tools" : list;
+}
+
+}  // namespace
+
+bool TissueNode::isTool(const std::string& name) const {
+  for (const ToolConfig& tool : parameters_.scene.tools) {
+    if (tool.name == name) return true;
+  }
+  return false;
+}
+
+// Throws InputError.
+std::size_t TissueNode::toolIndex(const std::string& name) const {
+  if (!isTool(name)) {
+    throw InputError("tool: " + inQuotes(name) +
+                     " is no tool; allowed: " + listed(parameters_.scene.tools));
+  }
+  for (std::size_t tool = 0; tool < pipeline_.tools().size(); ++tool) {
+    if (pipeline_.tools()[tool].name == name) return tool;
+  }
+  throw InputError("tool: " + inQuotes(name) + " is not there yet; allowed: when the parameter '" +
+                   parameters_.robot_description_param + "' is set");
+}
+
+bool TissueNode::onGrasp(Tool::Request& request, Tool::Response& response) {
+  try {
+    const std::size_t tool = toolIndex(request.tool);
+    pipeline_.grasp(tool);
+    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
+    const ToolReport& report = pipeline_.report().tools[tool];
+    response.success = report.grasps;
+    response.message = report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
+                                     : "tool " + inQuotes(request.tool) +
+                                           ": did not hold; allowed: jaws not farther apart than "
+                                           "grasp.open_gap, a pull below grasp.max_force";
+  } catch (const InputError& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool TissueNode::onRelease(Tool::Request& request, Tool::Response& response) {
+  try {
+    const std::size_t tool = toolIndex(request.tool);
+    if (!pipeline_.report().tools[tool].grasps) {
+      throw InputError("tool: " + inQuotes(request.tool) +
+                       " holds nothing; allowed: a grasper that holds tissue");
+    }
+    pipeline_.letGo(tool);
+    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
+    response.success = true;
+    response.message = "let go";
+  } catch (const InputError& error) {
+    response.success = false;
+    response.message = error.what();
+  }
+  return true;
+}
+
+// A force drives the tool, or drives it no longer.
+void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
+  const std::size_t tool = toolIndex(request.name);
+  if (!request.displacement.empty() || request.turns || request.force.size() > 1) {
+    throw InputError(std::string(!request.displacement.empty() ? "displacement"
+                                 : request.turns               ? "turns"
+                                                               : "force") +
+                     ": given for tool " + inQuotes(request.name) +
+                     "; allowed: one force, or none to put the tool at its pose again");
+  }
+  std::optional<Vec3> force;
+  if (!request.force.empty()) force = toVec3(request.force.front());
+  pipeline_.push(tool, force);
+  if (last_look_up_.status != PoseLookUp::Status::kOk) {
+    response.message = "from the next good pose on";
+    return;
+  }
+  response.message = followPush(tool, force.value_or(Vec3::Zero()));
+  response.force = toVector3(forceOnTissue(pipeline_, tool));
+  response.displacement = toVector3(pipeline_.report().tools[tool].offset);
+}
+
+// Until the tool stands. Returns what became of it.
+std::string TissueNode::followPush(std::size_t tool, const Vec3& force) {
+  const ros::WallTime end = ros::WallTime::now() + kLongestPush;
+  do {
+    follow();
+  } while (pipeline_.report().changed && ros::WallTime::now() < end);
+  const ToolReport& report = pipeline_.report().tools[tool];
+  if (pipeline_.report().changed) return "on its way";
+  if (force.isZero()) return "at its pose";
+  const bool met = forceOnTissue(pipeline_, tool).dot(force) >= kMet * force.squaredNorm();
+  if (report.saturated) return "pushed; the force told is limited by the tool's max_force";
+  return met ? "pushed" : "pushed; nothing answers with the force on the tool's way";
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,60 @@
+// What the tissue rests on.
+#include "robot_tissue/scene/readers.h"
+
+namespace robot_tissue {
+namespace {
+
+ToolShape readPlane(const MapReader& map) {
+  ToolShape plane;
+  plane.type = ToolShape::Type::kPlane;
+  const Vec3 normal = readNonZero(map["normal"], "").normalized();
+  plane.pose.translation() = map["point"].vec3(Range::any("m"));
+  plane.pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+  return plane;
+}
+
+ToolShape readBox(const MapReader& map) {
+  const Box box = map.box(true);
+  ToolShape shape;
+  shape.type = ToolShape::Type::kBox;
+  shape.size = box.max - box.min;
+  shape.pose.translation() = 0.5 * (box.min + box.max);
+  return shape;
+}
+
+SupportConfig readSupport(const Entry& entry, const std::string& default_name) {
+  const MapReader any_type(entry, {"name", "type", "point", "normal", "min", "max", "friction"});
+  const bool plane = any_type["type"].choice({"plane", "box"}, {}) == "plane";
+  const MapReader map(
+      entry, plane ? std::vector<std::string>{"name", "type", "point", "normal", "friction"}
+                   : std::vector<std::string>{"name", "type", "min", "max", "friction"});
+  SupportConfig support;
+  support.name = map["name"].given() ? readGraphName(map["name"]) : default_name;
+  support.shape = plane ? readPlane(map) : readBox(map);
+  support.friction = map["friction"].numberOr(support.friction, Range::atLeastZero(""));
+  return support;
+}
+
+}  // namespace
+
+std::vector<SupportConfig> readSupports(const Entry& entry, const std::string& model) {
+  const std::vector<Entry> entries = entry.list(0, "supports");
+  if (!entries.empty() && hardPatchesOnly(model)) {
+    entry.fail("with tissue.model " + model +
+               " must be [] or left out, its method moves hard patches only");
+  }
+  std::vector<SupportConfig> supports;
+  for (const Entry& support_entry : entries) {
+    const std::string default_name = "support_" + std::to_string(supports.size() + 1);
+    const SupportConfig support = readSupport(support_entry, default_name);
+    for (const SupportConfig& other : supports) {
+      if (other.name != support.name) continue;
+      support_entry.fail("the name " + support.name + " is an earlier support's, must be unique");
+    }
+    supports.push_back(support);
+  }
+  return supports;
+}
+
+}  // namespace robot_tissue

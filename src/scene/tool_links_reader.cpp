@@ -1,0 +1,140 @@
+// The links of a tool: its own or several, and the jaws of a grasper.
+#include <algorithm>
+#include <optional>
+
+#include "robot_tissue/scene/readers.h"
+
+namespace robot_tissue {
+namespace {
+
+const std::string kLinkName = "the name of a link of the URDF";
+const std::vector<std::string> kLinkKeys = {"link", "padding", "collision_padding", "shapes"};
+
+// A link with the entry that names it, given or not.
+struct NamedLink {
+  ToolLink link;
+  Entry name;
+};
+
+std::map<std::string, double> readCollisionPadding(const Entry& entry) {
+  std::map<std::string, double> padding;
+  if (!entry.given()) return padding;
+  if (!entry.node().IsMap()) entry.fail("must be a map of names of collisions of the URDF to m");
+  std::vector<std::string> names;
+  for (const auto& item : entry.node()) {
+    if (item.first.IsScalar()) names.push_back(item.first.Scalar());
+  }
+  const MapReader map(entry, names);
+  for (const std::string& name : names) padding[name] = map[name].number(Range::atLeastZero("m"));
+  return padding;
+}
+
+NamedLink readLink(const MapReader& map, const std::string& scene_folder, Remarks& remarks) {
+  NamedLink named{{}, map["link"]};
+  ToolLink& link = named.link;
+  if (named.name.given()) link.link = named.name.word(kLinkName);
+  link.padding = map["padding"].numberOr(link.padding, Range::atLeastZero("m"));
+  if (map["shapes"].given()) {
+    for (const Entry& shape : map["shapes"].list(0, "shapes")) {
+      link.shapes.push_back(readToolShape(shape, scene_folder));
+    }
+  }
+  if (link.link.empty() && link.shapes.empty() && map["shapes"].given()) {
+    map["shapes"].list(1, "shapes");  // nothing else says what the tool is made of
+  }
+  const Entry collisions = map["collision_padding"];
+  link.collision_padding = readCollisionPadding(collisions);
+  if (collisions.given() && !link.shapes.empty()) {
+    remarks.push_back(collisions.line("ignored, shapes take the place of the URDF's collisions"));
+  }
+  return named;
+}
+
+NamedLink readListedLink(const Entry& entry, const std::string& scene_folder, Remarks& remarks) {
+  if (entry.node().IsScalar()) return {{entry.word(kLinkName), 0.0, {}, {}}, entry};
+  const MapReader map(entry, kLinkKeys);
+  if (!map["link"].given() && !map["shapes"].given()) {
+    entry.fail("must have link, shapes or both");
+  }
+  return readLink(map, scene_folder, remarks);
+}
+
+std::vector<NamedLink> readLinkList(const Entry& entry, const std::string& scene_folder,
+                                    Remarks& remarks) {
+  std::vector<NamedLink> links;
+  for (const Entry& link_entry : entry.list(1, "links")) {
+    const NamedLink named = readListedLink(link_entry, scene_folder, remarks);
+    const std::string& name = named.link.link;
+    const bool twice = !name.empty() && std::any_of(links.begin(), links.end(), [&](const auto& o) {
+      return o.link.link == name;
+    });
+    if (twice) named.name.fail("the link stands here twice, must stand once");
+    links.push_back(named);
+  }
+  return links;
+}
+
+// Beside `links` the keys of a single link have no place.
+void requireSingleLinkKeysAbsent(const MapReader& map) {
+  for (const std::string& key : kLinkKeys) {
+    if (map[key].given()) map[key].fail("must not stand beside links, but with one of them");
+  }
+}
+
+std::vector<NamedLink> readPushLinks(const MapReader& tool, const std::string& scene_folder,
+                                     SceneUser user, Remarks& remarks) {
+  if (tool["jaws"].given()) tool["jaws"].fail("must be left out, only role grasper has jaws");
+  if (tool["links"].given()) {
+    requireSingleLinkKeysAbsent(tool);
+    return readLinkList(tool["links"], scene_folder, remarks);
+  }
+  if (user == SceneUser::kRunner && !tool["link"].given() && !tool["shapes"].given()) {
+    tool.entry().fail("must have link, links or shapes");
+  }
+  return {readLink(tool, scene_folder, remarks)};
+}
+
+// The tool's own link, which touches nothing without shapes, then the jaws.
+std::vector<NamedLink> readGrasperLinks(const MapReader& tool, const std::string& scene_folder,
+                                        Remarks& remarks) {
+  if (tool["links"].given()) {
+    tool["links"].fail("must be left out, role grasper has one link of its own and jaws");
+  }
+  std::vector<NamedLink> links = {readLink(tool, scene_folder, remarks)};
+  for (const char* key : {"padding", "collision_padding"}) {
+    if (!tool[key].given() || !links.front().link.shapes.empty()) continue;
+    tool[key].fail("the grasper's own link has no shapes, must stand with the jaws");
+  }
+  const std::vector<NamedLink> jaws = readLinkList(tool["jaws"], scene_folder, remarks);
+  if (jaws.size() != 2) tool["jaws"].fail("must be a list of exactly 2 links");
+  links.insert(links.end(), jaws.begin(), jaws.end());
+  return links;
+}
+
+// All links or none are of the URDF; the node has all of their poses from there.
+void checkNames(const std::vector<NamedLink>& links, SceneUser user, bool grasper) {
+  const bool any_named = std::any_of(links.begin(), links.end(),
+                                     [](const auto& link) { return !link.link.link.empty(); });
+  if (user == SceneUser::kRunner && !any_named) return;
+  for (const NamedLink& named : links) {
+    const bool frame_only = grasper && &named == &links.front() && named.link.shapes.empty();
+    if (!named.link.link.empty() || (frame_only && !named.name.given())) continue;
+    named.name.fail("must be " + kLinkName +
+                    (user == SceneUser::kNode ? "" : ", as other links of the tool have one"));
+  }
+}
+
+}  // namespace
+
+ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, SceneUser user,
+                        ToolConfig::Role role, Remarks& remarks) {
+  const bool grasper = role == ToolConfig::Role::kGrasper;
+  const std::vector<NamedLink> named = grasper ? readGrasperLinks(tool, scene_folder, remarks)
+                                               : readPushLinks(tool, scene_folder, user, remarks);
+  checkNames(named, user, grasper);
+  ToolLinks links{{}, named.front().name};
+  for (const NamedLink& link : named) links.links.push_back(link.link);
+  return links;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,163 @@
+#include "runner.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace robot_tissue {
+namespace {
+
+const char* keyOf(const SettleStep&) { return "settle"; }
+const char* keyOf(const LoadStep&) { return "load"; }
+const char* keyOf(const CutStep&) { return "cut"; }
+const char* keyOf(const ReleaseStep&) { return "release"; }
+const char* keyOf(const ResetStep&) { return "reset"; }
+const char* keyOf(const MoveStep&) { return "move"; }
+const char* keyOf(const PushStep&) { return "push"; }
+const char* keyOf(const GraspStep&) { return "grasp"; }
+
+std::string pathOf(const Scene& scene, int step) {
+  const Step& taken = scene.steps[at(step)];
+  return "steps[" + std::to_string(step) + "]." +
+         std::visit([](const auto& any) { return keyOf(any); }, taken);
+}
+
+// Those that some step places; others, e.g. the node's without shapes, play no part.
+std::vector<ToolConfig> movedTools(const Scene& scene) {
+  std::set<std::string> moved;
+  for (const Step& step : scene.steps) {
+    if (const auto* move = std::get_if<MoveStep>(&step)) moved.insert(move->tool);
+  }
+  std::vector<ToolConfig> tools;
+  for (const ToolConfig& tool : scene.tools) {
+    if (moved.count(tool.name) > 0) tools.push_back(tool);
+  }
+  return tools;
+}
+
+}  // namespace
+
+Runner::Runner(const Scene& scene, const OnRow& on_row)
+    : scene_(scene),
+      on_row_(on_row),
+      tools_(movedTools(scene)),
+      pipeline_(scene.tissue, scene.solver, toolsOf(movedTools(scene)).tools, scene.supports),
+      pushes_(tools_.count()) {
+  for (const std::string& warning : pipeline_.toolWarnings()) result_.remarks.push_back(warning);
+}
+
+RunResult Runner::run() {
+  for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
+    step_ = static_cast<int>(i);
+    try {
+      std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
+    } catch (const InputError& error) {
+      throw InputError(pathOf(scene_, step_) + ": " + error.what());
+    }
+  }
+  keepShape();
+  return std::move(result_);
+}
+
+void Runner::perform(const SettleStep&) {
+  const SolveReport report = pipeline_.settle();
+  followPushes();
+  keep(report);
+}
+
+// Tools by a force stand still in it, as the others do.
+void Runner::perform(const LoadStep& step) {
+  pipeline_.load(step, [this](int increment, int increments, const SolveReport& report) {
+    keep(report, increment, increments);
+  });
+}
+
+void Runner::perform(const CutStep& step) {
+  const SolveReport report = pipeline_.cut(step.corners).solve;
+  followPushes();
+  keep(report);
+}
+
+void Runner::perform(const ReleaseStep& step) {
+  SolveReport report;
+  if (!step.patches.empty()) report = pipeline_.release(step.patches);
+  for (const std::string& name : step.tools) {
+    const std::size_t tool = tools_.indexOf(name);
+    endPush(tool);
+    pipeline_.letGo(tool);
+  }
+  if (!step.tools.empty()) follow();
+  followPushes();
+  keep(report);
+}
+
+void Runner::perform(const ResetStep&) {
+  pipeline_.reset();
+  tools_.takeAway();
+  pushes_.assign(tools_.count(), std::nullopt);
+  keep(SolveReport());
+}
+
+// With what the tools' updates since the last row came to.
+void Runner::keep(SolveReport report, int increment, int increments) {
+  if (updates_.any) {
+    const SolveStatus worst = std::max(report.status, updates_.worst);
+    const double wall_ms = report.wall_ms + updates_.solve_ms;
+    report = pipeline_.tissue().lastReport();
+    if (updates_.solve_ms <= 0.0) report.iterations = 0;
+    report.wall_ms = wall_ms;
+    report.status = worst;
+    updates_ = Updates();
+  }
+  const std::vector<LoadingPatch>& patches = pipeline_.tissue().patches();
+  const std::size_t named = pipeline_.tissue().namedPatches();
+  if (report.patches.size() < named) {
+    throw std::logic_error("the solver answered for " + std::to_string(report.patches.size()) +
+                           " patches, " + std::to_string(named) + " stand");
+  }
+  for (std::size_t i = 0; i < named; ++i) {
+    result_.patches.push_back({step_, increment, patches[i].name, report.patches[i]});
+  }
+  for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
+    if (tools_.of(tool)) keepTool(tool, increment);
+  }
+  result_.increments.push_back({step_, increment, report});
+  if (on_row_) on_row_(result_.increments.back(), increments);
+}
+
+// Once a step.
+void Runner::remark(const std::string& text) {
+  const std::string line = pathOf(scene_, step_) + ": " + text;
+  if (result_.remarks.empty() || result_.remarks.back() != line) result_.remarks.push_back(line);
+}
+
+void Runner::keepTool(std::size_t tool, int increment) {
+  const ToolReport& report = pipeline_.report().tools[tool];
+  const Pose& tissue_T_link = pipeline_.pose()->links[tools_.firstLink(tool)];
+  ToolRow row{step_, increment, tools_.name(tool)};
+  const Vec3 torque =
+      report.torque_on_tool - tools_.originInFirstLink(tool).cross(report.force_on_tool);
+  row.force = tissue_T_link.linear() * report.force_on_tool;
+  row.torque = tissue_T_link.linear() * torque;
+  row.contacts = report.contacts;
+  row.max_penetration = report.max_penetration;
+  result_.tools.push_back(row);
+  if (report.saturated) {
+    remark("tool '" + tools_.name(tool) +
+           "': a wrench stronger than its max_force is told as that");
+  }
+}
+
+void Runner::keepShape() {
+  const Tissue& tissue = pipeline_.tissue();
+  const Lattice& lattice = tissue.lattice();
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    result_.rest.push_back(lattice.restPosition(node));
+  }
+  result_.displacement = tissue.shownDisplacement();
+  deform(tissue.surface(), result_.displacement, result_.vertices);
+  result_.triangles = tissue.surface().triangles;
+  result_.displacement.resize(result_.rest.size());  // ghosts are no nodes of the lattice
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,58 @@
+// The steps of a scene, one after the other, on one Pipeline.
+#pragma once
+
+#include <string>
+
+#include "robot_tissue/pipeline/pipeline.h"
+#include "run_scene.h"
+#include "tool_places.h"
+
+namespace robot_tissue {
+
+class Runner {
+ public:
+  Runner(const Scene& scene, const OnRow& on_row);
+  RunResult run();
+
+ private:
+  // What the tools' updates since the last row came to.
+  struct Updates {
+    bool any = false;
+    SolveStatus worst = SolveStatus::kOk;
+    double solve_ms = 0.0;
+  };
+
+  // runner.cpp
+  void perform(const SettleStep& step);
+  void perform(const LoadStep& step);
+  void perform(const CutStep& step);
+  void perform(const ReleaseStep& step);
+  void perform(const ResetStep& step);
+  void remark(const std::string& text);
+  void keep(SolveReport report, int increment = 1, int increments = 1);
+  void keepTool(std::size_t tool, int increment);
+  void keepShape();
+
+  // tool_steps.cpp
+  void perform(const MoveStep& step);
+  void perform(const PushStep& step);
+  void perform(const GraspStep& step);
+  void appear(std::size_t tool, const MoveStep::Place& place);
+  int incrementsOf(const MoveStep& step, double load_steps) const;
+  void endPush(std::size_t tool);
+  void follow();
+  void followPushes();
+  void update();
+  void judgePush(std::size_t tool);
+
+  const Scene& scene_;
+  const OnRow& on_row_;
+  ToolPlaces tools_;
+  Pipeline pipeline_;
+  std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)
+  Updates updates_;
+  RunResult result_;
+  int step_ = 0;
+};
+
+}  // namespace robot_tissue

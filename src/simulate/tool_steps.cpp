@@ -1,0 +1,135 @@
+// Runner: steps that tools take.
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/scene/value_text.h"
+#include "runner.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kMostLoadSteps = 100000.0;  // of one move
+constexpr int kMostUpdates = 50;             // until all pushed tools have met their forces
+constexpr double kMetForce = 0.01;           // of the force: it is met
+constexpr double kRounding = 1e-9;           // 5 steps of a fifth are 5, not 6
+
+}  // namespace
+
+void Runner::perform(const MoveStep& step) {
+  const std::size_t tool = tools_.indexOf(step.tool);
+  if (pushes_[tool]) {
+    endPush(tool);
+    remark("tool '" + step.tool + "' is moved, which ends its push");
+  }
+  if (step.from) appear(tool, *step.from);
+  const MoveStep::Place from = *tools_.of(tool);
+  tools_.put(tool, step.to);
+  const double load_steps = pipeline_.stepsTo(tools_.pose());
+  const int increments = incrementsOf(step, load_steps);
+  const double longest = Pipeline::kMostLoadSteps / 2.0;
+  const int updates = std::max(1, static_cast<int>(std::ceil(load_steps / increments / longest)));
+  for (int increment = 1; increment <= increments; ++increment) {
+    for (int i = 1; i <= updates; ++i) {
+      const double share = (increment - 1 + static_cast<double>(i) / updates) / increments;
+      tools_.put(tool, between(from, step.to, share));
+      follow();
+    }
+    keep(SolveReport(), increment, increments);
+  }
+}
+
+int Runner::incrementsOf(const MoveStep& step, double load_steps) const {
+  if (!(load_steps <= kMostLoadSteps)) {
+    throw InputError("the way takes " + numberText(std::ceil(load_steps)) + " load steps of " +
+                     numberText(pipeline_.tissue().stepLength()) +
+                     " m or less, must take at most " + numberText(kMostLoadSteps) +
+                     ", so a shorter way");
+  }
+  return step.increments.value_or(std::max(1, static_cast<int>(std::ceil(load_steps - kRounding))));
+}
+
+// Without a way to there. Where it stands it does not appear anew.
+void Runner::appear(std::size_t tool, const MoveStep::Place& place) {
+  const std::optional<MoveStep::Place>& stands = tools_.of(tool);
+  if (stands && stands->pose.isApprox(place.pose) && stands->opening == place.opening) return;
+  if (stands) {
+    tools_.takeAway(tool);
+    follow();
+  }
+  tools_.put(tool, place);
+  follow();
+}
+
+void Runner::perform(const PushStep& step) {
+  const std::size_t tool = tools_.indexOf(step.tool);
+  const int increments = step.increments.value_or(1);
+  for (int increment = 1; increment <= increments; ++increment) {
+    const double share = static_cast<double>(increment) / increments;
+    pushes_[tool] = share * step.force;
+    pipeline_.push(tool, pushes_[tool]);
+    follow();
+    keep(SolveReport(), increment, increments);
+  }
+}
+
+void Runner::perform(const GraspStep& step) {
+  pipeline_.grasp(tools_.indexOf(step.tool));
+  follow();
+  keep(SolveReport());
+}
+
+// The tool stays where its force has driven it.
+void Runner::endPush(std::size_t tool) {
+  if (!pushes_[tool]) return;
+  MoveStep::Place place = *tools_.of(tool);
+  place.pose.pretranslate(pipeline_.report().tools[tool].offset);
+  tools_.put(tool, place);
+  pushes_[tool].reset();
+  pipeline_.push(tool, std::nullopt);
+}
+
+// The tissue follows the tools to where they stand now.
+void Runner::follow() {
+  update();
+  if (pipeline_.report().was_inside) {
+    remark("the tool appears inside the tissue, it is walked in from outside");
+  }
+  followPushes();
+}
+
+// Tools by a force follow the tissue.
+void Runner::followPushes() {
+  const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });
+  for (int i = 0; any && i < kMostUpdates && (i == 0 || pipeline_.report().changed); ++i) update();
+  for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
+    if (pushes_[tool]) judgePush(tool);
+  }
+}
+
+void Runner::update() {
+  const StepReport& report = pipeline_.step(tools_.pose());
+  updates_.any = true;
+  updates_.solve_ms += report.solve_ms;
+  updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
+  if (report.too_fast) updates_.worst = std::max(updates_.worst, SolveStatus::kLate);
+  if (report.lost) {
+    updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
+    remark("no shape follows a tool, the last good one stays");
+  }
+  if (report.torn_off) remark("a grasper lost what it held, the pull was beyond grasp.max_force");
+}
+
+void Runner::judgePush(std::size_t tool) {
+  const ToolReport& report = pipeline_.report().tools[tool];
+  if (report.saturated) return;  // its force is not told
+  const Pose& tissue_T_link = pipeline_.pose()->links[tools_.firstLink(tool)];
+  const double wanted = pushes_[tool]->norm();
+  const Vec3 force = -(tissue_T_link.linear() * report.force_on_tool);
+  const double met = force.dot(*pushes_[tool]) / wanted + 0.0;  // not -0
+  if (std::abs(met - wanted) <= kMetForce * wanted) return;
+  updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
+  remark("tool '" + tools_.name(tool) + "' met " + numberText(met) + " N on its way of " +
+         numberText(report.offset.norm()) + " m, not the force of " + numberText(wanted) + " N");
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,172 @@
+// What tools with conforming contact meet: friction, wrenches, and the balance of all forces.
+#include <gtest/gtest.h>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+Vec3 forceOnTissue(const Pipeline& pipeline, std::size_t tool = 0) {
+  return -(pipeline.pose()->links[tool].linear() * pipeline.report().tools[tool].force_on_tool);
+}
+
+class WithEachMethod : public ::testing::TestWithParam<const char*> {
+ protected:
+  static SolverConfig solver() {
+    SolverConfig solver;
+    solver.method = GetParam();
+    return solver;
+  }
+};
+
+TEST_P(WithEachMethod, ForcesBalance) {
+  Pipeline pipeline(block("elastic", 0.01), solver(), {probe()});
+  walk(pipeline, -0.001, 0.006, 0.001);
+  const ForceBalance balance = pipeline.forceBalance();
+  const double force = forceOnTissue(pipeline).norm();
+  ASSERT_GT(force, 0.1);
+  EXPECT_LT((balance.tools - forceOnTissue(pipeline)).norm(), 1e-9 * force);
+  EXPECT_LT(balance.unbalanced().norm(), 0.02 * force);
+  EXPECT_TRUE(balance.supports.isZero() && balance.loads.isZero() && balance.weight.isZero());
+}
+
+TEST_P(WithEachMethod, ForcesBalanceWithLoadsAndWeight) {
+  TissueConfig tissue = block("elastic", 0.01);
+  tissue.gravity = Vec3(0.0, 0.0, -9.81);
+  Pipeline pipeline(tissue, solver(), {probe()});
+  pipeline.settle();
+  PatchConfig patch;
+  patch.name = "punch";
+  patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, kWidth, kTop)};
+  patch.force = Vec3(0.05, 0.0, -0.1);
+  pipeline.load({{}, {patch}});
+  walk(pipeline, -0.001, 0.006, 0.001);
+  const ForceBalance balance = pipeline.forceBalance();
+  const double force = balance.tools.norm();
+  ASSERT_GT(force, 0.1);
+  EXPECT_LT((balance.loads - *patch.force).norm(), 0.02 * force);
+  EXPECT_NEAR(balance.weight.z(), -9.81 * 1000.0 * kWidth * kWidth * kTop, 1e-9);
+  EXPECT_LT(balance.unbalanced().norm(), 0.02 * force);
+}
+
+TEST_P(WithEachMethod, MethodsAgreeAboutTheForce) {
+  Pipeline pipeline(block("elastic", 0.01), solver(), {probe()});
+  SolverConfig newton;
+  newton.method = "newton";
+  Pipeline exact(block("elastic", 0.01), newton, {probe()});
+  walk(pipeline, -0.001, 0.006, 0.001);
+  walk(exact, -0.001, 0.006, 0.001);
+  const Vec3 force = forceOnTissue(exact);
+  EXPECT_LT((forceOnTissue(pipeline) - force).norm(), 0.03 * force.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Method, WithEachMethod, ::testing::Values("layered", "newton"),
+                         [](const auto& row) { return std::string(row.param); });
+
+// A plane that covers the whole top is drawn along it until all of it slides.
+TEST(FrictionCone, PlaneThatSlidesDragsWithItsFriction) {
+  for (const double friction : {0.0, 0.1, 0.3}) {
+    Pipeline pipeline(block("elastic", 0.01), {}, {withFriction(friction, toolOf(planeOf(false)))});
+    const Vec3 above(kMiddle, kMiddle, kTop + 0.001), down(kMiddle, kMiddle, kTop - 0.003);
+    walk(pipeline, {above}, {down});
+    walk(pipeline, {down}, {down + Vec3(0.015, 0.0, 0.0)}, 0.001);
+    const Vec3 force = forceOnTissue(pipeline);
+    ASSERT_LT(force.z(), -1.0);
+    EXPECT_NEAR(force.x(), -friction * force.z(), 0.05 * friction * -force.z() + 1e-3)
+        << "friction " << friction;
+    EXPECT_LT(std::abs(force.y()), 0.01 * -force.z());
+  }
+}
+
+// What it ploughs is what it meets without friction.
+TEST(FrictionCone, SphereThatSlidesDragsWithItsFriction) {
+  constexpr double kFriction = 0.3;
+  Pipeline rough(block(), {}, {withFriction(kFriction, probe())});
+  Pipeline smooth(block(), {}, {withFriction(0.0, probe())});
+  const Vec3 above(0.02, kMiddle, kTop + kRadius + 0.001),
+      down(0.02, kMiddle, kTop + kRadius - 0.003);
+  double drags = 0.0, ploughs = 0.0;  // over the normal force, mean
+  for (Pipeline* pipeline : {&rough, &smooth}) walk(*pipeline, {above}, {down});
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 from = down + Vec3(1e-3 * i, 0.0, 0.0), to = from + Vec3(1e-3, 0.0, 0.0);
+    for (Pipeline* pipeline : {&rough, &smooth}) walk(*pipeline, {from}, {to}, 0.001);
+    if (i < 8) continue;
+    drags -= forceOnTissue(rough).x() / forceOnTissue(rough).z() / 12.0;
+    ploughs -= forceOnTissue(smooth).x() / forceOnTissue(smooth).z() / 12.0;
+  }
+  EXPECT_NEAR(drags - ploughs, kFriction, 0.05 * kFriction);
+  EXPECT_LT(std::abs(ploughs), 0.05);
+}
+
+// The mean over the nodes under it.
+TEST(FrictionCone, ToolThatIsDrawnALittleTakesTheTissueAlong) {
+  Pipeline pipeline(block(), {}, {withFriction(0.5, probe())});
+  walk(pipeline, -0.001, 0.004);
+  const std::vector<int> under = pipeline.report().tools.front().nodes;
+  const auto mean = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const int node : under) sum += pipeline.tissue().state().displacement[at(node)];
+    return Vec3(sum / static_cast<double>(under.size()));
+  };
+  const Vec3 before = mean();
+  const Vec3 down = pressed(0.004).links.front().translation();
+  walk(pipeline, {down}, {down + Vec3(0.0005, 0.0, 0.0)});
+  EXPECT_NEAR((mean() - before).x(), 0.0005, 0.2 * 0.0005);
+  const Vec3 force = forceOnTissue(pipeline);
+  EXPECT_GT(force.x(), 0.0);
+  EXPECT_LT(force.x(), 0.5 * -force.z());
+}
+
+// All of a frictionless sphere's forces go through its middle.
+TEST(Wrench, OfASmoothSphereHasNoTorqueAboutItsMiddle) {
+  Pipeline pipeline(block(), {}, {withFriction(0.0, probe())});
+  walk(pipeline, {Vec3(0.0237, 0.0311, kTop + kRadius)},
+       {Vec3(0.0237, 0.0311, kTop + kRadius - 0.004)});
+  const ToolReport& tool = pipeline.report().tools.front();
+  ASSERT_GT(tool.force_on_tool.norm(), 0.1);
+  EXPECT_LT(tool.torque_on_tool.norm(), 0.02 * kRadius * tool.force_on_tool.norm());
+}
+
+// The same press by a tool whose frame is turned and set off: its wrench is the same, told in its
+// own frame and about its own origin.
+TEST(Wrench, IsInTheToolsFrameAboutItsOrigin) {
+  const Vec3 offset(0.02, 0.0, 0.03);  // of the sphere in the tool's frame
+  Pipeline plain(block(), {}, {probe()});
+  Pipeline turned(block(), {}, {probe("probe", offset)});
+  Pose rotation = Pose::Identity();
+  rotation.linear() = Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()).toRotationMatrix();
+  for (double depth = -0.0005; depth < 0.004; depth += 0.0005) {
+    const RobotPose pose = pressed(depth);
+    plain.step(pose);
+    RobotPose same = pose;
+    same.links.front().linear() = rotation.linear();
+    same.links.front().translation() -= rotation.linear() * offset;
+    turned.step(same);
+  }
+  const Vec3 force = plain.report().tools.front().force_on_tool;
+  const ToolReport& told = turned.report().tools.front();
+  ASSERT_GT(force.norm(), 0.1);
+  EXPECT_NEAR((rotation.linear() * told.force_on_tool - force).norm(), 0.0, 1e-6);
+  const Vec3 torque = offset.cross(told.force_on_tool) +
+                      rotation.linear().transpose() * plain.report().tools.front().torque_on_tool;
+  ASSERT_GT(torque.norm(), 1e-3);
+  EXPECT_NEAR((told.torque_on_tool - torque).norm(), 0.0, 1e-4 * torque.norm());
+}
+
+TEST(Wrench, LongerThanAllowedIsToldAsTheLongestAllowed) {
+  ToolGeometry limited = probe();
+  limited.max_force = 0.05;
+  Pipeline pipeline(block(), {}, {limited});
+  Pipeline free(block(), {}, {probe()});
+  for (Pipeline* each : {&pipeline, &free}) walk(*each, -0.001, 0.004);
+  const ToolReport& told = pipeline.report().tools.front();
+  const Vec3 force = free.report().tools.front().force_on_tool;
+  ASSERT_GT(force.norm(), 0.05);
+  EXPECT_FALSE(free.report().tools.front().saturated);
+  EXPECT_TRUE(told.saturated);
+  EXPECT_LT((told.force_on_tool - 0.05 * force.normalized()).norm(), 1e-9);
+  EXPECT_NEAR(pipeline.forceBalance().tools.norm(), force.norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace robot_tissue

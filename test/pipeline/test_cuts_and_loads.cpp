@@ -1,0 +1,93 @@
+// Tools on tissue that is cut and loaded meanwhile.
+#include <gtest/gtest.h>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+std::vector<Vec3> uprightAt(double x) {
+  return {Vec3(x, -0.01, 0.02), Vec3(x, 0.07, 0.02), Vec3(x, 0.07, 0.06), Vec3(x, -0.01, 0.06)};
+}
+
+TEST_P(PressedBlock, CutUnderLoadStaysAndTheToolStaysOut) {
+  walk(pipeline_, -0.001, 0.004);
+  const CutReport cut = pipeline_.cut(uprightAt(0.0275));
+  EXPECT_GT(cut.springs_cut, 0);
+  walk(pipeline_, 0.004, 0.005);
+  EXPECT_LT(tool().max_penetration, 0.05 * kSpacing);
+  EXPECT_GT(tool().force_on_tool.z(), 0.05);
+  walk(pipeline_, 0.005, -0.001);
+  EXPECT_EQ(pipeline_.tissue().state().springs_cut, cut.springs_cut);
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+}
+
+TEST_P(PressedBlock, NamedLoadStandsBesideTheTool) {
+  pipeline_.step(pressed(-0.001));
+  PatchConfig patch;
+  patch.name = "punch";
+  patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, 0.01, kTop)};
+  patch.displacement = {{0.0, 0.0, -0.002}};
+  pipeline_.load({1, {patch}});
+  walk(pipeline_, -0.001, 0.004);
+  EXPECT_GT(tool().force_on_tool.z(), 0.1);
+  walk(pipeline_, 0.004, -0.001);
+  EXPECT_EQ(tool().force_on_tool, Vec3::Zero());
+  const Lattice& lattice = pipeline_.tissue().lattice();
+  const int corner = lattice.node(0, 0, lattice.size()[2] - 1);
+  EXPECT_EQ(pipeline_.tissue().state().displacement[at(corner)], Vec3(0.0, 0.0, -0.002));
+  pipeline_.release({"punch"});
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+}
+
+// A patch beside a standing tool goes down: the tissue comes away from the tool or into it.
+TEST(LoadUnderATool, IsMetByTheToolAtEachIncrement) {
+  Pipeline pipeline(block(), methodOf("elastic"), {probe()});
+  walk(pipeline, -0.001, 0.002);
+  PatchConfig patch;
+  patch.name = "lift";
+  patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.015, kWidth, kTop)};
+  patch.displacement = {{0.0, 0.0, 0.006}};
+  const double before = pipeline.report().tools.front().force_on_tool.z();
+  double last = before;
+  int increments = 0;
+  pipeline.load({4, {patch}}, [&](int, int, const SolveReport&) {
+    const ToolReport& tool = pipeline.report().tools.front();
+    EXPECT_LT(tool.max_penetration, 0.05 * kSpacing);
+    EXPECT_GT(tool.force_on_tool.z(), last);
+    last = tool.force_on_tool.z();
+    ++increments;
+  });
+  EXPECT_EQ(increments, 4);
+  EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.06 * last);
+  pipeline.release({"lift"});
+  EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), last);
+}
+
+// The probe presses on both edges of the cut, nodes and ghosts.
+TEST(PressedElasticBlock, CutOpensUnderTheToolAndClosesAgain) {
+  for (const auto patch : {ToolConfig::Patch::kConforming, ToolConfig::Patch::kRigid}) {
+    SolverConfig solver;
+    solver.method = "newton";
+    ToolGeometry sphere = probe();
+    sphere.patch = patch;
+    const TissueConfig tissue = block("elastic", 0.01);
+    Pipeline pipeline(tissue, solver, {sphere});
+    walk(pipeline, -0.001, 0.002, 0.001);
+    const double whole = pipeline.report().tools.front().force_on_tool.z();
+    EXPECT_GT(pipeline.cut(uprightAt(0.0345)).springs_cut, 0);
+    walk(pipeline, 0.002, 0.006, 0.001);
+    const ToolReport& tool = pipeline.report().tools.front();
+    EXPECT_LT(tool.max_penetration, 0.05 * tissue.spacing);
+    EXPECT_GT(tool.force_on_tool.z(), whole);
+    const CellSet& cells = *pipeline.tissue().state().cells;
+    EXPECT_TRUE(std::any_of(tool.nodes.begin(), tool.nodes.end(),
+                            [&](int node) { return cells.isGhost(node); }));
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+    walk(pipeline, 0.006, -0.001, 0.001);
+    EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace robot_tissue

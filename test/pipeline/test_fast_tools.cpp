@@ -1,0 +1,171 @@
+// Fast and thin tools, and two at once: none passes through what it should meet.
+#include <gtest/gtest.h>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSheet = 0.01;  // its thickness: two cells (m)
+
+// Fixed at its edges x = 0 and x = kWidth.
+TissueConfig sheet() {
+  TissueConfig tissue;
+  tissue.shape.max = Vec3(kWidth, 0.04, kSheet);
+  tissue.spacing = kSpacing;
+  tissue.material.young_modulus = 1e4;
+  tissue.fixed = {{Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)},
+                  {Vec3(kWidth - 1e-6, -1.0, -1.0), Vec3(1.0, 1.0, 1.0)}};
+  return tissue;
+}
+
+ToolGeometry smallProbe(const std::string& name, double radius) {
+  ToolGeometry tool = probe(name);
+  tool.links.front().shapes.front().radius = radius;
+  return tool;
+}
+
+// Every vertex of the surface is out of the sphere.
+void expectOutside(const Tissue& tissue, const Vec3& center, double radius) {
+  for (const Vec3& vertex : tissue.vertices()) {
+    EXPECT_GT((vertex - center).norm(), radius - 0.05 * kSpacing);
+  }
+}
+
+TEST_P(PressedBlock, FastToolDoesNotPassThrough) {
+  pipeline_.step(pressed(-0.02));
+  const StepReport& report = pipeline_.step(pressed(0.006));  // 26 mm in one update
+  EXPECT_FALSE(report.too_fast);
+  EXPECT_GE(report.substeps, 6);
+  EXPECT_LT(tool().max_penetration, GetParam().hair());
+  EXPECT_GT(tool().force_on_tool.z(), 0.1);
+}
+
+// Per update at 100 Hz.
+class FastTool : public ::testing::TestWithParam<double> {};
+
+TEST_P(FastTool, PressesABlock) {
+  const double stride = 0.01 * GetParam();
+  Pipeline pipeline(block(), {}, {probe()});
+  for (double depth = -stride; depth < 0.007; depth += stride) pipeline.step(pressed(depth));
+  const StepReport& report = pipeline.step(pressed(0.007));
+  EXPECT_FALSE(report.too_fast);
+  EXPECT_LT(report.tools.front().max_penetration, 0.05 * kSpacing);
+  EXPECT_GT(report.tools.front().force_on_tool.z(), 0.2);
+  expectOutside(pipeline.tissue(), pressed(0.007).links.front().translation(), kRadius);
+  pipeline.step(pressed(-stride));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST_P(FastTool, TakesASheetAlong) {
+  constexpr double kSmall = 0.006;
+  const double stride = 0.01 * GetParam();
+  Pipeline pipeline(sheet(), {}, {smallProbe("probe", kSmall)});
+  const Vec3 middle(kMiddle, 0.02, kSheet + kSmall);
+  const double depth = 0.015;  // more than the sheet is thick
+  for (double way = -stride; way < depth; way += stride) {
+    pipeline.step(at({middle - way * Vec3::UnitZ()}));
+  }
+  const Vec3 end = middle - depth * Vec3::UnitZ();
+  const StepReport& report = pipeline.step(at({end}));
+  EXPECT_FALSE(report.too_fast);
+  EXPECT_LT(report.tools.front().max_penetration, 0.05 * kSpacing);
+  EXPECT_GT(report.tools.front().force_on_tool.z(), 0.01);
+  expectOutside(pipeline.tissue(), end, kSmall);
+  // The sheet is below the sphere: its underside's middle went as far.
+  const int under = pipeline.tissue().lattice().node(6, 4, 0);
+  EXPECT_LT(pipeline.tissue().nodePosition(under).z(), end.z() - kSmall);
+}
+
+TEST_P(FastTool, DragsAlongTheSurface) {
+  const double stride = 0.01 * GetParam();
+  Pipeline pipeline(block(), {}, {probe()});
+  walk(pipeline, -0.001, 0.004, 0.001);
+  for (const double side : {1.0, -1.0}) {
+    const double x = kMiddle + side * std::min(stride, 0.015);
+    const StepReport& report = pipeline.step(pressed(0.004, x));
+    EXPECT_FALSE(report.too_fast);
+    EXPECT_LT(report.tools.front().max_penetration, 0.05 * kSpacing);
+    EXPECT_GT(report.tools.front().force_on_tool.z(), 0.05);
+    expectOutside(pipeline.tissue(), pressed(0.004, x).links.front().translation(), kRadius);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(MetersPerSecond, FastTool, ::testing::Values(1.0, 5.0));
+
+// A needle thinner than a fifth of the spacing.
+TEST(ThinTool, DoesNotPassThroughASheet) {
+  ToolShape needle;
+  needle.type = ToolShape::Type::kCylinder;
+  needle.radius = 0.0005;
+  needle.length = 0.04;
+  needle.pose.translation().z() = 0.02;  // its tip at the origin
+  Pipeline pipeline(sheet(), {}, {toolOf(needle)});
+  const Vec3 above(0.0313, 0.0211, kSheet + 0.002);
+  walk(pipeline, {above}, {above - 0.006 * Vec3::UnitZ()}, 0.003);
+  const ToolReport& tool = pipeline.report().tools.front();
+  EXPECT_GT(tool.force_on_tool.z(), 1e-3);
+  EXPECT_LT(tool.max_penetration, 0.05 * kSpacing);
+}
+
+TEST(TwoTools, OnOppositeSidesOfASheetPressEachOther) {
+  constexpr double kSmall = 0.006;
+  Pipeline pipeline(sheet(), {}, {smallProbe("upper", kSmall), smallProbe("lower", kSmall)});
+  const auto apart = [](double gap) {
+    return std::vector<Vec3>{Vec3(kMiddle, 0.02, 0.5 * kSheet + 0.5 * gap + kSmall),
+                             Vec3(kMiddle, 0.02, 0.5 * kSheet - 0.5 * gap - kSmall)};
+  };
+  walk(pipeline, apart(kSheet + 0.002), apart(0.6 * kSheet));
+  const StepReport& report = pipeline.report();
+  const Vec3 upper = report.tools[0].force_on_tool, lower = report.tools[1].force_on_tool;
+  EXPECT_GT(upper.z(), 0.05);
+  EXPECT_LT((upper + lower).norm(), 0.03 * upper.norm());
+  for (const ToolReport& tool : report.tools) EXPECT_LT(tool.max_penetration, 0.05 * kSpacing);
+  for (const Vec3& center : apart(0.6 * kSheet)) {
+    expectOutside(pipeline.tissue(), center, kSmall);
+  }
+  EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.02 * upper.norm());
+  walk(pipeline, apart(0.6 * kSheet), apart(kSheet + 0.002));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST(TwoTools, OneLeavesTheOtherStays) {
+  Pipeline pipeline(block(), {}, {smallProbe("left", 0.006), smallProbe("right", 0.006)});
+  const auto both = [](double left, double right) {
+    return std::vector<Vec3>{Vec3(0.015, kMiddle, kTop + 0.006 - left),
+                             Vec3(0.045, kMiddle, kTop + 0.006 - right)};
+  };
+  walk(pipeline, both(0.0, 0.0), both(0.003, 0.003));
+  const StepReport& report = pipeline.report();
+  ASSERT_GT(report.tools[0].force_on_tool.z(), 0.05);
+  EXPECT_NEAR(report.tools[0].force_on_tool.z(), report.tools[1].force_on_tool.z(),
+              0.03 * report.tools[0].force_on_tool.z());
+  walk(pipeline, both(0.003, 0.003), both(0.003, -0.002));
+  EXPECT_EQ(report.tools[1].force_on_tool, Vec3::Zero());
+  EXPECT_TRUE(report.tools[1].nodes.empty());
+  EXPECT_GT(report.tools[0].force_on_tool.z(), 0.05);
+  walk(pipeline, both(0.003, -0.002), both(-0.002, -0.002));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST(TwoTools, RigidAndConformingOnesPressSideBySide) {
+  ToolGeometry rigid = smallProbe("rigid", 0.006);
+  rigid.patch = ToolConfig::Patch::kRigid;
+  Pipeline pipeline(block(), {}, {rigid, smallProbe("conforming", 0.006)});
+  const auto both = [](double depth) {
+    return std::vector<Vec3>{Vec3(0.015, kMiddle, kTop + 0.006 - depth),
+                             Vec3(0.045, kMiddle, kTop + 0.006 - depth)};
+  };
+  walk(pipeline, both(0.0), both(0.003));
+  const auto& tools = pipeline.report().tools;
+  EXPECT_GT(tools[1].force_on_tool.z(), 0.05);
+  EXPECT_NEAR(tools[0].force_on_tool.z(), tools[1].force_on_tool.z(),
+              0.5 * tools[1].force_on_tool.z());
+  EXPECT_LT(tools[1].max_penetration, 0.05 * kSpacing);
+  EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.02 * tools[1].force_on_tool.norm());
+  walk(pipeline, both(0.003), both(-0.002));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+}  // namespace
+}  // namespace robot_tissue

@@ -1,0 +1,164 @@
+// Tools that a force drives, and graspers.
+#include <gtest/gtest.h>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+TEST_P(PressedBlock, DrivenToolMeetsItsForce) {
+  pipeline_.step(pressed(-0.001));
+  for (const double force : {0.1, 0.3, 0.2}) {
+    pipeline_.push(0, Vec3(0.0, 0.0, -force));
+    int updates = 0;
+    while (updates < 20 && pipeline_.step(pressed(-0.001)).changed) ++updates;
+    EXPECT_LT(updates, 20);
+    EXPECT_NEAR(tool().force_on_tool.z(), force, 0.01 * force);
+    EXPECT_LT(tool().offset.z(), -0.001);
+    EXPECT_EQ(tool().offset.x(), 0.0);
+    const Vec3 place = pipeline_.pose()->links.front().translation();
+    EXPECT_LT((pressed(-0.001).links.front().translation() + tool().offset - place).norm(), 1e-12);
+  }
+  pipeline_.push(0, std::nullopt);
+  pipeline_.step(pressed(-0.001));
+  EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+  EXPECT_EQ(tool().offset, Vec3::Zero());
+}
+
+TEST(DrivenTool, KeepsItsForceWhileItsPoseGoesAside) {
+  Pipeline pipeline(block(), {}, {withFriction(0.0, probe())});
+  pipeline.step(pressed(-0.001));
+  pipeline.push(0, Vec3(0.0, 0.0, -0.2));
+  for (int i = 0; i < 10; ++i) pipeline.step(pressed(-0.001));
+  for (int i = 1; i <= 5; ++i) {
+    pipeline.step(pressed(-0.001, kMiddle + 0.001 * i));
+    EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), 0.2, 0.01 * 0.2);
+  }
+}
+
+TEST(DrivenTool, ThatFindsNothingStops) {
+  Pipeline pipeline(block(), {}, {probe()});
+  pipeline.step(pressed(-0.01));
+  pipeline.push(0, Vec3(0.0, 0.0, 0.1));  // away from the tissue
+  int updates = 0;
+  while (updates < 50 && pipeline.step(pressed(-0.01)).changed) ++updates;
+  EXPECT_LT(updates, 50);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST(DrivenTool, ForceThatIsZeroOrNotFiniteIsRefused) {
+  Pipeline pipeline(block(), {}, {probe()});
+  EXPECT_THROW(pipeline.push(0, Vec3::Zero()), InputError);
+  EXPECT_THROW(pipeline.push(0, Vec3(0.0, 0.0, NAN)), InputError);
+}
+
+// A ridge two cells wide, fixed at its bottom, and two plates that close on it along y.
+constexpr double kRidge = 0.01;
+constexpr double kRidgeTop = 0.03;
+
+TissueConfig ridge() {
+  TissueConfig tissue;
+  tissue.shape.max = Vec3(0.03, kRidge, kRidgeTop);
+  tissue.spacing = kSpacing;
+  tissue.material.young_modulus = 1e4;
+  tissue.fixed.push_back(bottomOf(tissue.shape));
+  return tissue;
+}
+
+class Grasper : public ::testing::TestWithParam<const char*> {
+ protected:
+  static constexpr double kCloseGap = 0.0085, kOpenGap = 0.0095;
+
+  static ToolGeometry gripper(double max_force = 0.0) {
+    ToolGeometry tool;
+    tool.name = "gripper";
+    tool.role = ToolConfig::Role::kGrasper;
+    const Vec3 plate(0.016, 0.004, 0.01);
+    tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
+                  {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};
+    tool.grasp.close_gap = kCloseGap;
+    tool.grasp.open_gap = kOpenGap;
+    tool.grasp.max_force = max_force;
+    return tool;
+  }
+  static SolverConfig solver() {
+    SolverConfig solver;
+    solver.method = GetParam();
+    return solver;
+  }
+  // Its inner faces `gap` apart, around the ridge's upper part.
+  static std::vector<Vec3> jaws(double gap, double lift = 0.0) {
+    return {Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005 + lift),
+            Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005 + lift)};
+  }
+  void close(Pipeline& pipeline) const { walk(pipeline, jaws(0.014), jaws(0.008)); }
+};
+
+TEST_P(Grasper, LiftsWhatIsBetweenItsJawsAndLetsGo) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  const auto tool = [&]() -> const ToolReport& { return pipeline.report().tools.front(); };
+  close(pipeline);
+  ASSERT_TRUE(tool().grasps);
+  EXPECT_GT(tool().nodes.size(), 10u);
+  EXPECT_FALSE(tool().jaws_overlap);
+  const Lattice& lattice = pipeline.tissue().lattice();
+  const int held = lattice.node(3, 1, 5);
+  const double before = pipeline.tissue().nodePosition(held).z();
+  walk(pipeline, jaws(0.008), jaws(0.008, 0.004));
+  EXPECT_NEAR(pipeline.tissue().nodePosition(held).z(), before + 0.004, 1e-6);
+  EXPECT_LT(tool().force_on_tool.z(), -0.05);  // the tissue draws it down
+  const ForceBalance balance = pipeline.forceBalance();
+  EXPECT_LT((balance.tools + tool().force_on_tool).norm(), 1e-9);
+  EXPECT_LT((balance.tools + balance.fixed).norm(), 0.02 * balance.tools.norm());
+  walk(pipeline, jaws(0.008, 0.004), jaws(0.016, 0.004));
+  EXPECT_FALSE(tool().grasps);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+  EXPECT_EQ(tool().force_on_tool, Vec3::Zero());
+}
+
+TEST_P(Grasper, HoldsAndLetsGoWhenItIsTold) {
+  ToolGeometry open = gripper();
+  open.grasp.close_gap = 0.0;
+  open.grasp.open_gap = 1.0;
+  Pipeline pipeline(ridge(), solver(), {open});
+  EXPECT_THROW(pipeline.grasp(0), InputError);  // it stands nowhere
+  close(pipeline);
+  EXPECT_FALSE(pipeline.report().tools.front().grasps);
+  pipeline.grasp(0);
+  walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
+  EXPECT_TRUE(pipeline.report().tools.front().grasps);
+  EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), -0.05);
+  pipeline.letGo(0);
+  walk(pipeline, jaws(0.008, 0.003), jaws(0.016, 0.003));
+  EXPECT_FALSE(pipeline.report().tools.front().grasps);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST_P(Grasper, PulledTooHardItLosesTheTissue) {
+  constexpr double kMost = 0.2;
+  Pipeline pipeline(ridge(), solver(), {gripper(kMost)});
+  close(pipeline);
+  ASSERT_TRUE(pipeline.report().tools.front().grasps);
+  bool torn = false;
+  for (int i = 1; i <= 40 && !torn; ++i) {
+    torn = pipeline.step(at(jaws(0.008, 0.0005 * i))).torn_off;
+    EXPECT_LE(pipeline.report().tools.front().force_on_tool.norm(), kMost + 1e-9);
+  }
+  EXPECT_TRUE(torn);
+  EXPECT_FALSE(pipeline.report().tools.front().grasps);
+}
+
+TEST_P(Grasper, CannotHoldWhatIsNotThere) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  pipeline.step(at(jaws(0.014, 0.05)));
+  EXPECT_THROW(pipeline.grasp(0), InputError);
+  Pipeline pusher(ridge(), solver(), {probe()});
+  pusher.step(pressed(-0.01));
+  EXPECT_THROW(pusher.grasp(0), InputError);
+}
+
+INSTANTIATE_TEST_SUITE_P(Method, Grasper, ::testing::Values("layered", "newton"),
+                         [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace robot_tissue

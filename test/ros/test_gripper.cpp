@@ -1,0 +1,122 @@
+// A grasper whose jaws are links of the robot, and supports.
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kWallTop = 0.03;   // m
+constexpr double kMiddle = 0.005;   // of the wall along y (m)
+constexpr double kJawHalf = 0.002;  // half a jaw's thickness (m)
+constexpr double kOpen = 0.018;     // m between the jaws
+constexpr double kClosed = 0.009;   // m: each jaw is 0.5 mm in the wall
+
+class Gripper : public NodeTest {
+ protected:
+  Gripper() : NodeTest("forceps") {}
+
+  void SetUp() override {
+    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
+    follow();
+    ASSERT_TRUE(reset());
+    follow();
+    ASSERT_TRUE(waitFor([this] { return state_ && state_->grasping.empty(); }));
+  }
+
+  std::vector<geometry_msgs::TransformStamped> transforms() const override {
+    const double aside = 0.5 * gap_ + kJawHalf;
+    return {transform("tissue", 1.0, 0.0, 0.0),
+            transform("left_jaw", 1.02, kMiddle - aside, kWallTop + height_),
+            transform("right_jaw", 1.02, kMiddle + aside, kWallTop + height_)};
+  }
+
+  geometry_msgs::Vector3 moveTo(double height, double gap) {
+    height_ = height;
+    gap_ = gap;
+    return follow().wrench.force;
+  }
+
+  bool holds() {
+    return waitFor([this] { return state_->grasping == std::vector<std::string>{"forceps"}; });
+  }
+
+  double height_ = 0.02;  // of the jaws' middle above the wall (m)
+  double gap_ = kOpen;    // m
+};
+
+TEST_F(Gripper, HoldsWhatIsBetweenItsJawsUntilTheyOpen) {
+  moveTo(0.0, kOpen);
+  moveTo(0.0, kClosed);
+  ASSERT_TRUE(holds()) << state_->message;
+  const double pull = moveTo(0.002, kClosed).z;  // the wall pulls it down
+  EXPECT_LT(pull, -0.1);
+  EXPECT_GT(pull, -3.0);  // E A d / h beneath the jaws is 0.2 N
+  EXPECT_EQ(wrench_->header.frame_id, "left_jaw");
+  ASSERT_TRUE(waitForMarkers([this] { return !markers_["loading_patches"].points.empty(); }));
+  moveTo(0.002, kOpen);
+  EXPECT_TRUE(waitFor([this] { return state_->grasping.empty(); }));
+  EXPECT_EQ(wrench_->wrench.force.z, 0.0);
+}
+
+TEST_F(Gripper, GraspsAndReleasesByService) {
+  const auto nothing = ask("grasp", "forceps");
+  EXPECT_FALSE(nothing.success);
+  EXPECT_NE(nothing.message.find("'forceps'"), std::string::npos) << nothing.message;
+  moveTo(0.0, kOpen);
+  moveTo(0.0, 0.0098);  // farther than close_gap
+  EXPECT_TRUE(state_->grasping.empty());
+  const auto grasped = ask("grasp", "forceps");
+  ASSERT_TRUE(grasped.success) << grasped.message;
+  ASSERT_TRUE(holds());
+  const double pull = moveTo(0.002, 0.0098).z;
+  EXPECT_LT(pull, -0.1);
+  EXPECT_GT(pull, -3.0);
+  const auto released = ask("release", "forceps");
+  ASSERT_TRUE(released.success) << released.message;
+  EXPECT_TRUE(waitFor([this] { return state_->grasping.empty(); }));
+  EXPECT_FALSE(ask("release", "forceps").success);
+}
+
+TEST_F(Gripper, JawsInEachOtherAreReported) {
+  moveTo(0.05, -0.001);
+  EXPECT_TRUE(waitFor([this] { return state_->message.find("forceps") != std::string::npos; }));
+  EXPECT_EQ(state_->status, "OK");
+  moveTo(0.05, kOpen);
+  EXPECT_TRUE(waitFor([this] { return state_->message.empty(); }));
+}
+
+TEST_F(Gripper, JawThatVanishesIsNamed) {
+  moveTo(0.0, kOpen);
+  publishes_transform_ = false;
+  const auto left_only = [this] {
+    auto some = transforms();
+    some.pop_back();
+    broadcaster_.sendTransform(some);
+    return state_->status == "STALE";
+  };
+  ASSERT_TRUE(waitFor(left_only));
+  EXPECT_NE(state_->message.find("'right_jaw'"), std::string::npos) << state_->message;
+  publishes_transform_ = true;
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST_F(Gripper, SupportsAreShown) {
+  ASSERT_TRUE(waitForMarkers([this] { return markers_.count("supports1") > 0; }));
+  const auto& table = markers_["supports"];
+  EXPECT_EQ(table.type, visualization_msgs::Marker::CUBE);
+  EXPECT_NEAR(table.pose.position.x, 0.02, 1e-12);  // under the middle of the wall
+  EXPECT_NEAR(table.pose.position.z + 0.5 * table.scale.z, 0.0, 1e-12);
+  EXPECT_GT(table.scale.x, 0.04);
+  const auto& shelf = markers_["supports1"];
+  EXPECT_NEAR(shelf.pose.position.x, 0.11, 1e-12);
+  EXPECT_NEAR(shelf.scale.y, 0.1, 1e-12);
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_gripper");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,225 @@
+// Several tools: friction, wrenches at their own rate, tools that a force drives, links that vanish
+// and jump, and what the state says of it all.
+#include <Eigen/Core>
+
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kBlockTop = 0.03;  // m
+const Eigen::Vector3d kParked(0.03, 0.03, 0.2);
+
+geometry_msgs::Vector3 vector(double x, double y, double z) {
+  geometry_msgs::Vector3 vector;
+  vector.x = x;
+  vector.y = y;
+  vector.z = z;
+  return vector;
+}
+
+class Tools : public NodeTest {
+ protected:
+  Tools() : places_{{"probe", kParked}, {"slick", kParked}, {"fork", kParked}} {
+    subscribe<geometry_msgs::WrenchStamped>("slick/measured_cf", slick_);
+    subscribe<geometry_msgs::WrenchStamped>("fork/measured_cf", fork_);
+  }
+
+  void SetUp() override {
+    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
+    follow();
+    ASSERT_TRUE(reset());
+    follow();
+    said_.clear();
+    ASSERT_TRUE(waitFor([this] { return said_.count("OK") > 0; }));
+  }
+
+  std::vector<geometry_msgs::TransformStamped> transforms() const override {
+    std::vector<geometry_msgs::TransformStamped> all = {transform("tissue", 1.0, 0.0, 0.0)};
+    const auto add = [&](const std::string& link, const Eigen::Vector3d& place) {
+      if (link != vanished_) all.push_back(transform(link, 1.0 + place.x(), place.y(), place.z()));
+    };
+    add("probe", places_.at("probe"));
+    add("slick", places_.at("slick"));
+    add("fork_base", places_.at("fork") + Eigen::Vector3d(0.0, 0.0, 0.1));
+    add("tine", places_.at("fork"));
+    return all;
+  }
+
+  // Of a sphere that is as deep in the block's top, `aside` of its middle.
+  static Eigen::Vector3d pressed(double depth, double radius = kRadius, double aside = 0.0) {
+    return {0.03 + aside, 0.03, kBlockTop + radius - depth};
+  }
+
+  ApplyLoad::Response push(const std::string& tool,
+                           const std::vector<geometry_msgs::Vector3>& force) {
+    ApplyLoad::Request request;
+    request.name = tool;
+    request.force = force;
+    return applyLoad(request);
+  }
+
+  std::map<std::string, Eigen::Vector3d> places_;  // of the tools (m, tissue frame)
+  std::string vanished_;
+  boost::shared_ptr<const geometry_msgs::WrenchStamped> slick_, fork_;
+};
+
+TEST_F(Tools, WrenchesKeepTheirRateWhileShapesAreSolved) {
+  std::vector<geometry_msgs::WrenchStamped> wrenches;
+  const auto subscriber = node_.subscribe<geometry_msgs::WrenchStamped>(
+      "/tissue/probe/measured_cf", 2000,
+      [&](const geometry_msgs::WrenchStampedConstPtr& wrench) { wrenches.push_back(*wrench); });
+  ASSERT_TRUE(waitFor([&] { return !wrenches.empty(); }));
+  wrenches.clear();
+  const ros::Time start = ros::Time::now();
+  ASSERT_TRUE(waitFor([&] {
+    const double passed = (ros::Time::now() - start).toSec();
+    places_["probe"] = pressed(0.002 * passed);
+    return passed >= 1.0;
+  }));
+  RecordProperty("wrenches", static_cast<int>(wrenches.size()));
+  EXPECT_GE(wrenches.size(), 300U);  // of 500
+  EXPECT_LE(wrenches.size(), 600U);
+  ros::Time last;
+  double greatest = 0.0;
+  for (const auto& wrench : wrenches) {
+    const auto& force = wrench.wrench.force;
+    EXPECT_TRUE(std::isfinite(force.x + force.y + force.z));
+    EXPECT_GE(wrench.header.stamp, last);
+    last = wrench.header.stamp;
+    greatest = std::max(greatest, force.z);
+  }
+  EXPECT_GT(greatest, 0.05);
+}
+
+TEST_F(Tools, FrictionIsTheTools) {
+  const auto drag = [&](const std::string& tool) {
+    for (const double aside : {0.0, 0.0, 0.001, 0.002, 0.003, 0.004}) {
+      places_[tool] = pressed(0.003, kRadius, aside);
+      follow();
+    }
+    const auto met = tool == "probe" ? wrench_ : slick_;
+    places_[tool] = kParked;
+    follow();
+    return met->wrench.force;
+  };
+  const auto rough = drag("probe"), slick = drag("slick");
+  EXPECT_GT(rough.z, 0.1);
+  EXPECT_GT(slick.z, 0.1);
+  EXPECT_LT(rough.x, 0.0);  // the tissue holds it back
+  EXPECT_LT(slick.x, 0.05 * slick.z);
+  EXPECT_LT(rough.x / rough.z, slick.x / slick.z - 0.2);  // of 0.5
+}
+
+TEST_F(Tools, MaxForceIsToldAndFlagged) {
+  places_["fork"] = pressed(0.004, 0.005);
+  follow();
+  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  const auto& contact = contacts_->contacts.front();
+  EXPECT_EQ(contact.tool, "fork");
+  EXPECT_TRUE(contact.saturated);
+  EXPECT_TRUE(state_->saturated);
+  EXPECT_NEAR(fork_->wrench.force.z, 0.05, 1e-3);
+  EXPECT_EQ(fork_->header.frame_id, "fork_base");
+  EXPECT_GT(std::abs(state_->force_of_tools.z), 0.06);  // before it is limited
+}
+
+TEST_F(Tools, ForcesOnTheTissueBalance) {
+  places_["probe"] = pressed(0.004);
+  follow();
+  ASSERT_TRUE(waitFor([this] { return state_->force_of_tools.z < -0.1; }));
+  EXPECT_LT(state_->unbalanced_force, 0.02 * std::abs(state_->force_of_tools.z));
+  EXPECT_NEAR(state_->force_of_fixed.z, -state_->force_of_tools.z,
+              0.02 * std::abs(state_->force_of_tools.z));
+  EXPECT_NEAR(state_->force_of_tools.z, -wrench_->wrench.force.z, 1e-9);
+  EXPECT_NEAR(state_->weight.z, 0.0, 1e-12);
+  EXPECT_TRUE(state_->grasping.empty());
+}
+
+TEST_F(Tools, ForceDrivesAToolUntilItIsMet) {
+  places_["probe"] = pressed(-0.002);
+  follow();
+  const auto pushed = push("probe", {vector(0.0, 0.0, -0.3)});
+  ASSERT_TRUE(pushed.success) << pushed.message;
+  EXPECT_NEAR(pushed.force.z, -0.3, 0.05 * 0.3) << pushed.message;
+  EXPECT_LT(pushed.displacement.z, -0.003);
+  EXPECT_NEAR(follow().wrench.force.z, 0.3, 0.05 * 0.3);
+  const auto at_its_pose = push("probe", {});
+  EXPECT_TRUE(at_its_pose.success) << at_its_pose.message;
+  EXPECT_EQ(at_its_pose.displacement.z, 0.0);
+  EXPECT_EQ(follow().wrench.force.z, 0.0);
+}
+
+TEST_F(Tools, PushesThatAreNoneAreRefusedWithALine) {
+  ApplyLoad::Request moved, turned;
+  moved.name = turned.name = "probe";
+  moved.displacement = {vector(0.0, 0.0, -0.001)};
+  turned.force = {vector(0.0, 0.0, -0.1)};
+  turned.turns = true;
+  for (const auto& refused :
+       {applyLoad(moved), applyLoad(turned), push("probe", {vector(0.0, 0.0, 0.0)}),
+        push("probe", {vector(0.0, 0.0, std::nan(""))}),
+        push("probe", {vector(0.0, 0.0, -0.1), vector(0.0, 0.0, -0.1)})}) {
+    EXPECT_FALSE(refused.success);
+    EXPECT_NE(refused.message.find("probe"), std::string::npos) << refused.message;
+    EXPECT_NE(refused.message.find("allowed"), std::string::npos) << refused.message;
+    EXPECT_EQ(refused.message.find('\n'), std::string::npos);
+  }
+}
+
+TEST_F(Tools, OnlyGraspersGrasp) {
+  const auto grasp = ask("grasp", "probe");
+  EXPECT_FALSE(grasp.success);
+  EXPECT_NE(grasp.message.find("'probe'"), std::string::npos) << grasp.message;
+  EXPECT_NE(grasp.message.find("grasper"), std::string::npos) << grasp.message;
+  const auto unknown = ask("grasp", "tongs");
+  EXPECT_FALSE(unknown.success);
+  EXPECT_NE(unknown.message.find("'tongs'"), std::string::npos) << unknown.message;
+  EXPECT_NE(unknown.message.find("probe, slick, fork"), std::string::npos) << unknown.message;
+  EXPECT_FALSE(ask("release", "probe").success);
+}
+
+TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {
+  places_["fork"] = pressed(0.003, 0.005);
+  follow();
+  vanished_ = "tine";  // the fork's other link goes on
+  ASSERT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
+  EXPECT_NE(state_->message.find("'tine'"), std::string::npos) << state_->message;
+  const Points shape = markers_["surface"].points;
+  EXPECT_FALSE(markers_["loading_patches"].points.empty());
+  const ros::Time last = fork_->header.stamp;
+  places_["probe"] = pressed(0.004, kRadius, -0.02);
+  ASSERT_FALSE(waitFor([&] { return fork_->header.stamp > last; }, 0.5)) << "a wrench of no pose";
+  EXPECT_TRUE(markers_["surface"].points == shape);
+  vanished_.clear();
+  ASSERT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+  EXPECT_GT(follow().wrench.force.z, 0.1);
+}
+
+TEST_F(Tools, JumpIsReported) {
+  places_["probe"] = pressed(0.004);
+  EXPECT_GT(follow().wrench.force.z, 0.1);
+  said_.clear();
+  places_["probe"] = Eigen::Vector3d(5.0, 5.0, 5.0);
+  EXPECT_EQ(follow().wrench.force.z, 0.0);
+  EXPECT_TRUE(waitFor([this] { return said_.count("TOO_FAST") > 0 && state_->status == "OK"; }));
+}
+
+TEST_F(Tools, ToolThatAppearsInsideIsReportedAndWalkedIn) {
+  places_["probe"] = pressed(0.004);
+  const double force = follow().wrench.force.z;
+  said_.clear();
+  ASSERT_TRUE(reset());
+  EXPECT_NEAR(follow().wrench.force.z, force, 0.1 * force);
+  EXPECT_TRUE(waitFor([this] { return said_.count("INSIDE") > 0 && state_->status == "OK"; }));
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_tools");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,191 @@
+// Steps of the runner that tools take: rows, increments, remarks and refusals.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "result_text.h"
+#include "simulate.h"
+#include "tool_scenes.h"
+
+namespace robot_tissue {
+namespace {
+
+std::string refusalOf(const std::string& scene) {
+  try {
+    run(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool hasRemark(const RunResult& result, const std::string& start, const std::string& fragment) {
+  return std::any_of(result.remarks.begin(), result.remarks.end(), [&](const std::string& remark) {
+    return remark.rfind(start, 0) == 0 && remark.find(fragment) != std::string::npos;
+  });
+}
+
+TEST(ToolSteps, AToolHasARowAnIncrementFromWhereItIsPlacedUntilTheReset) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n  - settle: {}\n" +
+          placed("probe", sphereAt(-0.03), sphereAt(-0.01), 3) + "  - settle: {}\n" +
+          "  - load: {increments: 2, patches: [{name: pull, min: [0, 0, 0.05], max: [0, 0, 0.05],"
+          " displacement: [0, 0, 0.001]}]}\n" +
+          "  - release: {patches: [pull], tools: [probe]}\n  - reset: {}\n  - settle: {}\n");
+  std::vector<std::array<int, 2>> rows;
+  for (const ToolRow& row : result.tools) rows.push_back({row.step, row.increment});
+  const std::vector<std::array<int, 2>> expected = {{1, 1}, {1, 2}, {1, 3}, {2, 1},
+                                                    {3, 1}, {3, 2}, {4, 1}};
+  EXPECT_EQ(rows, expected);
+  EXPECT_EQ(result.increments.size(), 10U);
+  ASSERT_EQ(result.patches.size(), 2U);  // named ones only
+  EXPECT_EQ(result.patches[0].patch, "pull");
+}
+
+TEST(ToolSteps, PatchesHoldNoRowsOfTools) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.001), sphereAt(0.002), 2));
+  EXPECT_GT(result.tools.back().force.z(), 0.1);
+  EXPECT_TRUE(result.patches.empty());
+}
+
+TEST(ToolSteps, WithoutIncrementsAMoveHasOneALoadStep) {
+  const RunResult result = run(block() + kSphere +
+                               "steps:\n  - move: {tool: probe, from: {xyz: [0.05, 0.05, 0.2]},"
+                               " to: {xyz: [0.05, 0.05, 0.19]}}\n");
+  EXPECT_EQ(result.increments.size(), 5U);  // of a fifth of the spacing
+}
+
+TEST(ToolSteps, AFarWayInOneIncrementIsWalkedAll) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-3.0), sphereAt(0.003), 1));
+  EXPECT_TRUE(result.allOk());
+  EXPECT_EQ(result.increments.size(), 1U);
+  EXPECT_TRUE(result.remarks.empty());
+  EXPECT_GT(result.tools.back().force.z(), 0.2);
+}
+
+TEST(ToolSteps, AWayOfTooManyLoadStepsIsRefused) {
+  const std::string message = refusalOf(block() + kSphere + "steps:\n" +
+                                        placed("probe", sphereAt(-1000.0), sphereAt(0.0), 1));
+  EXPECT_EQ(message.rfind("steps[0].move: ", 0), 0U) << message;
+  EXPECT_NE(message.find("500000 load steps of 0.002 m"), std::string::npos) << message;
+  EXPECT_NE(message.find("at most 100000"), std::string::npos) << message;
+}
+
+TEST(ToolSteps, AToolThatAppearsInsideIsWalkedInWithARemark) {
+  const RunResult inside =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(0.003), sphereAt(0.003), 1));
+  EXPECT_TRUE(hasRemark(inside, "steps[0].move: ", "walked in from outside"));
+  EXPECT_EQ(inside.remarks.size(), 1U);
+  const RunResult outside =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.001), sphereAt(0.003), 1));
+  EXPECT_TRUE(outside.remarks.empty());
+  EXPECT_NEAR(inside.tools.back().force.z(), outside.tools.back().force.z(),
+              0.05 * outside.tools.back().force.z());
+}
+
+TEST(ToolSteps, ALaterPlaceToAppearAtIsNotWalkedTo) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.001), sphereAt(0.003), 2) +
+          placed("probe", {0.2, 0.05, 0.02}, {0.2, 0.05, 0.02}, 1));
+  EXPECT_EQ(result.tools.back().force, Vec3::Zero());
+  EXPECT_EQ(greatestDisplacement(result), 0.0);
+  EXPECT_TRUE(result.allOk());
+}
+
+TEST(ToolSteps, PlacingAToolLeavesTheOthersAsTheyAre) {
+  const std::string tools =
+      "tools: [{name: first, friction: 0.5, shapes: [{type: sphere, radius: 0.02}]},"
+      " {name: second, shapes: [{type: sphere, radius: 0.02}]}]\n";
+  const RunResult result =
+      run(block() + tools + "steps:\n" + placed("first", sphereAt(-0.001), sphereAt(0.003), 2) +
+          moved("first", sphereAt(0.003, 0.053), 2) +
+          placed("second", {0.05, 0.05, 0.3}, {0.05, 0.05, 0.29}, 1));
+  const Vec3 before = rowsOf(result, 1, "first").back().force;
+  const Vec3 after = rowsOf(result, 2, "first").back().force;
+  EXPECT_LT(before.x(), -0.1 * before.z());
+  EXPECT_LT(after.x(), 0.4 * before.x());  // it still drags, which one placed anew would not
+  EXPECT_NEAR(after.z(), before.z(), 0.03 * before.z());
+}
+
+TEST(ToolSteps, AMoveEndsAPushWhereItHasLed) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.01), sphereAt(-0.005), 1) +
+          "  - push: {tool: probe, force: [0, 0, -0.3]}\n" + moved("probe", sphereAt(-0.02), 1) +
+          moved("probe", sphereAt(-0.02), 1));
+  EXPECT_TRUE(hasRemark(result, "steps[2].move: ", "ends its push"));
+  EXPECT_EQ(result.remarks.size(), 1U);
+  EXPECT_EQ(rowsOf(result, 3, "probe").front().force, Vec3::Zero());
+}
+
+TEST(ToolSteps, APushThatMeetsNothingIsToldAndNotOk) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.01), sphereAt(-0.005), 1) +
+          "  - push: {tool: probe, force: [0, 0, 0.3]}\n");
+  EXPECT_EQ(result.increments.back().report.status, SolveStatus::kUnconverged);
+  EXPECT_TRUE(hasRemark(result, "steps[1].push: tool 'probe' met 0 N", "not the force of 0.3 N"));
+}
+
+TEST(ToolSteps, AGraspOfNothingIsRefused) {
+  const std::string message = refusalOf(
+      block() +
+      "tools: [{name: forceps, role: grasper, jaws: [{shapes: [{type: sphere, radius: 0.002}]},"
+      " {shapes: [{type: sphere, radius: 0.002}]}]}]\n"
+      "steps:\n"
+      "  - move: {tool: forceps, from: {xyz: [0.05, 0.05, 0.2], opening: 0.01},"
+      " to: {xyz: [0.05, 0.05, 0.19], opening: 0.01}, increments: 1}\n"
+      "  - grasp: {tool: forceps}\n");
+  EXPECT_EQ(message.rfind("steps[1].grasp: tool 'forceps': ", 0), 0U) << message;
+}
+
+TEST(ToolSteps, ToolsThatNoStepPlacesPlayNoPart) {
+  const RunResult result = run(block() + "tools: [{link: tool_tip}]\nsteps:\n  - settle: {}\n");
+  EXPECT_TRUE(result.tools.empty());
+  EXPECT_TRUE(result.remarks.empty());
+}
+
+TEST(ToolSteps, ToolsCsvHasItsHeaderAndOneLineARow) {
+  RunResult result;
+  const std::string header = "step,increment,tool,fx,fy,fz,tx,ty,tz,contacts,max_penetration\n";
+  EXPECT_EQ(toolsCsv(result), header);
+  result.tools.push_back({2, 7, "probe", {1, 2, 3}, {4, 5, 6}, 8, 0.1});
+  EXPECT_EQ(toolsCsv(result), header + "2,7,probe,1,2,3,4,5,6,8,0.10000000000000001\n");
+  result.tools.back().torque.x() = std::nan("");
+  EXPECT_THROW(toolsCsv(result), std::runtime_error);
+}
+
+TEST(ToolSteps, TheScenesProbePressesDragsAndLeaves) {
+  const RunResult result =
+      runScene(loadScene(ROBOT_TISSUE_SOURCE_DIR "/config/probe_scene.yaml", {}));
+  EXPECT_TRUE(result.allOk());
+  EXPECT_TRUE(result.remarks.empty());
+  EXPECT_GT(rowsOf(result, 0, "probe").back().force.z(), 0.5);
+  EXPECT_LT(rowsOf(result, 1, "probe").back().force.x(), -0.2);
+  EXPECT_EQ(rowsOf(result, 2, "probe").back().force, Vec3::Zero());
+  EXPECT_EQ(greatestDisplacement(result), 0.0);
+}
+
+TEST(ToolSteps, RemarksGoToStderrUnlessQuiet) {
+  namespace fs = std::filesystem;
+  std::string pattern = (fs::temp_directory_path() / "tool_steps_XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const std::string file = pattern + "/scene.yaml";
+  std::ofstream(file) << block() << kSphere << "steps:\n"
+                      << placed("probe", sphereAt(0.002), sphereAt(0.002), 1);
+  const auto errorsOf = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {file, "--out", pattern + "/out"});
+    std::ostringstream out, err;
+    EXPECT_EQ(simulate(arguments, out, err, false), kExitOk);
+    return err.str();
+  };
+  EXPECT_EQ(errorsOf({}).rfind("simulate: steps[0].move: ", 0), 0U);
+  EXPECT_EQ(errorsOf({"--quiet"}), "");
+  fs::remove_all(pattern);
+}
+
+}  // namespace
+}  // namespace robot_tissue
