@@ -10,22 +10,21 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kFirm = 10.0;       // spring over the tissue's stiffness at its point
-constexpr double kSettled = 0.03;    // of the spacing: a depth or gap that is none, at most
-constexpr double kCertain = 0.003;   // likewise, at least
-constexpr double kOfForce = 0.1;     // of all normal force: what closing it may change
-constexpr double kLittle = 0.05;     // of all normal force: a touch that may push from afar
-constexpr double kFarOff = 0.3;      // of the spacing: a gap at which a vertex is forgotten
-constexpr double kSamePoint = 0.25;  // barycentric: a touch that has wandered
-constexpr double kWanders = 0.2;     // of the slack: deeper than a touch, a point takes its place
-constexpr double kMostTurn = 0.5;    // rad, of a touch's plane in a load step
-constexpr double kSameSide = 0.3;    // cosine: a normal that turns further has jumped
-constexpr double kSameForce = 0.03;  // of the greatest drag of all touches
-constexpr double kFirmDrag = 2.0;    // drag's spring over that stiffness, at most
-constexpr double kElasticSlip =
-    0.02;                            // of the fineness: before a point that sticks slips, at least
-constexpr double kMostSlip = 0.1;    // likewise, at most
-constexpr double kMostForce = 15.0;  // of the stiffness times the spacing
+constexpr double kFirm = 10.0;         // spring over the tissue's stiffness at its point
+constexpr double kSettled = 0.03;      // of the spacing: a depth or gap that is none, at most
+constexpr double kCertain = 0.003;     // likewise, at least
+constexpr double kOfForce = 0.1;       // of its tool's normal force: what closing it may change
+constexpr double kLittle = 0.05;       // likewise: a touch that may push from afar
+constexpr double kFarOff = 0.3;        // of the spacing: a gap at which a vertex is forgotten
+constexpr double kSamePoint = 0.25;    // barycentric: a touch that has wandered
+constexpr double kWanders = 0.2;       // of the slack: deeper than a touch, a point takes its place
+constexpr double kMostTurn = 0.5;      // rad, of a touch's plane in a load step
+constexpr double kSameSide = 0.3;      // cosine: a normal that turns further has jumped
+constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
+constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at most
+constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
+constexpr double kMostSlip = 0.1;      // likewise, at most
+constexpr double kMostForce = 15.0;    // of the stiffness times the spacing
 
 bool isVertex(const Contact& contact) { return contact.barycentric.maxCoeff() > 1.0 - 1e-6; }
 
@@ -46,7 +45,9 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
 }  // namespace
 
 ToolContacts::ToolContacts(std::vector<double> friction, std::vector<double> thickness)
-    : friction_(std::move(friction)), thickness_(std::move(thickness)) {}
+    : friction_(std::move(friction)),
+      thickness_(std::move(thickness)),
+      pressed_(friction_.size(), 0.0) {}
 
 // What is fine beside the spacing, and beside a thin link (m).
 double ToolContacts::fineness(int link, double spacing) const {
@@ -136,15 +137,16 @@ bool ToolContacts::track(const std::optional<Contact>& contact, const RobotPose&
   }
   anchor(pose, touch);
   const double gap = gapOf(spring, tissue.state().displacement);
-  const double slack = slackOf(spring, tissue);
-  return gap >= -slack && (gap <= slack || spring.multiplier <= kLittle * pressed_);
+  const double slack = slackOf(touch, tissue);
+  return gap >= -slack && (gap <= slack || spring.multiplier <= kLittle * pressed_[at(touch.tool)]);
 }
 
 // A depth or gap that is none (m): the tissue would not push much harder or less without it.
-double ToolContacts::slackOf(const ContactSpring& spring, const Tissue& tissue) const {
+double ToolContacts::slackOf(const Touch& touch, const Tissue& tissue) const {
+  const double stiffness = touch.spring.stiffness;
   const double spacing = tissue.lattice().spacing();
   const double slack =
-      spring.stiffness > 0.0 ? kOfForce * kFirm * pressed_ / spring.stiffness : 0.0;
+      stiffness > 0.0 ? kOfForce * kFirm * pressed_[at(touch.tool)] / stiffness : 0.0;
   return std::min(std::max(slack, kCertain * spacing), kSettled * spacing);
 }
 
@@ -155,9 +157,9 @@ bool ToolContacts::take(const Contact& contact, const RobotPose& pose, const Tis
   Touch* touch = find(contact, tissue.surface());
   if (touch == nullptr) {
     add(contact, pose, tissue, held);
-    return contact.depth_m <= slackOf(touches_.back().spring, tissue);
+    return contact.depth_m <= slackOf(touches_.back(), tissue);
   }
-  const double slack = slackOf(touch->spring, tissue);
+  const double slack = slackOf(*touch, tissue);
   if (touch->vertex >= 0 || -contact.depth_m >= touch->off - kWanders * slack) return true;
   const bool same_side = touch->spring.normal.dot(contact.normal) >= kSameSide;
   if (contact.depth_m > kSettled * tissue.lattice().spacing() && !same_side) {
@@ -180,13 +182,13 @@ bool ToolContacts::take(const Contact& contact, const RobotPose& pose, const Tis
 bool ToolContacts::takeForces(const Tissue& tissue) {
   const double spacing = tissue.lattice().spacing();
   double drag_before = 0.0, drag_now = 0.0;
-  pressed_ = 0.0;
+  pressed_.assign(friction_.size(), 0.0);
   for (Touch& touch : touches_) {
     touch.found = false;
     ContactSpring& spring = touch.spring;
     const double force = normalForceOf(spring, tissue.state().displacement);
     const double most_drag = friction_[at(touch.tool)] * force;
-    pressed_ += force;
+    pressed_[at(touch.tool)] += force;
     drag_before += spring.most_drag;
     drag_now += most_drag;
     spring.multiplier = std::min(force, kMostForce / kFirm * spring.stiffness * spacing);

@@ -70,7 +70,7 @@ class ToolContacts {
  private:
   using Held = std::vector<std::uint8_t>;
 
-  double slackOf(const ContactSpring& spring, const Tissue& tissue) const;
+  double slackOf(const Touch& touch, const Tissue& tissue) const;
   void stickFirst(const Tissue& tissue);
   double fineness(int link, double spacing) const;
   Touch* find(const Contact& contact, const Surface& surface);
@@ -88,8 +88,8 @@ class ToolContacts {
 
   std::vector<double> friction_;
   std::vector<double> thickness_;
+  std::vector<double> pressed_;           // per tool: its normal forces in the last update (N)
   std::vector<Touch> touches_;            // in the order in which they were found
-  double pressed_ = 0.0;                  // sum of the normal forces in the last update (N)
   std::vector<Pose> since_links_;         // at the last commit
   std::vector<Vec3> since_displacement_;  // likewise (m)
 };
