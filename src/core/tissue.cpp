@@ -151,7 +151,8 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   if (!contact_rounds_.renew) return report;
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
-    const bool whole = !goBack(before);
+    const bool solved = report.status != SolveStatus::kUnconverged;
+    const bool whole = !goBack(before) && solved;
     if (whole) ++whole_rounds;
     const bool last = whole_rounds == kContactRounds || rounds == kMostRounds ||
                       report.iterations > kMostIterations;

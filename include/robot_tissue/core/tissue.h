@@ -66,8 +66,8 @@ class Tissue {
     // rest is solved for anew, with the contacts at that shape.
     std::function<double(const std::vector<Vec3>& before)> share;
     // When the contacts are no longer those that the shape was solved for, puts the tools' new
-    // patches in and returns true: it is solved again. `whole`: the shape is what was solved for.
-    // `last`: there is no next time.
+    // patches in and returns true: it is solved again. `whole`: the shape is what was solved for,
+    // and in balance. `last`: there is no next time.
     std::function<bool(std::vector<LoadingPatch>& of_tools, bool whole, bool last)> renew;
   };
   void setContactRounds(ContactRounds rounds) { contact_rounds_ = std::move(rounds); }
