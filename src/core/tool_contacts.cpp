@@ -24,6 +24,7 @@ constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
 constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at most
 constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
 constexpr double kMostSlip = 0.1;      // likewise, at most
+constexpr double kAbsurd = 3.0;        // of the most force: no tissue pushes so hard
 constexpr double kMostForce = 15.0;    // of the stiffness times the spacing
 
 bool isVertex(const Contact& contact) { return contact.barycentric.maxCoeff() > 1.0 - 1e-6; }
@@ -191,7 +192,8 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
     pressed_[at(touch.tool)] += force;
     drag_before += spring.most_drag;
     drag_now += most_drag;
-    spring.multiplier = std::min(force, kMostForce / kFirm * spring.stiffness * spacing);
+    const double most = kMostForce / kFirm * spring.stiffness * spacing;
+    spring.multiplier = std::min(force, most);
     spring.most_drag = most_drag;
     const double fine = fineness(touch.link, spacing);
     const double soft = kFirmDrag / kFirm * spring.stiffness;
@@ -316,6 +318,13 @@ void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
     return gapOf(touch.spring, since_displacement_) > far;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
+}
+
+bool ToolContacts::isAbsurd(const Tissue& tissue) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+    const double most = kMostForce / kFirm * touch.spring.stiffness * tissue.lattice().spacing();
+    return normalForceOf(touch.spring, tissue.state().displacement) > kAbsurd * most;
+  });
 }
 
 void ToolContacts::clear() {

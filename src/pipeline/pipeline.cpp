@@ -13,7 +13,8 @@ constexpr int kPushPasses = 4;        // a curved tool's way out turns as the su
 constexpr int kRigidRounds = 3;       // nodes that the solve moved into a rigid tool go out again
 constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that is worth another round
 constexpr double kTouches = 0.02;     // of the spacing: a gap that is none
-constexpr double kMostLeap = 4.0;     // of the spacing, of a node in a load step
+constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
+constexpr double kMostLeap = 4.0;        // of the spacing, of a node in a load step
 
 ToolGeometry asTool(const SupportConfig& support) {
   ToolGeometry tool;
@@ -145,7 +146,11 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
   }
   const bool inverted = tissue_.lastReport().inverted_cells > good.report.inverted_cells;
   const bool leapt = farthest > kMostLeap * tissue_.lattice().spacing() && !tissue_.isUntouched();
-  if (!leapt && !(inverted && !any_rigid_)) return;
+  const ForceBalance forces = forceBalance();
+  const bool unbalanced = tissue_.lastReport().status == SolveStatus::kUnconverged &&
+                          forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
+  const bool absurd = leapt || inverted || unbalanced || contacts_.isAbsurd(tissue_);
+  if (any_rigid_ || !absurd) return;
   report_.lost = true;
   tissue_.restore(good);
   contacts_ = good_contacts;

@@ -62,6 +62,8 @@ class ToolContacts {
   void clear();
   void clear(int tool);
 
+  // Whether a touch pushes as hard as no tissue does.
+  bool isAbsurd(const Tissue& tissue) const;
   const std::vector<Touch>& touches() const { return touches_; }
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
