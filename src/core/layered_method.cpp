@@ -346,6 +346,7 @@ void LayeredMethod::describe(const LoadedShape& shape, const Motion& forces, Sol
     std::vector<Vec3> raw(displacement.size(), Vec3::Zero());
     std::vector<Vec3> contact_forces(displacement.size(), Vec3::Zero());
     for (const LoadingPatch& other : shape.patches) {
+      if (hold_.hardOf(index).empty()) break;
       addContactForces(other, state.displacement, contact_forces);
     }
     for (const int node : hold_.hardOf(index)) {

@@ -186,6 +186,28 @@ void deform(const Surface& surface, const std::vector<Vec3>& displacement,
   }
 }
 
+std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric) {
+  std::map<int, double> weights;
+  for (int corner = 0; corner < 3; ++corner) {
+    const int vertex = surface.triangles[at(triangle)][at(corner)];
+    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
+      weights[carrier.node] += barycentric[corner] * carrier.weight;
+    }
+  }
+  std::vector<NodeWeight> carriers;
+  for (const auto& [node, weight] : weights) {
+    if (weight > 0.0) carriers.push_back({node, weight});
+  }
+  return carriers;
+}
+
+int vertexAt(const Surface& surface, int triangle, const Vec3& barycentric) {
+  constexpr double kOff = 1e-6;
+  Eigen::Index corner = 0;
+  if (barycentric.maxCoeff(&corner) <= 1.0 - kOff) return -1;
+  return surface.triangles[at(triangle)][at(static_cast<int>(corner))];
+}
+
 double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices) {
   return enclosedVolume(vertices, surface.triangles);
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -24,15 +23,13 @@ constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
 constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at most
 constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
 constexpr double kMostSlip = 0.1;      // likewise, at most
+constexpr double kNoShare = 1e-9;      // of a corner in a touch's point
 constexpr double kAbsurd = 3.0;        // of the most force: no tissue pushes so hard
 constexpr double kMostForce = 15.0;    // of the stiffness times the spacing
 
-bool isVertex(const Contact& contact) { return contact.barycentric.maxCoeff() > 1.0 - 1e-6; }
-
-int vertexOf(const Contact& contact, const Surface& surface) {
-  Eigen::Index corner = 0;
-  contact.barycentric.maxCoeff(&corner);
-  return surface.triangles[at(contact.triangle)][at(static_cast<int>(corner))];
+// Beyond which a touch's force is not taken on (N).
+double mostForceOf(const ContactSpring& spring, double spacing) {
+  return kMostForce / kFirm * spring.stiffness * spacing;
 }
 
 // The unit vector `to`, or one that is as far as `most` (rad) from `from` on the way to it.
@@ -192,8 +189,7 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
     pressed_[at(touch.tool)] += force;
     drag_before += spring.most_drag;
     drag_now += most_drag;
-    const double most = kMostForce / kFirm * spring.stiffness * spacing;
-    spring.multiplier = std::min(force, most);
+    spring.multiplier = std::min(force, mostForceOf(spring, spacing));
     spring.most_drag = most_drag;
     const double fine = fineness(touch.link, spacing);
     const double soft = kFirmDrag / kFirm * spring.stiffness;
@@ -219,7 +215,7 @@ void ToolContacts::forgetLost(const Held& held) {
 
 // A vertex is one touch; on a triangle it is the nearest one not far off.
 ToolContacts::Touch* ToolContacts::find(const Contact& contact, const Surface& surface) {
-  const int vertex = isVertex(contact) ? vertexOf(contact, surface) : -1;
+  const int vertex = vertexAt(surface, contact.triangle, contact.barycentric);
   Touch* nearest = nullptr;
   double least = kSamePoint;
   for (Touch& touch : touches_) {
@@ -239,7 +235,7 @@ void ToolContacts::add(const Contact& contact, const RobotPose& pose, const Tiss
   Touch touch;
   touch.tool = contact.tool;
   touch.link = contact.link;
-  touch.vertex = isVertex(contact) ? vertexOf(contact, tissue.surface()) : -1;
+  touch.vertex = vertexAt(tissue.surface(), contact.triangle, contact.barycentric);
   touch.spring.foot = contact.point;
   touch.drag_ratio = dragRatioAround(touch);
   touches_.push_back(touch);
@@ -275,22 +271,16 @@ void ToolContacts::put(const Contact& contact, const RobotPose& pose, const Tiss
 // The nodes that carry the point, and how firmly.
 void ToolContacts::carry(const Tissue& tissue, const Held& held, Touch& touch) {
   const Surface& surface = tissue.surface();
-  std::map<int, double> weights;
   ContactSpring& spring = touch.spring;
+  const Vec3 shares = (touch.barycentric.array() < kNoShare).select(0.0, touch.barycentric);
   spring.rest.setZero();
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(touch.triangle)][at(corner)];
-    const double share = touch.barycentric[corner];
-    if (share < 1e-9) continue;
-    spring.rest += share * surface.rest[at(vertex)];
-    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
-      weights[carrier.node] += share * carrier.weight;
-    }
+    spring.rest += shares[corner] * surface.rest[at(vertex)];
   }
-  spring.carriers.clear();
+  spring.carriers = carriersAt(surface, touch.triangle, shares);
   double compliance = 0.0;  // m/N
-  for (const auto& [node, weight] : weights) {
-    spring.carriers.push_back({node, weight});
+  for (const auto& [node, weight] : spring.carriers) {
     const double stiffness = tissue.nodeStiffness(node);
     if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
   }
@@ -322,8 +312,8 @@ void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
 
 bool ToolContacts::isAbsurd(const Tissue& tissue) const {
   return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-    const double most = kMostForce / kFirm * touch.spring.stiffness * tissue.lattice().spacing();
-    return normalForceOf(touch.spring, tissue.state().displacement) > kAbsurd * most;
+    return normalForceOf(touch.spring, tissue.state().displacement) >
+           kAbsurd * mostForceOf(touch.spring, tissue.lattice().spacing());
   });
 }
 

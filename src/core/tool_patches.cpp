@@ -215,16 +215,9 @@ std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) const {
 
 std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
                                                          const Surface& surface) const {
-  std::map<int, double> weights;
-  for (int corner = 0; corner < 3; ++corner) {
-    const int vertex = surface.triangles[at(contact.triangle)][at(corner)];
-    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
-      weights[carrier.node] += contact.barycentric[corner] * carrier.weight;
-    }
-  }
   std::vector<Carrier> support;
-  for (const auto& [node, weight] : weights) {
-    if (taken_[at(node)] == 0 && weight > 0.0) support.push_back({node, weight, 1.0});
+  for (const auto& [node, weight] : carriersAt(surface, contact.triangle, contact.barycentric)) {
+    if (taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
   }
   return support;
 }

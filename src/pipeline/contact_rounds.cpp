@@ -8,7 +8,6 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that is worth another round
 constexpr double kNear = 0.25;        // of the spacing: a gap that a solve may close
 constexpr double kLongestWay = 0.5;   // of the spacing, of the tissue beside a tool in one round
 constexpr double kShareOfTool = 0.5;  // of a link's thickness, likewise
@@ -19,7 +18,7 @@ constexpr double kFarthestOut = 4.0;  // of the spacing: longest way out along t
 }  // namespace
 
 // Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
-// no vertex near a link goes farther at once than a load step of that link would.
+// no vertex near a link goes farther at once than half a spacing, or half the link's thickness.
 double Pipeline::contactShare(const std::vector<Vec3>& before) {
   const Stopwatch watch(report_.contact_ms);
   const double spacing = tissue_.lattice().spacing();
@@ -83,9 +82,9 @@ bool Pipeline::turnOut(const RobotPose& pose, Contact& contact) const {
   const double spacing = tissue_.lattice().spacing();
   const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
   Vec3 inwards = Vec3::Zero();
-  Eigen::Index corner = 0;
-  if (contact.barycentric.maxCoeff(&corner) > 1.0 - 1e-6) {
-    inwards = -outwards_[at(corners[at(static_cast<int>(corner))])];
+  const int vertex = vertexAt(tissue_.surface(), contact.triangle, contact.barycentric);
+  if (vertex >= 0) {
+    inwards = -outwards_[at(vertex)];
   } else {
     const Vec3& a = vertices_[at(corners[0])];
     inwards = -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);

@@ -9,10 +9,9 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kPushPasses = 4;        // a curved tool's way out turns as the surface moves
-constexpr int kRigidRounds = 3;       // nodes that the solve moved into a rigid tool go out again
-constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that is worth another round
-constexpr double kTouches = 0.02;     // of the spacing: a gap that is none
+constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
+constexpr int kRigidRounds = 3;    // nodes that the solve moved into a rigid tool go out again
+constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
 constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
 constexpr double kMostLeap = 4.0;        // of the spacing, of a node in a load step
 
@@ -139,18 +138,20 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
   const ToolContacts good_contacts = contacts_;
   tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
   report_.changed = true;
+  if (any_rigid_) return;
   const std::vector<Vec3>& now = tissue_.state().displacement;
   double farthest = 0.0;
-  for (std::size_t node = 0; !any_rigid_ && node < now.size(); ++node) {
+  for (std::size_t node = 0; node < now.size(); ++node) {
     farthest = std::max(farthest, (now[node] - good.displacement[node]).norm());
   }
   const bool inverted = tissue_.lastReport().inverted_cells > good.report.inverted_cells;
   const bool leapt = farthest > kMostLeap * tissue_.lattice().spacing() && !tissue_.isUntouched();
-  const ForceBalance forces = forceBalance();
-  const bool unbalanced = tissue_.lastReport().status == SolveStatus::kUnconverged &&
-                          forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
-  const bool absurd = leapt || inverted || unbalanced || contacts_.isAbsurd(tissue_);
-  if (any_rigid_ || !absurd) return;
+  const auto unbalanced = [this] {
+    if (tissue_.lastReport().status != SolveStatus::kUnconverged) return false;
+    const ForceBalance forces = forceBalance();
+    return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
+  };
+  if (!leapt && !inverted && !contacts_.isAbsurd(tissue_) && !unbalanced()) return;
   report_.lost = true;
   tissue_.restore(good);
   contacts_ = good_contacts;
@@ -217,11 +218,7 @@ SolveReport Pipeline::settle() {
   contacts_.ride(pose_, tissue_);
   patches_.ride(pose_, tissue_);
   contacts_.meet(touchesAt(pose_), pose_, tissue_, patches_.heldNodes(tissue_));
-  std::vector<int> free;
-  for (int node = 0; node < tissue_.lattice().nodeCount(); ++node) {
-    if (!tissue_.lattice().isFixed(node)) free.push_back(node);
-  }
-  const SolveReport report = tissue_.follow(patchesOfTools(), free, true);
+  const SolveReport report = tissue_.follow(patchesOfTools(), tissue_.freeNodes(), true);
   touch();
   return report;
 }

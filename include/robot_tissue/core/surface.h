@@ -30,6 +30,12 @@ Surface extractSurface(const Lattice& lattice, const LatticeState& state);
 void deform(const Surface& surface, const std::vector<Vec3>& displacement,
             std::vector<Vec3>& vertices);
 
+// What carries the point of a triangle with these weights of its corners: ascending, weights > 0.
+std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric);
+
+// The vertex that the point is; -1 when it is none.
+int vertexAt(const Surface& surface, int triangle, const Vec3& barycentric);
+
 // Volume inside closed triangles (m^3), by the divergence theorem.
 double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices);
 

@@ -55,6 +55,7 @@ class Tissue {
   std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
   Vec3 nodeForce(int node) const;
+  std::vector<int> freeNodes() const;    // all that are not fixed
   Vec3 weight() const;                   // of the whole tissue (N)
   Vec3 forceOfFixedNodes() const;        // on the tissue (N)
   double nodeStiffness(int node) const;  // mean, at rest (N/m)
@@ -132,7 +133,6 @@ class Tissue {
   SolveReport climb(const std::vector<Ramp>& ramps, int increments,
                     const OnIncrement& on_increment);
   Vec3 patchForce(const LoadingPatch& patch) const;
-  std::vector<int> freeNodes() const;
   void rebuildSurface();
 
   Lattice lattice_;

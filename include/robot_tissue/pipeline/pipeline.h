@@ -116,6 +116,8 @@ class Pipeline {
   ForceBalance forceBalance() const;
 
  private:
+  static constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that counts
+
   // Where a whole load step ended.
   struct Checkpoint {
     RobotPose pose;
