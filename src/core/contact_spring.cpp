@@ -6,6 +6,11 @@
 namespace robot_tissue {
 namespace {
 
+double pressAt(const ContactSpring& spring, const Vec3& point) {
+  const double gap = spring.normal.dot(point - spring.foot);
+  return std::max(0.0, spring.multiplier - spring.stiffness * gap);
+}
+
 // The drag before it is cut (N).
 Vec3 trialDrag(const ContactSpring& spring, const Vec3& point) {
   const Vec3 slip = point - spring.anchor;
@@ -27,13 +32,17 @@ double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 }
 
 double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
-  return std::max(0.0, spring.multiplier - spring.stiffness * gapOf(spring, displacement));
+  return pressAt(spring, pointOf(spring, displacement));
 }
 
 Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
-  Vec3 force = normalForceOf(spring, displacement) * spring.normal;
+  return forceAt(spring, pointOf(spring, displacement));
+}
+
+Vec3 forceAt(const ContactSpring& spring, const Vec3& point) {
+  Vec3 force = pressAt(spring, point) * spring.normal;
   if (spring.most_drag <= 0.0) return force;
-  const Vec3 trial = trialDrag(spring, pointOf(spring, displacement));
+  const Vec3 trial = trialDrag(spring, point);
   const double length = trial.norm();
   return force + (length > spring.most_drag ? Vec3(spring.most_drag / length * trial) : trial);
 }
@@ -49,11 +58,15 @@ double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displaceme
 }
 
 Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return stiffnessAt(spring, pointOf(spring, displacement));
+}
+
+Eigen::Matrix3d stiffnessAt(const ContactSpring& spring, const Vec3& point) {
   const Eigen::Matrix3d along = spring.normal * spring.normal.transpose();
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-  if (normalForceOf(spring, displacement) > 0.0) stiffness += spring.stiffness * along;
+  if (pressAt(spring, point) > 0.0) stiffness += spring.stiffness * along;
   if (spring.most_drag <= 0.0) return stiffness;
-  const Vec3 trial = trialDrag(spring, pointOf(spring, displacement));
+  const Vec3 trial = trialDrag(spring, point);
   const double length = trial.norm();
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along;
   if (length <= spring.most_drag) return stiffness + spring.drag_stiffness * across;

@@ -7,9 +7,6 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kFlattest = 0.1;        // J below which a(J) goes on as its quadratic Taylor form
-constexpr double kSqueezed = 0.3;        // corner determinant below which the barrier rises
-constexpr double kBarrier = 10.0 / 3.0;  // its height, in shear moduli, where a corner is flat
 
 // Corners at the far ends of the three face diagonals and of the body diagonal from `corner`.
 std::array<int, 4> acrossDiagonals(int corner) {

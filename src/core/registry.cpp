@@ -40,7 +40,9 @@ std::unique_ptr<SolverMethod> makeLayered(const SolverConfig& config, const Latt
   LayeredOptions options;
   options.tolerance = config.tolerance;
   options.max_ms = config.max_ms;
-  return std::make_unique<LayeredMethod>(lattice, requireEnergy(model, "layered"), options);
+  const auto* elastic = dynamic_cast<const ElasticModel*>(&model);
+  if (elastic == nullptr) requireEnergy(model, "layered");
+  return std::make_unique<LayeredMethod>(lattice, *elastic, options);
 }
 
 std::unique_ptr<SolverMethod> makeNewton(const SolverConfig& config, const Lattice& lattice,

@@ -74,7 +74,12 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
   putToolPatches(std::move(tool_patches));
   const bool last_left = one_left && patches_.size() == named_patches_;
   const bool from_rest = method_->findsEquilibrium() ? last_left && !lies : one_left;
-  return from_rest ? solveFromRest() : solve(disturbed);
+  if (from_rest) return solveFromRest();
+  const bool one_there = patches_.size() > named_patches_;
+  const SolveReport report = solve(disturbed);
+  // The tissue left the last tool behind in the solve.
+  const bool one_lost = one_there && patches_.size() == named_patches_;
+  return one_lost && method_->findsEquilibrium() && !lies ? solveFromRest() : report;
 }
 
 void Tissue::restore(const Shape& shape) {

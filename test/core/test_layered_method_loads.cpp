@@ -25,7 +25,7 @@ TEST_P(LayeredByForce, PatchFindsWhereItsForceAndMomentBalance) {
     std::vector<LoadingPatch> loads = {right};
     ASSERT_EQ(exact.method.solve(loads, {}, exact.state).status, SolveStatus::kOk);
     right = loads[0];
-    expectHonest(block, report, exact, 1e-4, 6.0);
+    expectHonest(block, report, exact, 1e-4, 20.0);
   }
   EXPECT_LT((report.patches[0].force - full).norm(), 1e-3 * full.norm());
   EXPECT_LT((moved.place.displacement - right.place.displacement).norm(),
@@ -74,7 +74,7 @@ TEST(LayeredLoads, SagsUnderGravityAsNewtonSays) {
   const SolveReport report = block.solve({}, nodesOf(block.lattice));
   ASSERT_EQ(exact.solve({}).status, SolveStatus::kOk);
   EXPECT_LT(exact.state.displacement.back().z(), -0.02);
-  expectHonest(block, report, exact, 1e-3, 10.0);
+  expectHonest(block, report, exact, 1e-3, 20.0);
 }
 
 TEST(LayeredLoads, RegionsAHundredTimesStifferAndSofter) {
@@ -93,7 +93,7 @@ TEST(LayeredLoads, RegionsAHundredTimesStifferAndSofter) {
           punchOn(block.lattice, block.model, block.state, config, Vec3(0.002, 0, -depth));
       const SolveReport report = block.solve({punch});
       ASSERT_EQ(exact.solve({punch}).status, SolveStatus::kOk);
-      expectHonest(block, report, exact, 1e-3, 10.0);
+      expectHonest(block, report, exact, 1e-3, 20.0);
     }
   }
 }
@@ -188,7 +188,7 @@ TEST(LayeredTissue, CutTissueAgreesWithNewton) {
   const double error = errorOf(layered.lattice(), layered.patches(), layered.state().displacement,
                                newton.state().displacement);
   EXPECT_LE(error, 2.0 * layered.lastReport().error_estimate);
-  EXPECT_GE(5.0 * error, layered.lastReport().error_estimate);
+  EXPECT_GE(10.0 * error, layered.lastReport().error_estimate);
 }
 
 TEST(LayeredTissue, PieceCutOffStaysWhereItIs) {

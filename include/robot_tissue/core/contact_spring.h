@@ -38,12 +38,14 @@ double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 
 double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
 
-// On the tissue (N).
+// On the tissue (N): of the shape, or of the point where it would be.
+Vec3 forceAt(const ContactSpring& spring, const Vec3& point);
 Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);
 
 double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // J
 
 // Second derivative of the energy in x (N/m); not negative in any direction.
+Eigen::Matrix3d stiffnessAt(const ContactSpring& spring, const Vec3& point);
 Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);
 
 }  // namespace robot_tissue

@@ -22,6 +22,10 @@ class ElasticCell {
   // One vector a corner, in the order of cellCorners.
   using Corners = std::array<Vec3, kCorners>;
 
+  static constexpr double kFlattest = 0.1;        // J below which a(J) is its quadratic Taylor form
+  static constexpr double kSqueezed = 0.3;        // corner determinant where the barrier begins
+  static constexpr double kBarrier = 10.0 / 3.0;  // its height, in shear moduli, at a flat corner
+
   // Displacements of the corners from rest (m).
   ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement);
 

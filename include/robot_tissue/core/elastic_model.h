@@ -33,14 +33,15 @@ class ElasticModel : public EnergyModel {
   // Second derivative of the energy in this node alone (N/m).
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
 
+  Moduli cellModuli(const Cell& cell) const;  // Pa, of what the cell is filled with
+  Vec3 cornerWeight(const Cell& cell) const;  // gravity on an eighth of it (N)
+
  private:
   struct Substance {
     Moduli moduli;
     Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
   };
 
-  Moduli cellModuli(const Cell& cell) const;
-  Vec3 cornerWeight(const Cell& cell) const;
   ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
 
   const Lattice& lattice_;

@@ -1,0 +1,72 @@
+// Forces of the cells of model `elastic` (core/elastic_cell.h), many at a time: the same numbers,
+// barrier included, in the lanes of vector instructions (own). One program runs on any processor of
+// its kind: which instructions it has is asked when the program starts.
+//
+// All lengths are in lattice spacings h, moduli in any unit E0, forces in E0 h^2.
+//
+// With the modes of the trilinear cell, M_s = sum over its corners k of (-1)^(bits in k and s) x_k,
+//
+//   F e_a = -M_a / 4,   I1 = sum over s of w_s |M_s|^2 / 16
+//
+// with w_s = 1, 2/3, 1/3 for modes of one, two, three axes.
+#pragma once
+
+#include <array>
+
+#include "robot_tissue/core/cells.h"
+
+namespace robot_tissue {
+
+constexpr int kLanes = 16;  // cells in a block
+
+// Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
+// lowest node. Arrays reach kLanes beyond the highest node that a block touches.
+template <typename Real>
+struct CellGrid {
+  std::array<const Real*, 3> displacement;
+  const Real* shear;  // per cell, 0 where there is none
+  const Real* bulk;
+  int row;    // from a node to the next along y
+  int plane;  // and along z
+  // Of the cells on their lower and upper four corners: summed apart, so that planes of cells can
+  // be done in any order with the same sums.
+  std::array<Real*, 3> lower, upper;
+  // Bounds of the nodes' stiffness against moving alone (E0 h), likewise; may be null.
+  Real* lower_stiffness;
+  Real* upper_stiffness;
+  bool is_coarse;  // cells stand for eight each: their volumes are held too
+};
+
+// Adds the forces of the cells first .. first + kLanes - 1, for each of the blocks.
+void addBlocks(const CellGrid<float>& grid, const int* first_cells, int count);
+void addBlocks(const CellGrid<double>& grid, const int* first_cells, int count);
+
+// A cell anywhere.
+template <typename Real>
+struct LooseCell {
+  std::array<int, kCorners> nodes{};
+  Real shear = 0;
+  Real bulk = 0;
+};
+
+// Adds the forces of the cells to `lower`.
+void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int count);
+void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count);
+
+// force = lower + upper + load where `inverse` is not 0, else 0.
+void sumForces(const float* lower, const float* upper, const float* load, const float* inverse,
+               float* force, int count);
+void sumForces(const double* lower, const double* upper, const double* load, const double* inverse,
+               double* force, int count);
+
+// way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
+void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
+               float* way, float* displacement, int count);
+void stepAlong(const double* inverse, const double* force, double keep, double share,
+               double longest, double* way, double* displacement, int count);
+
+// Sum of the products, the same each time.
+double dotOf(const float* a, const float* b, int count);
+double dotOf(const double* a, const double* b, int count);
+
+}  // namespace robot_tissue

@@ -1,0 +1,61 @@
+// How method `layered` comes to balance, in single or double precision (own; doc/model.md).
+//
+// One cycle: a smooth motion of all layers, found on coarser lattices (LatticeLevels); then a few
+// steps of a smoother on the tissue's own. Where cycles gain little they are strung together by
+// conjugate gradients; where one goes too far or not far enough, a search along it mends that.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include "robot_tissue/core/elastic_model.h"
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_levels.h"
+#include "robot_tissue/core/patch_motion.h"
+#include "robot_tissue/core/solver_method.h"
+
+namespace robot_tissue {
+
+struct LayeredOptions {
+  double tolerance = 0.01;  // of error_estimate
+  double max_ms = 0.0;      // 0 = no budget; the cycle under way is finished, at least one is made
+  int max_cycles = 300;
+  int patience = 40;         // cycles without a better shape
+  double patch_step = 0.5;   // longest motion of a patch in one solve, in spacings
+  double line_step = 2.0;    // of a node in one cycle, likewise
+  double layer_share = 0.1;  // of the tolerance: motion below which no further layer is raised
+};
+
+// A clock that may run out.
+class Budget {
+ public:
+  explicit Budget(double max_ms) : max_ms_(max_ms) {}
+  double elapsedMs() const {
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - started_;
+    return elapsed.count();
+  }
+  bool isSpent() const { return max_ms_ > 0.0 && elapsedMs() > max_ms_; }
+
+ private:
+  double max_ms_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+};
+
+class LayeredCourse {
+ public:
+  virtual ~LayeredCourse() = default;
+
+  // Moves the shape to where it balances; `hold` is bound to it. Fills status, iterations,
+  // error_estimate, residual, active_nodes and the patches' answers.
+  virtual SolveReport run(LoadedShape& shape, const PatchHold& hold, const Budget& budget) = 0;
+  virtual void beginStep(const LatticeState& state) = 0;
+  virtual void forget() = 0;
+};
+
+// In double precision where single does not reach the tolerance.
+std::unique_ptr<LayeredCourse> makeLayeredCourse(const Lattice& lattice, const ElasticModel& model,
+                                                 const LayeredOptions& options);
+
+}  // namespace robot_tissue
