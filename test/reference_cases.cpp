@@ -28,16 +28,6 @@ std::vector<std::string> cellsOf(const std::string& row) {
   return cells;
 }
 
-PatchConfig patchOf(const ReferenceCase& reference) {
-  PatchConfig patch;
-  patch.name = "punch";
-  const bool whole_face = reference.name == "uniaxial" || reference.name == "shear";
-  const double from = whole_face ? 0.0 : 0.04, to = whole_face ? 0.10 : 0.06;
-  patch.box = {Vec3(from, from, kExtent.z()), Vec3(to, to, kExtent.z())};
-  patch.displacement = reference.displacement;
-  return patch;
-}
-
 double fieldError(const ReferenceCase& reference, const Tissue& tissue) {
   const std::vector<Vec3> shown = tissue.shownDisplacement();
   const int stride = static_cast<int>(std::lround(kReferenceSpacing / tissue.lattice().spacing()));
@@ -84,8 +74,7 @@ std::vector<ReferenceCase> readReferenceCases(const std::string& package) {
   return cases;
 }
 
-ReferenceError errorAgainst(const ReferenceCase& reference, const std::string& method,
-                            double spacing) {
+TissueConfig referenceTissue(const ReferenceCase& reference, double spacing) {
   TissueConfig config;
   config.model = "elastic";
   config.shape.max = kExtent;
@@ -93,14 +82,30 @@ ReferenceError errorAgainst(const ReferenceCase& reference, const std::string& m
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = reference.poisson_ratio;
   config.fixed.push_back({Vec3::Zero(), Vec3(kExtent.x(), kExtent.y(), 0.0)});
+  return config;
+}
+
+LoadStep referenceLoad(const ReferenceCase& reference) {
+  PatchConfig patch;
+  patch.name = "punch";
+  const bool whole_face = reference.name == "uniaxial" || reference.name == "shear";
+  const double from = whole_face ? 0.0 : 0.04, to = whole_face ? 0.10 : 0.06;
+  patch.box = {Vec3(from, from, kExtent.z()), Vec3(to, to, kExtent.z())};
+  patch.displacement = reference.displacement;
+  LoadStep step;
+  step.patches.push_back(patch);
+  return step;
+}
+
+ReferenceError errorAgainst(const ReferenceCase& reference, const std::string& method,
+                            double spacing) {
   SolverConfig solver;
   solver.method = method;
   solver.tolerance = 1e-3;
-  Tissue tissue(config, solver);
-  LoadStep step;
-  step.patches.push_back(patchOf(reference));
+  Tissue tissue(referenceTissue(reference, spacing), solver);
   SolveReport last;
-  tissue.load(step, [&](int, int, const SolveReport& report) { last = report; });
+  tissue.load(referenceLoad(reference),
+              [&](int, int, const SolveReport& report) { last = report; });
   if (last.status != SolveStatus::kOk) throw std::runtime_error("no equilibrium was found");
   return {last.patches.front().force.norm() / reference.force - 1.0, fieldError(reference, tissue)};
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/core/types.h"
+#include "robot_tissue/core/scene.h"
 
 namespace robot_tissue {
 
@@ -19,6 +19,10 @@ struct ReferenceCase {
 };
 
 std::vector<ReferenceCase> readReferenceCases(const std::string& package);
+
+// The block of a case on a lattice of this spacing (m), and its load.
+TissueConfig referenceTissue(const ReferenceCase& reference, double spacing);
+LoadStep referenceLoad(const ReferenceCase& reference);
 
 struct ReferenceError {
   double force = 0.0;  // relative, signed

@@ -11,6 +11,8 @@ bool RunResult::allOk() const {
                      [](const auto& row) { return row.report.status == SolveStatus::kOk; });
 }
 
-RunResult runScene(const Scene& scene, const OnRow& on_row) { return Runner(scene, on_row).run(); }
+RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step) {
+  return Runner(scene, on_row, on_step).run();
+}
 
 }  // namespace robot_tissue

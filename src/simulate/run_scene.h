@@ -49,7 +49,10 @@ struct RunResult {
 // Called after each increment: the row and how many increments its step has.
 using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 
+// Called when a step (from 0) has ended, with the tissue as it is then.
+using OnStep = std::function<void(int step, const Tissue& tissue)>;
+
 // Throws InputError when a tool's shapes or a step are refused; the message names the step.
-RunResult runScene(const Scene& scene, const OnRow& on_row = {});
+RunResult runScene(const Scene& scene, const OnRow& on_row = {}, const OnStep& on_step = {});
 
 }  // namespace robot_tissue

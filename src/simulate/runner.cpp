@@ -37,9 +37,10 @@ std::vector<ToolConfig> movedTools(const Scene& scene) {
 
 }  // namespace
 
-Runner::Runner(const Scene& scene, const OnRow& on_row)
+Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step)
     : scene_(scene),
       on_row_(on_row),
+      on_step_(on_step),
       tools_(movedTools(scene)),
       pipeline_(scene.tissue, scene.solver, toolsOf(movedTools(scene)).tools, scene.supports),
       pushes_(tools_.count()) {
@@ -51,6 +52,7 @@ RunResult Runner::run() {
     step_ = static_cast<int>(i);
     try {
       std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
+      if (on_step_) on_step_(step_, pipeline_.tissue());
     } catch (const InputError& error) {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());
     }

@@ -11,7 +11,7 @@ namespace robot_tissue {
 
 class Runner {
  public:
-  Runner(const Scene& scene, const OnRow& on_row);
+  Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step);
   RunResult run();
 
  private:
@@ -47,6 +47,7 @@ class Runner {
 
   const Scene& scene_;
   const OnRow& on_row_;
+  const OnStep& on_step_;
   ToolPlaces tools_;
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)

@@ -141,6 +141,12 @@ TEST(Layering, RosKnowsNeitherFclNorTheSolversInsides) {
   }
 }
 
+TEST(Layering, ProgramsForTheCommandLineKnowNoRos) {
+  for (const char* folder : {"src/simulate", "src/fidelity"}) {
+    expectNone(folder, {"ros/", "tf2", "_msgs/", "fcl/"});
+  }
+}
+
 TEST(Layering, FclIsIncludedInContactsSourcesOnly) {
   int found = 0;
   for (const char* folder : {"include", "src"}) {

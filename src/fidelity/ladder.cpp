@@ -1,0 +1,72 @@
+#include "ladder.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "robot_tissue/core/grid.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kFewestCells = 2.0;  // along the shortest edge
+constexpr double kLeastStep = 1.25;   // between two spacings
+constexpr double kMostStep = 3.2;
+
+Vec3 extentOf(const TissueConfig& tissue) {
+  const Box box = boxOf(tissue);
+  return box.max - box.min;
+}
+
+// Nearest to twice the spacing, 0 where there is none.
+double coarserThan(const TissueConfig& tissue, double spacing) {
+  const Vec3 extent = extentOf(tissue);
+  std::vector<double> candidates = {2.0 * spacing};
+  if (!tissue.mesh && !spacingFits(extent, 2.0 * spacing)) {
+    candidates = nearestSpacings(extent, 2.0 * spacing);
+  }
+  double best = 0.0;
+  for (const double candidate : candidates) {
+    const double step = candidate / spacing;
+    if (step < kLeastStep || step > kMostStep) continue;
+    if (extent.minCoeff() / candidate < kFewestCells - 1e-6) continue;
+    const auto off = [&](double other) { return std::abs(std::log(other / (2.0 * spacing))); };
+    if (best == 0.0 || off(candidate) < off(best)) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+Box boxOf(const TissueConfig& tissue) {
+  return tissue.mesh ? boundsOf(tissue.mesh->vertices) : tissue.shape;
+}
+
+std::vector<double> ladderSpacings(const TissueConfig& tissue, int coarser, int finer) {
+  std::vector<double> spacings = {tissue.spacing};
+  for (int level = 0; level < coarser; ++level) {
+    const double next = coarserThan(tissue, spacings.front());
+    if (next == 0.0) break;
+    spacings.insert(spacings.begin(), next);
+  }
+  for (int level = 0; level < finer; ++level) spacings.push_back(0.5 * spacings.back());
+  return spacings;
+}
+
+double nodesAt(const TissueConfig& tissue, double spacing) {
+  const Vec3 cells = (extentOf(tissue) / spacing).array().ceil();
+  return nodeCount(cells * spacing, spacing);
+}
+
+double mostNodes() {
+  constexpr double kBytesPerNode = 3000.0;  // lattice, springs, shape and surface
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const long page_bytes = sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return std::numeric_limits<int>::max() / 3.0;
+  return std::min(static_cast<double>(pages) * static_cast<double>(page_bytes) / kBytesPerNode,
+                  std::numeric_limits<int>::max() / 3.0);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,30 @@
+// Words of a command line, sorted into options, switches and the scene. The runner's and others'.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace robot_tissue {
+
+struct CommandLine {
+  std::string scene;                          // the one word that is no option; may be empty
+  std::map<std::string, std::string> values;  // of the options given, never empty
+  std::set<std::string> switches;             // those given
+
+  bool has(const std::string& name) const { return switches.count(name) > 0; }
+  std::optional<std::string> value(const std::string& name) const;
+};
+
+// What a program takes: options with a value (as "--out DIR" or "--out=DIR") and switches without.
+struct Options {
+  std::vector<std::string> with_value;
+  std::vector<std::string> switches;  // -h is taken as --help
+};
+
+// Throws InputError, one line: an unknown or repeated option, a value too few or too many.
+CommandLine readCommandLine(const std::vector<std::string>& words, const Options& options);
+
+}  // namespace robot_tissue
