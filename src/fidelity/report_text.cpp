@@ -16,7 +16,10 @@ std::string digits(double value, int significant) {
   return text;
 }
 
-std::string percent(double share) { return digits(1e2 * share, 3) + " %"; }
+// Above 100 % an estimate says no more than that nothing has converged.
+std::string percent(double share) {
+  return share > 1.0 ? "> 100 %" : digits(1e2 * share, 3) + " %";
+}
 
 std::string mm(double length) { return digits(kMm * length, 4) + " mm"; }
 
@@ -108,8 +111,15 @@ std::string limitText(const Assessment& assessment) {
     const std::string seen = "order " + digits(limit.observed, 2);
     return limit.order == limit.observed ? seen : seen + ", taken as " + digits(limit.order, 2);
   };
-  return text + "with the spacing falls the displacements' error by " + order(assessment.field) +
-         "; the forces' by " + order(assessment.force) + '\n';
+  text += "with the spacing falls the displacements' error by " + order(assessment.field) +
+          "; the forces' by " + order(assessment.force) + '\n';
+  if (std::min(assessment.field.observed, assessment.force.observed) < kLowestOrder) {
+    text +=
+        "below order " + digits(kLowestOrder, 2) +
+        " answers do not approach a limit regularly: errors are rough, finer lattices tell more "
+        "(--seconds)\n";
+  }
+  return text;
 }
 
 std::string rungText(const Assessed& row) {
