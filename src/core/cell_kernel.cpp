@@ -5,17 +5,10 @@
 #include <cstring>
 
 #include "robot_tissue/core/elastic_cell.h"
+#include "robot_tissue/core/vector_clones.h"
 
 // Vectors longer than the processor's are passed between functions that are all inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
-
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define ROBOT_TISSUE_CLONES \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ROBOT_TISSUE_CLONES
-#endif
-#define ROBOT_TISSUE_INLINE inline __attribute__((always_inline))
 
 namespace robot_tissue {
 namespace {
@@ -389,43 +382,6 @@ ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<Real>& grid, const LooseCell
   }
 }
 
-template <typename Real>
-ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict lower, const Real* __restrict upper,
-                                const Real* __restrict load, const Real* __restrict inverse,
-                                Real* __restrict force, int count) {
-  for (int i = 0; i < count; ++i) {
-    const Real sum = lower[i] + upper[i] + load[i];
-    force[i] = inverse[i] != Real(0) ? sum : Real(0);
-  }
-}
-
-template <typename Real>
-ROBOT_TISSUE_INLINE void stepAll(const Real* __restrict inverse, const Real* __restrict force,
-                                 Real keep, Real share, Real longest, Real* __restrict way,
-                                 Real* __restrict displacement, int count) {
-  for (int i = 0; i < count; ++i) {
-    const Real step = keep * way[i] + share * inverse[i] * force[i];
-    way[i] = std::min(std::max(step, -longest), longest);
-    displacement[i] += way[i];
-  }
-}
-
-// Lane by lane, then lanes after runs.
-template <typename Real>
-ROBOT_TISSUE_INLINE double dotAll(const Real* a, const Real* b, int count) {
-  constexpr int kRun = 1024, kSize = Vector<Real>::kSize;
-  double sum = 0.0;
-  for (int first = 0; first < count; first += kRun) {
-    const int end = std::min(count, first + kRun);
-    Lanes<Real> lanes{};
-    int i = first;
-    for (; i + kSize <= end; i += kSize) lanes += load(a + i) * load(b + i);
-    for (int lane = 0; lane < kSize; ++lane) sum += static_cast<double>(lanes[lane]);
-    for (; i < end; ++i) sum += static_cast<double>(a[i] * b[i]);
-  }
-  return sum;
-}
-
 }  // namespace
 
 ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const int* first_cells, int count) {
@@ -445,36 +401,6 @@ ROBOT_TISSUE_CLONES void addLoose(const CellGrid<float>& grid, const LooseCell<f
 ROBOT_TISSUE_CLONES void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells,
                                   int count) {
   addAllLoose(grid, cells, count);
-}
-
-ROBOT_TISSUE_CLONES void sumForces(const float* lower, const float* upper, const float* load,
-                                   const float* inverse, float* force, int count) {
-  sumAll(lower, upper, load, inverse, force, count);
-}
-
-ROBOT_TISSUE_CLONES void sumForces(const double* lower, const double* upper, const double* load,
-                                   const double* inverse, double* force, int count) {
-  sumAll(lower, upper, load, inverse, force, count);
-}
-
-ROBOT_TISSUE_CLONES void stepAlong(const float* inverse, const float* force, float keep,
-                                   float share, float longest, float* way, float* displacement,
-                                   int count) {
-  stepAll(inverse, force, keep, share, longest, way, displacement, count);
-}
-
-ROBOT_TISSUE_CLONES void stepAlong(const double* inverse, const double* force, double keep,
-                                   double share, double longest, double* way, double* displacement,
-                                   int count) {
-  stepAll(inverse, force, keep, share, longest, way, displacement, count);
-}
-
-ROBOT_TISSUE_CLONES double dotOf(const float* a, const float* b, int count) {
-  return dotAll(a, b, count);
-}
-
-ROBOT_TISSUE_CLONES double dotOf(const double* a, const double* b, int count) {
-  return dotAll(a, b, count);
 }
 
 }  // namespace robot_tissue

@@ -7,7 +7,6 @@
 namespace robot_tissue {
 namespace {
 
-
 // Corners at the far ends of the three face diagonals and of the body diagonal from `corner`.
 std::array<int, 4> acrossDiagonals(int corner) {
   return {corner ^ 3, corner ^ 5, corner ^ 6, corner ^ 7};

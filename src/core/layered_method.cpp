@@ -13,13 +13,13 @@ LayeredMethod::LayeredMethod(const Lattice& lattice, const ElasticModel& model,
 
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
 
-SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches, const std::vector<int>&,
-                                 LatticeState& state) {
+SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
+                                 const std::vector<int>& disturbed, LatticeState& state) {
   const Budget budget(options_.max_ms);
   LoadedShape shape{std::move(state), std::move(patches)};
   hold_.bind(shape);
   hold_.place(shape);
-  SolveReport report = course_->run(shape, hold_, budget);
+  SolveReport report = course_->run(shape, hold_, disturbed, budget);
   state = std::move(shape.state);
   patches = std::move(shape.patches);
   report.wall_ms = budget.elapsedMs();

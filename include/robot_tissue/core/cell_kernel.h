@@ -53,20 +53,4 @@ struct LooseCell {
 void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int count);
 void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count);
 
-// force = lower + upper + load where `inverse` is not 0, else 0.
-void sumForces(const float* lower, const float* upper, const float* load, const float* inverse,
-               float* force, int count);
-void sumForces(const double* lower, const double* upper, const double* load, const double* inverse,
-               double* force, int count);
-
-// way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
-void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
-               float* way, float* displacement, int count);
-void stepAlong(const double* inverse, const double* force, double keep, double share,
-               double longest, double* way, double* displacement, int count);
-
-// Sum of the products, the same each time.
-double dotOf(const float* a, const float* b, int count);
-double dotOf(const double* a, const double* b, int count);
-
 }  // namespace robot_tissue

@@ -15,6 +15,7 @@
 #include "robot_tissue/core/elastic_model.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_level.h"
+#include "robot_tissue/core/level_transfer.h"
 #include "robot_tissue/core/patch_motion.h"
 
 namespace robot_tissue {
@@ -46,35 +47,44 @@ class LatticeLevels {
  private:
   // From a level to the next coarser one.
   struct Step {
-    Coarsening to;             // its cells are gone when the level stands
+    LevelTransfer<Real> transfer;
     std::vector<int> sources;  // per coarse spring that stands for a fine one: that one
     Field<Real> start;         // displacement of the coarse nodes
     Field<Real> wanted;        // their forces
     std::vector<GroupVector> wanted_of_groups;
   };
+  // What holds the nodes, as numbers that are compared.
+  struct Bond {
+    std::vector<std::uint8_t> held;
+    std::vector<double> springs;
+
+    bool operator==(const Bond& other) const {
+      return held == other.held && springs == other.springs;
+    }
+  };
 
   std::vector<LevelCell> finestCells(const Lattice& lattice, const ElasticModel& model,
                                      const CellSet& cells);
-  void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells);
+  static Bond bondOf(const LoadedShape& shape, const PatchHold& hold);
   void bindFinest(const LoadedShape& shape, const PatchHold& hold);
+  void renewSprings(const LoadedShape& shape, const PatchHold& hold);
   void bindCoarse(std::size_t level);
   void addTies(std::size_t level);
-  NodeShares carriersOf(std::size_t level, int node) const;
+  void addTie(std::size_t level, int node, unsigned axes, int group, const Vec3& arm);
   std::vector<LevelSpring::Carrier> freeCarriers(
       std::size_t level, const std::vector<LevelSpring::Carrier>& fine) const;
 
-  bool isFinite() const;
   void correct(std::size_t level);
   void restrictTo(std::size_t coarse);
-  void restrictForces(std::size_t coarse);
-  void restrictDisplacement(std::size_t coarse);
   void solveCoarse(std::size_t level);
-  void prolong(std::size_t coarse, Field<Real>& fine);
+  std::vector<GroupVector> groupMotion(std::size_t coarse) const;
+  bool isFinite() const;
 
   std::vector<LatticeLevel<Real>> levels_;
-  std::vector<Step> steps_;    // from level i to i + 1
-  std::vector<int> entries_;   // per node of the tissue
-  std::vector<Vec3> weights_;  // gravity on the nodes (N)
+  std::vector<Step> steps_;   // from level i to i + 1
+  std::vector<int> entries_;  // per node of the tissue
+  Field<Real> weight_;        // of the nodes
+  Bond bond_;
   double spacing_ = 1.0;
   double modulus_ = 1.0;
   std::vector<Field<Real>> motions_;  // per level, on their way to it

@@ -49,8 +49,10 @@ class LayeredCourse {
 
   // Moves the shape to where it balances; `hold` is bound to it. Fills status, iterations,
   // error_estimate, residual, active_nodes and the patches' answers.
-  virtual SolveReport run(LoadedShape& shape, const PatchHold& hold, const Budget& budget) = 0;
-  virtual void beginStep(const LatticeState& state) = 0;
+  // `disturbed`: nodes whose balance something else has disturbed.
+  virtual SolveReport run(LoadedShape& shape, const PatchHold& hold,
+                          const std::vector<int>& disturbed, const Budget& budget) = 0;
+  virtual void beginStep() = 0;
   virtual void forget() = 0;
 };
 

@@ -20,7 +20,7 @@ class LayeredMethod : public SolverMethod {
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
-  void beginStep(const LatticeState& state) override { course_->beginStep(state); }
+  void beginStep(const LatticeState&) override { course_->beginStep(); }
   void forget() override { course_->forget(); }
   bool findsEquilibrium() const override { return true; }
   double patchStep() const override;

@@ -1,0 +1,71 @@
+// Loops over fields (core/level_cells.h) in vector instructions. Sums are the same each time.
+#pragma once
+
+namespace robot_tissue {
+
+// force = lower + upper + load where `free` is 1, 0 where it is 0.
+void sumForces(const float* lower, const float* upper, const float* load, const float* free,
+               float* force, int count);
+void sumForces(const double* lower, const double* upper, const double* load, const double* free,
+               double* force, int count);
+
+// inverse = free / (lower + upper); `free` is 1 only where there is stiffness.
+void invertStiffness(const float* lower, const float* upper, const float* free, float* inverse,
+                     int count);
+void invertStiffness(const double* lower, const double* upper, const double* free, double* inverse,
+                     int count);
+
+// Where `free` is 1: adds to the load what makes the force the wanted one.
+void makeLoad(const float* wanted, const float* free, float* load, float* force, int count);
+void makeLoad(const double* wanted, const double* free, double* load, double* force, int count);
+
+// way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
+void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
+               float* way, float* displacement, int count);
+void stepAlong(const double* inverse, const double* force, double keep, double share,
+               double longest, double* way, double* displacement, int count);
+
+// to += share * motion where `free` is 1.
+void addWhereFree(const float* motion, const float* free, float share, float* to, int count);
+void addWhereFree(const double* motion, const double* free, double share, double* to, int count);
+
+// to += share * other.
+void addShare(const float* other, float share, float* to, int count);
+void addShare(const double* other, double share, double* to, int count);
+
+// difference = a - b.
+void subtract(const float* a, const float* b, float* difference, int count);
+void subtract(const double* a, const double* b, double* difference, int count);
+
+// Of a row of coarse nodes, 1 + (count - 1) / 2 or one more: the nodes between them.
+void spreadRow(const float* coarse, float* fine, int count);
+void spreadRow(const double* coarse, double* fine, int count);
+
+// coarse_i = fine_2i + (fine_2i-1 + fine_2i+1) / 2. `fine` begins one before, and ends one after.
+void gatherRow(const float* fine, float* coarse, int count);
+void gatherRow(const double* fine, double* coarse, int count);
+
+// coarse_i = fine_2i / 2.
+void halveRow(const float* fine, float* coarse, int count);
+void halveRow(const double* fine, double* coarse, int count);
+
+// Sum of the products.
+double dotOf(const float* a, const float* b, int count);
+double dotOf(const double* a, const double* b, int count);
+
+// Sum of the squares of the products.
+double squaredProduct(const float* a, const float* b, int count);
+double squaredProduct(const double* a, const double* b, int count);
+
+// Sum of the squares of the differences.
+double squaredDistance(const float* a, const float* b, int count);
+double squaredDistance(const double* a, const double* b, int count);
+
+double sumOf(const float* values, int count);
+double sumOf(const double* values, int count);
+
+// In size.
+double greatestOf(const float* values, int count);
+double greatestOf(const double* values, int count);
+
+}  // namespace robot_tissue

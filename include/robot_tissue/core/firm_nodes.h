@@ -1,0 +1,109 @@
+// Nodes of a level that do not move like the others: those with springs, held in part, or hard in a
+// patch that a force moves (own). They are few; forces and steps in double precision.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "robot_tissue/core/contact_spring.h"
+#include "robot_tissue/core/level_cells.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// Joins a weighted mean of nodes to a place, or to a group.
+struct LevelSpring {
+  struct Carrier {
+    int node = 0;
+    double weight = 0.0;
+    int firm = 0;  // set by FirmNodes
+  };
+  std::vector<Carrier> carriers;
+  int group = -1;                                       // whose motion counts with weight -1
+  Vec3 arm = Vec3::Zero();                              // of its end there, from the center
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // as it is now
+  Vec3 anchor = Vec3::Zero();                           // mean displacement without a force
+  const ContactSpring* contact = nullptr;               // whose law it has instead
+};
+
+// Nodes that move as one hard body: a shift and, where it turns, a turn about the center.
+struct LevelGroup {
+  std::vector<int> nodes;
+  std::vector<Vec3> arms;  // of the nodes, from the center
+  bool turns = false;
+};
+using GroupVector = Eigen::Matrix<double, 6, 1>;  // shift, turn; or force, moment
+
+// Motion of a point of a group by the group's.
+Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion);
+
+template <typename Real>
+Vec3 vectorAt(const Field<Real>& field, int node) {
+  return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
+          static_cast<double>(field[2][at(node)])};
+}
+
+template <typename Real>
+class FirmNodes {
+ public:
+  std::vector<LevelSpring> springs;  // `bind` after a change of nodes
+  std::vector<LevelGroup> groups;    // likewise
+  std::vector<GroupVector> load;     // on groups, besides
+  std::vector<GroupVector> force;    // on groups, unbalanced
+  std::vector<GroupVector> motion;   // of groups, since it was last set to zero
+
+  // `held`: bits of axes, per node.
+  void bind(const std::vector<std::uint8_t>& held);
+  // Of the laws of contacts: the spacing (m) and E0 (Pa).
+  void setUnits(double spacing, double modulus);
+  std::vector<int> nodes() const;  // ascending
+
+  // Adds springs to the cells' forces and the load; puts the free components into `forces`.
+  void findForces(const LevelCells<Real>& cells, const Field<Real>& displacement,
+                  const Field<Real>& load_on_nodes, bool with_steps, Field<Real>& forces);
+  // Forces are these now.
+  void takeForces(const Field<Real>& forces);
+  // way = keep * way + share * step that balances; displacement += way, cut to `longest`.
+  void step(double keep, double share, double longest, Field<Real>& displacement);
+  void calm();
+  void moveBy(const Field<Real>& way, const std::vector<GroupVector>& of_groups, double share,
+              Field<Real>& displacement);
+
+  double squaredLocalMotion() const;
+  // Of hard nodes, under such motions of their groups.
+  double squaredMotionOf(const std::vector<GroupVector>& of_groups) const;
+  // All but holds; null where the node is none of these.
+  const Vec3* wholeForce(int node) const;
+  bool isFree(int firm, int axis) const { return (all_[at(firm)].held >> axis & 1U) == 0; }
+  // Mean displacement of what carries the spring, less the group's motion there.
+  Vec3 meanOf(const LevelSpring& spring, const Field<Real>& displacement) const;
+
+ private:
+  struct Firm {
+    int node = 0;
+    int group = -1;
+    unsigned held = 0;
+    Vec3 arm = Vec3::Zero();
+    Vec3 force = Vec3::Zero();
+    Vec3 way = Vec3::Zero();
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  };
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+  int indexOf(int node) const;
+  void addSpring(LevelSpring& spring, const Field<Real>& displacement, bool with_steps);
+  void invert(Firm& firm);
+  void invertGroups();
+
+  double spacing_ = 1.0, modulus_ = 1.0;
+  std::vector<Firm> all_;
+  std::vector<Matrix6> group_stiffness_, group_inverse_;
+  std::vector<GroupVector> group_way_;
+};
+
+extern template class FirmNodes<float>;
+extern template class FirmNodes<double>;
+
+}  // namespace robot_tissue

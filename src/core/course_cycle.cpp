@@ -1,0 +1,274 @@
+// CourseIn: how it goes on towards balance.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "course_in.h"
+#include "robot_tissue/core/field_kernel.h"
+
+namespace robot_tissue {
+namespace {
+
+// of the factor, from cycle to cycle
+constexpr double kBlownUp = 100.0;  // times the length left when a solve begins
+// times the length left when a solve begins
+constexpr double kSlow = 0.3;  // of the length left before a cycle: then gradients help
+// of the length left before a cycle: then gradients help
+constexpr double kFlatEnough = 0.3;  // of the slope along a direction: no need to look further
+// of the length left before a cycle: counts as left after it
+constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
+// of the given force: unbalanced, where nothing holds
+constexpr int kTrials = 8;  // of the length along it
+// rad
+constexpr int kPlainSteps = 8;  // of the smoother, where a cycle led nowhere
+
+}  // namespace
+
+template <typename Real>
+void CourseIn<Real>::keep(const Field<Real>& nodes, const std::vector<GroupVector>& groups,
+                          Vector& vector) const {
+  vector.spans = finest().spans();
+  vector.groups = groups;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    vector.nodes[axis].resize(nodes[axis].size());
+    for (const Span& span : vector.spans) {
+      std::copy_n(nodes[axis].begin() + span.first, span.count,
+                  vector.nodes[axis].begin() + span.first);
+    }
+  }
+}
+
+template <typename Real>
+void CourseIn<Real>::keepPlace(Vector& vector) const {
+  keep(finest().displacement, finest().firm.motion, vector);
+}
+
+template <typename Real>
+void CourseIn<Real>::putBack(const Vector& vector) {
+  finest().firm.motion = vector.groups;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const Span& span : vector.spans) {
+      std::copy_n(vector.nodes[axis].begin() + span.first, span.count,
+                  finest().displacement[axis].begin() + span.first);
+    }
+  }
+}
+
+template <typename Real>
+double CourseIn<Real>::work(const Vector& force, const Vector& motion) const {
+  double work = 0.0;
+  for (const Span& span : motion.spans) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      work += dotOf(force.nodes[axis].data() + span.first, motion.nodes[axis].data() + span.first,
+                    span.count);
+    }
+  }
+  for (std::size_t group = 0; group < motion.groups.size(); ++group) {
+    work += force.groups[group].dot(motion.groups[group]);
+  }
+  return work;
+}
+
+// Of the forces as they are now.
+template <typename Real>
+double CourseIn<Real>::workOf(const Vector& motion) const {
+  double work = 0.0;
+  for (const Span& span : motion.spans) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      work += dotOf(finest().force[axis].data() + span.first,
+                    motion.nodes[axis].data() + span.first, span.count);
+    }
+  }
+  for (std::size_t group = 0; group < motion.groups.size(); ++group) {
+    work += finest().firm.force[group].dot(motion.groups[group]);
+  }
+  return work;
+}
+
+template <typename Real>
+void CourseIn<Real>::add(const Vector& other, double share, Vector& to) const {
+  for (const Span& span : to.spans) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      addShare(other.nodes[axis].data() + span.first, static_cast<Real>(share),
+               to.nodes[axis].data() + span.first, span.count);
+    }
+  }
+  for (std::size_t group = 0; group < to.groups.size(); ++group) {
+    to.groups[group] += share * other.groups[group];
+  }
+}
+
+template <typename Real>
+double CourseIn<Real>::squared(const Field<Real>& field) const {
+  double squared = 0.0;
+  for (const Span& span : finest().spans()) {
+    for (const auto& values : field) {
+      squared += dotOf(values.data() + span.first, values.data() + span.first, span.count);
+    }
+  }
+  return squared;
+}
+
+template <typename Real>
+double CourseIn<Real>::distanceFrom(const Vector& vector) const {
+  double squared = 0.0;
+  for (const Span& span : vector.spans) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      squared += squaredDistance(finest().displacement[axis].data() + span.first,
+                                 vector.nodes[axis].data() + span.first, span.count);
+    }
+  }
+  return std::sqrt(squared);
+}
+
+template <typename Real>
+double CourseIn<Real>::longestSmooth() const {
+  double longest = 0.0;
+  for (const Span& span : finest().spans()) {
+    for (const auto& values : levels_->motion) {
+      longest = std::max(longest, greatestOf(values.data() + span.first, span.count));
+    }
+  }
+  return longest;
+}
+
+// Goes on, or back, the way that the last step went, as far as the forces work along it.
+template <typename Real>
+bool CourseIn<Real>::carryOn() {
+  keepPlace(before_);
+  keep(last_way_, std::vector<GroupVector>(finest().firm.groups.size(), GroupVector::Zero()), way_);
+  const double slope = workOf(way_);
+  if (slope == 0.0 || !std::isfinite(slope)) return false;
+  const double share = slope > 0.0 ? 1.0 : -1.0;
+  finest().moveBy(way_.nodes, way_.groups, share);
+  finest().findForces(true);
+  const double here = workOf(way_);
+  if (std::abs(here) <= kFlatEnough * std::abs(slope)) return true;
+  const double best = slope / (slope - here);  // of `share`, were the energy quadratic
+  if (!std::isfinite(here) || !(best > 0.0)) {
+    putBack(before_);
+    finest().findForces(true);
+    return false;
+  }
+  finest().moveBy(way_.nodes, way_.groups, share * (std::min(best, 2.0) - 1.0));
+  finest().findForces(true);
+  return true;
+}
+
+template <typename Real>
+SolveStatus CourseIn<Real>::iterate(bool touched, bool carried_on, const Budget& budget) {
+  keepPlace(start_);
+  first_left_ = -1.0;
+  fresh_ = true;
+  conjugate_ = false;
+  SolveStatus status = look(touched);
+  for (; status == SolveStatus::kLate; status = look(touched)) {
+    if (cycles_ > 0 && budget.isSpent()) break;
+    advance();
+    ++cycles_;
+  }
+  if (status == SolveStatus::kUnconverged) {
+    putBack(best_);
+    finest().findForces(true);
+    error_ = best_error_;
+    return status;
+  }
+  // What is in balance stays, bit for bit.
+  const bool moves = cycles_ > 0 || carried_on || error_ > options_.tolerance;
+  if (status == SolveStatus::kOk && moves && left_ > 0.0) {
+    error_ = error_after_;
+    finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
+    finest().findForces(true);
+    finest().smooth(1, true);
+  }
+  return status;
+}
+
+// One cycle.
+template <typename Real>
+void CourseIn<Real>::advance() {
+  if (!(left_ <= kBlownUp * first_left_)) {
+    goPlainly(best_);
+    return keepPlace(before_);
+  }
+  keepPlace(before_);
+  keep(finest().force, finest().firm.force, force_before_);
+  const double longest = longestSmooth();
+  const double share = longest > options_.line_step ? options_.line_step / longest : 1.0;
+  finest().moveBy(levels_->motion, levels_->group_motion, share);
+  finest().findForces(true);
+  finest().smooth(steps_, true);
+  keepPlace(way_);
+  add(before_, -1.0, way_);
+  const double promised = work(force_before_, way_);
+  double slope = promised;
+  const double share_kept = fresh_ ? 0.0 : (promised - work(earlier_force_, way_)) / promised_;
+  if (share_kept > kWorthKeeping && left_ > kSlow * left_before_) {
+    const double along = work(force_before_, direction_);
+    if (promised + share_kept * along > 0.0) {
+      slope += share_kept * along;
+      add(direction_, share_kept, way_);
+      putBack(before_);
+      finest().moveBy(way_.nodes, way_.groups, 1.0);
+      finest().findForces(true);
+    }
+  }
+  conjugate_ = !fresh_ && left_ > kSlow * left_before_;
+  fresh_ = false;
+  promised_ = promised;
+  std::swap(earlier_force_, force_before_);
+  if (promised > 0.0 && searchAlong(way_, slope, workOf(way_))) {
+    std::swap(direction_, way_);
+  } else {
+    goPlainly(before_);
+  }
+}
+
+// Steps of the smoother alone.
+template <typename Real>
+void CourseIn<Real>::goPlainly(const Vector& from) {
+  putBack(from);
+  finest().findForces(true);
+  finest().smooth(kPlainSteps, true);
+  fresh_ = true;
+}
+
+// Having gone along the way once: further or back, to where the forces no longer work along it.
+// `slope`: what they did at its start. False: it leads nowhere.
+template <typename Real>
+bool CourseIn<Real>::searchAlong(const Vector& way, double slope, double slope_here) {
+  double low = 0.0, low_slope = slope, high = 0.0, high_slope = 0.0;
+  bool bracketed = false;
+  double share = 1.0, here = slope_here;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    if (std::abs(here) <= kFlatEnough * slope) return true;
+    if (here > 0.0 && std::isfinite(here)) {
+      low = share;
+      low_slope = here;
+    } else {
+      high = share;
+      high_slope = here;
+      bracketed = true;
+    }
+    if (!bracketed) {
+      const double secant = low_slope < slope ? share * slope / (slope - low_slope) : 2.0 * share;
+      if (trial > 1) return true;
+      share = std::min({std::max(secant, 1.1 * share), 4.0 * share});
+    } else if (std::isfinite(high_slope)) {
+      const double across = low_slope / (low_slope - high_slope);
+      share = low + std::min(std::max(across, 0.1), 0.9) * (high - low);
+    } else {
+      share = 0.5 * (low + high);
+    }
+    putBack(before_);
+    finest().moveBy(way.nodes, way.groups, share);
+    finest().findForces(true);
+    here = workOf(way);
+  }
+  return low > 0.0 && std::isfinite(here);
+}
+
+template class CourseIn<float>;
+template class CourseIn<double>;
+
+}  // namespace robot_tissue

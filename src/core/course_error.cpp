@@ -1,0 +1,155 @@
+// CourseIn: how far it is from balance.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "course_in.h"
+#include "robot_tissue/core/field_kernel.h"
+
+namespace robot_tissue {
+namespace {
+
+// of the spacing: off rest by less, a node is at rest
+constexpr double kMostLeft = 0.9;  // of the length left before cycles, to learn from them
+// of the length left before cycles, to learn from them
+constexpr double kMostFactor = 8.0;  // that they may show
+// that they may show
+constexpr double kRemembered = 0.9;  // of the factor, from cycle to cycle
+// of the slope along a direction: no need to look further
+constexpr double kDip = 0.5;  // of the length left before a cycle: counts as left after it
+// in spacings
+constexpr double kLeastAfter = 0.6;  // of the length left before a cycle: is after it
+// of the greatest stiffness, in nodes' stiffnesses
+constexpr int kTrialCycles = 6;  // that show how much of what is left they see
+// that show how much of what is left they see
+constexpr double kTrialMotion = 1e-3;  // in spacings
+// times those there are
+constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single precision knows
+// of the force on a patch: what single precision knows
+constexpr double kFalling = 0.5;  // of the given force: unbalanced, where nothing holds
+
+}  // namespace
+
+// A shape thrown off rest by little goes back to it: there the length left is known, and with it
+// what share of it a cycle sees. Slow motions, the last to go, are seen least.
+template <typename Real>
+void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
+  LoadedShape rest{state, {}};
+  std::fill(rest.state.displacement.begin(), rest.state.displacement.end(), Vec3::Zero());
+  PatchHold fixed(lattice_, model_);
+  fixed.bind(rest);
+  std::uint32_t number = 1;
+  for (std::size_t node = 0; node < rest.state.displacement.size(); ++node) {
+    if (fixed.held()[node] == kAllHeld) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      number = 1664525U * number + 1013904223U;
+      const double share = static_cast<double>(number >> 8) / (1 << 24) - 0.5;
+      rest.state.displacement[node][axis] = kTrialMotion * lattice_.spacing() * share;
+    }
+  }
+  levels_->bind(rest, fixed);
+  const Field<Real> weight = finest().load;
+  finest().clearLoad();
+  levels_->setDisplacement(rest.state.displacement);
+  finest().findForces(true);
+  least_factor_ = 1.0;
+  for (int cycle = 0; cycle < kTrialCycles; ++cycle) {
+    levels_->findSmoothMotion();
+    const double left = lengthLeft();
+    if (cycle > 0 && left > 0.0) {
+      least_factor_ = std::max(least_factor_, std::sqrt(squared(finest().displacement)) / left);
+    }
+    finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
+    finest().findForces(true);
+    finest().smooth(steps_, true);
+  }
+  finest().load = weight;
+  least_factor_ = std::min(least_factor_, kMostFactor);
+  factor_ = least_factor_;
+}
+
+// Of the motion that the coarse lattices, and each node alone, say is left.
+template <typename Real>
+double CourseIn<Real>::lengthLeft() const {
+  return std::sqrt(finest().squaredLocalMotion() + squared(levels_->motion) +
+                   finest().firm.squaredMotionOf(levels_->group_motion));
+}
+
+// Where the course stands: kOk, kLate while there is hope, kUnconverged.
+template <typename Real>
+SolveStatus CourseIn<Real>::look(bool touched) {
+  levels_->findSmoothMotion();
+  const bool raised = raiseLayers();
+  if (raised) {
+    finest().findForces(true);
+    levels_->findSmoothMotion();
+  }
+  left_before_ = left_;
+  left_ = lengthLeft();
+  // Under conjugate gradients it rises and falls on its way down.
+  const double trend_before = trend_;
+  trend_ = conjugate_ ? std::max(left_, kDip * trend_) : left_;
+  if (cycles_ > 0) learn(trend_before);
+  const double moved = std::sqrt(squared(finest().displacement));
+  const double unit = std::max(moved, kStill * std::sqrt(free_nodes_ + 1.0));
+  error_ = factor_ * trend_ / unit;
+  const double gain = cycles_ > 0 ? factor_ * std::min(trend_ / trend_before, 1.0) : 0.0;
+  error_after_ = std::max({factor_ - 1.0, gain, kLeastAfter}) * trend_ / unit;
+  if (first_left_ < 0.0) {
+    first_left_ = left_;
+    least_ = std::numeric_limits<double>::infinity();
+  }
+  if (left_ < least_) {
+    least_ = left_;
+    keepPlace(best_);
+    best_error_ = error_;
+    best_cycle_ = cycles_;
+  }
+  // Contacts change in ways that are small beside the displacement, but not to them.
+  const bool untried = cycles_ == 0 && touched;
+  if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
+    return SolveStatus::kOk;
+  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > best_cycle_ + options_.patience;
+  return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
+}
+
+// Forces on patches, and on the whole, have found their answer.
+template <typename Real>
+bool CourseIn<Real>::isBalanced() const {
+  Vec3 given = Vec3::Zero(), net = Vec3::Zero();
+  for (std::size_t group = 0; group < finest().firm.groups.size(); ++group) {
+    const Vec3 load = finest().firm.load[group].template head<3>();
+    const Vec3 left = finest().firm.force[group].template head<3>();
+    if (left.norm() > std::max(options_.tolerance, kPatchBalance) * load.norm()) return false;
+    given += load;
+    net += left;
+  }
+  if (given.isZero(0.0)) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Span& span : finest().spans()) {
+      net[axis] += sumOf(finest().force[at(axis)].data() + span.first, span.count);
+    }
+  }
+  return net.norm() < kFalling * given.norm();
+}
+
+// Cycles went so far, and these were the lengths left before and after them: what was really left
+// before is taken to be what they went and the same multiple of what is left after them.
+template <typename Real>
+void CourseIn<Real>::learn(double trend_before) {
+  double factor = 0.0;
+  if (trend_ < kMostLeft * trend_before) {
+    factor = distanceFrom(before_) / (trend_before - trend_);
+  }
+  if (cycles_ > 1 && trend_ < kMostLeft * first_left_) {
+    factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
+  }
+  if (factor == 0.0) return;
+  factor = std::min(std::max(factor, least_factor_), kMostFactor);
+  factor_ = std::max(factor, kRemembered * factor_);
+}
+
+template class CourseIn<float>;
+template class CourseIn<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,117 @@
+// How method `layered` comes to balance, in the precision of Real. See core/layered_course.h.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "robot_tissue/core/lattice_levels.h"
+#include "robot_tissue/core/layered_course.h"
+
+namespace robot_tissue {
+
+template <typename Real>
+class CourseIn : public LayeredCourse {
+ public:
+  CourseIn(const Lattice& lattice, const ElasticModel& model, const LayeredOptions& options)
+      : lattice_(lattice), model_(model), options_(options) {}
+
+  SolveReport run(LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed,
+                  const Budget& budget) override;
+  void beginStep() override { first_of_step_ = true; }
+  void forget() override;
+
+ private:
+  static constexpr double kFirstLayers = 6;  // around patches and contacts
+  static constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
+
+  // Positions, or forces that do work in a motion. Kept where nodes may move.
+  struct Vector {
+    Field<Real> nodes;
+    std::vector<GroupVector> groups;
+    std::vector<Span> spans;
+  };
+
+  // course_in.cpp: before and after.
+  void findLevels(const LatticeState& state);
+  void prepare(LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed);
+  void noteStep();
+  bool settlePatches(LoadedShape& shape, const PatchHold& hold);
+  void writeBack(LoadedShape& shape, const PatchHold& hold) const;
+  void answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
+  double answerPatches(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
+
+  // course_layers.cpp: which nodes are visited.
+  void findSeeds(const LoadedShape& shape, const PatchHold& hold,
+                 const std::vector<int>& disturbed);
+  void addSeed(int entry);
+  LevelBox wholeBox() const;
+  LevelBox aroundSeeds() const;
+  void confine(const LevelBox& box);
+  bool raiseLayers();
+  bool isOutermost(std::size_t axis, int place) const;
+  double layerMotion() const;
+  int nodesInBox(const PatchHold& hold) const;
+  int layersRaised() const;
+
+  // course_error.cpp: how far it is.
+  void findLeastFactor(const LatticeState& state);
+  SolveStatus look(bool touched);
+  void learn(double trend_before);
+  bool isBalanced() const;
+  double lengthLeft() const;
+
+  // course_cycle.cpp: how it goes on.
+  SolveStatus iterate(bool touched, bool carried_on, const Budget& budget);
+  bool carryOn();
+  void advance();
+  void goPlainly(const Vector& from);
+  bool searchAlong(const Vector& way, double slope, double slope_here);
+
+  LatticeLevel<Real>& finest() { return levels_->finest(); }
+  const LatticeLevel<Real>& finest() const { return levels_->finest(); }
+  void keep(const Field<Real>& nodes, const std::vector<GroupVector>& groups, Vector& vector) const;
+  void keepPlace(Vector& vector) const;
+  void putBack(const Vector& vector);
+  double workOf(const Vector& motion) const;
+  double work(const Vector& force, const Vector& motion) const;
+  void add(const Vector& other, double share, Vector& to) const;
+  double squared(const Field<Real>& field) const;
+  double distanceFrom(const Vector& vector) const;
+  double longestSmooth() const;
+
+  const Lattice& lattice_;
+  const ElasticModel& model_;
+  LayeredOptions options_;
+  std::unique_ptr<LatticeLevels<Real>> levels_;
+  std::shared_ptr<const CellSet> cells_;
+  std::vector<Vec3> left_displacement_;  // what the last solve left
+  std::vector<int> loaded_;              // entries of nodes in patches and contacts
+  double free_nodes_ = 0.0;
+  LevelBox seeds_;                // what the layers grow around; none: high below low
+  double layers_ = kFirstLayers;  // around them
+  int steps_ = 3;                 // of the smoother in a cycle
+  double least_factor_ = 1.0;
+  double factor_ = 1.0;  // of the length left: what cycles showed to be left
+
+  // Of the solve under way; lengths in spacings.
+  int cycles_ = 0;
+  double left_ = 0.0, left_before_ = 0.0, first_left_ = 0.0;
+  double trend_ = 0.0;                      // of the length left
+  double error_ = 0.0, error_after_ = 0.0;  // estimates: now, after one more cycle
+  double least_ = 0.0, best_error_ = 1.0;
+  int best_cycle_ = 0;
+  double greatest_ = 0.0;  // unbalanced force at its start
+  Vector start_, before_, best_;
+  Vector force_before_, way_, direction_, earlier_force_;
+  double promised_ = 0.0;   // work of earlier_force_ in the cycle's own motion
+  bool fresh_ = true;       // no direction yet
+  bool conjugate_ = false;  // the last cycle went on with the one before
+
+  Field<Real> step_start_, last_way_;
+  bool has_start_ = false, has_way_ = false, first_of_step_ = false;
+};
+
+extern template class CourseIn<float>;
+extern template class CourseIn<double>;
+
+}  // namespace robot_tissue

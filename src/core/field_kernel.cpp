@@ -1,0 +1,276 @@
+#include "robot_tissue/core/field_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/core/vector_clones.h"
+
+namespace robot_tissue {
+namespace {
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict lower, const Real* __restrict upper,
+                                const Real* __restrict load, const Real* __restrict free,
+                                Real* __restrict force, int count) {
+  for (int i = 0; i < count; ++i) {
+    const Real sum = lower[i] + upper[i] + load[i];
+    force[i] = free[i] != Real(0) ? sum : Real(0);
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void invertAll(const Real* __restrict lower, const Real* __restrict upper,
+                                   const Real* __restrict free, Real* __restrict inverse,
+                                   int count) {
+  for (int i = 0; i < count; ++i) {
+    inverse[i] = free[i] / (lower[i] + upper[i] + (Real(1) - free[i]));
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void loadAll(const Real* __restrict wanted, const Real* __restrict free,
+                                 Real* __restrict load, Real* __restrict force, int count) {
+  for (int i = 0; i < count; ++i) {
+    const Real change = free[i] * (wanted[i] - force[i]);
+    load[i] += change;
+    force[i] += change;
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void stepAll(const Real* __restrict inverse, const Real* __restrict force,
+                                 Real keep, Real share, Real longest, Real* __restrict way,
+                                 Real* __restrict displacement, int count) {
+  for (int i = 0; i < count; ++i) {
+    const Real step = keep * way[i] + share * inverse[i] * force[i];
+    way[i] = std::min(std::max(step, -longest), longest);
+    displacement[i] += way[i];
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void addFree(const Real* __restrict motion, const Real* __restrict free,
+                                 Real share, Real* __restrict to, int count) {
+  for (int i = 0; i < count; ++i) to[i] += free[i] * share * motion[i];
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void addAll(const Real* __restrict other, Real share, Real* __restrict to,
+                                int count) {
+  for (int i = 0; i < count; ++i) to[i] += share * other[i];
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void subtractAll(const Real* __restrict a, const Real* __restrict b,
+                                     Real* __restrict difference, int count) {
+  for (int i = 0; i < count; ++i) difference[i] = a[i] - b[i];
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void spreadAll(const Real* __restrict coarse, Real* __restrict fine,
+                                   int count) {
+  for (int i = 0; i < count / 2; ++i) {
+    fine[2 * i] = coarse[i];
+    fine[2 * i + 1] = Real(0.5) * (coarse[i] + coarse[i + 1]);
+  }
+  if (count % 2 != 0) fine[count - 1] = coarse[count / 2];
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void gatherAll(const Real* __restrict fine, Real* __restrict coarse,
+                                   int count) {
+  for (int i = 0; i < count; ++i) {
+    coarse[i] = fine[2 * i + 1] + Real(0.5) * (fine[2 * i] + fine[2 * i + 2]);
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void halveAll(const Real* __restrict fine, Real* __restrict coarse, int count) {
+  for (int i = 0; i < count; ++i) coarse[i] = Real(0.5) * fine[2 * i];
+}
+
+// Of term(i), lane by lane in runs, so that the order is always one.
+template <typename Real, typename Term>
+ROBOT_TISSUE_INLINE double sumOfTerms(int count, Term term) {
+  constexpr int kRun = 2048, kLanes = 32;
+  double sum = 0.0;
+  for (int first = 0; first < count; first += kRun) {
+    const int end = std::min(count, first + kRun);
+    Real lanes[kLanes] = {};
+    int i = first;
+    for (; i + kLanes <= end; i += kLanes) {
+      for (int lane = 0; lane < kLanes; ++lane) lanes[lane] += term(i + lane);
+    }
+    for (const Real lane : lanes) sum += static_cast<double>(lane);
+    for (; i < end; ++i) sum += static_cast<double>(term(i));
+  }
+  return sum;
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE double dotAll(const Real* a, const Real* b, int count) {
+  return sumOfTerms<Real>(count, [=](int i) { return a[i] * b[i]; });
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE double squareAll(const Real* a, const Real* b, int count) {
+  return sumOfTerms<Real>(count, [=](int i) { return a[i] * b[i] * (a[i] * b[i]); });
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE double distanceAll(const Real* a, const Real* b, int count) {
+  return sumOfTerms<Real>(count, [=](int i) { return (a[i] - b[i]) * (a[i] - b[i]); });
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE double greatestOfAll(const Real* values, int count) {
+  constexpr int kLanes = 32;
+  Real lanes[kLanes] = {};
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Real size = std::abs(values[i + lane]);
+      lanes[lane] = size > lanes[lane] ? size : lanes[lane];
+    }
+  }
+  Real greatest = 0;
+  for (const Real lane : lanes) greatest = std::max(greatest, lane);
+  for (; i < count; ++i) greatest = std::max(greatest, std::abs(values[i]));
+  return static_cast<double>(greatest);
+}
+
+}  // namespace
+
+ROBOT_TISSUE_CLONES void sumForces(const float* lower, const float* upper, const float* load,
+                                   const float* free, float* force, int count) {
+  sumAll(lower, upper, load, free, force, count);
+}
+
+ROBOT_TISSUE_CLONES void sumForces(const double* lower, const double* upper, const double* load,
+                                   const double* free, double* force, int count) {
+  sumAll(lower, upper, load, free, force, count);
+}
+
+ROBOT_TISSUE_CLONES void invertStiffness(const float* lower, const float* upper, const float* free,
+                                         float* inverse, int count) {
+  invertAll(lower, upper, free, inverse, count);
+}
+
+ROBOT_TISSUE_CLONES void invertStiffness(const double* lower, const double* upper,
+                                         const double* free, double* inverse, int count) {
+  invertAll(lower, upper, free, inverse, count);
+}
+
+ROBOT_TISSUE_CLONES void makeLoad(const float* wanted, const float* free, float* load, float* force,
+                                  int count) {
+  loadAll(wanted, free, load, force, count);
+}
+
+ROBOT_TISSUE_CLONES void makeLoad(const double* wanted, const double* free, double* load,
+                                  double* force, int count) {
+  loadAll(wanted, free, load, force, count);
+}
+
+ROBOT_TISSUE_CLONES void stepAlong(const float* inverse, const float* force, float keep,
+                                   float share, float longest, float* way, float* displacement,
+                                   int count) {
+  stepAll(inverse, force, keep, share, longest, way, displacement, count);
+}
+
+ROBOT_TISSUE_CLONES void stepAlong(const double* inverse, const double* force, double keep,
+                                   double share, double longest, double* way, double* displacement,
+                                   int count) {
+  stepAll(inverse, force, keep, share, longest, way, displacement, count);
+}
+
+ROBOT_TISSUE_CLONES void addWhereFree(const float* motion, const float* free, float share,
+                                      float* to, int count) {
+  addFree(motion, free, share, to, count);
+}
+
+ROBOT_TISSUE_CLONES void addWhereFree(const double* motion, const double* free, double share,
+                                      double* to, int count) {
+  addFree(motion, free, share, to, count);
+}
+
+ROBOT_TISSUE_CLONES void addShare(const float* other, float share, float* to, int count) {
+  addAll(other, share, to, count);
+}
+
+ROBOT_TISSUE_CLONES void addShare(const double* other, double share, double* to, int count) {
+  addAll(other, share, to, count);
+}
+
+ROBOT_TISSUE_CLONES void subtract(const float* a, const float* b, float* difference, int count) {
+  subtractAll(a, b, difference, count);
+}
+
+ROBOT_TISSUE_CLONES void subtract(const double* a, const double* b, double* difference, int count) {
+  subtractAll(a, b, difference, count);
+}
+
+ROBOT_TISSUE_CLONES void spreadRow(const float* coarse, float* fine, int count) {
+  spreadAll(coarse, fine, count);
+}
+
+ROBOT_TISSUE_CLONES void spreadRow(const double* coarse, double* fine, int count) {
+  spreadAll(coarse, fine, count);
+}
+
+ROBOT_TISSUE_CLONES void gatherRow(const float* fine, float* coarse, int count) {
+  gatherAll(fine, coarse, count);
+}
+
+ROBOT_TISSUE_CLONES void gatherRow(const double* fine, double* coarse, int count) {
+  gatherAll(fine, coarse, count);
+}
+
+ROBOT_TISSUE_CLONES void halveRow(const float* fine, float* coarse, int count) {
+  halveAll(fine, coarse, count);
+}
+
+ROBOT_TISSUE_CLONES void halveRow(const double* fine, double* coarse, int count) {
+  halveAll(fine, coarse, count);
+}
+
+ROBOT_TISSUE_CLONES double dotOf(const float* a, const float* b, int count) {
+  return dotAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double dotOf(const double* a, const double* b, int count) {
+  return dotAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double squaredProduct(const float* a, const float* b, int count) {
+  return squareAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double squaredProduct(const double* a, const double* b, int count) {
+  return squareAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double squaredDistance(const float* a, const float* b, int count) {
+  return distanceAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double squaredDistance(const double* a, const double* b, int count) {
+  return distanceAll(a, b, count);
+}
+
+ROBOT_TISSUE_CLONES double sumOf(const float* values, int count) {
+  return sumOfTerms<float>(count, [=](int i) { return values[i]; });
+}
+
+ROBOT_TISSUE_CLONES double greatestOf(const float* values, int count) {
+  return greatestOfAll(values, count);
+}
+
+ROBOT_TISSUE_CLONES double sumOf(const double* values, int count) {
+  return sumOfTerms<double>(count, [=](int i) { return values[i]; });
+}
+
+ROBOT_TISSUE_CLONES double greatestOf(const double* values, int count) {
+  return greatestOfAll(values, count);
+}
+
+}  // namespace robot_tissue

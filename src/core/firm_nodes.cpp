@@ -1,0 +1,286 @@
+#include "robot_tissue/core/firm_nodes.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kBothEnds = 2.0;  // weights of a spring to a group, summed
+constexpr double kNoStiffness = 1e-12;
+
+using Jacobian = Eigen::Matrix<double, 3, 6>;
+
+Jacobian jacobianAt(const Vec3& arm, bool turns) {
+  Jacobian jacobian = Jacobian::Zero();
+  jacobian.leftCols<3>().setIdentity();
+  if (turns) jacobian.rightCols<3>() = -crossMatrix(arm);
+  return jacobian;
+}
+
+// To no more than `longest` in any component.
+template <typename Vector>
+void cut(Vector& vector, double longest) {
+  const double greatest = vector.cwiseAbs().maxCoeff();
+  if (greatest > longest) vector *= longest / greatest;
+}
+
+}  // namespace
+
+Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion) {
+  const Vec3 shift = motion.head<3>();
+  if (!turns) return shift;
+  const Vec3 turn = motion.tail<3>();
+  return shift + turn.cross(arm);
+}
+
+template <typename Real>
+void FirmNodes<Real>::setUnits(double spacing, double modulus) {
+  spacing_ = spacing;
+  modulus_ = modulus;
+}
+
+template <typename Real>
+int FirmNodes<Real>::indexOf(int node) const {
+  const auto before = [](const Firm& firm, int other) { return firm.node < other; };
+  const auto found = std::lower_bound(all_.begin(), all_.end(), node, before);
+  return static_cast<int>(found - all_.begin());
+}
+
+template <typename Real>
+std::vector<int> FirmNodes<Real>::nodes() const {
+  std::vector<int> nodes;
+  for (const Firm& firm : all_) nodes.push_back(firm.node);
+  return nodes;
+}
+
+template <typename Real>
+void FirmNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
+  std::vector<int> nodes;
+  for (const LevelSpring& spring : springs) {
+    for (const LevelSpring::Carrier& carrier : spring.carriers) nodes.push_back(carrier.node);
+  }
+  for (const LevelGroup& group : groups) {
+    nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
+  }
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    if (held[node] != 0 && held[node] != 7) nodes.push_back(static_cast<int>(node));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  all_.assign(nodes.size(), {});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    all_[i].node = nodes[i];
+    all_[i].held = held[at(nodes[i])];
+  }
+  for (LevelSpring& spring : springs) {
+    for (LevelSpring::Carrier& carrier : spring.carriers) carrier.firm = indexOf(carrier.node);
+  }
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
+      Firm& firm = all_[at(indexOf(groups[group].nodes[i]))];
+      firm.group = static_cast<int>(group);
+      firm.held = 7;
+      firm.arm = groups[group].arms[i];
+    }
+  }
+  group_inverse_.assign(groups.size(), Matrix6::Zero());
+  for (auto* vectors : {&load, &force, &motion, &group_way_}) {
+    vectors->assign(groups.size(), GroupVector::Zero());
+  }
+}
+
+template <typename Real>
+Vec3 FirmNodes<Real>::meanOf(const LevelSpring& spring, const Field<Real>& displacement) const {
+  Vec3 mean = Vec3::Zero();
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    mean += carrier.weight * vectorAt(displacement, carrier.node);
+  }
+  if (spring.group >= 0) {
+    const std::size_t group = at(spring.group);
+    mean -= motionAt(spring.arm, groups[group].turns, motion[group]);
+  }
+  return mean;
+}
+
+// A spring's stiffness counts by its weights' sum, so that no motion is stiffer than the step
+// allows (l1-Jacobi: Baker, Falgout, Kolev, Yang 2011).
+template <typename Real>
+void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displacement,
+                                bool with_steps) {
+  const Vec3 mean = meanOf(spring, displacement);
+  Vec3 on_nodes = Vec3::Zero();
+  if (spring.contact == nullptr) {
+    on_nodes = spring.stiffness * (spring.anchor - mean);
+  } else {
+    const Vec3 point = spring.contact->rest + spacing_ * mean;
+    on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
+    if (with_steps) {
+      spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
+    }
+  }
+  const double ends = spring.group >= 0 ? kBothEnds : 1.0;
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    Firm& firm = all_[at(carrier.firm)];
+    firm.force += carrier.weight * on_nodes;
+    if (with_steps) firm.stiffness += ends * carrier.weight * spring.stiffness;
+  }
+  if (spring.group < 0) return;
+  const std::size_t group = at(spring.group);
+  const Jacobian jacobian = jacobianAt(spring.arm, groups[group].turns);
+  force[group] -= jacobian.transpose() * on_nodes;
+  if (!with_steps) return;
+  group_stiffness_[group] += ends * jacobian.transpose() * spring.stiffness * jacobian;
+}
+
+template <typename Real>
+void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real>& displacement,
+                                 const Field<Real>& load_on_nodes, bool with_steps,
+                                 Field<Real>& forces) {
+  for (Firm& firm : all_) {
+    const std::size_t node = at(firm.node);
+    firm.force = vectorAt(cells.lower, firm.node) + vectorAt(cells.upper, firm.node) +
+                 vectorAt(load_on_nodes, firm.node);
+    if (!with_steps) continue;
+    const Real stiffness = cells.lower_stiffness[node] + cells.upper_stiffness[node];
+    firm.stiffness = static_cast<double>(stiffness) * Eigen::Matrix3d::Identity();
+  }
+  force = load;
+  if (with_steps) group_stiffness_.assign(groups.size(), Matrix6::Zero());
+  for (LevelSpring& spring : springs) addSpring(spring, displacement, with_steps);
+  for (Firm& firm : all_) {
+    if (firm.group >= 0) {
+      const std::size_t group = at(firm.group);
+      const Jacobian jacobian = jacobianAt(firm.arm, groups[group].turns);
+      force[group] += jacobian.transpose() * firm.force;
+      if (with_steps) group_stiffness_[group] += jacobian.transpose() * firm.stiffness * jacobian;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_held = (firm.held >> axis & 1U) != 0;
+      forces[at(axis)][at(firm.node)] = is_held ? Real(0) : static_cast<Real>(firm.force[axis]);
+    }
+    if (with_steps) invert(firm);
+  }
+  if (with_steps) invertGroups();
+}
+
+template <typename Real>
+void FirmNodes<Real>::takeForces(const Field<Real>& forces) {
+  for (Firm& firm : all_) firm.force = vectorAt(forces, firm.node);
+}
+
+template <typename Real>
+void FirmNodes<Real>::invert(Firm& firm) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((firm.held >> axis & 1U) == 0) continue;
+    firm.stiffness.row(axis).setZero();
+    firm.stiffness.col(axis).setZero();
+    firm.stiffness(axis, axis) = 1.0;
+  }
+  firm.inverse = firm.stiffness.inverse();
+}
+
+template <typename Real>
+void FirmNodes<Real>::invertGroups() {
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    Matrix6& stiffness = group_stiffness_[group];
+    const double scale = stiffness.diagonal().maxCoeff();
+    for (int axis = 0; axis < 6; ++axis) {
+      double& own = stiffness(axis, axis);
+      if (own <= kNoStiffness * scale) own = std::max(scale, 1.0);
+    }
+    group_inverse_[group] = stiffness.inverse();
+    if (!groups[group].turns) group_inverse_[group].template bottomRightCorner<3, 3>().setZero();
+  }
+}
+
+template <typename Real>
+void FirmNodes<Real>::calm() {
+  for (Firm& firm : all_) firm.way.setZero();
+  for (GroupVector& way : group_way_) way.setZero();
+}
+
+template <typename Real>
+void FirmNodes<Real>::step(double keep, double share, double longest, Field<Real>& displacement) {
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    GroupVector& way = group_way_[group];
+    way = keep * way + share * group_inverse_[group] * force[group];
+    cut(way, longest);
+    motion[group] += way;
+  }
+  for (Firm& firm : all_) {
+    if (firm.group >= 0) {
+      const std::size_t group = at(firm.group);
+      firm.way = motionAt(firm.arm, groups[group].turns, group_way_[group]);
+    } else {
+      Vec3 free = firm.force;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
+      }
+      firm.way = keep * firm.way + share * (firm.inverse * free);
+      cut(firm.way, longest);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      displacement[at(axis)][at(firm.node)] += static_cast<Real>(firm.way[axis]);
+    }
+  }
+}
+
+template <typename Real>
+void FirmNodes<Real>::moveBy(const Field<Real>& way, const std::vector<GroupVector>& of_groups,
+                             double share, Field<Real>& displacement) {
+  for (const Firm& firm : all_) {
+    Vec3 moved = share * vectorAt(way, firm.node);
+    if (firm.group >= 0) {
+      const std::size_t group = at(firm.group);
+      moved = share * motionAt(firm.arm, groups[group].turns, of_groups[group]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_held = firm.group < 0 && (firm.held >> axis & 1U) != 0;
+      if (!is_held) displacement[at(axis)][at(firm.node)] += static_cast<Real>(moved[axis]);
+    }
+  }
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    motion[group] += share * of_groups[group];
+  }
+}
+
+template <typename Real>
+double FirmNodes<Real>::squaredLocalMotion() const {
+  double squared = 0.0;
+  for (const Firm& firm : all_) {
+    if (firm.group >= 0) continue;
+    Vec3 free = firm.force;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
+    }
+    squared += (firm.inverse * free).squaredNorm();
+  }
+  std::vector<GroupVector> of_groups;
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    of_groups.push_back(group_inverse_[group] * force[group]);
+  }
+  return squared + squaredMotionOf(of_groups);
+}
+
+template <typename Real>
+double FirmNodes<Real>::squaredMotionOf(const std::vector<GroupVector>& of_groups) const {
+  double squared = 0.0;
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    for (const Vec3& arm : groups[group].arms) {
+      squared += motionAt(arm, groups[group].turns, of_groups[group]).squaredNorm();
+    }
+  }
+  return squared;
+}
+
+template <typename Real>
+const Vec3* FirmNodes<Real>::wholeForce(int node) const {
+  const std::size_t firm = at(indexOf(node));
+  return firm < all_.size() && all_[firm].node == node ? &all_[firm].force : nullptr;
+}
+
+template class FirmNodes<float>;
+template class FirmNodes<double>;
+
+}  // namespace robot_tissue
