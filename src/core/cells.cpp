@@ -1,6 +1,6 @@
 #include "robot_tissue/core/cells.h"
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -45,17 +45,18 @@ bool isFixed(const Lattice& lattice, const CellSet& cells, int node) {
 }
 
 int countInvertedCells(const Lattice& lattice, const LatticeState& state) {
+  const double share = 0.25 / lattice.spacing();
   int inverted = 0;
   for (const Cell& cell : state.cells->all()) {
-    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const Vec3& moved = state.displacement[at(cell.nodes[at(corner)])];
-      for (int axis = 0; axis < 3; ++axis) {
-        const double sign = (corner >> axis & 1) != 0 ? 0.25 : -0.25;
-        gradient.col(axis) += sign / lattice.spacing() * moved;
-      }
-    }
-    if (gradient.determinant() <= 0.0) ++inverted;
+    const auto moved = [&](std::size_t corner) -> const Vec3& {
+      return state.displacement[at(cell.nodes[corner])];
+    };
+    const Vec3 low = moved(1) - moved(6), high = moved(7) - moved(0);
+    const Vec3 near = moved(3) - moved(4), far = moved(5) - moved(2);
+    const Vec3 x = share * (low + high + near + far) + Vec3::UnitX();
+    const Vec3 y = share * (near + high - low - far) + Vec3::UnitY();
+    const Vec3 z = share * (far + high - low - near) + Vec3::UnitZ();
+    if (x.dot(y.cross(z)) <= 0.0) ++inverted;
   }
   return inverted;
 }

@@ -262,7 +262,7 @@ class Coarsener {
 LevelGrid::LevelGrid(const std::array<int, 3>& points)
     : size(points),
       row(points[0]),
-      plane(padded(points[0] * points[1])),
+      plane(padded(points[0] * points[1]) + kLanes),
       beside(padded(plane * (points[2] + 1) + row + 1 + kLanes)) {}
 
 Coarsening coarsened(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries) {

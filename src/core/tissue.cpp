@@ -28,7 +28,9 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       has_gravity_(!tissue.gravity.isZero()) {
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
-  for (int node = 0; node < lattice_.nodeCount(); ++node) weight_ += nodeForce(node);
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    weight_ += lattice_.mass(node) * tissue.gravity;
+  }
 }
 
 Tissue::~Tissue() = default;

@@ -20,7 +20,8 @@ struct LevelCell {
   double bulk = 0.0;
 };
 
-// Entries of a level's fields: the grid's points, x fastest, planes padded; then nodes beside it,
+// Entries of a level's fields: the grid's points, x fastest, planes padded so that what a block of
+// cells touches beyond its plane's corners is nobody's; then nodes beside it,
 // that stand where a grid point is taken.
 struct LevelGrid {
   std::array<int, 3> size{};

@@ -1,0 +1,141 @@
+// Forces of many cells at a time are those of each cell alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "elastic_fixtures.h"
+#include "robot_tissue/core/cell_kernel.h"
+#include "robot_tissue/core/elastic_cell.h"
+#include "robot_tissue/core/level_cells.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::array<int, 3> kPoints = {9, 6, 5};
+constexpr double kShear = 1.0, kBulk = 5.0 / 3.0;
+constexpr double kOfTheOther = 1e-14;  // rounding of a cell alone, which is told from its places
+
+// A block of full cells, two of them left out, one of them with corners beside the grid.
+struct Cells {
+  Cells() : grid(kPoints) {
+    for (int k = 0; k + 1 < kPoints[2]; ++k) {
+      for (int j = 0; j + 1 < kPoints[1]; ++j) {
+        for (int i = 0; i + 1 < kPoints[0]; ++i) {
+          if (i == 3 && j == 2 && k < 2) continue;
+          LevelCell cell{{i, j, k}, {}, kShear, kBulk};
+          for (int corner = 0; corner < kCorners; ++corner) {
+            cell.nodes[at(corner)] =
+                grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
+          }
+          all.push_back(cell);
+        }
+      }
+    }
+    for (int corner = 4; corner < kCorners; ++corner) {
+      all.back().nodes[at(corner)] = grid.beside + corner - 4;
+    }
+  }
+
+  LevelGrid grid;
+  std::vector<LevelCell> all;
+};
+
+template <typename Real>
+class CellKernel : public testing::Test {
+ protected:
+  // Every node somewhere within `far` spacings of its rest, along each axis.
+  Field<Real> shaken(const LevelCells<Real>& cells, double far) const {
+    Field<Real> field;
+    Shaker shaker(7);
+    for (int node = 0; node < cells.count(); ++node) {
+      const Vec3 moved = shaker.displacement(far);
+      for (int axis = 0; axis < 3; ++axis)
+        field[at(axis)].push_back(static_cast<Real>(moved[axis]));
+    }
+    return field;
+  }
+
+  void expectForcesOfEachCell(double far, double tolerance) {
+    const Cells given;
+    LevelCells<Real> cells(given.grid, 4, given.all, false);
+    const Field<Real> moved = shaken(cells, far);
+    cells.findForces(moved, true);
+    std::vector<Vec3> forces(at(cells.count()), Vec3::Zero());
+    std::vector<Eigen::Matrix3d> blocks(at(cells.count()), Eigen::Matrix3d::Zero());
+    double greatest = 0.0;
+    for (const LevelCell& cell : given.all) {
+      ElasticCell::Corners corners;
+      for (std::size_t c = 0; c < corners.size(); ++c) {
+        const std::size_t node = at(cell.nodes[c]);
+        for (int axis = 0; axis < 3; ++axis) {
+          corners[c][axis] = static_cast<double>(moved[at(axis)][node]);
+        }
+      }
+      const ElasticCell alone({kShear, kBulk}, 1.0, corners);
+      for (int c = 0; c < kCorners; ++c) {
+        forces[at(cell.nodes[at(c)])] -= alone.gradient(c);
+        blocks[at(cell.nodes[at(c)])] += alone.block(c);
+        greatest = std::max(greatest, alone.gradient(c).norm());
+      }
+    }
+    for (const LevelCell& cell : given.all) {
+      for (const int node : cell.nodes) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto force = cells.lower[at(axis)][at(node)] + cells.upper[at(axis)][at(node)];
+          EXPECT_NEAR(force, forces[at(node)][axis], tolerance * greatest + kOfTheOther);
+        }
+        const auto bound = cells.lower_stiffness[at(node)] + cells.upper_stiffness[at(node)];
+        EXPECT_GT(1.001 * bound, blocks[at(node)].trace() / 3.0);
+      }
+    }
+  }
+};
+
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(CellKernel, Precisions);
+
+template <typename Real>
+constexpr double kRounding = sizeof(Real) == sizeof(float) ? 1e-5 : 1e-13;
+
+TYPED_TEST(CellKernel, ForcesAreThoseOfEachCell) {
+  for (const double far : {1e-4, 0.05, 0.2}) {
+    this->expectForcesOfEachCell(far, kRounding<TypeParam>);
+  }
+}
+
+// Corners squeezed and cells turned inside out: the barrier, and a(J) below its last place.
+TYPED_TEST(CellKernel, ForcesAreThoseOfEachCellThatIsCrushed) {
+  this->expectForcesOfEachCell(0.6, kRounding<TypeParam>);
+}
+
+// What is off rest by a millionth is known as well as what is off by a tenth.
+TYPED_TEST(CellKernel, LosesNothingNearRest) {
+  for (const double far : {1e-3, 1e-6}) {
+    this->expectForcesOfEachCell(far, kRounding<TypeParam>);
+  }
+}
+
+TYPED_TEST(CellKernel, CellsOutOfTheBoxAreLeftOut) {
+  const Cells given;
+  LevelCells<TypeParam> cells(given.grid, 4, given.all, false);
+  const Field<TypeParam> moved = this->shaken(cells, 0.1);
+  cells.findForces(moved, false);
+  const Field<TypeParam> lower = cells.lower, upper = cells.upper;
+  const LevelBox box{{5, 2, 1}, {6, 3, 2}};
+  cells.confine(box);
+  cells.findForces(moved, false);
+  for (int k = 1; k <= 2; ++k) {
+    for (int j = 2; j <= 3; ++j) {
+      for (int i = 5; i <= 6; ++i) {
+        const std::size_t node = at(given.grid.index(i, j, k));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_EQ(cells.lower[axis][node] + cells.upper[axis][node],
+                    lower[axis][node] + upper[axis][node]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robot_tissue
