@@ -320,13 +320,13 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, int first) {
   block.is_coarse = grid.is_coarse;
   block.template solve<kWithStiffness>();
   for (int corner = 0; corner < kCorners; ++corner) {
-    const int node = first + offsetOf(grid, corner);
+    const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
     const bool low = corner < kCorners / 2;
     for (int axis = 0; axis < 3; ++axis) {
-      subtract(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + node);
+      subtract(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + sum);
     }
     if constexpr (kWithStiffness) {
-      subtract<Real>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + node);
+      subtract<Real>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
     }
   }
 }
@@ -364,11 +364,11 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<Real>& grid, const LooseCe
   block.template solve<true>();
   for (int cell = 0; cell < count; ++cell) {
     for (int corner = 0; corner < kCorners; ++corner) {
-      const int node = cells[cell].nodes[at(corner)];
+      const int sum = cells[cell].sums[at(corner)];
       for (int axis = 0; axis < 3; ++axis) {
-        grid.lower[at(axis)][node] -= block.mode[corner][axis][cell];
+        grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
       }
-      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[node] += block.stiffness[cell];
+      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[sum] += block.stiffness[cell];
     }
   }
 }

@@ -9,21 +9,24 @@ namespace robot_tissue {
 namespace {
 
 template <typename Real>
-ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict lower, const Real* __restrict upper,
+ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict below, const Real* __restrict lower,
                                 const Real* __restrict load, const Real* __restrict free,
-                                Real* __restrict force, int count) {
+                                Real* __restrict whole, Real* __restrict force, int count) {
   for (int i = 0; i < count; ++i) {
-    const Real sum = lower[i] + upper[i] + load[i];
+    const Real sum = below[i] + lower[i] + load[i];
+    whole[i] = sum;
     force[i] = free[i] != Real(0) ? sum : Real(0);
   }
 }
 
 template <typename Real>
-ROBOT_TISSUE_INLINE void invertAll(const Real* __restrict lower, const Real* __restrict upper,
-                                   const Real* __restrict free, Real* __restrict inverse,
-                                   int count) {
+ROBOT_TISSUE_INLINE void invertAll(const Real* __restrict below, const Real* __restrict lower,
+                                   const Real* __restrict free, Real* __restrict stiffness,
+                                   Real* __restrict inverse, int count) {
   for (int i = 0; i < count; ++i) {
-    inverse[i] = free[i] / (lower[i] + upper[i] + (Real(1) - free[i]));
+    const Real sum = below[i] + lower[i];
+    stiffness[i] = sum;
+    inverse[i] = free[i] / (sum + (Real(1) - free[i]));
   }
 }
 
@@ -141,24 +144,25 @@ ROBOT_TISSUE_INLINE double greatestOfAll(const Real* values, int count) {
 
 }  // namespace
 
-ROBOT_TISSUE_CLONES void sumForces(const float* lower, const float* upper, const float* load,
-                                   const float* free, float* force, int count) {
-  sumAll(lower, upper, load, free, force, count);
+ROBOT_TISSUE_CLONES void sumForces(const float* below, const float* lower, const float* load,
+                                   const float* free, float* whole, float* force, int count) {
+  sumAll(below, lower, load, free, whole, force, count);
 }
 
-ROBOT_TISSUE_CLONES void sumForces(const double* lower, const double* upper, const double* load,
-                                   const double* free, double* force, int count) {
-  sumAll(lower, upper, load, free, force, count);
+ROBOT_TISSUE_CLONES void sumForces(const double* below, const double* lower, const double* load,
+                                   const double* free, double* whole, double* force, int count) {
+  sumAll(below, lower, load, free, whole, force, count);
 }
 
-ROBOT_TISSUE_CLONES void invertStiffness(const float* lower, const float* upper, const float* free,
-                                         float* inverse, int count) {
-  invertAll(lower, upper, free, inverse, count);
+ROBOT_TISSUE_CLONES void invertStiffness(const float* below, const float* lower, const float* free,
+                                         float* stiffness, float* inverse, int count) {
+  invertAll(below, lower, free, stiffness, inverse, count);
 }
 
-ROBOT_TISSUE_CLONES void invertStiffness(const double* lower, const double* upper,
-                                         const double* free, double* inverse, int count) {
-  invertAll(lower, upper, free, inverse, count);
+ROBOT_TISSUE_CLONES void invertStiffness(const double* below, const double* lower,
+                                         const double* free, double* stiffness, double* inverse,
+                                         int count) {
+  invertAll(below, lower, free, stiffness, inverse, count);
 }
 
 ROBOT_TISSUE_CLONES void makeLoad(const float* wanted, const float* free, float* load, float* force,

@@ -135,15 +135,12 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
 
 template <typename Real>
 void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real>& displacement,
-                                 const Field<Real>& load_on_nodes, bool with_steps,
-                                 Field<Real>& forces) {
+                                 bool with_steps, Field<Real>& forces) {
   for (Firm& firm : all_) {
-    const std::size_t node = at(firm.node);
-    firm.force = vectorAt(cells.lower, firm.node) + vectorAt(cells.upper, firm.node) +
-                 vectorAt(load_on_nodes, firm.node);
+    firm.force = vectorAt(cells.whole, firm.node);
     if (!with_steps) continue;
-    const Real stiffness = cells.lower_stiffness[node] + cells.upper_stiffness[node];
-    firm.stiffness = static_cast<double>(stiffness) * Eigen::Matrix3d::Identity();
+    const double stiffness = static_cast<double>(cells.stiffness[at(firm.node)]);
+    firm.stiffness = stiffness * Eigen::Matrix3d::Identity();
   }
   force = load;
   if (with_steps) group_stiffness_.assign(groups.size(), Matrix6::Zero());

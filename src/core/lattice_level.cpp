@@ -24,10 +24,8 @@ LatticeLevel<Real>::LatticeLevel(const LevelGrid& grid, int beside,
   }
   for (auto* values : {&inverse_, &free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
   held_.assign(at(count()), 0);
-  cells_.findForces(displacement, true);
-  for (std::size_t node = 0; node < rest_stiffness_.size(); ++node) {
-    rest_stiffness_[node] = cells_.lower_stiffness[node] + cells_.upper_stiffness[node];
-  }
+  cells_.findForces({displacement, load, free_, force, inverse_}, true);
+  rest_stiffness_ = cells_.stiffness;
   bind();
   measureSteps();
 }
@@ -112,20 +110,8 @@ void LatticeLevel<Real>::findFree() {
 
 template <typename Real>
 void LatticeLevel<Real>::findForces(bool with_steps) {
-  cells_.findForces(displacement, with_steps);
-  for (const Span& span : spans()) {
-    const int first = span.first;
-    if (with_steps) {
-      invertStiffness(cells_.lower_stiffness.data() + first, cells_.upper_stiffness.data() + first,
-                      free_.data() + first, inverse_.data() + first, span.count);
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sumForces(cells_.lower[axis].data() + first, cells_.upper[axis].data() + first,
-                load[axis].data() + first, free_.data() + first, force[axis].data() + first,
-                span.count);
-    }
-  }
-  firm.findForces(cells_, displacement, load, with_steps, force);
+  cells_.findForces({displacement, load, free_, force, inverse_}, with_steps);
+  firm.findForces(cells_, displacement, with_steps, force);
 }
 
 // Chebyshev's polynomials of the fourth kind, that smooth whatever is rough (Lottes 2022).
@@ -232,7 +218,7 @@ std::vector<int> LatticeLevel<Real>::nodesOutOfBalance(double motion) const {
 template <typename Real>
 Vec3 LatticeLevel<Real>::wholeForce(int node) const {
   if (const Vec3* whole = firm.wholeForce(node)) return *whole;
-  return vectorAt(cells_.lower, node) + vectorAt(cells_.upper, node) + vectorAt(load, node);
+  return vectorAt(cells_.whole, node);
 }
 
 template class LatticeLevel<float>;

@@ -20,21 +20,22 @@ namespace robot_tissue {
 constexpr int kLanes = 16;  // cells in a block
 
 // Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
-// lowest node. Arrays reach kLanes beyond the highest node that a block touches.
+// lowest node. Displacement and moduli reach kLanes beyond the highest node that a block touches.
 template <typename Real>
 struct CellGrid {
   std::array<const Real*, 3> displacement;
   const Real* shear;  // per cell, 0 where there is none
   const Real* bulk;
-  int row;    // from a node to the next along y
-  int plane;  // and along z
-  // Of the cells on their lower and upper four corners: summed apart, so that planes of cells can
-  // be done in any order with the same sums.
+  int row;         // from a node to the next along y
+  int plane;       // and along z
+  bool is_coarse;  // cells stand for eight each: their volumes are held too
+  // Sums of a plane of cells, from node `origin` on: on their lower and on their upper four
+  // corners.
+  int origin;
   std::array<Real*, 3> lower, upper;
   // Bounds of the nodes' stiffness against moving alone (E0 h), likewise; may be null.
   Real* lower_stiffness;
   Real* upper_stiffness;
-  bool is_coarse;  // cells stand for eight each: their volumes are held too
 };
 
 // Adds the forces of the cells first .. first + kLanes - 1, for each of the blocks.
@@ -45,6 +46,7 @@ void addBlocks(const CellGrid<double>& grid, const int* first_cells, int count);
 template <typename Real>
 struct LooseCell {
   std::array<int, kCorners> nodes{};
+  std::array<int, kCorners> sums{};  // where the sums on them are
   Real shear = 0;
   Real bulk = 0;
 };

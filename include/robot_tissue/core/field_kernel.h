@@ -3,17 +3,17 @@
 
 namespace robot_tissue {
 
-// force = lower + upper + load where `free` is 1, 0 where it is 0.
-void sumForces(const float* lower, const float* upper, const float* load, const float* free,
-               float* force, int count);
-void sumForces(const double* lower, const double* upper, const double* load, const double* free,
-               double* force, int count);
+// whole = below + lower + load; force = whole where `free` is 1, 0 where it is 0.
+void sumForces(const float* below, const float* lower, const float* load, const float* free,
+               float* whole, float* force, int count);
+void sumForces(const double* below, const double* lower, const double* load, const double* free,
+               double* whole, double* force, int count);
 
-// inverse = free / (lower + upper); `free` is 1 only where there is stiffness.
-void invertStiffness(const float* lower, const float* upper, const float* free, float* inverse,
-                     int count);
-void invertStiffness(const double* lower, const double* upper, const double* free, double* inverse,
-                     int count);
+// stiffness = below + lower; inverse = free / stiffness; `free` is 1 only where there is some.
+void invertStiffness(const float* below, const float* lower, const float* free, float* stiffness,
+                     float* inverse, int count);
+void invertStiffness(const double* below, const double* lower, const double* free,
+                     double* stiffness, double* inverse, int count);
 
 // Where `free` is 1: adds to the load what makes the force the wanted one.
 void makeLoad(const float* wanted, const float* free, float* load, float* force, int count);

@@ -59,9 +59,9 @@ class FirmNodes {
   void setUnits(double spacing, double modulus);
   std::vector<int> nodes() const;  // ascending
 
-  // Adds springs to the cells' forces and the load; puts the free components into `forces`.
-  void findForces(const LevelCells<Real>& cells, const Field<Real>& displacement,
-                  const Field<Real>& load_on_nodes, bool with_steps, Field<Real>& forces);
+  // Adds springs to what the cells found; puts the free components into `forces`.
+  void findForces(const LevelCells<Real>& cells, const Field<Real>& displacement, bool with_steps,
+                  Field<Real>& forces);
   // Forces are these now.
   void takeForces(const Field<Real>& forces);
   // way = keep * way + share * step that balances; displacement += way, cut to `longest`.

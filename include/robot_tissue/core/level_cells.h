@@ -54,23 +54,47 @@ class LevelCells {
   // Entries of all nodes in the box, and of some around it.
   const std::vector<Span>& spans() const { return spans_; }
 
-  // On their nodes, in two parts; with bounds of the nodes' stiffness, likewise.
-  void findForces(const Field<Real>& displacement, bool with_stiffness);
-  Field<Real> lower, upper;
-  std::vector<Real> lower_stiffness, upper_stiffness;
+  // All that cells and the load do to the nodes of the spans: `whole`, and `force`, the same where
+  // `free` is 1, else 0. With steps also bounds of the nodes' stiffness and their inverses where
+  // free.
+  struct Loads {
+    const Field<Real>& displacement;
+    const Field<Real>& load;
+    const std::vector<Real>& free;
+    Field<Real>& force;
+    std::vector<Real>& inverse;
+  };
+  void findForces(const Loads& loads, bool with_steps);
+  Field<Real> whole;
+  std::vector<Real> stiffness;
 
  private:
+  // Forces and stiffness that planes of cells sum up on planes of nodes: a plane of cells on its
+  // lower and upper nodes, the one before on those same lower ones.
+  struct Sums {
+    std::array<std::vector<Real>, 4> below, lower, upper;
+  };
+
   void place(const std::vector<LevelCell>& cells);
+  void findPlanes(const Loads& loads, bool with_steps, int first, int end, Sums& sums);
+  CellGrid<Real> gridOf(const Loads& loads) const;
+  void addPlane(const Loads& loads, bool with_steps, int plane, Sums& sums) const;
+  void finishPlane(const Loads& loads, bool with_steps, int plane, const Sums& sums);
+  void finishBeside(const Loads& loads, bool with_steps);
 
   LevelGrid grid_;
   int count_ = 0;
   bool is_coarse_ = false;
   std::vector<Real> shear_, bulk_;
   std::vector<LooseCell<Real>> loose_;
+  std::vector<int> loose_nodes_;                 // of loose cells
+  std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness
   std::vector<std::array<int, 3>> beside_places_;
   LevelBox box_;
   std::vector<Span> spans_;
-  std::vector<int> blocks_;
+  Span rows_;                             // likewise, in each plane
+  std::vector<std::vector<int>> blocks_;  // per plane of cells: first cells
+  Sums sums_;
 };
 
 extern template class LevelCells<float>;
