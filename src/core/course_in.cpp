@@ -32,7 +32,7 @@ void CourseIn<Real>::forget() {
 template <typename Real>
 void CourseIn<Real>::findLevels(const LatticeState& state) {
   if (cells_ == state.cells) return;
-  levels_ = std::make_unique<LatticeLevels<Real>>(lattice_, model_, *state.cells);
+  levels_ = std::make_unique<LatticeLevels<Real>>(lattice_, model_, *state.cells, workers_.get());
   cells_ = state.cells;
   has_start_ = has_way_ = false;
   left_displacement_.clear();

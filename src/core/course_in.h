@@ -13,7 +13,9 @@ template <typename Real>
 class CourseIn : public LayeredCourse {
  public:
   CourseIn(const Lattice& lattice, const ElasticModel& model, const LayeredOptions& options)
-      : lattice_(lattice), model_(model), options_(options) {}
+      : lattice_(lattice), model_(model), options_(options) {
+    if (options.threads > 1) workers_ = std::make_unique<Workers>(options.threads);
+  }
 
   SolveReport run(LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed,
                   const Budget& budget) override;
@@ -82,6 +84,7 @@ class CourseIn : public LayeredCourse {
   const Lattice& lattice_;
   const ElasticModel& model_;
   LayeredOptions options_;
+  std::unique_ptr<Workers> workers_;
   std::unique_ptr<LatticeLevels<Real>> levels_;
   std::shared_ptr<const CellSet> cells_;
   std::vector<Vec3> left_displacement_;  // what the last solve left

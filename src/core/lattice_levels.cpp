@@ -18,7 +18,7 @@ constexpr int kStepsCoarsest = 12;
 
 template <typename Real>
 LatticeLevels<Real>::LatticeLevels(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells)
+                                   const CellSet& cells, Workers* workers)
     : spacing_(lattice.spacing()) {
   LevelGrid grid(lattice.size());
   int beside = static_cast<int>(cells.ghosts().size());
@@ -30,6 +30,7 @@ LatticeLevels<Real>::LatticeLevels(const Lattice& lattice, const ElasticModel& m
   std::vector<LevelCell> level_cells = finestCells(lattice, model, cells);
   while (true) {
     levels_.emplace_back(grid, beside, level_cells, !levels_.empty());
+    if (workers != nullptr) levels_.back().share(*workers);
     const int count = levels_.back().count();
     motions_.emplace_back();
     for (auto& values : motions_.back()) values.assign(at(count), Real(0));

@@ -5,6 +5,12 @@
 #include "robot_tissue/core/field_kernel.h"
 
 namespace robot_tissue {
+namespace {
+
+constexpr int kWorthSharing =
+    8000;  // nodes that are visited: with fewer, threads wait more than work
+
+}  // namespace
 
 template <typename Real>
 LevelCells<Real>::LevelCells(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
@@ -14,10 +20,7 @@ LevelCells<Real>::LevelCells(const LevelGrid& grid, int beside, const std::vecto
       is_coarse_(is_coarse) {
   for (auto& values : whole) values.assign(at(count_), Real(0));
   for (auto* values : {&stiffness, &shear_, &bulk_}) values->assign(at(count_), Real(0));
-  const std::size_t plane = at(grid.plane + grid.row + 1 + kLanes);
-  for (auto* sums : {&sums_.below, &sums_.lower, &sums_.upper}) {
-    for (auto& values : *sums) values.assign(plane, Real(0));
-  }
+  makeSums(1);
   beside_places_.assign(at(count_ - grid.beside), {});
   place(cells);
   LevelBox everything;
@@ -94,9 +97,36 @@ void LevelCells<Real>::confine(const LevelBox& box) {
 }
 
 template <typename Real>
+void LevelCells<Real>::makeSums(int threads) {
+  sums_.resize(at(threads));
+  const std::size_t entries = at(grid_.plane + grid_.row + 1 + kLanes);
+  for (Sums& each : sums_) {
+    for (auto* sums : {&each.below, &each.lower, &each.upper}) {
+      for (auto& values : *sums) values.assign(entries, Real(0));
+    }
+  }
+}
+
+template <typename Real>
+void LevelCells<Real>::share(Workers& workers) {
+  workers_ = &workers;
+  makeSums(workers.count());
+}
+
+// Threads take planes that lie together; the plane of cells between two shares is summed by both.
+template <typename Real>
 void LevelCells<Real>::findForces(const Loads& loads, bool with_steps) {
-  findPlanes(loads, with_steps, std::max(box_.low[2] - 1, 0),
-             std::min(box_.high[2] + 2, grid_.size[2]), sums_);
+  const int first = std::max(box_.low[2] - 1, 0);
+  const int planes = std::min(box_.high[2] + 2, grid_.size[2]) - first;
+  if (workers_ == nullptr || rows_.count * planes < kWorthSharing) {
+    findPlanes(loads, with_steps, first, first + planes, sums_.front());
+  } else {
+    const int threads = workers_->count();
+    workers_->run([&](int part) {
+      findPlanes(loads, with_steps, first + planes * part / threads,
+                 first + planes * (part + 1) / threads, sums_[at(part)]);
+    });
+  }
   finishBeside(loads, with_steps);
 }
 
@@ -119,6 +149,7 @@ CellGrid<Real> LevelCells<Real>::gridOf(const Loads& loads) const {
 template <typename Real>
 void LevelCells<Real>::findPlanes(const Loads& loads, bool with_steps, int first, int end,
                                   Sums& sums) {
+  if (first >= end) return;
   if (first > 0) {
     addPlane(loads, with_steps, first - 1, sums);
   } else {

@@ -40,6 +40,7 @@ std::unique_ptr<SolverMethod> makeLayered(const SolverConfig& config, const Latt
   LayeredOptions options;
   options.tolerance = config.tolerance;
   options.max_ms = config.max_ms;
+  options.threads = config.threads;
   const auto* elastic = dynamic_cast<const ElasticModel*>(&model);
   if (elastic == nullptr) requireEnergy(model, "layered");
   return std::make_unique<LayeredMethod>(lattice, *elastic, options);

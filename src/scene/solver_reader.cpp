@@ -41,7 +41,7 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
   solver.max_ms = map["max_ms"].numberOr(solver.max_ms, Range::atLeastZero("ms"));
   const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
   solver.threads = threads.integerOr(solver.threads, 1, 256);
-  if (solver.threads > 1) {
+  if (solver.threads > 1 && solver.method != "layered") {
     remarks.push_back(threads.line("ignored, method " + solver.method + " uses one thread"));
   }
   return solver;

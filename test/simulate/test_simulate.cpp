@@ -332,9 +332,10 @@ TEST_F(Simulate, FoldersThatCannotBeWrittenAreRefused) {
 }
 
 TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
-  EXPECT_EQ(program("block.yaml --out=out --threads=4").err,
-            "simulate: --threads = 4: ignored, method layered uses one thread\n");
-  EXPECT_EQ(program("block.yaml --out out --threads 4 --quiet").err, "");
+  EXPECT_EQ(program("block.yaml --out=out --threads=4 --method newton").err,
+            "simulate: --threads = 4: ignored, method newton uses one thread\n");
+  EXPECT_EQ(program("block.yaml --out out --threads 4 --method newton --quiet").err, "");
+  EXPECT_EQ(program("block.yaml --out out --threads 2").err, "");
 }
 
 TEST_F(Simulate, SolvesTheElasticModelExactly) {

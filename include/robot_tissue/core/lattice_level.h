@@ -42,6 +42,8 @@ class LatticeLevel {
   void confine(const LevelBox& box);
   const LevelBox& box() const { return cells_.box(); }
 
+  void share(Workers& workers) { cells_.share(workers); }
+
   // Unbalanced forces at `displacement`; with the steps that the smoother may take from there on.
   void findForces(bool with_steps);
   // Takes so many steps; forces at their end if asked, with new steps.

@@ -23,7 +23,9 @@ namespace robot_tissue {
 template <typename Real>
 class LatticeLevels {
  public:
-  LatticeLevels(const Lattice& lattice, const ElasticModel& model, const CellSet& cells);
+  // The workers, null for none, must outlive the levels.
+  LatticeLevels(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
+                Workers* workers);
 
   LatticeLevel<Real>& finest() { return levels_.front(); }
   const LatticeLevel<Real>& finest() const { return levels_.front(); }

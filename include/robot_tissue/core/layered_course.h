@@ -20,6 +20,7 @@ namespace robot_tissue {
 struct LayeredOptions {
   double tolerance = 0.01;  // of error_estimate
   double max_ms = 0.0;      // 0 = no budget; the cycle under way is finished, at least one is made
+  int threads = 1;          // the result is the same with any number
   int max_cycles = 300;
   int patience = 40;         // cycles without a better shape
   double patch_step = 0.5;   // longest motion of a patch in one solve, in spacings

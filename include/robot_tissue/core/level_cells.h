@@ -9,6 +9,7 @@
 
 #include "robot_tissue/core/cell_kernel.h"
 #include "robot_tissue/core/lattice_coarsening.h"
+#include "robot_tissue/core/workers.h"
 
 namespace robot_tissue {
 
@@ -65,6 +66,8 @@ class LevelCells {
     std::vector<Real>& inverse;
   };
   void findForces(const Loads& loads, bool with_steps);
+  // In these threads from now on, with the same results.
+  void share(Workers& workers);
   Field<Real> whole;
   std::vector<Real> stiffness;
 
@@ -76,6 +79,7 @@ class LevelCells {
   };
 
   void place(const std::vector<LevelCell>& cells);
+  void makeSums(int threads);
   void findPlanes(const Loads& loads, bool with_steps, int first, int end, Sums& sums);
   CellGrid<Real> gridOf(const Loads& loads) const;
   void addPlane(const Loads& loads, bool with_steps, int plane, Sums& sums) const;
@@ -94,7 +98,8 @@ class LevelCells {
   std::vector<Span> spans_;
   Span rows_;                             // likewise, in each plane
   std::vector<std::vector<int>> blocks_;  // per plane of cells: first cells
-  Sums sums_;
+  Workers* workers_ = nullptr;
+  std::vector<Sums> sums_;  // per thread
 };
 
 extern template class LevelCells<float>;
