@@ -5,6 +5,7 @@
 #include "robot_tissue/core/newton_method.h"
 #include "robot_tissue/core/paper_method.h"
 #include "robot_tissue/core/six_spring_model.h"
+#include "robot_tissue/core/vbd_method.h"
 
 namespace robot_tissue {
 namespace {
@@ -35,6 +36,13 @@ const EnergyModel& requireEnergy(const TissueModel& model, const std::string& me
                    "allowed: paper, or tissue.model elastic");
 }
 
+const ElasticModel& requireElastic(const TissueModel& model, const std::string& method) {
+  if (const auto* elastic = dynamic_cast<const ElasticModel*>(&model)) return *elastic;
+  throw InputError("solver.method: '" + method +
+                   "' knows the cells of tissue.model elastic alone; allowed: paper, or "
+                   "tissue.model elastic");
+}
+
 std::unique_ptr<SolverMethod> makeLayered(const SolverConfig& config, const Lattice& lattice,
                                           const TissueModel& model) {
   LayeredOptions options;
@@ -53,6 +61,14 @@ std::unique_ptr<SolverMethod> makeNewton(const SolverConfig& config, const Latti
   return std::make_unique<NewtonMethod>(lattice, requireEnergy(model, "newton"), options);
 }
 
+std::unique_ptr<SolverMethod> makeVbd(const SolverConfig& config, const Lattice& lattice,
+                                      const TissueModel& model) {
+  VbdOptions options;
+  options.tolerance = config.tolerance;
+  options.max_ms = config.max_ms;
+  return std::make_unique<VbdMethod>(lattice, requireElastic(model, "vbd"), options);
+}
+
 }  // namespace
 
 const std::vector<std::string>& modelNames() {
@@ -61,7 +77,7 @@ const std::vector<std::string>& modelNames() {
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"layered", "newton", "paper"};
+  static const std::vector<std::string> names = {"layered", "newton", "paper", "vbd"};
   return names;
 }
 
@@ -69,7 +85,7 @@ const std::vector<std::string>& methodNames() {
 // paper's method moves along springs, which do not reach the ghosts that cuts give the cells.
 std::vector<std::string> methodsFor(const std::string& model) {
   if (model == "six_spring") return {"paper"};
-  return {"layered", "newton"};
+  return {"layered", "newton", "vbd"};
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {
@@ -85,6 +101,7 @@ std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Latti
                                          const TissueModel& model) {
   if (config.method == "layered") return makeLayered(config, lattice, model);
   if (config.method == "paper") return makePaper(config, lattice, model);
+  if (config.method == "vbd") return makeVbd(config, lattice, model);
   if (config.method == "newton") return makeNewton(config, lattice, model);
   throw InputError("solver.method: '" + config.method +
                    "' is unknown; allowed: " + listed(methodNames()));

@@ -192,7 +192,7 @@ const std::vector<BadScene> kBadSolvers = {
     {"MethodUnknown",
      "method: paper",
      "method: magic",
-     {"solver.method = magic", "must be one of layered, newton, paper"}},
+     {"solver.method = magic", "must be one of layered, newton, paper, vbd"}},
     {"LayeredOnSixSpring",
      "method: paper",
      "method: layered",

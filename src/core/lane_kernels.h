@@ -1,0 +1,55 @@
+// Model `elastic` (core/elastic_cell.h) for kLanes nodes or cells at a time, in single precision.
+// As core/cell_modes.h, in units in which no factor is left:
+//
+//   displacements   4h
+//   moduli          a modulus M that all are divided by
+//   forces          M h^2 / 4
+//   stiffness       M h / 16
+#pragma once
+
+#include "lane_grid.h"
+
+namespace robot_tissue {
+
+// What a lattice of slots is made of; one array an axis.
+struct LaneArrays {
+  float* moved[3];     // displacement
+  const float* shear;  // of the cell whose lowest corner is at the slot; 0 = none
+  const float* bulk;
+  const float* load[3];  // constant force
+  const float* free[3];  // 1 where the component moves, 0 where it is held
+};
+
+// Symmetric, of springs from a node to where it is held: xx, yy, zz, xy, xz, yz.
+struct LaneSprings {
+  float of[6][kLanes] = {};
+};
+
+// Moves the nodes of a block, all of one color, to where the forces balance: one Newton step in
+// each node's 3 x 3 block, of at most `most`, times `relaxation`. `springs` may be null;
+// `squeezed`: the barrier of a cell of theirs may rise.
+void relaxBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCorners>& around,
+                int block, const LaneSprings* springs, bool squeezed, float relaxation, float most);
+
+// Adds the forces of a block of cells, all of one color, on their corners.
+void addForcesOfBlock(const LaneArrays& lanes, const LaneGrid::Around& above, int block,
+                      bool squeezed, float* const force[3]);
+
+// Adds the forces of springs on the nodes of a block.
+void addSpringForces(const LaneArrays& lanes, const LaneSprings& springs, int block,
+                     float* const force[3]);
+
+// Writes what the edges span at the tightest corner of each cell, over its rest volume.
+void squeezeOfBlock(const LaneArrays& lanes, const LaneGrid::Around& above, int block,
+                    float* tightest);
+
+// Of whole arrays; the count is one of whole blocks.
+double squaredDistance(const float* a, const float* b, int count);
+
+// Of the products' entries.
+double squaredProduct(const float* a, const float* b, const float* c, int count);
+
+// moved = before + share (moved - before); then before becomes last and last becomes moved.
+void extrapolate(float share, int count, float* moved, float* last, float* before);
+
+}  // namespace robot_tissue

@@ -1,0 +1,118 @@
+#include "robot_tissue/core/vbd_method.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "lane_field.h"
+#include "node_step.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kLast = 2, kBefore = 3;  // spare arrays of the field
+// Over-relaxation is 2 / (1 + slack / depth), with the slack that fits waves in an endless lattice.
+constexpr double kSlack = 1.75;         // at Poisson's ratio 0.25
+constexpr double kSlackOfRatio = 3.75;  // and what its excess adds
+// Chebyshev's method diverges on lattices of all sizes from 0.93 on.
+constexpr double kRadius = 0.9;
+// A sweep without acceleration leaves 1 - pace sqrt(1 - 2 nu) / depth^2 of the slowest wave.
+constexpr double kPace = 1.9;
+
+}  // namespace
+
+VbdMethod::VbdMethod(const Lattice& lattice, const ElasticModel& model, const VbdOptions& options)
+    : RelaxationMethod(lattice, model, options), vbd_(options) {}
+
+void VbdMethod::begin(int care) {
+  const double slack = kSlack + kSlackOfRatio * (poissonRatio() - 0.25);
+  relaxation_ = 1.0;
+  if (vbd_.acceleration == Acceleration::kOverRelaxed) {
+    relaxation_ = std::max(1.0, 2.0 / (1.0 + std::ldexp(slack, care) / depth()));
+  }
+  radius_ = std::max(0.0, 1.0 - std::ldexp(1.0 - kRadius, care));
+  sweeps_ = 0;
+  patch_moves_.assign(shape_.patches.size(), {});
+  if (vbd_.acceleration != Acceleration::kChebyshev) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* now = field_->moved()[axis];
+    std::copy(now, now + field_->size(), field_->spare(kLast)[axis]);
+    std::copy(now, now + field_->size(), field_->spare(kBefore)[axis]);
+  }
+}
+
+void VbdMethod::iterate() {
+  sweep();
+  ++sweeps_;
+  if (vbd_.acceleration != Acceleration::kChebyshev) return;
+  const double squared = radius_ * radius_;
+  weight_ = sweeps_ == 1   ? 1.0
+            : sweeps_ == 2 ? 2.0 / (2.0 - squared)
+                           : 4.0 / (4.0 - squared * weight_);
+  extrapolate();
+}
+
+double VbdMethod::shrinkage() const {
+  double gain = relaxation_ / (2.0 - relaxation_);
+  if (vbd_.acceleration == Acceleration::kChebyshev)
+    gain = 1.0 / std::sqrt(1.0 - radius_ * radius_);
+  const double lost = gain * kPace * std::sqrt(1.0 - 2.0 * poissonRatio()) / (depth() * depth());
+  return 1.0 - std::min(lost, 0.5);
+}
+
+void VbdMethod::sweep() {
+  patch_steps_.assign(shape_.patches.size(), {});
+  field_->giveWatched(shape_.state);
+  for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
+    if (!byForce(shape_.patches[index])) continue;
+    patch_forces_[index] = hold_.forceOn(shape_, index);
+    patch_steps_[index] = patchAnswer(index);
+    patch_steps_[index].shift *= relaxation_;
+    patch_steps_[index].turn *= relaxation_;
+    movePatchBy(index, patch_steps_[index]);
+  }
+  field_->relax(static_cast<float>(relaxation_),
+                static_cast<float>(vbd_.node_step * lattice_.spacing() / field_->unit()));
+  if (field_->oddNodes().empty()) return;
+  field_->giveWatched(shape_.state);
+  for (const int node : field_->oddNodes()) relaxNode(node);
+  field_->take(shape_.state, field_->oddNodes());
+}
+
+// One Newton step of the node alone.
+void VbdMethod::relaxNode(int node) {
+  NodeBalance balance = model_.nodeBalance(shape_.state, node);
+  hold_.addSprings(shape_, node, balance);
+  const std::uint8_t held = hold_.held()[at(node)];
+  Eigen::Matrix3d block = firm(balance.block);
+  for (int axis = 0; held != 0 && axis < 3; ++axis) {
+    if ((held >> axis & 1) == 0) continue;
+    block.row(axis).setZero();
+    block.col(axis).setZero();
+    block(axis, axis) = 1.0;
+  }
+  const bool smooth = !std::binary_search(hold_.touched().begin(), hold_.touched().end(), node);
+  const Vec3 step =
+      (smooth ? relaxation_ : 1.0) * block.inverse() * hold_.freePart(node, balance.force);
+  if (!step.allFinite()) return;
+  shape_.state.displacement[at(node)] += capped(step, vbd_.node_step * lattice_.spacing());
+}
+
+// Patches by force go the same way, but as a whole.
+void VbdMethod::extrapolate() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    robot_tissue::extrapolate(static_cast<float>(weight_), field_->size(), field_->moved()[axis],
+                              field_->spare(kLast)[axis], field_->spare(kBefore)[axis]);
+  }
+  for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
+    if (!byForce(shape_.patches[index])) continue;
+    Motion::OfPatch further;
+    further.shift = (weight_ - 1.0) * (patch_steps_[index].shift + patch_moves_[index].shift);
+    further.turn = (weight_ - 1.0) * (patch_steps_[index].turn + patch_moves_[index].turn);
+    movePatchBy(index, further);
+    patch_moves_[index].shift = patch_steps_[index].shift + further.shift;
+    patch_moves_[index].turn = patch_steps_[index].turn + further.turn;
+  }
+}
+
+}  // namespace robot_tissue
