@@ -83,8 +83,9 @@ void LaneField::layOut(const LoadedShape& shape) {
     slots_.push_back(cells_->isGhost(node) ? grid_.ghostSlot(node - cells_->latticeNodeCount())
                                            : grid_.slotAt(lattice_.gridIndex(node)));
     const double stiffness = model_.nodeStiffness(shape.state, node).mean();
-    const double unit = modulus_ * lattice_.spacing() / 16.0;
-    if (stiffness > 0.0) compliance_[slots_.back()] = static_cast<float>(unit / stiffness);
+    if (stiffness > 0.0) {
+      compliance_[slots_.back()] = static_cast<float>(stiffnessUnit() / stiffness);
+    }
   }
   lane_cells_.clear();
   odd_cells_.clear();
@@ -144,7 +145,7 @@ void LaneField::give(const std::vector<int>& nodes, LatticeState& state) const {
 
 // Springs to anchors: a stiffness and a constant force.
 void LaneField::takeRims(const LoadedShape& shape) {
-  const double stiffness_unit = modulus_ * lattice_.spacing() / 16.0;
+  const double stiffness_unit = stiffnessUnit();
   for (LaneSprings& springs : springs_) springs = LaneSprings();
   for (const LoadingPatch& patch : shape.patches) {
     for (const RimSpring& spring : patch.rim) {
@@ -295,6 +296,18 @@ void LaneField::relax(float relaxation, float most) {
   }
 }
 
+void LaneField::findSoftness(float* softness) const {
+  const LaneArrays arrays = lanes(lane_free_);
+  for (int color = 0; color < kColors; ++color) {
+    for (const int block : node_blocks_[at(color)]) {
+      const int springs = springs_of_block_[at(block / kLanes)];
+      softnessOfBlock(arrays, grid_.around(color), block,
+                      springs < 0 ? nullptr : &springs_[at(springs)],
+                      squeezed_nodes_[at(block / kLanes)] != 0, softness);
+    }
+  }
+}
+
 void LaneField::findForces(const LatticeState& state) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::copy(load_[axis], load_[axis] + size_, force_[axis]);
@@ -338,7 +351,7 @@ void LaneField::addForce(int node, const Vec3& force) {
 
 double LaneField::restStiffness(int node) const {
   const double compliance = static_cast<double>(compliance_[slotOf(node)]);
-  return compliance > 0.0 ? modulus_ * lattice_.spacing() / 16.0 / compliance : 0.0;
+  return compliance > 0.0 ? stiffnessUnit() / compliance : 0.0;
 }
 
 void LaneField::giveAll(int node, LatticeState& state) const {

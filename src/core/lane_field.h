@@ -39,6 +39,9 @@ class LaneField {
   // `relaxation`.
   void relax(float relaxation, float most);
 
+  // One over a bound of the stiffness of each node alone that is not odd, in this shape.
+  void findSoftness(float* softness) const;
+
   // On all nodes, without contacts; the state knows the watched nodes.
   void findForces(const LatticeState& state);
 
@@ -52,6 +55,7 @@ class LaneField {
   const float* compliance() const { return compliance_; }  // of each node alone, at rest
   Vec3 forceOn(int node) const;                            // N
   void addForce(int node, const Vec3& force);              // N
+  double stiffnessUnit() const { return modulus_ * lattice_.spacing() / 16.0; }  // N/m
   double restStiffness(int node) const;  // mean, at rest (N/m); 0: nothing holds it
   int nodeCount() const { return static_cast<int>(movable_.size()); }
   // Takes back what a patch by force moved.

@@ -31,6 +31,10 @@ struct LaneSprings {
 void relaxBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCorners>& around,
                 int block, const LaneSprings* springs, bool squeezed, float relaxation, float most);
 
+// Writes one over a bound of each node's stiffness in its block (greatest sum of a row).
+void softnessOfBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCorners>& around,
+                     int block, const LaneSprings* springs, bool squeezed, float* softness);
+
 // Adds the forces of a block of cells, all of one color, on their corners.
 void addForcesOfBlock(const LaneArrays& lanes, const LaneGrid::Around& above, int block,
                       bool squeezed, float* const force[3]);
@@ -48,6 +52,16 @@ double squaredDistance(const float* a, const float* b, int count);
 
 // Of the products' entries.
 double squaredProduct(const float* a, const float* b, const float* c, int count);
+
+// A step of the heavy ball along one axis: velocity = keep velocity + push softness force free, cut
+// at `most`, added to moved. Adds to the sums, for the velocity before and what it did to the force
+// (last - force, then last becomes force): velocity . change, and velocity^2 / softness.
+struct RollSums {
+  double work = 0.0;
+  double mass = 0.0;
+};
+void roll(float keep, float push, float most, int count, const float* force, const float* softness,
+          const float* free, float* last, float* velocity, float* moved, RollSums& sums);
 
 // moved = before + share (moved - before); then before becomes last and last becomes moved.
 void extrapolate(float share, int count, float* moved, float* last, float* before);

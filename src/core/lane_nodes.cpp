@@ -187,9 +187,10 @@ ROBOT_TISSUE_INLINE void moveNode(const LaneArrays& lanes, int block, const Node
   const float free_z = lanes.free[2][block + i];
   const float fx = free_x * sums.x, fy = free_y * sums.y, fz = free_z * sums.z;
   const float even = 16.0F * kThird * sums.a;
-  const float xx = free_x * (even + sums.xx - 1.0F) + 1.0F;
-  const float yy = free_y * (even + sums.yy - 1.0F) + 1.0F;
-  const float zz = free_z * (even + sums.zz - 1.0F) + 1.0F;
+  const float held = even > 0.0F ? even : 1.0F;
+  const float xx = free_x * (even + sums.xx - held) + held;
+  const float yy = free_y * (even + sums.yy - held) + held;
+  const float zz = free_z * (even + sums.zz - held) + held;
   const float xy = free_x * free_y * sums.xy;
   const float xz = free_x * free_z * sums.xz;
   const float yz = free_y * free_z * sums.yz;
@@ -209,7 +210,54 @@ ROBOT_TISSUE_INLINE void moveNode(const LaneArrays& lanes, int block, const Node
   step[2][i] = share * sz;
 }
 
+ROBOT_TISSUE_INLINE void lookAround(const LaneArrays& lanes,
+                                    const std::array<LaneGrid::Around, kCorners>& around, int block,
+                                    const LaneSprings* springs, bool squeezed, NodeCells& cells,
+                                    NodeExtras& extras) {
+  if (springs != nullptr) addSprings(lanes, *springs, block, extras);
+  if (squeezed) {
+    for (const LaneGrid::Around& cell : around) addBarrier(lanes, cell, block, extras);
+  }
+  for (int cell = 0; cell < kCorners; ++cell) measure(lanes, around[at(cell)], block, cell, cells);
+  for (int cell = 0; cell < kCorners; ++cell) stiffen(lanes, around[at(cell)], block, cell, cells);
+}
+
+ROBOT_TISSUE_INLINE NodeSums sumsOf(const LaneArrays& lanes, const NodeExtras& extras,
+                                    const NodeCells& cells, int block, int i) {
+  NodeSums sums = startAt(lanes, extras, block, i);
+  sums = add(sums, cells, 0, i);
+  sums = add(sums, cells, 1, i);
+  sums = add(sums, cells, 2, i);
+  sums = add(sums, cells, 3, i);
+  sums = add(sums, cells, 4, i);
+  sums = add(sums, cells, 5, i);
+  sums = add(sums, cells, 6, i);
+  return add(sums, cells, 7, i);
+}
+
 }  // namespace
+
+ROBOT_TISSUE_LANES
+void softnessOfBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCorners>& around,
+                     int block, const LaneSprings* springs, bool squeezed, float* softness) {
+  NodeCells cells;
+  NodeExtras extras;
+  lookAround(lanes, around, block, springs, squeezed, cells, extras);
+  Lane soft;
+  for (int i = 0; i < kLanes; ++i) {
+    const NodeSums sums = sumsOf(lanes, extras, cells, block, i);
+    const float even = 16.0F * kThird * sums.a;
+    const float xy = std::abs(sums.xy), xz = std::abs(sums.xz), yz = std::abs(sums.yz);
+    const float x = even + sums.xx + xy + xz;
+    const float y = even + sums.yy + xy + yz;
+    const float z = even + sums.zz + xz + yz;
+    const float more = x > y ? x : y;
+    const float most = more > z ? more : z;
+    soft[i] = most > 0.0F ? 1.0F / most : 0.0F;
+  }
+  ROBOT_TISSUE_ROLLED
+  for (int i = 0; i < kLanes; ++i) softness[block + i] = soft[i];
+}
 
 ROBOT_TISSUE_LANES
 void relaxBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCorners>& around,
@@ -217,23 +265,10 @@ void relaxBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around, kCor
                 float most) {
   NodeCells cells;
   NodeExtras extras;
-  if (springs != nullptr) addSprings(lanes, *springs, block, extras);
-  if (squeezed) {
-    for (const LaneGrid::Around& cell : around) addBarrier(lanes, cell, block, extras);
-  }
   Lane step[3];
-  for (int cell = 0; cell < kCorners; ++cell) measure(lanes, around[at(cell)], block, cell, cells);
-  for (int cell = 0; cell < kCorners; ++cell) stiffen(lanes, around[at(cell)], block, cell, cells);
+  lookAround(lanes, around, block, springs, squeezed, cells, extras);
   for (int i = 0; i < kLanes; ++i) {
-    NodeSums sums = startAt(lanes, extras, block, i);
-    sums = add(sums, cells, 0, i);
-    sums = add(sums, cells, 1, i);
-    sums = add(sums, cells, 2, i);
-    sums = add(sums, cells, 3, i);
-    sums = add(sums, cells, 4, i);
-    sums = add(sums, cells, 5, i);
-    sums = add(sums, cells, 6, i);
-    sums = add(sums, cells, 7, i);
+    const NodeSums sums = sumsOf(lanes, extras, cells, block, i);
     // A barrier is too crooked for more than Newton's own step.
     const float share = extras.barrier[i] > 0.0F ? 1.0F : relaxation;
     moveNode(lanes, block, sums, share, most, step, i);

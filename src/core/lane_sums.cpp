@@ -53,4 +53,34 @@ void extrapolate(float share, int count, float* moved, float* last, float* befor
   }
 }
 
+ROBOT_TISSUE_LANES
+void roll(float keep, float push, float most, int count, const float* force, const float* softness,
+          const float* free, float* last, float* velocity, float* moved, RollSums& sums) {
+  constexpr int kBlocks = 64;  // summed in single precision
+  for (int first = 0; first < count; first += kBlocks * kLanes) {
+    const int end = first + kBlocks * kLanes < count ? first + kBlocks * kLanes : count;
+    Lane work = {}, mass = {};
+    for (int block = first; block < end; block += kLanes) {
+#pragma GCC ivdep
+      ROBOT_TISSUE_ROLLED
+      for (int i = block; i < block + kLanes; ++i) {
+        const float before = velocity[i];
+        const float soft = softness[i];
+        work[i - block] += before * (last[i] - force[i]);
+        mass[i - block] += soft > 0.0F ? before * before / soft : 0.0F;
+        const float pushed = keep * before + push * soft * force[i] * free[i];
+        const float lower = pushed < most ? pushed : most;
+        const float now = lower > -most ? lower : -most;
+        last[i] = force[i];
+        velocity[i] = now;
+        moved[i] += now;
+      }
+    }
+    for (int i = 0; i < kLanes; ++i) {
+      sums.work += static_cast<double>(work[i]);
+      sums.mass += static_cast<double>(mass[i]);
+    }
+  }
+}
+
 }  // namespace robot_tissue

@@ -1,6 +1,7 @@
 #include "robot_tissue/core/registry.h"
 
 #include "robot_tissue/core/elastic_model.h"
+#include "robot_tissue/core/explicit_method.h"
 #include "robot_tissue/core/layered_method.h"
 #include "robot_tissue/core/newton_method.h"
 #include "robot_tissue/core/paper_method.h"
@@ -69,6 +70,14 @@ std::unique_ptr<SolverMethod> makeVbd(const SolverConfig& config, const Lattice&
   return std::make_unique<VbdMethod>(lattice, requireElastic(model, "vbd"), options);
 }
 
+std::unique_ptr<SolverMethod> makeExplicit(const SolverConfig& config, const Lattice& lattice,
+                                           const TissueModel& model) {
+  RelaxationOptions options;
+  options.tolerance = config.tolerance;
+  options.max_ms = config.max_ms;
+  return std::make_unique<ExplicitMethod>(lattice, requireElastic(model, "explicit"), options);
+}
+
 }  // namespace
 
 const std::vector<std::string>& modelNames() {
@@ -77,7 +86,7 @@ const std::vector<std::string>& modelNames() {
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"layered", "newton", "paper", "vbd"};
+  static const std::vector<std::string> names = {"layered", "newton", "paper", "vbd", "explicit"};
   return names;
 }
 
@@ -85,7 +94,7 @@ const std::vector<std::string>& methodNames() {
 // paper's method moves along springs, which do not reach the ghosts that cuts give the cells.
 std::vector<std::string> methodsFor(const std::string& model) {
   if (model == "six_spring") return {"paper"};
-  return {"layered", "newton", "vbd"};
+  return {"layered", "newton", "vbd", "explicit"};
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {
@@ -101,6 +110,7 @@ std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Latti
                                          const TissueModel& model) {
   if (config.method == "layered") return makeLayered(config, lattice, model);
   if (config.method == "paper") return makePaper(config, lattice, model);
+  if (config.method == "explicit") return makeExplicit(config, lattice, model);
   if (config.method == "vbd") return makeVbd(config, lattice, model);
   if (config.method == "newton") return makeNewton(config, lattice, model);
   throw InputError("solver.method: '" + config.method +

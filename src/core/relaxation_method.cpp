@@ -24,6 +24,7 @@ constexpr double kPatchStep = 0.5;  // most motion of a patch in one iteration, 
 constexpr double kPatchTurn = 0.2;  // likewise (rad)
 // Of what a way would have to go did ways already shrink as they do in the end.
 constexpr double kShareOfEnd = 0.5;
+constexpr double kPi = 3.14159265358979;
 constexpr int kMark = 0, kBest = 1;  // spare arrays of the field
 
 }  // namespace
@@ -47,13 +48,12 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
       options_(options),
       hold_(lattice, model),
       field_(std::make_unique<LaneField>(lattice, model)) {
-  Moduli sum;
+  const double count = static_cast<double>(lattice.cells().size());
   for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
-    sum.shear += moduli.shear;
-    sum.bulk += moduli.bulk;
+    mean_.shear += moduli.shear / count;
+    mean_.bulk += moduli.bulk / count;
   }
-  poisson_ratio_ = robot_tissue::poissonRatio(sum);
 }
 
 RelaxationMethod::~RelaxationMethod() = default;
@@ -174,6 +174,12 @@ void RelaxationMethod::findDepth() {
     if (!next.empty()) depth_ += 1.0;
   }
   depth_ = std::max(depth_, 1.0);
+}
+
+// mu (pi / 2 depth)^2 over h^-1 times ElasticModel::nodeStiffness inside the tissue.
+double RelaxationMethod::slowestWave() const {
+  const double wave = mean_.shear * std::pow(0.5 * kPi / depth_, 2);
+  return wave / (17.0 / 6.0 * mean_.shear + 0.5 * mean_.bulk);
 }
 
 void RelaxationMethod::findForces() {

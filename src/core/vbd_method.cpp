@@ -16,8 +16,6 @@ constexpr double kSlack = 1.75;         // at Poisson's ratio 0.25
 constexpr double kSlackOfRatio = 3.75;  // and what its excess adds
 // Chebyshev's method diverges on lattices of all sizes from 0.93 on.
 constexpr double kRadius = 0.9;
-// A sweep without acceleration leaves 1 - pace sqrt(1 - 2 nu) / depth^2 of the slowest wave.
-constexpr double kPace = 1.9;
 
 }  // namespace
 
@@ -52,12 +50,12 @@ void VbdMethod::iterate() {
   extrapolate();
 }
 
+// Without acceleration a sweep takes twice the slowest wave's share off it.
 double VbdMethod::shrinkage() const {
   double gain = relaxation_ / (2.0 - relaxation_);
   if (vbd_.acceleration == Acceleration::kChebyshev)
     gain = 1.0 / std::sqrt(1.0 - radius_ * radius_);
-  const double lost = gain * kPace * std::sqrt(1.0 - 2.0 * poissonRatio()) / (depth() * depth());
-  return 1.0 - std::min(lost, 0.5);
+  return 1.0 - std::min(2.0 * gain * slowestWave(), 0.5);
 }
 
 void VbdMethod::sweep() {

@@ -263,7 +263,7 @@ TEST_P(Baseline, IsRefusedForTheSixSpringLattice) {
       << line;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Baseline, testing::Values("vbd"),
+INSTANTIATE_TEST_SUITE_P(Methods, Baseline, testing::Values("vbd", "explicit"),
                          [](const auto& method) { return method.param; });
 
 }  // namespace

@@ -49,7 +49,9 @@ class RelaxationMethod : public SolverMethod {
 
   // Cells from what holds the tissue to what is farthest from it.
   double depth() const { return depth_; }
-  double poissonRatio() const { return poisson_ratio_; }  // of the mean moduli
+  double poissonRatio() const { return robot_tissue::poissonRatio(mean_); }
+  // Stiffness against a shear wave of four times the depth, over that of a node alone.
+  double slowestWave() const;
 
   // Forces of the field, contacts included, and on patches by force.
   void findForces();
@@ -85,7 +87,7 @@ class RelaxationMethod : public SolverMethod {
   std::vector<Eigen::MatrixXd> answers_;  // per patch by force: its stiffness, nodes held
   std::vector<Vec3> scratch_;             // forces (N)
   std::vector<Vec3> left_;                // displacement that the last solve left (m)
-  double poisson_ratio_ = 0.0;
+  Moduli mean_;
   double depth_ = 1.0;
   std::shared_ptr<const CellSet> depth_of_;
   double left_length_ = 0.0;              // its lengthLeft (m)
