@@ -308,6 +308,16 @@ void LaneField::findSoftness(float* softness) const {
   }
 }
 
+void LaneField::project(const Arrays& mobility) {
+  const LaneArrays arrays = lanes(free_);
+  for (int color = 0; color < kColors; ++color) {
+    const LaneGrid::Around& above = grid_.around(color)[kCorners - 1];
+    for (const int block : cell_blocks_[at(color)]) {
+      projectBlock(arrays, mobility.data(), above, block, squeezed_cells_[at(block / kLanes)] != 0);
+    }
+  }
+}
+
 void LaneField::findForces(const LatticeState& state) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::copy(load_[axis], load_[axis] + size_, force_[axis]);

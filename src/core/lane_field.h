@@ -34,6 +34,7 @@ class LaneField {
   // Finds anew where the barrier may rise. True where it rises and was not expected to.
   bool findSqueezed();
   const std::vector<int>& oddNodes() const { return odd_nodes_; }
+  const std::vector<int>& oddCells() const { return odd_cells_; }
 
   // A sweep through the nodes that are not odd, color after color, each to its balance times
   // `relaxation`.
@@ -41,6 +42,9 @@ class LaneField {
 
   // One over a bound of the stiffness of each node alone that is not odd, in this shape.
   void findSoftness(float* softness) const;
+
+  // A step of XPBD for the cells that are not odd, color after color.
+  void project(const Arrays& mobility);
 
   // On all nodes, without contacts; the state knows the watched nodes.
   void findForces(const LatticeState& state);

@@ -39,6 +39,12 @@ void softnessOfBlock(const LaneArrays& lanes, const std::array<LaneGrid::Around,
 void addForcesOfBlock(const LaneArrays& lanes, const LaneGrid::Around& above, int block,
                       bool squeezed, float* const force[3]);
 
+// One step of XPBD for a block of cells, all of one color: each moves its corners by two
+// constraints of compliance 1, sqrt(2 x energy against a change of shape) and sqrt(K)(J - 1).
+// `mobility`: of a node's components, square of the time step over mass (1 / stiffness).
+void projectBlock(const LaneArrays& lanes, const float* const mobility[3],
+                  const LaneGrid::Around& above, int block, bool squeezed);
+
 // Adds the forces of springs on the nodes of a block.
 void addSpringForces(const LaneArrays& lanes, const LaneSprings& springs, int block,
                      float* const force[3]);
@@ -62,6 +68,9 @@ struct RollSums {
 };
 void roll(float keep, float push, float most, int count, const float* force, const float* softness,
           const float* free, float* last, float* velocity, float* moved, RollSums& sums);
+
+// moved += keep free (moved - before); before becomes what moved was.
+void coast(float keep, int count, const float* free, float* before, float* moved);
 
 // moved = before + share (moved - before); then before becomes last and last becomes moved.
 void extrapolate(float share, int count, float* moved, float* last, float* before);

@@ -43,6 +43,16 @@ double squaredProduct(const float* a, const float* b, const float* c, int count)
 }
 
 ROBOT_TISSUE_LANES
+void coast(float keep, int count, const float* free, float* before, float* moved) {
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float now = moved[i];
+    moved[i] = now + keep * free[i] * (now - before[i]);
+    before[i] = now;
+  }
+}
+
+ROBOT_TISSUE_LANES
 void extrapolate(float share, int count, float* moved, float* last, float* before) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {

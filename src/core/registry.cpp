@@ -7,6 +7,7 @@
 #include "robot_tissue/core/paper_method.h"
 #include "robot_tissue/core/six_spring_model.h"
 #include "robot_tissue/core/vbd_method.h"
+#include "robot_tissue/core/xpbd_method.h"
 
 namespace robot_tissue {
 namespace {
@@ -78,6 +79,14 @@ std::unique_ptr<SolverMethod> makeExplicit(const SolverConfig& config, const Lat
   return std::make_unique<ExplicitMethod>(lattice, requireElastic(model, "explicit"), options);
 }
 
+std::unique_ptr<SolverMethod> makeXpbd(const SolverConfig& config, const Lattice& lattice,
+                                       const TissueModel& model) {
+  RelaxationOptions options;
+  options.tolerance = config.tolerance;
+  options.max_ms = config.max_ms;
+  return std::make_unique<XpbdMethod>(lattice, requireElastic(model, "xpbd"), options);
+}
+
 }  // namespace
 
 const std::vector<std::string>& modelNames() {
@@ -86,7 +95,8 @@ const std::vector<std::string>& modelNames() {
 }
 
 const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"layered", "newton", "paper", "vbd", "explicit"};
+  static const std::vector<std::string> names = {"layered", "newton", "paper",
+                                                 "vbd",     "xpbd",   "explicit"};
   return names;
 }
 
@@ -94,7 +104,7 @@ const std::vector<std::string>& methodNames() {
 // paper's method moves along springs, which do not reach the ghosts that cuts give the cells.
 std::vector<std::string> methodsFor(const std::string& model) {
   if (model == "six_spring") return {"paper"};
-  return {"layered", "newton", "vbd", "explicit"};
+  return {"layered", "newton", "vbd", "xpbd", "explicit"};
 }
 
 std::unique_ptr<TissueModel> makeModel(const TissueConfig& config, const Lattice& lattice) {
@@ -111,6 +121,7 @@ std::unique_ptr<SolverMethod> makeMethod(const SolverConfig& config, const Latti
   if (config.method == "layered") return makeLayered(config, lattice, model);
   if (config.method == "paper") return makePaper(config, lattice, model);
   if (config.method == "explicit") return makeExplicit(config, lattice, model);
+  if (config.method == "xpbd") return makeXpbd(config, lattice, model);
   if (config.method == "vbd") return makeVbd(config, lattice, model);
   if (config.method == "newton") return makeNewton(config, lattice, model);
   throw InputError("solver.method: '" + config.method +

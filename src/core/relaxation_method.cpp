@@ -38,7 +38,8 @@ struct RelaxationMethod::Course {
   double least = std::numeric_limits<double>::infinity();  // lengthLeft of the best shape
   int best_look = 0;
   std::vector<LoadingPatch> best_patches;
-  int care = 0;  // how often it went astray
+  int care = 0;          // how often it went astray
+  bool stalled = false;  // nothing more is to be had
 };
 
 RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& model,
@@ -96,7 +97,8 @@ SolveStatus RelaxationMethod::run(Course& course) {
   if (course.error <= options_.tolerance) return SolveStatus::kOk;
   begin(course.care);
   wayFromMark();
-  while (course.care <= kMostCare && course.iterations < options_.max_iterations) {
+  while (course.care <= kMostCare && !course.stalled &&
+         course.iterations < options_.max_iterations) {
     iterate();
     ++course.iterations;
     if (course.iterations % stride() == 0 && look(course)) return SolveStatus::kOk;
@@ -105,7 +107,7 @@ SolveStatus RelaxationMethod::run(Course& course) {
     if (!std::isfinite(lengthLeft())) goBack(course);
     return SolveStatus::kLate;
   }
-  goBack(course);
+  if (!course.stalled) goBack(course);
   return SolveStatus::kUnconverged;
 }
 
@@ -114,15 +116,18 @@ bool RelaxationMethod::look(Course& course) {
   ++course.looks;
   const double way = wayFromMark();
   course.ways.push_back(way);
-  const double still_to_go = lengthToGo(course.ways);
-  course.error = std::min(relative(still_to_go), 1.0);
+  double to_go = lengthToGo(course.ways);
+  const bool settled = settles(to_go);
+  course.error = std::min(relative(to_go), 1.0);
   const bool near = course.error <= options_.tolerance;
   if (std::isfinite(way) && !near && course.looks % kLooksApart != 0) return false;
   const bool surprised = std::isfinite(way) && field_->findSqueezed();
   findForces();
   const double left = lengthLeft();
   if (left < course.least) keep(course);
-  if (!(left <= kGrown * course.least) || course.looks - course.best_look > kPatience) {
+  const bool stuck = course.looks - course.best_look > kPatience;
+  if (stuck && !balances()) course.stalled = true;
+  if (!(left <= kGrown * course.least) || (stuck && balances())) {
     goBack(course);
     course.best_look = course.looks;
     course.ways.clear();
@@ -132,7 +137,7 @@ bool RelaxationMethod::look(Course& course) {
   }
   course.error = std::max(course.error, relative(left));
   if (isRounding(left)) course.error = std::min(relative(left), options_.tolerance);
-  return course.error <= options_.tolerance && !surprised;
+  return course.error <= options_.tolerance && settled && !surprised;
 }
 
 // The ways shrink by about the same share from look to look: the sum of those to come.
@@ -141,6 +146,7 @@ double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   const std::size_t count = ways.size();
   const double last = ways.back();
   if (last == 0.0) return 0.0;
+  if (isRounding(last / stride())) return last;
   if (count < 3) return kInfinity;
   const double share = std::max(last / ways[count - 2], std::sqrt(last / ways[count - 3]));
   const double seen = share < 1.0 ? share / (1.0 - share) : kInfinity;
@@ -219,7 +225,10 @@ double RelaxationMethod::lengthLeft() const {
 }
 
 double RelaxationMethod::relative(double length) const {
-  if (length == 0.0) return 0.0;
+  return length == 0.0 ? 0.0 : length / movedLength();
+}
+
+double RelaxationMethod::movedLength() const {
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     squared += squaredProduct(field_->moved()[axis], field_->free()[axis], field_->free()[axis],
@@ -230,7 +239,7 @@ double RelaxationMethod::relative(double length) const {
     if (hold_.carriers()[node] >= 0) squared += shape_.state.displacement[node].squaredNorm();
   }
   const double still = kStill * lattice_.spacing();
-  return length / std::sqrt(std::max(squared, still * still * (field_->nodeCount() + 1.0)));
+  return std::sqrt(std::max(squared, still * still * (field_->nodeCount() + 1.0)));
 }
 
 bool RelaxationMethod::isRounding(double length) const {
@@ -322,7 +331,7 @@ void RelaxationMethod::measurePatches() {
 void RelaxationMethod::describe(const Course& course, SolveReport& report) {
   const LatticeState& state = shape_.state;
   report.iterations = course.iterations;
-  report.error_estimate = course.error;
+  report.error_estimate = std::isfinite(course.error) ? course.error : 1.0;
   report.active_nodes = field_->nodeCount();
   double held = 0.0, unbalanced = 0.0;
   std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());

@@ -30,7 +30,7 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
   solver.method = methodsFor(model).front();
   const Entry method = overridden(map["method"], overrides.method, "--method");
   if (method.given()) {
-    solver.method = method.choice(methodNames(), {"xpbd"});
+    solver.method = method.choice(methodNames(), {});
     requireFit(method, solver.method, model);
   }
   const Entry tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance");

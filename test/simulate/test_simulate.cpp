@@ -302,9 +302,9 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
   expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
   expectRefused("block.yaml --out out --out out", "--out: stands twice");
-  expectRefused("block.yaml --out out --method xpbd", "--method = xpbd: not available yet");
   expectRefused("block.yaml --out out --method magic",
-                "--method = magic: must be one of layered, newton, paper, vbd, explicit");
+                "--method = magic: must be one of layered, newton, paper, vbd, "
+                "xpbd, explicit");
   expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number > 0");
   expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
   expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
@@ -375,7 +375,7 @@ TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
 }
 
 TEST_F(Simulate, ListsMethodsAndModels) {
-  EXPECT_EQ(program("--list-methods").out, "layered\nnewton\npaper\nvbd\nexplicit\n");
+  EXPECT_EQ(program("--list-methods").out, "layered\nnewton\npaper\nvbd\nxpbd\nexplicit\n");
   EXPECT_EQ(program("--list-models").out, "elastic\nsix_spring\n");
   EXPECT_EQ(program("--list-methods").code, 0);
   const Outcome help = program("--help");

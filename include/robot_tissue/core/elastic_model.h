@@ -42,8 +42,6 @@ class ElasticModel : public EnergyModel {
     Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
   };
 
-  ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
-
   const Lattice& lattice_;
   std::vector<Substance> substance_;  // per cell of the lattice
 };

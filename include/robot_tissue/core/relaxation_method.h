@@ -42,6 +42,11 @@ class RelaxationMethod : public SolverMethod {
   // so far.
   virtual void begin(int care) = 0;
   virtual void iterate() = 0;
+  // Whether what the iterations go to is near enough to the equilibrium, if they still have so far
+  // to go (m); adds how far that is from it. May change how they go on.
+  virtual bool settles(double& /*to_go*/) { return true; }
+  // Whether it goes to where all forces balance: if these stop falling it goes astray, else not.
+  virtual bool balances() const { return true; }
   // Iterations from one look at the way gone to the next.
   virtual int stride() const = 0;
   // Share of an error that an iteration leaves in the end.
@@ -52,6 +57,9 @@ class RelaxationMethod : public SolverMethod {
   double poissonRatio() const { return robot_tissue::poissonRatio(mean_); }
   // Stiffness against a shear wave of four times the depth, over that of a node alone.
   double slowestWave() const;
+
+  // Of the free nodes' displacement, L2 (m).
+  double movedLength() const;
 
   // Forces of the field, contacts included, and on patches by force.
   void findForces();
@@ -90,7 +98,7 @@ class RelaxationMethod : public SolverMethod {
   Moduli mean_;
   double depth_ = 1.0;
   std::shared_ptr<const CellSet> depth_of_;
-  double left_length_ = 0.0;              // its lengthLeft (m)
+  double left_length_ = 0.0;  // its lengthLeft (m)
   double left_error_ = 1.0;
   std::chrono::steady_clock::time_point started_;
 };
