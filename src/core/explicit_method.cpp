@@ -23,6 +23,11 @@ ExplicitMethod::ExplicitMethod(const Lattice& lattice, const ElasticModel& model
                                const RelaxationOptions& options)
     : RelaxationMethod(lattice, model, options) {}
 
+void ExplicitMethod::forget() {
+  RelaxationMethod::forget();
+  cells_.reset();
+}
+
 void ExplicitMethod::begin(int care) {
   patch_steps_.assign(shape_.patches.size(), {});
   contact_stiffness_.assign(shape_.state.displacement.size(), 0.0);
@@ -101,7 +106,6 @@ void ExplicitMethod::weigh() {
 void ExplicitMethod::findFastest() {
   const int size = field_->size();
   const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
-  const float* softness = field_->spare(kSoftness)[0];
   findForces();
   std::uint32_t random = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -114,36 +118,46 @@ void ExplicitMethod::findFastest() {
     }
   }
   for (int power = 0; power < kPowers; ++power) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (int slot = 0; slot < size; ++slot) {
-        field_->moved()[axis][slot] =
-            field_->spare(kStart)[axis][slot] + field_->spare(kVelocity)[axis][slot];
-      }
-    }
-    findForces();
-    double before = 0.0, after = 0.0;
-    float greatest = 0.0F;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (int slot = 0; slot < size; ++slot) {
-        if (softness[slot] <= 0.0F) continue;
-        float& motion = field_->spare(kVelocity)[axis][slot];
-        before += static_cast<double>(motion * motion / softness[slot]);
-        const float answer = field_->spare(kLastForce)[axis][slot] - field_->force()[axis][slot];
-        motion = softness[slot] * answer * field_->free()[axis][slot];
-        after += static_cast<double>(motion * motion / softness[slot]);
-        greatest = std::max(greatest, std::abs(motion));
-      }
-    }
-    if (!(before > 0.0 && after > 0.0)) break;
-    fastest_ = kMargin * std::sqrt(after / before);
-    for (float* motions : field_->spare(kVelocity)) {
-      for (int slot = 0; slot < size; ++slot) motions[slot] *= probe / greatest;
-    }
+    const double eigenvalue = takePower();
+    if (eigenvalue <= 0.0) break;
+    fastest_ = kMargin * eigenvalue;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* start = field_->spare(kStart)[axis];
     std::copy(start, start + size, field_->moved()[axis]);
   }
+}
+
+// From a motion to what its forces would do at once; by how much that is more, 0 = nothing.
+double ExplicitMethod::takePower() {
+  const int size = field_->size();
+  const float* softness = field_->spare(kSoftness)[0];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int slot = 0; slot < size; ++slot) {
+      field_->moved()[axis][slot] =
+          field_->spare(kStart)[axis][slot] + field_->spare(kVelocity)[axis][slot];
+    }
+  }
+  findForces();
+  double before = 0.0, after = 0.0;
+  float greatest = 0.0F;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int slot = 0; slot < size; ++slot) {
+      if (softness[slot] <= 0.0F) continue;
+      float& motion = field_->spare(kVelocity)[axis][slot];
+      before += static_cast<double>(motion * motion / softness[slot]);
+      const float answer = field_->spare(kLastForce)[axis][slot] - field_->force()[axis][slot];
+      motion = softness[slot] * answer * field_->free()[axis][slot];
+      after += static_cast<double>(motion * motion / softness[slot]);
+      greatest = std::max(greatest, std::abs(motion));
+    }
+  }
+  if (!(before > 0.0 && after > 0.0)) return 0.0;
+  const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
+  for (float* motions : field_->spare(kVelocity)) {
+    for (int slot = 0; slot < size; ++slot) motions[slot] *= probe / greatest;
+  }
+  return std::sqrt(after / before);
 }
 
 // The damping is for what the motion shows; what is slower dies out more slowly.

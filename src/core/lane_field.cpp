@@ -56,9 +56,7 @@ void LaneField::bind(const LoadedShape& shape, const PatchHold& patch_hold) {
   findSqueezed();
 }
 
-void LaneField::layOut(const LoadedShape& shape) {
-  cells_ = shape.state.cells;
-  size_ = grid_.slotCount(static_cast<int>(cells_->ghosts().size()));
+void LaneField::allocate() {
   constexpr int kPage = static_cast<int>(kAlignment / sizeof(float));
   const int pitch = (size_ + kPage - 1) / kPage * kPage + kApart * kLanes;
   const std::size_t bytes = sizeof(float) * at(pitch) * at(kArrays);
@@ -78,6 +76,12 @@ void LaneField::layOut(const LoadedShape& shape) {
   for (Arrays& arrays : spare_) {
     for (float*& array : arrays) take_array(array);
   }
+}
+
+void LaneField::layOut(const LoadedShape& shape) {
+  cells_ = shape.state.cells;
+  size_ = grid_.slotCount(static_cast<int>(cells_->ghosts().size()));
+  allocate();
   slots_.clear();
   for (int node = 0; node < cells_->nodeCount(); ++node) {
     slots_.push_back(cells_->isGhost(node) ? grid_.ghostSlot(node - cells_->latticeNodeCount())

@@ -51,8 +51,7 @@ class LaneField {
 
   int size() const { return size_; }  // slots, in whole blocks
   int slotOf(int node) const { return slots_[at(node)]; }
-  double unit() const { return unit_; }             // of displacements (m)
-  double forceUnit() const { return force_unit_; }  // N
+  double unit() const { return unit_; }  // of displacements (m)
   const Arrays& moved() const { return moved_; }
   const Arrays& force() const { return force_; }
   const Arrays& free() const { return free_; }             // 1 where a component moves
@@ -73,6 +72,7 @@ class LaneField {
     void operator()(float* buffer) const { std::free(buffer); }
   };
   void layOut(const LoadedShape& shape);
+  void allocate();
   void hold(const LoadedShape& shape, const PatchHold& hold);
   void sortOut(const LoadedShape& shape, const PatchHold& hold);
   void watch(const LoadedShape& shape, const PatchHold& hold);

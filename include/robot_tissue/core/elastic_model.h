@@ -33,6 +33,7 @@ class ElasticModel : public EnergyModel {
   // Second derivative of the energy in this node alone (N/m).
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
 
+  ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
   Moduli cellModuli(const Cell& cell) const;  // Pa, of what the cell is filled with
   Vec3 cornerWeight(const Cell& cell) const;  // gravity on an eighth of it (N)
 

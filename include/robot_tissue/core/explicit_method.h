@@ -13,6 +13,8 @@ class ExplicitMethod : public RelaxationMethod {
   ExplicitMethod(const Lattice& lattice, const ElasticModel& model,
                  const RelaxationOptions& options);
 
+  void forget() override;
+
  private:
   void begin(int care) override;
   void iterate() override;
@@ -21,9 +23,10 @@ class ExplicitMethod : public RelaxationMethod {
 
   void weigh();
   void findFastest();
+  double takePower();
   void rollPatches(double keep, double push);
 
-  double fastest_ = 0.0;  // greatest eigenvalue of stiffness over mass
+  double fastest_ = 8.0;  // greatest eigenvalue of stiffness over mass
   double slowest_ = 0.0;  // the motion's
   int steps_ = 0;         // since begin()
   std::vector<Motion::OfPatch> patch_steps_;
