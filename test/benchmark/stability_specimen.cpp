@@ -29,6 +29,7 @@ void Specimen::makeMethod() {
 void Specimen::setGravity(const Vec3& gravity) {
   if (tissue_.gravity == gravity) return;
   tissue_.gravity = gravity;
+  is_disturbed_ = true;
   makeMethod();
 }
 
@@ -65,14 +66,15 @@ void Specimen::turn(std::size_t index, const Vec3& turn, const Vec3& displacemen
 
 void Specimen::cut(const std::vector<Vec3>& corners) {
   sever(*lattice_, springsAcross(*lattice_, state_, corners), state_, model_->splitCells());
+  is_disturbed_ = true;
 }
 
 void Specimen::solve() {
-  std::vector<int> disturbed(state_.displacement.size());
-  std::iota(disturbed.begin(), disturbed.end(), 0);
-  disturbed.erase(std::remove_if(disturbed.begin(), disturbed.end(),
-                                 [&](int node) { return isFixed(*lattice_, *state_.cells, node); }),
-                  disturbed.end());
+  std::vector<int> disturbed;
+  const int nodes = std::exchange(is_disturbed_, false) ? state_.cells->nodeCount() : 0;
+  for (int node = 0; node < nodes; ++node) {
+    if (!isFixed(*lattice_, *state_.cells, node)) disturbed.push_back(node);
+  }
   method_->beginStep(state_);
   const SolveReport report = method_->solve(patches_, disturbed, state_);
   answers_ = report.patches;
@@ -97,6 +99,7 @@ void Specimen::release() {
   boxes_.clear();
   setGravity(Vec3::Zero());
   method_->forget();
+  is_disturbed_ = true;
   solve();
 }
 
@@ -104,6 +107,7 @@ void Specimen::releaseFromRest() {
   patches_.clear();
   boxes_.clear();
   method_->forget();
+  is_disturbed_ = true;
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   solve();
 }

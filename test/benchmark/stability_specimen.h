@@ -68,6 +68,7 @@ class Specimen {
   std::vector<Box> boxes_;
   std::vector<LoadingPatch> patches_;
   std::vector<PatchAnswer> answers_;
+  bool is_disturbed_ = false;  // by something else than patches, since it was solved for
   Course course_;
 };
 
