@@ -13,8 +13,8 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kToolStep = 0.2;  // of the spacing
-constexpr int kContactRounds = 8;  // in which the shape is what was solved for
+constexpr double kToolStep = 0.2;   // of the spacing
+constexpr int kContactRounds = 16;  // in which the shape is what was solved for
 constexpr int kMostRounds = 30;
 constexpr int kMostIterations = 600;  // of the rounds of one load step
 
@@ -162,7 +162,8 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
     const bool whole = !goBack(before) && solved;
     if (whole) ++whole_rounds;
     const bool last = whole_rounds == kContactRounds || rounds == kMostRounds ||
-                      report.iterations > kMostIterations;
+                      report.iterations > kMostIterations ||
+                      (!solved && rounds > 1 && state_.displacement == before);
     if (!contact_rounds_.renew(of_tools, whole, last)) break;
     putToolPatches(std::move(of_tools));
     before = state_.displacement;

@@ -17,6 +17,7 @@ constexpr double kLittle = 0.05;       // likewise: a touch that may push from a
 constexpr double kFarOff = 0.3;        // of the spacing: a gap at which a vertex is forgotten
 constexpr double kSamePoint = 0.25;    // barycentric: a touch that has wandered
 constexpr double kWanders = 0.2;       // of the slack: deeper than a touch, a point takes its place
+constexpr double kMostPush = 0.2;      // of the spacing: a touch's depth, in one round
 constexpr double kMostTurn = 0.5;      // rad, of a touch's plane in a load step
 constexpr double kSameSide = 0.3;      // cosine: a normal that turns further has jumped
 constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
@@ -24,12 +25,23 @@ constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at 
 constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
 constexpr double kMostSlip = 0.1;      // likewise, at most
 constexpr double kNoShare = 1e-9;      // of a corner in a touch's point
-constexpr double kAbsurd = 3.0;        // of the most force: no tissue pushes so hard
-constexpr double kMostForce = 15.0;    // of the stiffness times the spacing
+constexpr double kMostForce =
+    45.0;  // of a node's stiffness times the spacing: no tissue pushes so hard
+constexpr double kLeastFree = 0.1;  // of a point's weight on nodes that give way
 
 // Beyond which a touch's force is not taken on (N).
-double mostForceOf(const ContactSpring& spring, double spacing) {
-  return kMostForce / kFirm * spring.stiffness * spacing;
+double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
+  double stiffness = 0.0;
+  for (const NodeWeight& carrier : spring.carriers) {
+    stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
+  }
+  return kMostForce * stiffness * tissue.lattice().spacing();
+}
+
+// Where the point is to be pushed to; what is far in a tool comes out by and by.
+Vec3 footOf(const Contact& contact, const Tissue& tissue) {
+  const double most = kMostPush * tissue.lattice().spacing();
+  return contact.point + std::min(contact.depth_m, most) * contact.normal;
 }
 
 // The unit vector `to`, or one that is as far as `most` (rad) from `from` on the way to it.
@@ -131,7 +143,7 @@ bool ToolContacts::track(const std::optional<Contact>& contact, const RobotPose&
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.link)].linear() * touch.since_normal;
     spring.normal = turnedBy(since, contact->normal, kMostTurn);
-    spring.foot = contact->point + contact->depth_m * contact->normal;
+    spring.foot = footOf(*contact, tissue);
   }
   anchor(pose, touch);
   const double gap = gapOf(spring, tissue.state().displacement);
@@ -160,7 +172,8 @@ bool ToolContacts::take(const Contact& contact, const RobotPose& pose, const Tis
   const double slack = slackOf(*touch, tissue);
   if (touch->vertex >= 0 || -contact.depth_m >= touch->off - kWanders * slack) return true;
   const bool same_side = touch->spring.normal.dot(contact.normal) >= kSameSide;
-  if (contact.depth_m > kSettled * tissue.lattice().spacing() && !same_side) {
+  const bool deep = contact.depth_m > kSettled * tissue.lattice().spacing();
+  if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
     add(contact, pose, tissue, held);
     return false;
   }
@@ -189,7 +202,7 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
     pressed_[at(touch.tool)] += force;
     drag_before += spring.most_drag;
     drag_now += most_drag;
-    spring.multiplier = std::min(force, mostForceOf(spring, spacing));
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.most_drag = most_drag;
     const double fine = fineness(touch.link, spacing);
     const double soft = kFirmDrag / kFirm * spring.stiffness;
@@ -201,14 +214,12 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
 
 void ToolContacts::forgetLost(const Held& held) {
   const auto lost = [&](const Touch& touch) {
-    const auto& carriers = touch.spring.carriers;
-    const auto is = [&](auto what) {
-      return [&held, what](const NodeWeight& carrier) { return what(held[at(carrier.node)]); };
-    };
-    return !touch.found ||
-           std::all_of(carriers.begin(), carriers.end(), is([](int how) { return how != 0; })) ||
-           std::any_of(carriers.begin(), carriers.end(),
-                       is([](int how) { return how == kGrasped; }));
+    double free = 0.0;
+    for (const auto& [node, weight] : touch.spring.carriers) {
+      if (held[at(node)] == kGrasped) return true;
+      if (held[at(node)] == 0) free += weight;
+    }
+    return !touch.found || free < kLeastFree;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
 }
@@ -263,7 +274,7 @@ void ToolContacts::put(const Contact& contact, const RobotPose& pose, const Tiss
   touch.barycentric = contact.barycentric;
   carry(tissue, held, touch);
   touch.spring.normal = contact.normal;
-  touch.spring.foot = contact.point + contact.depth_m * contact.normal;
+  touch.spring.foot = footOf(contact, tissue);
   touch.since_normal = pose.links[at(touch.link)].linear().transpose() * contact.normal;
   anchor(pose, touch);
 }
@@ -310,10 +321,12 @@ void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
 }
 
-bool ToolContacts::isAbsurd(const Tissue& tissue) const {
-  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-    return normalForceOf(touch.spring, tissue.state().displacement) >
-           kAbsurd * mostForceOf(touch.spring, tissue.lattice().spacing());
+bool ToolContacts::pushesAbsurdly(const Tissue& tissue) {
+  const auto is_absurd = [&](const ContactSpring& spring) {
+    return normalForceOf(spring, tissue.state().displacement) > mostForceOf(spring, tissue);
+  };
+  return std::any_of(tissue.patches().begin(), tissue.patches().end(), [&](const auto& patch) {
+    return std::any_of(patch.contacts.begin(), patch.contacts.end(), is_absurd);
   });
 }
 

@@ -13,7 +13,8 @@ constexpr double kLongestWay = 0.5;   // of the spacing, of the tissue beside a 
 constexpr double kShareOfTool = 0.5;  // of a link's thickness, likewise
 constexpr double kReach = 1.0;        // of the spacing: farther from its tool, a touch is forgotten
 constexpr double kClear = 0.03;       // of the spacing: off a tool, where its edges look round
-constexpr double kFarthestOut = 4.0;  // of the spacing: longest way out along the surface's normal
+constexpr double kDetour = 2.0;       // of the nearest way out: the surface's may be so long,
+constexpr double kLongDetour = 0.5;   // and so much of the spacing longer
 
 }  // namespace
 
@@ -48,6 +49,7 @@ bool Pipeline::contactRound(std::vector<LoadingPatch>& of_tools, bool whole, boo
   surface_version_ = tissue_.surfaceVersion();
   if (new_surface) contacts_.clear();
   const ContactSet contacts = touchesAt(pose_);
+  left_inside_ = deepest(contacts);
   const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
   if (new_surface) {
     contacts_.ride(pose_, tissue_);
@@ -90,10 +92,16 @@ bool Pipeline::turnOut(const RobotPose& pose, Contact& contact) const {
     inwards = -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);
   }
   if (!(inwards.norm() > 0.0)) return false;
-  const auto out = finder_.wayOutAlong(at(contact.link), pose.links[at(contact.link)],
-                                       contact.point, inwards.normalized(), kClear * spacing,
-                                       kReach * spacing, kFarthestOut * spacing);
-  if (!out || out->normal.norm() < 0.5) return out.has_value();
+  const Pose& tissue_T_link = pose.links[at(contact.link)];
+  const auto nearest =
+      finder_.wayOut(at(contact.link), tissue_T_link, contact.point, kReach * spacing);
+  if (!nearest) return false;
+  const double farthest = kDetour * std::max(nearest->depth_m, 0.0) + kLongDetour * spacing;
+  auto out =
+      finder_.wayOutAlong(at(contact.link), tissue_T_link, contact.point, inwards.normalized(),
+                          kClear * spacing, kReach * spacing, farthest);
+  if (!out) out = nearest;
+  if (out->normal.norm() < 0.5) return true;
   contact.normal = out->normal;
   contact.depth_m = out->depth_m;
   return true;

@@ -12,8 +12,10 @@ namespace {
 constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
 constexpr int kRigidRounds = 3;    // nodes that the solve moved into a rigid tool go out again
 constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
+constexpr int kMoreSolves = 2;     // where one ended on its way
+constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
 constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
-constexpr double kMostLeap = 4.0;        // of the spacing, of a node in a load step
+constexpr double kMostLeap = 10.0;       // of the spacing, of a node in a load step
 
 ToolGeometry asTool(const SupportConfig& support) {
   ToolGeometry tool;
@@ -101,15 +103,19 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   }
   goBackTo(goal);
   last_pose_ = walk(goal);
+  if (report_.lost) leaveStuck(goal);
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
   describeTools();
   return report_;
 }
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
-// with a rigid patch; for the others the solver asks for the contacts itself (contactRound).
-void Pipeline::advance(const RobotPose& pose) {
+// with a rigid patch; for the others the solver asks for the contacts itself (contactRound). False:
+// no shape could follow, all is as it was.
+bool Pipeline::advance(const RobotPose& pose) {
   ++report_.substeps;
+  std::optional<Checkpoint> good;
+  if (!any_rigid_) good = checkpoint();
   pose_ = pose;
   grasp();
   contacts_.ride(pose, tissue_);  // patches move with their tools
@@ -122,39 +128,47 @@ void Pipeline::advance(const RobotPose& pose) {
     if (!anyToolIn(patches) && !anyToolIn(before)) break;
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
     follow(std::move(patches));  // loading patches -> solve
+    for (int more = 0; good && more < kMoreSolves && isUnsettled(); ++more) {
+      follow(patchesOfTools());
+    }
+    if (good && isLost(good->shape)) {
+      goBackTo(*good);
+      return false;
+    }
     if (!any_rigid_) break;
     const ContactSet left = contactsAt(pose, tissue_.state().displacement);
     if (deepest(left) <= kDeepEnough * tissue_.lattice().spacing()) break;
   }
   contacts_.commit(pose, tissue_);
   tearOff();
+  return true;
 }
 
-// When no shape can follow the tools, as where they squeeze tissue flat, the last good one stays,
-// with what it touched.
 void Pipeline::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(report_.solve_ms);
-  const Tissue::Shape good = tissue_.shape();
-  const ToolContacts good_contacts = contacts_;
   tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
   report_.changed = true;
-  if (any_rigid_) return;
+}
+
+// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
+bool Pipeline::isLost(const Tissue::Shape& good) const {
   const std::vector<Vec3>& now = tissue_.state().displacement;
   double farthest = 0.0;
   for (std::size_t node = 0; node < now.size(); ++node) {
-    farthest = std::max(farthest, (now[node] - good.displacement[node]).norm());
+    farthest = std::max(farthest, (now[node] - good.displacement[node]).squaredNorm());
   }
-  const bool inverted = tissue_.lastReport().inverted_cells > good.report.inverted_cells;
-  const bool leapt = farthest > kMostLeap * tissue_.lattice().spacing() && !tissue_.isUntouched();
-  const auto unbalanced = [this] {
-    if (tissue_.lastReport().status != SolveStatus::kUnconverged) return false;
-    const ForceBalance forces = forceBalance();
-    return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
-  };
-  if (!leapt && !inverted && !contacts_.isAbsurd(tissue_) && !unbalanced()) return;
-  report_.lost = true;
-  tissue_.restore(good);
-  contacts_ = good_contacts;
+  const double leap = kMostLeap * tissue_.lattice().spacing();
+  if (farthest > leap * leap && !tissue_.isUntouched()) return true;
+  if (tissue_.lastReport().inverted_cells > good.report.inverted_cells) return true;
+  return ToolContacts::pushesAbsurdly(tissue_);
+}
+
+// The solve ended on its way, as where tissue slips far.
+bool Pipeline::isUnsettled() const {
+  if (left_inside_ > kTooDeep * tissue_.lattice().spacing()) return true;
+  if (tissue_.lastReport().status != SolveStatus::kUnconverged) return false;
+  const ForceBalance forces = forceBalance();
+  return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
 }
 
 bool Pipeline::isRigid(int tool) const {
@@ -205,7 +219,7 @@ bool Pipeline::anyToolIn(const std::vector<LoadingPatch>& patches) const {
 // What the last solve had no time for.
 void Pipeline::carryOn() {
   if (!tissue_.isUntouched()) {
-    advance(*last_pose_);
+    if (!advance(*last_pose_)) report_.lost = true;
   } else {
     const Stopwatch watch(report_.solve_ms);
     tissue_.settle();

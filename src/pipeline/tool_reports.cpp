@@ -53,8 +53,8 @@ ToolReport Pipeline::describe(std::size_t tool) const {
     report.force_on_tool *= most / force.norm();
   }
   for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-    const double depth =
-        finder_.penetration(link, pose_.links[link], tissue_.surface(), tissue_.vertices());
+    const double depth = finder_.penetration(link, (report_.lost ? asked_ : pose_).links[link],
+                                             tissue_.surface(), tissue_.vertices());
     report.max_penetration = std::max(report.max_penetration, depth);
   }
   return report;

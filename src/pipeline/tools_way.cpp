@@ -10,9 +10,10 @@ namespace robot_tissue {
 namespace {
 
 constexpr std::size_t kMostCheckpoints = 64;
-constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
-constexpr double kShareOfTool = 0.25;  // of a link's thickness: its longest step
-constexpr double kFarAway = 1e6;       // m: where a tool is that stands nowhere
+constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is none
+constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
+constexpr double kShortest = 1.0 / 8.0;  // of a load step: halved no further
+constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
 
 // Longest way (m) that a point of the link goes between two poses.
 double motion(const Pose& from, const Pose& to, double reach) {
@@ -67,34 +68,60 @@ RobotPose Pipeline::complete(const RobotPose& pose) const {
   return complete;
 }
 
-// Load steps up to the pose. Returns how far it came in time.
+// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
+// or in time.
 RobotPose Pipeline::walk(const RobotPose& pose) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(budget_s_);
   const RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
+  asked_ = pose;
   const double steps = stepsBetween(start, pose);
-  double gone = 0.0;
+  double gone = 0.0, longest = 1.0;
+  const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
-    const double free = tissue_.isUntouched() ? freeSteps(between(start, pose, gone / steps)) : 0.0;
-    const bool whole = gone + std::max(1.0, free) < steps;
+    const double free = tissue_.isUntouched() ? freeSteps(came()) : 0.0;
+    const double stride = std::max(longest, free);
+    const bool whole = gone + stride < steps;
     if (!whole && any_rigid_) break;
-    gone = whole ? gone + std::max(1.0, free) : steps;
-    const RobotPose on_the_way = whole ? between(start, pose, gone / steps) : pose;
-    advance(on_the_way);
+    const double there = whole ? gone + stride : steps;
+    const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
+    const bool followed = advance(on_the_way);
+    if (!followed) longest = 0.5 * std::min(longest, there - gone);
+    if (longest < kShortest) {
+      report_.lost = true;
+      return came();
+    }
+    if (followed) {
+      gone = there;
+      longest = std::min(1.0, 2.0 * longest);
+    }
     if (any_rigid_) checkIn(on_the_way);
-    if (whole && std::chrono::steady_clock::now() > deadline) {
+    if (gone < steps && std::chrono::steady_clock::now() > deadline) {
       report_.too_fast = true;
-      return on_the_way;
+      return came();
     }
   }
-  if (any_rigid_ || steps == 0.0) advance(pose);
+  if ((any_rigid_ || steps == 0.0) && !advance(pose)) report_.lost = true;
   if (any_rigid_ && tissue_.isUntouched()) checkIn(pose);
   return pose;
+}
+
+Pipeline::Checkpoint Pipeline::checkpoint() const {
+  return {pose_, tissue_.shape(), patches_.seats(), contacts_, closed_};
+}
+
+void Pipeline::goBackTo(const Checkpoint& good) {
+  pose_ = good.pose;
+  tissue_.restore(good.shape);
+  patches_.restore(good.seats);
+  contacts_ = good.contacts;
+  closed_ = good.closed;
 }
 
 void Pipeline::checkIn(const RobotPose& pose) {
   if (!any_rigid_ || tissue_.isUntouched()) checkpoints_.clear();
   if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
-  checkpoints_.push_back({pose, tissue_.shape(), patches_.seats(), contacts_});
+  checkpoints_.push_back(checkpoint());
+  checkpoints_.back().pose = pose;
 }
 
 // Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
@@ -112,9 +139,7 @@ void Pipeline::goBackTo(const RobotPose& pose) {
   if (any_rigid_) {
     checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
                        checkpoints_.end());
-    tissue_.restore(checkpoints_.back().shape);
-    patches_.restore(checkpoints_.back().seats);
-    contacts_ = checkpoints_.back().contacts;
+    goBackTo(checkpoints_.back());
   }
   if (shortest > kMostLoadSteps) {
     report_.too_fast = true;
@@ -151,18 +176,49 @@ void Pipeline::comeAndGo(const RobotPose& pose) {
     const std::size_t first = first_link_[tool], end = first_link_[tool + 1];
     if (first == end || isAway(from.links[first]) == isAway(pose.links[first])) continue;
     any = true;
-    std::copy(pose.links.begin() + static_cast<std::ptrdiff_t>(first),
-              pose.links.begin() + static_cast<std::ptrdiff_t>(end),
-              from.links.begin() + static_cast<std::ptrdiff_t>(first));
-    patches_.letGo(static_cast<int>(tool));
-    contacts_.clear(static_cast<int>(tool));
-    closed_[tool] = false;
+    from = withTool(tool, pose, from);
+    letGoOf(tool);
     drawOut(tool, from);
   }
   if (!any) return;
   last_pose_ = from;
   checkpoints_.clear();
   checkIn(from);
+}
+
+// Where no shape could follow, tools that have come out of the tissue by themselves let go.
+void Pipeline::leaveStuck(const RobotPose& pose) {
+  RobotPose from = *last_pose_;
+  bool any = false;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    const RobotPose moved = withTool(tool, pose, from);
+    if (stepsBetween(from, moved) == 0.0 || !wayOut(tool, pose).isZero()) continue;
+    any = true;
+    from = moved;
+    letGoOf(tool);
+  }
+  if (!any) return;
+  last_pose_ = from;
+  if (advance(from)) {
+    last_pose_ = walk(pose);
+  } else {
+    startAnew(pose);
+    last_pose_ = walk(pose);
+  }
+}
+
+void Pipeline::letGoOf(std::size_t tool) {
+  patches_.letGo(static_cast<int>(tool));
+  contacts_.clear(static_cast<int>(tool));
+  closed_[tool] = false;
+}
+
+// The pose `others` with one tool where it is in `pose`.
+RobotPose Pipeline::withTool(std::size_t tool, const RobotPose& pose, RobotPose others) const {
+  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    others.links[link] = pose.links[link];
+  }
+  return others;
 }
 
 // Draws the tool back, step by step, until it is out of the tissue.
@@ -208,7 +264,7 @@ bool Pipeline::standsStill(const RobotPose& pose) const {
   if (!last_pose_) return false;
   const double still = kStandsStill * tissue_.lattice().spacing();
   for (std::size_t link = 0; link < pose.links.size(); ++link) {
-    if (motion(last_pose_->links[link], pose.links[link], finder_.reach(link)) > still) {
+    if (motion(asked_.links[link], pose.links[link], finder_.reach(link)) > still) {
       return false;
     }
   }

@@ -108,6 +108,27 @@ TEST(ThinTool, DoesNotPassThroughASheet) {
   EXPECT_LT(tool.max_penetration, 0.05 * kSpacing);
 }
 
+// A plate that covers the block goes down to its fixed ground: there is no room left for tissue.
+TEST(JammedTool, StandsWhereAShapeLastFollowedAndComesOut) {
+  Pipeline pipeline(block("elastic", 0.01), {}, {toolOf(boxOf(Vec3(0.1, 0.1, 0.02)))});
+  const auto place = [](double height) { return Vec3(kMiddle, kMiddle, height + 0.01); };
+  walk(pipeline, {place(kTop + 0.001)}, {place(0.0)}, 0.004);
+  const StepReport& report = pipeline.report();
+  EXPECT_TRUE(report.lost);
+  EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
+  EXPECT_GT(pipeline.pose()->links.front().translation().z(), place(0.001).z());
+  EXPECT_GT(report.tools.front().max_penetration, 0.001);  // of the tool where it is
+  const Vec3 force = report.tools.front().force_on_tool;
+  EXPECT_TRUE(force.allFinite());
+  EXPECT_FALSE(pipeline.step(at({place(0.0)})).changed);  // stands still: nothing is tried again
+  walk(pipeline, {place(0.0)}, {place(0.8 * kTop)}, 0.004);
+  EXPECT_FALSE(report.lost);
+  EXPECT_LT(report.tools.front().max_penetration, 0.05 * 0.01);
+  EXPECT_LT(report.tools.front().force_on_tool.norm(), 0.5 * force.norm());
+  pipeline.step(at({place(kTop + 0.05)}));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
 TEST(TwoTools, OnOppositeSidesOfASheetPressEachOther) {
   constexpr double kSmall = 0.006;
   Pipeline pipeline(sheet(), {}, {smallProbe("upper", kSmall), smallProbe("lower", kSmall)});

@@ -6,8 +6,8 @@
 // sought from the touch's probe: the point a little way above its plane. A load step begins with
 // ride() and meet(), looks at the shape after each solve with update() until that says the contact
 // is settled, and ends with commit(). In: contacts (tissue frame, normals from the tool into the
-// tissue), poses of the links. Out: the springs of each tool. Points that only held nodes carry are
-// never taken.
+// tissue), poses of the links. Out: the springs of each tool. Points that held nodes carry, but for
+// a tenth of their weight, are never taken.
 #pragma once
 
 #include <cstdint>
@@ -62,8 +62,8 @@ class ToolContacts {
   void clear();
   void clear(int tool);
 
-  // Whether a touch pushes as hard as no tissue does.
-  bool isAbsurd(const Tissue& tissue) const;
+  // Whether a spring in contact pushes as hard, in the tissue's last solve, as no tissue does.
+  static bool pushesAbsurdly(const Tissue& tissue);
   const std::vector<Touch>& touches() const { return touches_; }
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;

@@ -47,7 +47,7 @@ struct StepReport {
   bool too_fast = false;    // the tools moved further than could be followed in time
   bool was_inside = false;  // a tool appeared inside the tissue and was walked in from outside
   bool torn_off = false;    // a grasper lost what it held
-  bool lost = false;        // no shape could follow a tool: the last good one stays
+  bool lost = false;        // no shape could follow the tools: the last good one stays
   int substeps = 0;         // load steps that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
@@ -110,8 +110,8 @@ class Pipeline {
 
   const Tissue& tissue() const { return tissue_; }
   const StepReport& report() const { return report_; }
-  // Where the links are, those that a force drives where it drove them. Empty before the first
-  // step.
+  // Where the links are for the tissue: those that a force drives where it drove them, those that
+  // no shape could follow where one last did. Empty before the first step.
   const std::optional<RobotPose>& pose() const { return last_pose_; }
   ForceBalance forceBalance() const;
 
@@ -124,6 +124,7 @@ class Pipeline {
     Tissue::Shape shape;
     ToolPatches::Seats seats;
     ToolContacts contacts;
+    std::vector<bool> closed;
   };
   // A tool that a force drives.
   struct Drive {
@@ -133,8 +134,10 @@ class Pipeline {
 
   // pipeline.cpp
   void takeTools(const std::vector<ToolGeometry>& tools);
-  void advance(const RobotPose& pose);
+  bool advance(const RobotPose& pose);
   void follow(std::vector<LoadingPatch> patches);
+  bool isLost(const Tissue::Shape& good) const;
+  bool isUnsettled() const;
   std::vector<LoadingPatch> patchesOfTools() const;
   void pushRigid(const RobotPose& pose);
   bool isRigid(int tool) const;
@@ -156,8 +159,13 @@ class Pipeline {
   static bool isAway(const Pose& pose);
   RobotPose walk(const RobotPose& pose);
   RobotPose complete(const RobotPose& pose) const;
+  Checkpoint checkpoint() const;
+  void goBackTo(const Checkpoint& good);
   void checkIn(const RobotPose& pose);
   void goBackTo(const RobotPose& pose);
+  void leaveStuck(const RobotPose& pose);
+  void letGoOf(std::size_t tool);
+  RobotPose withTool(std::size_t tool, const RobotPose& pose, RobotPose others) const;
   void startAnew(const RobotPose& pose);
   void lieDown();
   void comeAndGo(const RobotPose& pose);
@@ -194,13 +202,15 @@ class Pipeline {
   std::vector<bool> closed_;  // per tool: its jaws were when last seen
   bool any_rigid_ = false;
   unsigned surface_version_ = 0;
-  RobotPose pose_;  // of the load step under way
+  RobotPose pose_;   // of the load step under way, or the last that a shape followed
+  RobotPose asked_;  // where the tools are
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
   bool touched_ = true;         // the reports are to be brought up to date
   std::vector<Vec3> vertices_;  // of the last contacts
   std::vector<Vec3> outwards_;  // their normals
+  double left_inside_ = 0.0;    // depth of the deepest of them, after the last solve (m)
   StepReport report_;
 };
 
