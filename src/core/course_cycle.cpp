@@ -156,21 +156,17 @@ bool CourseIn<Real>::carryOn() {
 }
 
 template <typename Real>
-SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget& budget) {
+SolveStatus CourseIn<Real>::iterate(bool touched, bool carried_on, const Budget& budget) {
   keepPlace(start_);
   first_left_ = -1.0;
-  farthest_ = 0.0;
-  swings_ = false;
   fresh_ = true;
   conjugate_ = false;
-  SolveStatus status = look(changed);
-  for (; status == SolveStatus::kLate; status = look(changed)) {
+  SolveStatus status = look(touched);
+  for (; status == SolveStatus::kLate; status = look(touched)) {
     if (cycles_ > 0 && budget.isSpent()) break;
     advance();
     ++cycles_;
   }
-  // What slips has more left on its way: only a shape that blew up goes back.
-  if (status == SolveStatus::kUnconverged && left_ <= kBlownUp * first_left_) return status;
   if (status == SolveStatus::kUnconverged) {
     putBack(best_);
     finest().findForces(true);

@@ -12,10 +12,7 @@ namespace {
 // of the spacing: off rest by less, a node is at rest
 constexpr double kMostLeft = 0.9;  // of the length left before cycles, to learn from them
 // of the length left before cycles, to learn from them
-constexpr double kMostFactor = 8.0;       // that they may show
-constexpr double kMostSwinging = 1000.0;  // where what hangs by little moves far
-constexpr double kSwings = 2.0;           // times the length left when a solve begins: it swings
-constexpr double kFarther = 1.1;          // than ever from a solve's start: it gets on
+constexpr double kMostFactor = 8.0;  // that they may show
 // that they may show
 constexpr double kRemembered = 0.9;  // of the factor, from cycle to cycle
 // of the slope along a direction: no need to look further
@@ -80,7 +77,7 @@ double CourseIn<Real>::lengthLeft() const {
 
 // Where the course stands: kOk, kLate while there is hope, kUnconverged.
 template <typename Real>
-SolveStatus CourseIn<Real>::look(bool changed) {
+SolveStatus CourseIn<Real>::look(bool touched) {
   levels_->findSmoothMotion();
   const bool raised = raiseLayers();
   if (raised) {
@@ -102,25 +99,17 @@ SolveStatus CourseIn<Real>::look(bool changed) {
     first_left_ = left_;
     least_ = std::numeric_limits<double>::infinity();
   }
-  swings_ = swings_ || left_ > kSwings * first_left_;
   if (left_ < least_) {
     least_ = left_;
     keepPlace(best_);
     best_error_ = error_;
-    last_gain_ = cycles_;
+    best_cycle_ = cycles_;
   }
-  // What swings far has more left on its way than where it began.
-  const double gone = distanceFrom(start_);
-  if (gone > kFarther * farthest_) {
-    farthest_ = gone;
-    last_gain_ = cycles_;
-  }
-  // Contacts, and what was let go, change in ways that are small beside the displacement, but not
-  // to them.
-  const bool untried = cycles_ == 0 && changed;
+  // Contacts change in ways that are small beside the displacement, but not to them.
+  const bool untried = cycles_ == 0 && touched;
   if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
     return SolveStatus::kOk;
-  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > last_gain_ + options_.patience;
+  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > best_cycle_ + options_.patience;
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
 }
 
@@ -156,8 +145,7 @@ void CourseIn<Real>::learn(double trend_before) {
     factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
   }
   if (factor == 0.0) return;
-  const double most = swings_ ? kMostSwinging : kMostFactor;
-  factor = std::min(std::max(factor, least_factor_), most);
+  factor = std::min(std::max(factor, least_factor_), kMostFactor);
   factor_ = std::max(factor, kRemembered * factor_);
 }
 

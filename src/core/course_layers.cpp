@@ -54,7 +54,6 @@ void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
     for (const RimSpring& spring : shape.patches[index].rim) load(spring.node);
   }
   for (const int node : hold.touched()) load(node);
-  for (const int node : disturbed) addSeed(levels_->entryOf(node));
   std::vector<std::uint8_t> known(shape.state.displacement.size(), 0);
   const bool all_new = left_displacement_.size() != known.size();
   bool moved = false;
