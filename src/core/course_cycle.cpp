@@ -167,6 +167,8 @@ SolveStatus CourseIn<Real>::iterate(bool touched, bool carried_on, const Budget&
     advance();
     ++cycles_;
   }
+  // What slips has more left on its way: only a shape that blew up goes back.
+  if (status == SolveStatus::kUnconverged && left_ <= kBlownUp * first_left_) return status;
   if (status == SolveStatus::kUnconverged) {
     putBack(best_);
     finest().findForces(true);
