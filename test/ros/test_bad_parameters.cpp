@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"spacing", "tissue/spacing", "-0.005", "tissue.spacing = -0.005"},
                       Case{"ratio", "tissue/spacing", "0.03", "tissue.spacing = 0.03"},
                       Case{"model", "tissue/model", "jelly", "tissue.model = jelly"},
-                      Case{"later_method", "solver/method", "vbd", "solver.method = vbd"},
+                      Case{"method", "solver/method", "jacobi", "solver.method = jacobi"},
                       Case{"unknown_key", "tissue/sapcing", "0.005", "tissue.sapcing"},
                       Case{"own_unknown_key", "ratee", "100", "ratee"},
                       Case{"rate", "rate", "0", "rate = 0"},

@@ -17,10 +17,10 @@ class RunningNode : public NodeTest {
     ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
   }
 
-  // The surface is not in the probe, which its flat triangles touch no farther than a spacing from
-  // their corners.
+  // The surface is not in the probe, which its flat triangles touch no farther from their corners
+  // than their longest side, a spacing's diagonal.
   void expectPressed(double depth) {
-    constexpr double kOff = 0.005 * 0.005 / (2.0 * kRadius);  // of such a corner (m)
+    constexpr double kOff = 2.0 * 0.005 * 0.005 / (2.0 * kRadius);  // of such a corner (m)
     EXPECT_LT(lowestOfTop(), kTop - depth + 1e-4);
     EXPECT_GT(lowestOfTop(), kTop - depth - kOff);
   }
