@@ -63,7 +63,7 @@ void ExplicitMethod::iterate() {
   const double keep = std::pow((1.0 - share) / (1.0 + share), 2);
   const double push = 4.0 / (fastest_ * std::pow(1.0 + share, 2));
   const double most = kMostStep * lattice_.spacing() / field_->unit();
-  RollSums sums;
+  QuotientSums sums;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     roll(static_cast<float>(keep), static_cast<float>(push), static_cast<float>(most),
          field_->size(), field_->force()[axis], field_->spare(kSoftness)[0], field_->free()[axis],
@@ -160,9 +160,10 @@ double ExplicitMethod::takePower() {
   return std::sqrt(after / before);
 }
 
-// The damping is for what the motion shows; what is slower dies out more slowly.
+// The damping is critical for what the motion shows; what is slower dies out more slowly.
 double ExplicitMethod::shrinkage() const {
-  const double share = 0.5 * std::sqrt(slowestWave() / fastest_);
+  const double slowest = std::sqrt(slowestWave() / fastest_);
+  const double share = slowest * std::min(1.0, slowest / std::sqrt(slowest_ / fastest_));
   return std::max((1.0 - share) / (1.0 + share), 0.5);
 }
 

@@ -64,7 +64,7 @@ class LaneField {
   // Takes back what a patch by force moved.
   void giveAll(int node, LatticeState& state) const;
   // Further arrays, zero after bind() has met other cells.
-  static constexpr int kSpares = 6;
+  static constexpr int kSpares = 8;
   const Arrays& spare(int index) const { return spare_[at(index)]; }
 
  private:

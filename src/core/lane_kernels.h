@@ -59,15 +59,21 @@ double squaredDistance(const float* a, const float* b, int count);
 // Of the products' entries.
 double squaredProduct(const float* a, const float* b, const float* c, int count);
 
-// A step of the heavy ball along one axis: velocity = keep velocity + push softness force free, cut
-// at `most`, added to moved. Adds to the sums, for the velocity before and what it did to the force
-// (last - force, then last becomes force): velocity . change, and velocity^2 / softness.
-struct RollSums {
+// Rayleigh's quotient of a motion is work over mass: motion . change of force, and motion^2 /
+// softness.
+struct QuotientSums {
   double work = 0.0;
   double mass = 0.0;
 };
+// Adds those of the motion along one axis from one shape to another, and makes that one the first.
+void addQuotient(int count, const float* moved, const float* force, const float* softness,
+                 const float* free, float* from, float* from_force, QuotientSums& sums);
+
+// A step of the heavy ball along one axis: velocity = keep velocity + push softness force free, cut
+// at `most`, added to moved. Adds to the sums, for the velocity before and what it did to the force
+// (last - force, then last becomes force).
 void roll(float keep, float push, float most, int count, const float* force, const float* softness,
-          const float* free, float* last, float* velocity, float* moved, RollSums& sums);
+          const float* free, float* last, float* velocity, float* moved, QuotientSums& sums);
 
 // moved += keep free (moved - before); before becomes what moved was.
 void coast(float keep, int count, const float* free, float* before, float* moved);

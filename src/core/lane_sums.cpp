@@ -64,8 +64,34 @@ void extrapolate(float share, int count, float* moved, float* last, float* befor
 }
 
 ROBOT_TISSUE_LANES
+void addQuotient(int count, const float* moved, const float* force, const float* softness,
+                 const float* free, float* from, float* from_force, QuotientSums& sums) {
+  constexpr int kBlocks = 64;  // summed in single precision
+  for (int first = 0; first < count; first += kBlocks * kLanes) {
+    const int end = first + kBlocks * kLanes < count ? first + kBlocks * kLanes : count;
+    Lane work = {}, mass = {};
+    for (int block = first; block < end; block += kLanes) {
+#pragma GCC ivdep
+      ROBOT_TISSUE_ROLLED
+      for (int i = block; i < block + kLanes; ++i) {
+        const float motion = (moved[i] - from[i]) * free[i];
+        const float soft = softness[i];
+        work[i - block] += motion * (from_force[i] - force[i]);
+        mass[i - block] += soft > 0.0F ? motion * motion / soft : 0.0F;
+        from[i] = moved[i];
+        from_force[i] = force[i];
+      }
+    }
+    for (int i = 0; i < kLanes; ++i) {
+      sums.work += static_cast<double>(work[i]);
+      sums.mass += static_cast<double>(mass[i]);
+    }
+  }
+}
+
+ROBOT_TISSUE_LANES
 void roll(float keep, float push, float most, int count, const float* force, const float* softness,
-          const float* free, float* last, float* velocity, float* moved, RollSums& sums) {
+          const float* free, float* last, float* velocity, float* moved, QuotientSums& sums) {
   constexpr int kBlocks = 64;  // summed in single precision
   for (int first = 0; first < count; first += kBlocks * kLanes) {
     const int end = first + kBlocks * kLanes < count ? first + kBlocks * kLanes : count;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
 constexpr double kRounding = 3e-7;  // of the spacing, a node: forces are rounded off by as much
+constexpr double kTiny = 1e-3;      // likewise, of the displacement: not resolved to 1e-3
 constexpr double kSame = 1.001;     // of the forces that the last solve left: nothing happened
 constexpr double kGrown = 10.0;     // times the least length left so far: astray
 constexpr int kLooksApart = 4;      // looks at the way from one look at the forces to the next
@@ -25,7 +26,8 @@ constexpr double kPatchTurn = 0.2;  // likewise (rad)
 // Of what a way would have to go did ways already shrink as they do in the end.
 constexpr double kShareOfEnd = 0.5;
 constexpr double kPi = 3.14159265358979;
-constexpr int kMark = 0, kBest = 1;  // spare arrays of the field
+constexpr double kLeastWave = 1e-6;
+constexpr int kMark = 0, kBest = 1, kLooked = 6, kLookedForce = 7;  // spare arrays of the field
 
 }  // namespace
 
@@ -50,11 +52,14 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
       hold_(lattice, model),
       field_(std::make_unique<LaneField>(lattice, model)) {
   const double count = static_cast<double>(lattice.cells().size());
+  double softness = 0.0;
   for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
     mean_.shear += moduli.shear / count;
     mean_.bulk += moduli.bulk / count;
+    softness += cell.share / moduli.shear / count;
   }
+  soft_shear_ = 1.0 / softness;
 }
 
 RelaxationMethod::~RelaxationMethod() = default;
@@ -95,8 +100,11 @@ SolveStatus RelaxationMethod::run(Course& course) {
   if (as_left) course.error = left_error_;
   if (isRounding(course.least)) course.error = std::min(relative(course.least), options_.tolerance);
   if (course.error <= options_.tolerance) return SolveStatus::kOk;
+  seen_wave_ = 1.0;
   begin(course.care);
   wayFromMark();
+  findForces();
+  lookAtWave(true);
   while (course.care <= kMostCare && !course.stalled &&
          course.iterations < options_.max_iterations) {
     iterate();
@@ -123,6 +131,8 @@ bool RelaxationMethod::look(Course& course) {
   if (std::isfinite(way) && !near && course.looks % kLooksApart != 0) return false;
   const bool surprised = std::isfinite(way) && field_->findSqueezed();
   findForces();
+  lookAtWave(course.ways.size() < 2);
+  if (near) course.error = std::min(relative(lengthToGo(course.ways)), 1.0);
   const double left = lengthLeft();
   if (left < course.least) keep(course);
   const bool stuck = course.looks - course.best_look > kPatience;
@@ -136,7 +146,8 @@ bool RelaxationMethod::look(Course& course) {
     return false;
   }
   course.error = std::max(course.error, relative(left));
-  if (isRounding(left)) course.error = std::min(relative(left), options_.tolerance);
+  const bool tiny = movedLength() <= kTiny * lattice_.spacing() * std::sqrt(field_->nodeCount());
+  if (tiny && isRounding(left)) course.error = std::min(relative(left), options_.tolerance);
   return course.error <= options_.tolerance && settled && !surprised;
 }
 
@@ -146,7 +157,6 @@ double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   const std::size_t count = ways.size();
   const double last = ways.back();
   if (last == 0.0) return 0.0;
-  if (isRounding(last / stride())) return last;
   if (count < 3) return kInfinity;
   const double share = std::max(last / ways[count - 2], std::sqrt(last / ways[count - 3]));
   const double seen = share < 1.0 ? share / (1.0 - share) : kInfinity;
@@ -180,12 +190,22 @@ void RelaxationMethod::findDepth() {
     if (!next.empty()) depth_ += 1.0;
   }
   depth_ = std::max(depth_, 1.0);
+  // mu (pi / 2 depth)^2 over h^-1 times ElasticModel::nodeStiffness inside the tissue. Where it is
+  // uneven, the soft is what moves and the stiff is what is heavy.
+  const double wave = soft_shear_ * std::pow(0.5 * kPi / depth_, 2);
+  shear_wave_ = wave / (17.0 / 6.0 * mean_.shear + 0.5 * mean_.bulk);
 }
 
-// mu (pi / 2 depth)^2 over h^-1 times ElasticModel::nodeStiffness inside the tissue.
-double RelaxationMethod::slowestWave() const {
-  const double wave = mean_.shear * std::pow(0.5 * kPi / depth_, 2);
-  return wave / (17.0 / 6.0 * mean_.shear + 0.5 * mean_.bulk);
+// Rayleigh's quotient of the way since forces were looked at before.
+void RelaxationMethod::lookAtWave(bool first) {
+  QuotientSums sums;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addQuotient(field_->size(), field_->moved()[axis], field_->force()[axis], field_->compliance(),
+                field_->free()[axis], field_->spare(kLooked)[axis],
+                field_->spare(kLookedForce)[axis], sums);
+  }
+  if (first || !(sums.work > 0.0 && sums.mass > 0.0)) return;
+  seen_wave_ = std::min(seen_wave_, std::max(sums.work / sums.mass, kLeastWave));
 }
 
 void RelaxationMethod::findForces() {

@@ -6,6 +6,7 @@
 // series.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <vector>
@@ -55,8 +56,9 @@ class RelaxationMethod : public SolverMethod {
   // Cells from what holds the tissue to what is farthest from it.
   double depth() const { return depth_; }
   double poissonRatio() const { return robot_tissue::poissonRatio(mean_); }
-  // Stiffness against a shear wave of four times the depth, over that of a node alone.
-  double slowestWave() const;
+  // Stiffness against the slowest motion, over that of nodes alone: of a shear wave of four times
+  // the depth, or what the solve has shown, if that is less.
+  double slowestWave() const { return std::min(shear_wave_, seen_wave_); }
 
   // Of the free nodes' displacement, L2 (m).
   double movedLength() const;
@@ -82,6 +84,7 @@ class RelaxationMethod : public SolverMethod {
   bool look(Course& course);
   double lengthToGo(const std::vector<double>& ways) const;
   void findDepth();
+  void lookAtWave(bool first);
   double wayFromMark();
   double lengthLeft() const;
   double relative(double length) const;
@@ -96,7 +99,10 @@ class RelaxationMethod : public SolverMethod {
   std::vector<Vec3> scratch_;             // forces (N)
   std::vector<Vec3> left_;                // displacement that the last solve left (m)
   Moduli mean_;
+  double soft_shear_ = 0.0;  // harmonic mean (Pa)
   double depth_ = 1.0;
+  double shear_wave_ = 1.0;
+  double seen_wave_ = 1.0;
   std::shared_ptr<const CellSet> depth_of_;
   double left_length_ = 0.0;  // its lengthLeft (m)
   double left_error_ = 1.0;
