@@ -4,9 +4,8 @@
 //   stability RUNG reference             what method `newton` measures in small increments
 // Method `paper` solves model six_spring, the others `elastic`.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
+#include <ctime>
 #include <iostream>
 #include <random>
 
@@ -66,14 +65,6 @@ void climb(const Rung& rung, int increments, Specimen& specimen, Row& row) {
   for (int increment = 1; increment <= increments; ++increment) {
     rung.go(specimen, static_cast<double>(increment) / increments);
     specimen.solve();
-    if (std::getenv("STABILITY_TRACE") != nullptr) {
-      std::fprintf(stderr,
-                   "increment %d: %s, %d iterations so far, estimate %.3g, measured %.6g, "
-                   "inverted %d\n",
-                   increment, toString(specimen.course().worst), specimen.course().iterations,
-                   specimen.course().error_estimate, rung.measure(specimen),
-                   specimen.invertedCells());
-    }
   }
   if (rung.afterwards) rung.afterwards(specimen);
   row.measured = rung.measure(specimen);
@@ -128,8 +119,8 @@ Row runRandomPatch(const std::string& method, int updates) {
   tissue.model = modelFor(method);
   Specimen specimen(tissue, solverFor(method));
   Row row;
+  Vec3 place = Vec3::Zero(), turn = Vec3::Zero();
   for (int update = 0; update < updates; ++update) {
-    static Vec3 place, turn;
     if (update % kUpdatesOfVisit == 0) {
       specimen.addPatch({Vec3(0.04, 0.04, 0.05), Vec3(0.06, 0.06, 0.05)});
       place = turn = Vec3::Zero();
@@ -190,10 +181,8 @@ void list(const std::vector<Rung>& rungs) {
 }
 
 int run(const std::string& name, const std::string& method, int updates) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    return took.count();
+  const auto seconds = [] {  // of the processor
+    return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
   };
   if (name == "random_patch") {
     const Row row = runRandomPatch(method, updates);
