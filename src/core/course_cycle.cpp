@@ -156,13 +156,14 @@ bool CourseIn<Real>::carryOn() {
 }
 
 template <typename Real>
-SolveStatus CourseIn<Real>::iterate(bool touched, bool carried_on, const Budget& budget) {
+SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget& budget) {
   keepPlace(start_);
   first_left_ = -1.0;
+  farthest_ = 0.0;
   fresh_ = true;
   conjugate_ = false;
-  SolveStatus status = look(touched);
-  for (; status == SolveStatus::kLate; status = look(touched)) {
+  SolveStatus status = look(changed);
+  for (; status == SolveStatus::kLate; status = look(changed)) {
     if (cycles_ > 0 && budget.isSpent()) break;
     advance();
     ++cycles_;

@@ -12,9 +12,12 @@ namespace {
 // of the spacing: off rest by less, a node is at rest
 constexpr double kMostLeft = 0.9;  // of the length left before cycles, to learn from them
 // of the length left before cycles, to learn from them
-constexpr double kMostFactor = 8.0;  // that they may show
-// that they may show
-constexpr double kRemembered = 0.9;  // of the factor, from cycle to cycle
+constexpr double kMostFactor = 1000.0;  // that long solves may show: what hangs by little moves far
+constexpr double kMostSoon = 32.0;      // that a solve's first kLong cycles may show
+constexpr int kLong = 15;               // cycles: after as many, the factor is not forgotten
+constexpr double kMostAtRest = 8.0;     // that a trial at rest may show
+constexpr double kFarther = 1.1;        // than ever from a solve's start: it gets on
+constexpr double kRemembered = 0.9;     // of the factor, from cycle to cycle
 // of the slope along a direction: no need to look further
 constexpr double kDip = 0.5;  // of the length left before a cycle: counts as left after it
 // in spacings
@@ -64,7 +67,7 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
     finest().smooth(steps_, true);
   }
   finest().load = weight;
-  least_factor_ = std::min(least_factor_, kMostFactor);
+  least_factor_ = std::min(least_factor_, kMostAtRest);
   factor_ = least_factor_;
 }
 
@@ -77,7 +80,7 @@ double CourseIn<Real>::lengthLeft() const {
 
 // Where the course stands: kOk, kLate while there is hope, kUnconverged.
 template <typename Real>
-SolveStatus CourseIn<Real>::look(bool touched) {
+SolveStatus CourseIn<Real>::look(bool changed) {
   levels_->findSmoothMotion();
   const bool raised = raiseLayers();
   if (raised) {
@@ -103,13 +106,20 @@ SolveStatus CourseIn<Real>::look(bool touched) {
     least_ = left_;
     keepPlace(best_);
     best_error_ = error_;
-    best_cycle_ = cycles_;
+    last_gain_ = cycles_;
   }
-  // Contacts change in ways that are small beside the displacement, but not to them.
-  const bool untried = cycles_ == 0 && touched;
+  // What swings far has more left on its way than where it began.
+  const double gone = distanceFrom(start_);
+  if (gone > kFarther * farthest_) {
+    farthest_ = gone;
+    last_gain_ = cycles_;
+  }
+  // Contacts, and what was let go, change in ways that are small beside the displacement, but not
+  // to them.
+  const bool untried = cycles_ == 0 && changed;
   if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
     return SolveStatus::kOk;
-  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > best_cycle_ + options_.patience;
+  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > last_gain_ + options_.patience;
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
 }
 
@@ -145,8 +155,9 @@ void CourseIn<Real>::learn(double trend_before) {
     factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
   }
   if (factor == 0.0) return;
-  factor = std::min(std::max(factor, least_factor_), kMostFactor);
-  factor_ = std::max(factor, kRemembered * factor_);
+  const bool is_long = cycles_ > kLong;
+  factor = std::min(std::max(factor, least_factor_), is_long ? kMostFactor : kMostSoon);
+  factor_ = std::max(factor, is_long ? factor_ : kRemembered * factor_);
 }
 
 template class CourseIn<float>;

@@ -49,10 +49,11 @@ SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
   prepare(shape, hold, disturbed);
   SolveReport report;
   if (seeds_.high[0] < 0) return report;
+  const bool changed = !hold.touched().empty() || !disturbed.empty();
   const bool carried_on = first_of_step_ && has_way_ && greatest_ > 0.0 && carryOn();
   first_of_step_ = false;
   for (int round = 0; round < kMostTurns; ++round) {
-    report.status = iterate(!hold.touched().empty(), carried_on, budget);
+    report.status = iterate(changed, carried_on, budget);
     writeBack(shape, hold);
     if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
   }

@@ -57,13 +57,13 @@ class CourseIn : public LayeredCourse {
 
   // course_error.cpp: how far it is.
   void findLeastFactor(const LatticeState& state);
-  SolveStatus look(bool touched);
+  SolveStatus look(bool changed);
   void learn(double trend_before);
   bool isBalanced() const;
   double lengthLeft() const;
 
   // course_cycle.cpp: how it goes on.
-  SolveStatus iterate(bool touched, bool carried_on, const Budget& budget);
+  SolveStatus iterate(bool changed, bool carried_on, const Budget& budget);
   bool carryOn();
   void advance();
   void goPlainly(const Vector& from);
@@ -102,7 +102,8 @@ class CourseIn : public LayeredCourse {
   double trend_ = 0.0;                      // of the length left
   double error_ = 0.0, error_after_ = 0.0;  // estimates: now, after one more cycle
   double least_ = 0.0, best_error_ = 1.0;
-  int best_cycle_ = 0;
+  int last_gain_ = 0;      // cycle that led to less left, or farther
+  double farthest_ = 0.0;  // from start_
   double greatest_ = 0.0;  // unbalanced force at its start
   Vector start_, before_, best_;
   Vector force_before_, way_, direction_, earlier_force_;

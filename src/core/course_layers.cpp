@@ -65,6 +65,7 @@ void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
   confine(wholeBox());
   finest().findForces(true);
   for (const int entry : finest().nodesOutOfBalance(layerMotion())) addSeed(entry);
+  for (const int node : disturbed) addSeed(levels_->entryOf(node));
 }
 
 template <typename Real>

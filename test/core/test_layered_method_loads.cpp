@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "layered_fixtures.h"
+#include "robot_tissue/core/cut.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {
@@ -96,6 +97,38 @@ TEST(LayeredLoads, RegionsAHundredTimesStifferAndSofter) {
       expectHonest(block, report, exact, 1e-3, 20.0);
     }
   }
+}
+
+// What hangs by one spring swings far under forces that are small beside those of a press.
+TEST(LayeredLoads, BarThatHangsByOneSpringSwingsBackWhenLetGo) {
+  TissueConfig config = elasticBlockOf(20, 4, 4, 0.45);
+  const double h = config.spacing;
+  config.fixed.push_back({Vec3(-1.0, -1.0, 3.21 * h), Vec3(1.0, 1.0, 1.0)});
+  LayeredBlock block(config);
+  const std::vector<std::vector<Vec3>> cuts = {{{-h, 1.5 * h, -h},
+                                                {21 * h, 1.5 * h, -h},
+                                                {21 * h, 1.5 * h, 1.5 * h},
+                                                {-h, 1.5 * h, 1.5 * h}},
+                                               {{0.5 * h, -h, 1.5 * h},
+                                                {21 * h, -h, 1.5 * h},
+                                                {21 * h, 1.5 * h, 1.5 * h},
+                                                {0.5 * h, 1.5 * h, 1.5 * h}},
+                                               {{-h, 0.5 * h, 1.5 * h},
+                                                {0.5 * h, 0.5 * h, 1.5 * h},
+                                                {0.5 * h, 1.5 * h, 1.5 * h},
+                                                {-h, 1.5 * h, 1.5 * h}}};
+  for (const std::vector<Vec3>& corners : cuts) {
+    sever(block.lattice, springsAcross(block.lattice, block.state, corners), block.state,
+          block.model.splitCells());
+  }
+  LoadingPatch end;
+  end.name = "end";
+  end.nodes = block.lattice.nodesIn({Vec3(20 * h, 0.0, 0.0), Vec3(20 * h, h, h)});
+  end.displacement.assign(end.nodes.size(), Vec3(0.0, 0.0, -4.0 * h));
+  ASSERT_EQ(block.solve({end}).status, SolveStatus::kOk);
+  block.method.forget();
+  EXPECT_EQ(block.solve({}, end.nodes).status, SolveStatus::kOk);
+  for (const Vec3& way : block.state.displacement) EXPECT_LT(way.norm(), 1e-3 * h);
 }
 
 TEST(LayeredLoads, TwoPatchesUnderGravityAddUp) {

@@ -21,8 +21,8 @@ struct LayeredOptions {
   double tolerance = 0.01;  // of error_estimate
   double max_ms = 0.0;      // 0 = no budget; the cycle under way is finished, at least one is made
   int threads = 1;          // the result is the same with any number
-  int max_cycles = 300;
-  int patience = 40;         // cycles without a better shape
+  int max_cycles = 2000;
+  int patience = 200;        // cycles that led neither to a better shape nor farther
   double patch_step = 0.5;   // longest motion of a patch in one solve, in spacings
   double line_step = 2.0;    // of a node in one cycle, likewise
   double layer_share = 0.1;  // of the tolerance: motion below which no further layer is raised
