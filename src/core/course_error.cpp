@@ -110,7 +110,7 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   }
   // What swings far has more left on its way than where it began.
   const double gone = distanceFrom(start_);
-  if (gone > kFarther * farthest_) {
+  if (!in_contact_ && gone > kFarther * farthest_) {
     farthest_ = gone;
     last_gain_ = cycles_;
   }
@@ -119,7 +119,9 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   const bool untried = cycles_ == 0 && changed;
   if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
     return SolveStatus::kOk;
-  const bool hopeless = cycles_ >= options_.max_cycles || cycles_ > last_gain_ + options_.patience;
+  const int most = in_contact_ ? options_.max_cycles_in_contact : options_.max_cycles;
+  const int patience = in_contact_ ? options_.patience_in_contact : options_.patience;
+  const bool hopeless = cycles_ >= most || cycles_ > last_gain_ + patience;
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
 }
 
@@ -155,7 +157,7 @@ void CourseIn<Real>::learn(double trend_before) {
     factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
   }
   if (factor == 0.0) return;
-  const bool is_long = cycles_ > kLong;
+  const bool is_long = !in_contact_ && cycles_ > kLong;
   factor = std::min(std::max(factor, least_factor_), is_long ? kMostFactor : kMostSoon);
   factor_ = std::max(factor, is_long ? factor_ : kRemembered * factor_);
 }

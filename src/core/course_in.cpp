@@ -49,7 +49,7 @@ SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
   prepare(shape, hold, disturbed);
   SolveReport report;
   if (seeds_.high[0] < 0) return report;
-  const bool changed = !hold.touched().empty() || !disturbed.empty();
+  const bool changed = in_contact_ || !disturbed.empty();
   const bool carried_on = first_of_step_ && has_way_ && greatest_ > 0.0 && carryOn();
   first_of_step_ = false;
   for (int round = 0; round < kMostTurns; ++round) {
@@ -76,6 +76,7 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
   findSeeds(shape, hold, disturbed);
   confine(aroundSeeds());
   finest().findForces(true);
+  in_contact_ = !hold.touched().empty();
   cycles_ = 0;
   greatest_ = 0.0;
   for (const Span& span : finest().spans()) {

@@ -97,6 +97,7 @@ class CourseIn : public LayeredCourse {
   double factor_ = 1.0;  // of the length left: what cycles showed to be left
 
   // Of the solve under way; lengths in spacings.
+  bool in_contact_ = false;
   int cycles_ = 0;
   double left_ = 0.0, left_before_ = 0.0, first_left_ = 0.0;
   double trend_ = 0.0;                      // of the length left

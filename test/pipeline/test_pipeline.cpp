@@ -105,14 +105,14 @@ TEST_P(PressedBlock, JumpIsReportedAndSurvived) {
 }
 
 // Walked in from outside, it presses as if it had been watched on its way, with rigid patches up to
-// the phase of the load steps.
+// the phase of the load steps, else up to that of flat triangles under a round tool.
 TEST_P(PressedBlock, ToolThatAppearsInsideIsWalkedIn) {
   EXPECT_TRUE(pipeline_.step(pressed(0.005)).was_inside);
   const double force = tool().force_on_tool.z();
   EXPECT_LT(tool().max_penetration, GetParam().hair());
   Pipeline watched = anotherPipeline();
   walk(watched, -0.001, 0.005);
-  const double share = GetParam().patch == ToolConfig::Patch::kRigid ? 0.3 : 0.03;
+  const double share = GetParam().patch == ToolConfig::Patch::kRigid ? 0.3 : 0.06;
   EXPECT_NEAR(force, watched.report().tools.front().force_on_tool.z(), share * force);
 }
 
