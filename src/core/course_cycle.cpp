@@ -9,18 +9,12 @@
 namespace robot_tissue {
 namespace {
 
-// of the factor, from cycle to cycle
-constexpr double kBlownUp = 100.0;  // times the length left when a solve begins
-// times the length left when a solve begins
-constexpr double kSlow = 0.3;  // of the length left before a cycle: then gradients help
-// of the length left before a cycle: then gradients help
-constexpr double kFlatEnough = 0.3;  // of the slope along a direction: no need to look further
-// of the length left before a cycle: counts as left after it
+constexpr double kBlownUp = 100.0;      // times the length left when a solve begins
+constexpr double kSlow = 0.3;           // of the length left before a cycle: then gradients help
+constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no need to look further
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
-// of the given force: unbalanced, where nothing holds
-constexpr int kTrials = 8;  // of the length along it
-// rad
-constexpr int kPlainSteps = 8;  // of the smoother, where a cycle led nowhere
+constexpr int kTrials = 8;              // of the length along a direction
+constexpr int kPlainSteps = 8;          // of the smoother, where a cycle led nowhere
 
 }  // namespace
 
@@ -180,9 +174,16 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
   const bool moves = cycles_ > 0 || carried_on || error_ > options_.tolerance;
   if (status == SolveStatus::kOk && moves && left_ > 0.0) {
     error_ = error_after_;
+    if (conjugate_) keepPlace(before_);
+    const double most = unbalanced();
     finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
     finest().findForces(true);
     finest().smooth(1, true);
+    if (conjugate_ && unbalanced() > most) {
+      putBack(before_);
+      finest().findForces(true);
+      advance();
+    }
   }
   return status;
 }

@@ -9,27 +9,22 @@
 namespace robot_tissue {
 namespace {
 
-// of the spacing: off rest by less, a node is at rest
-constexpr double kMostLeft = 0.9;  // of the length left before cycles, to learn from them
-// of the length left before cycles, to learn from them
+constexpr double kMostLeft = 0.9;       // of the length left before cycles, to learn from them
 constexpr double kMostFactor = 1000.0;  // that long solves may show: what hangs by little moves far
 constexpr double kMostSoon = 32.0;      // that a solve's first kLong cycles may show
 constexpr int kLong = 15;               // cycles: after as many, the factor is not forgotten
 constexpr double kMostAtRest = 8.0;     // that a trial at rest may show
 constexpr double kFarther = 1.1;        // than ever from a solve's start: it gets on
 constexpr double kRemembered = 0.9;     // of the factor, from cycle to cycle
-// of the slope along a direction: no need to look further
-constexpr double kDip = 0.5;  // of the length left before a cycle: counts as left after it
-// in spacings
-constexpr double kLeastAfter = 0.6;  // of the length left before a cycle: is after it
-// of the greatest stiffness, in nodes' stiffnesses
-constexpr int kTrialCycles = 6;  // that show how much of what is left they see
-// that show how much of what is left they see
-constexpr double kTrialMotion = 1e-3;  // in spacings
-// times those there are
+constexpr double kDip = 0.5;            // of the length left before a cycle: counts as left after
+constexpr double kLeastAfter = 0.6;     // of the length left before a cycle: is after it
+constexpr int kTrialCycles = 6;         // that show how much of what is left they see
+constexpr double kTrialMotion = 1e-3;   // in spacings
 constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single precision knows
-// of the force on a patch: what single precision knows
-constexpr double kFalling = 0.5;  // of the given force: unbalanced, where nothing holds
+constexpr int kFirstMark = 16;          // cycles: from then on, the latest half tells of slow ones
+constexpr int kShortest = 4;            // cycles since the mark
+constexpr double kMostUnbalanced = 0.1;  // of the greatest force
+constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
 
 }  // namespace
 
@@ -101,6 +96,7 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   if (first_left_ < 0.0) {
     first_left_ = left_;
     least_ = std::numeric_limits<double>::infinity();
+    mark_left_ = 0.0;
   }
   if (left_ < least_) {
     least_ = left_;
@@ -125,9 +121,33 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
 }
 
+// The greatest force out of balance.
+template <typename Real>
+double CourseIn<Real>::unbalanced() const {
+  double unbalanced = 0.0;
+  for (const Span& span : finest().spans()) {
+    for (const auto& values : finest().force) {
+      unbalanced = std::max(
+          unbalanced, static_cast<double>(greatestOf(values.data() + span.first, span.count)));
+    }
+  }
+  return unbalanced;
+}
+
+// What hangs by little moves far under forces that cycles hardly lessen.
+template <typename Real>
+bool CourseIn<Real>::isCalm() const {
+  double most = std::max(greatest_, held_);
+  for (const GroupVector& load : finest().firm.load) {
+    most = std::max(most, load.template head<3>().norm());
+  }
+  return unbalanced() <= kMostUnbalanced * most;
+}
+
 // Forces on patches, and on the whole, have found their answer.
 template <typename Real>
 bool CourseIn<Real>::isBalanced() const {
+  if (!isCalm()) return false;
   Vec3 given = Vec3::Zero(), net = Vec3::Zero();
   for (std::size_t group = 0; group < finest().firm.groups.size(); ++group) {
     const Vec3 load = finest().firm.load[group].template head<3>();
@@ -155,6 +175,14 @@ void CourseIn<Real>::learn(double trend_before) {
   }
   if (cycles_ > 1 && trend_ < kMostLeft * first_left_) {
     factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
+  }
+  if (cycles_ >= mark_cycle_ + kShortest && trend_ < kMostLeft * mark_left_) {
+    factor = std::max(factor, distanceFrom(mark_) / (mark_left_ - trend_));
+  }
+  if ((cycles_ & (cycles_ - 1)) == 0 && cycles_ >= kFirstMark) {
+    keepPlace(mark_);
+    mark_left_ = trend_;
+    mark_cycle_ = cycles_;
   }
   if (factor == 0.0) return;
   const bool is_long = !in_contact_ && cycles_ > kLong;

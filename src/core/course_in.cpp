@@ -8,15 +8,11 @@
 namespace robot_tissue {
 namespace {
 
-// of the last direction, beside a new one
-constexpr int kFewestSteps = 3;  // of the smoother in a cycle
-// of the smoother in a cycle
-constexpr double kStepsOfRoot = 1.6;  // of the greatest stiffness, in nodes' stiffnesses
-// of the length along it
+constexpr int kFewestSteps = 3;            // of the smoother in a cycle
+constexpr double kStepsOfRoot = 1.6;       // likewise, of the root of the greatest stiffness
 constexpr double kSinglePrecision = 1e-3;  // tolerance that single precision reaches
 constexpr int kMostTurns = 20;             // solves, until turning patches have settled
-// solves, until turning patches have settled
-constexpr double kTurned = 1e-4;  // rad
+constexpr double kTurned = 1e-4;           // rad
 
 }  // namespace
 
@@ -27,6 +23,7 @@ void CourseIn<Real>::forget() {
   has_start_ = has_way_ = false;
   left_displacement_.clear();
   loaded_.clear();
+  held_ = 0.0;
 }
 
 template <typename Real>
@@ -78,13 +75,7 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
   finest().findForces(true);
   in_contact_ = !hold.touched().empty();
   cycles_ = 0;
-  greatest_ = 0.0;
-  for (const Span& span : finest().spans()) {
-    for (const auto& values : finest().force) {
-      const double here = greatestOf(values.data() + span.first, span.count);
-      greatest_ = std::max(greatest_, here);
-    }
-  }
+  greatest_ = unbalanced();
 }
 
 // Remembers the way of the last step, if anything moved in it.
@@ -136,20 +127,14 @@ bool CourseIn<Real>::settlePatches(LoadedShape& shape, const PatchHold& hold) {
 }
 
 template <typename Real>
-void CourseIn<Real>::answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report) const {
-  const double held = std::max({answerPatches(shape, hold, report), greatest_, kStill});
-  double unbalanced = 0.0;
+void CourseIn<Real>::answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report) {
+  held_ = answerPatches(shape, hold, report);
+  double left = unbalanced();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     if (!byForce(shape.patches[index])) continue;
-    unbalanced = std::max(unbalanced, finest().firm.force[index].template head<3>().norm());
+    left = std::max(left, finest().firm.force[index].template head<3>().norm());
   }
-  for (const Span& span : finest().spans()) {
-    for (const auto& values : finest().force) {
-      const double here = greatestOf(values.data() + span.first, span.count);
-      unbalanced = std::max(unbalanced, here);
-    }
-  }
-  report.residual = unbalanced / held;
+  report.residual = left / std::max({held_, greatest_, kStill});
   report.active_nodes = nodesInBox(hold);
   report.layers = layersRaised();
 }

@@ -39,7 +39,7 @@ class CourseIn : public LayeredCourse {
   void noteStep();
   bool settlePatches(LoadedShape& shape, const PatchHold& hold);
   void writeBack(LoadedShape& shape, const PatchHold& hold) const;
-  void answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
+  void answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report);
   double answerPatches(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
 
   // course_layers.cpp: which nodes are visited.
@@ -59,6 +59,8 @@ class CourseIn : public LayeredCourse {
   void findLeastFactor(const LatticeState& state);
   SolveStatus look(bool changed);
   void learn(double trend_before);
+  double unbalanced() const;
+  bool isCalm() const;
   bool isBalanced() const;
   double lengthLeft() const;
 
@@ -106,7 +108,10 @@ class CourseIn : public LayeredCourse {
   int last_gain_ = 0;      // cycle that led to less left, or farther
   double farthest_ = 0.0;  // from start_
   double greatest_ = 0.0;  // unbalanced force at its start
-  Vector start_, before_, best_;
+  double held_ = 0.0;      // greatest force of a patch on a node, after the last solve
+  int mark_cycle_ = 0;     // of mark_
+  double mark_left_ = 0.0;
+  Vector start_, before_, best_, mark_;
   Vector force_before_, way_, direction_, earlier_force_;
   double promised_ = 0.0;   // work of earlier_force_ in the cycle's own motion
   bool fresh_ = true;       // no direction yet

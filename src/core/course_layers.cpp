@@ -8,7 +8,6 @@
 namespace robot_tissue {
 namespace {
 
-// around patches and contacts
 constexpr double kMoreLayers = 1.5;  // times those there are
 
 }  // namespace

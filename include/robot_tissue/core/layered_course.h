@@ -22,7 +22,7 @@ struct LayeredOptions {
   double max_ms = 0.0;      // 0 = no budget; the cycle under way is finished, at least one is made
   int threads = 1;          // the result is the same with any number
   int max_cycles = 2000;
-  int patience = 200;  // cycles that led neither to a better shape nor farther
+  int patience = 1000;  // cycles that led neither to a better shape nor farther
   // Likewise where contacts are: what goes far there slips, and a smaller step follows it better.
   int max_cycles_in_contact = 300;
   int patience_in_contact = 40;
