@@ -115,6 +115,7 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   const bool untried = cycles_ == 0 && changed;
   if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
     return SolveStatus::kOk;
+  if (cycles_ > 0 && wentTooFar()) return SolveStatus::kUnconverged;
   const int most = in_contact_ ? options_.max_cycles_in_contact : options_.max_cycles;
   const int patience = in_contact_ ? options_.patience_in_contact : options_.patience;
   const bool hopeless = cycles_ >= most || cycles_ > last_gain_ + patience;
@@ -142,6 +143,16 @@ bool CourseIn<Real>::isCalm() const {
     most = std::max(most, load.template head<3>().norm());
   }
   return unbalanced() <= kMostUnbalanced * most;
+}
+
+// What went farther is cut back: the rest of the solve would be in vain.
+template <typename Real>
+bool CourseIn<Real>::wentTooFar() const {
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    const Vec3 way = levels_->displacementOf(limits_[i].node) - limited_from_[i];
+    if (way.norm() > limits_[i].longest) return true;
+  }
+  return false;
 }
 
 // Forces on patches, and on the whole, have found their answer.

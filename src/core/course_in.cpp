@@ -67,6 +67,10 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
   findLevels(shape.state);
   levels_->bind(shape, hold);
   levels_->setDisplacement(shape.state.displacement);
+  limited_from_.clear();
+  for (const NodeLimit& limit : limits_) {
+    limited_from_.push_back(shape.state.displacement[at(limit.node)]);
+  }
   if (first_of_step_) noteStep();
   free_nodes_ = 0.0;
   for (const std::uint8_t held : hold.held()) free_nodes_ += held != kAllHeld ? 1.0 : 0.0;

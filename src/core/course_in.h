@@ -19,6 +19,7 @@ class CourseIn : public LayeredCourse {
 
   SolveReport run(LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed,
                   const Budget& budget) override;
+  void limitWays(std::vector<NodeLimit> limits) override { limits_ = std::move(limits); }
   void beginStep() override { first_of_step_ = true; }
   void forget() override;
 
@@ -63,6 +64,7 @@ class CourseIn : public LayeredCourse {
   bool isCalm() const;
   bool isBalanced() const;
   double lengthLeft() const;
+  bool wentTooFar() const;
 
   // course_cycle.cpp: how it goes on.
   SolveStatus iterate(bool changed, bool carried_on, const Budget& budget);
@@ -94,7 +96,9 @@ class CourseIn : public LayeredCourse {
   double free_nodes_ = 0.0;
   LevelBox seeds_;                // what the layers grow around; none: high below low
   double layers_ = kFirstLayers;  // around them
-  int steps_ = 3;                 // of the smoother in a cycle
+  std::vector<NodeLimit> limits_;
+  std::vector<Vec3> limited_from_;  // where these nodes were when the solve began (m)
+  int steps_ = 3;                   // of the smoother in a cycle
   double least_factor_ = 1.0;
   double factor_ = 1.0;  // of the length left: what cycles showed to be left
 

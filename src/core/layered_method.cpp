@@ -1,5 +1,6 @@
 #include "robot_tissue/core/layered_method.h"
 
+#include <cmath>
 #include <utility>
 
 namespace robot_tissue {
@@ -12,6 +13,14 @@ LayeredMethod::LayeredMethod(const Lattice& lattice, const ElasticModel& model,
       course_(makeLayeredCourse(lattice, model, options)) {}
 
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
+
+void LayeredMethod::limitWays(std::vector<double> longest) {
+  std::vector<LayeredCourse::NodeLimit> limits;
+  for (std::size_t node = 0; node < longest.size(); ++node) {
+    if (std::isfinite(longest[node])) limits.push_back({static_cast<int>(node), longest[node]});
+  }
+  course_->limitWays(std::move(limits));
+}
 
 SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
                                  const std::vector<int>& disturbed, LatticeState& state) {

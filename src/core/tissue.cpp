@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "robot_tissue/core/cells.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double kToolStep = 0.2;   // of the spacing
 constexpr int kContactRounds = 16;  // in which the shape is what was solved for
-constexpr int kMostRounds = 30;
+constexpr int kMostRounds = 80;
 constexpr int kMostIterations = 600;  // of the rounds of one load step
 
 }  // namespace
@@ -176,6 +177,23 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   return report;
 }
 
+// A node may go as far as the vertices that it carries.
+void Tissue::limitWays() {
+  if (!contact_rounds_.longest) return;
+  const std::vector<double> of_vertices = contact_rounds_.longest();
+  std::vector<double> of_nodes;
+  if (!of_vertices.empty()) {
+    of_nodes.assign(state_.displacement.size(), std::numeric_limits<double>::infinity());
+  }
+  for (std::size_t vertex = 0; vertex < of_vertices.size(); ++vertex) {
+    for (const NodeWeight& carrier : surface_.carriers[vertex]) {
+      double& longest = of_nodes[at(carrier.node)];
+      longest = std::min(longest, of_vertices[vertex]);
+    }
+  }
+  method_->limitWays(std::move(of_nodes));
+}
+
 // As far as the contacts allow. False: there is no need to.
 bool Tissue::goBack(const std::vector<Vec3>& before) {
   const double share = contact_rounds_.share(before);
@@ -190,6 +208,7 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const std::vector<Vec3> last_good = state_.displacement;
   const std::vector<LoadingPatch> last_good_patches = patches_;
+  limitWays();
   SolveReport report = method_->solve(patches_, disturbed, state_);
   if (!hasOnlyFiniteNumbers(report)) {
     state_.displacement = last_good;

@@ -212,14 +212,18 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
   return std::abs(drag_now - drag_before) <= kSameForce * drag_now;
 }
 
+bool ToolContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
+  double free = 0.0;
+  for (const auto& [node, weight] : carriers) {
+    if (held[at(node)] == kGrasped) return false;
+    if (held[at(node)] == 0) free += weight;
+  }
+  return free >= kLeastFree;
+}
+
 void ToolContacts::forgetLost(const Held& held) {
   const auto lost = [&](const Touch& touch) {
-    double free = 0.0;
-    for (const auto& [node, weight] : touch.spring.carriers) {
-      if (held[at(node)] == kGrasped) return true;
-      if (held[at(node)] == 0) free += weight;
-    }
-    return !touch.found || free < kLeastFree;
+    return !touch.found || !givesWay(touch.spring.carriers, held);
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
 }

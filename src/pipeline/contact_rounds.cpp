@@ -16,28 +16,52 @@ constexpr double kClear = 0.03;       // of the spacing: off a tool, where its e
 constexpr double kDetour = 2.0;       // of the nearest way out: the surface's may be so long,
 constexpr double kLongDetour = 0.5;   // and so much of the spacing longer
 
+bool isIn(const Box& box, const Vec3& point) {
+  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+}
+
 }  // namespace
 
 // Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
 // no vertex near a link goes farther at once than half a spacing, or half the link's thickness.
+std::vector<Pipeline::Surroundings> Pipeline::surroundings() const {
+  const double spacing = tissue_.lattice().spacing();
+  std::vector<Surroundings> all;
+  for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
+    if (isAway(pose_.links[link])) continue;
+    Surroundings here;
+    here.box = finder_.bounds(link, pose_.links[link]);
+    here.box.min.array() -= spacing;
+    here.box.max.array() += spacing;
+    here.longest = std::min(kLongestWay * spacing, kShareOfTool * finder_.thickness(link));
+    all.push_back(here);
+  }
+  return all;
+}
+
+std::vector<double> Pipeline::longestWays() {
+  const Stopwatch watch(report_.contact_ms);
+  const std::vector<Vec3>& now = tissue_.vertices();
+  std::vector<double> longest;
+  for (const Surroundings& near : surroundings()) {
+    longest.resize(now.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      if (isIn(near.box, now[vertex])) longest[vertex] = std::min(longest[vertex], near.longest);
+    }
+  }
+  return longest;
+}
+
 double Pipeline::contactShare(const std::vector<Vec3>& before) {
   const Stopwatch watch(report_.contact_ms);
-  const double spacing = tissue_.lattice().spacing();
   deform(tissue_.surface(), before, vertices_);
   const std::vector<Vec3>& now = tissue_.vertices();
   double share = 1.0;
-  for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
-    const double longest = std::min(kLongestWay * spacing, kShareOfTool * finder_.thickness(link));
-    Box box = finder_.bounds(link, pose_.links[link]);
-    box.min.array() -= spacing;
-    box.max.array() += spacing;
-    const auto inside = [&](const Vec3& point) {
-      return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
-    };
+  for (const Surroundings& near : surroundings()) {
     for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-      if (!inside(now[vertex]) && !inside(vertices_[vertex])) continue;
+      if (!isIn(near.box, now[vertex]) && !isIn(near.box, vertices_[vertex])) continue;
       const double way = (now[vertex] - vertices_[vertex]).norm();
-      if (way > longest) share = std::min(share, longest / way);
+      if (way > near.longest) share = std::min(share, near.longest / way);
     }
   }
   return share;
@@ -48,9 +72,9 @@ bool Pipeline::contactRound(std::vector<LoadingPatch>& of_tools, bool whole, boo
   const bool new_surface = surface_version_ != tissue_.surfaceVersion();
   surface_version_ = tissue_.surfaceVersion();
   if (new_surface) contacts_.clear();
-  const ContactSet contacts = touchesAt(pose_);
-  left_inside_ = deepest(contacts);
   const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
+  const ContactSet contacts = touchesAt(pose_, held);
+  left_inside_ = deepest(contacts);
   if (new_surface) {
     contacts_.ride(pose_, tissue_);
     contacts_.meet(contacts, pose_, tissue_, held);
@@ -113,9 +137,15 @@ ContactSet Pipeline::contactsAt(const RobotPose& pose, const std::vector<Vec3>& 
   return finder_.find(pose, tissue_.surface(), vertices_, kNear * tissue_.lattice().spacing());
 }
 
-// With the ways out that turnOut finds.
-ContactSet Pipeline::touchesAt(const RobotPose& pose) {
+// Of points that give way, with the ways out that turnOut finds.
+ContactSet Pipeline::touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held) {
   ContactSet contacts = contactsAt(pose, tissue_.state().displacement);
+  const auto stands = [&](const Contact& contact) {
+    const auto carriers = carriersAt(tissue_.surface(), contact.triangle, contact.barycentric);
+    return !ToolContacts::givesWay(carriers, held);
+  };
+  auto& all = contacts.contacts;
+  all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(report_.contact_ms);
   outwards_.assign(vertices_.size(), Vec3::Zero());
   for (const MeshTriangle& corners : tissue_.surface().triangles) {
@@ -125,6 +155,11 @@ ContactSet Pipeline::touchesAt(const RobotPose& pose) {
   }
   for (Contact& contact : contacts.contacts) turnOut(pose, contact);
   return contacts;
+}
+
+void Pipeline::meet(const RobotPose& pose) {
+  const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
+  contacts_.meet(touchesAt(pose, held), pose, tissue_, held);
 }
 
 // A tool that has left the surface behind it may still be where the surface is at rest.

@@ -43,7 +43,8 @@ Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
       contacts_({}, {}) {
   surface_version_ = tissue_.surfaceVersion();
   takeTools(tools);
-  tissue_.setContactRounds({[this](const auto& before) { return contactShare(before); },
+  tissue_.setContactRounds({[this] { return longestWays(); },
+                            [this](const auto& before) { return contactShare(before); },
                             [this](auto& patches, bool whole, bool last) {
                               return contactRound(patches, whole, last);
                             }});
@@ -121,14 +122,15 @@ bool Pipeline::advance(const RobotPose& pose) {
   contacts_.ride(pose, tissue_);  // patches move with their tools
   for (int round = 0; round < kRigidRounds; ++round) {
     patches_.ride(pose, tissue_);
-    if (round == 0) contacts_.meet(touchesAt(pose), pose, tissue_, patches_.heldNodes(tissue_));
+    if (round == 0) meet(pose);
     pushRigid(pose);  // robot pose -> contacts -> loading patches
     std::vector<LoadingPatch> patches = patchesOfTools();
     const std::vector<LoadingPatch>& before = tissue_.patches();
     if (!anyToolIn(patches) && !anyToolIn(before)) break;
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
     follow(std::move(patches));  // loading patches -> solve
-    for (int more = 0; good && more < kMoreSolves && isUnsettled(); ++more) {
+    for (int more = 0; good && more < kMoreSolves && isUnsettled() && !isLost(good->shape);
+         ++more) {
       follow(patchesOfTools());
     }
     if (good && isLost(good->shape)) {
@@ -231,7 +233,7 @@ void Pipeline::carryOn() {
 SolveReport Pipeline::settle() {
   contacts_.ride(pose_, tissue_);
   patches_.ride(pose_, tissue_);
-  contacts_.meet(touchesAt(pose_), pose_, tissue_, patches_.heldNodes(tissue_));
+  meet(pose_);
   const SolveReport report = tissue_.follow(patchesOfTools(), tissue_.freeNodes(), true);
   touch();
   return report;

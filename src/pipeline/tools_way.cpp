@@ -85,10 +85,12 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     const double there = whole ? gone + stride : steps;
     const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
     const bool followed = advance(on_the_way);
-    if (!followed) longest = 0.5 * std::min(longest, there - gone);
-    if (longest < kShortest) {
-      report_.lost = true;
-      return came();
+    if (!followed) {
+      if (there - gone <= kShortest) {
+        report_.lost = true;
+        return came();
+      }
+      longest = kShortest;
     }
     if (followed) {
       gone = there;
@@ -163,7 +165,7 @@ void Pipeline::startAnew(const RobotPose& pose) {
 void Pipeline::lieDown() {
   if (tissue_.isUntouched()) return;
   contacts_.ride(pose_, tissue_);
-  contacts_.meet(touchesAt(pose_), pose_, tissue_, patches_.heldNodes(tissue_));
+  meet(pose_);
   tissue_.follow(patchesOfTools(), {}, !supports_.empty());
 }
 

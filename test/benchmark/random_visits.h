@@ -30,6 +30,8 @@ class RandomVisits {
   // From the rest shape until all tools have left.
   struct Sums {
     int load_steps = 0, not_finite = 0, inverted = 0, unconverged = 0;
+    int lost = 0;                 // updates in which no shape could follow the tools
+    double depth_followed = 0.0;  // m, greatest where one could
     double force = 0.0, depth = 0.0, displaced = 0.0;  // greatest: N, m, m
     int inverted_at_leave = 0;
     double left = 0.0;            // m
@@ -127,15 +129,18 @@ class RandomVisits {
     if (solve.status == SolveStatus::kUnconverged) ++sums_.unconverged;
     sums_.force = std::max(sums_.force, force);
     sums_.depth = std::max(sums_.depth, depth);
+    if (report.lost) ++sums_.lost;
+    if (!report.lost) sums_.depth_followed = std::max(sums_.depth_followed, depth);
     sums_.displaced = std::max(sums_.displaced, displaced());
     if (trial_.first_told < 0 || motion < trial_.first_told) return;
     std::fprintf(stderr,
                  "motion %d: %d load steps, %.0f ms (contact %.0f, solve %.0f, %d iterations), %s, "
                  "inverted %d, force %.3f, depth %.3f mm, "
-                 "displaced %.2f mm%s\n",
+                 "displaced %.2f mm%s%s\n",
                  motion, report.substeps, took.count(), report.contact_ms, report.solve_ms,
                  solve.iterations, toString(solve.status), solve.inverted_cells, force, 1e3 * depth,
-                 1e3 * displaced(), report.was_inside ? ", was inside" : "");
+                 1e3 * displaced(), report.was_inside ? ", was inside" : "",
+                 report.lost ? ", lost" : "");
   }
 
   double displaced() const {

@@ -56,6 +56,12 @@ class LayeredCourse {
   // `disturbed`: nodes whose balance something else has disturbed.
   virtual SolveReport run(LoadedShape& shape, const PatchHold& hold,
                           const std::vector<int>& disturbed, const Budget& budget) = 0;
+  // How far nodes may go from where a solve begins (m).
+  struct NodeLimit {
+    int node = 0;
+    double longest = 0.0;
+  };
+  virtual void limitWays(std::vector<NodeLimit> limits) = 0;
   virtual void beginStep() = 0;
   virtual void forget() = 0;
 };

@@ -21,6 +21,7 @@ class LayeredMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   void beginStep(const LatticeState&) override { course_->beginStep(); }
+  void limitWays(std::vector<double> longest) override;
   void forget() override { course_->forget(); }
   bool findsEquilibrium() const override { return true; }
   double patchStep() const override;

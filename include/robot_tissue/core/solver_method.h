@@ -20,6 +20,10 @@ class SolverMethod {
   // The solves that follow, up to the next call, are of one load step.
   virtual void beginStep(const LatticeState&) {}
 
+  // How far each node may go in the solves that follow (m); empty: as far as it balances. A solve
+  // in which one went farther may end there, unconverged.
+  virtual void limitWays(std::vector<double>) {}
+
   // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
   virtual void forget() {}
 

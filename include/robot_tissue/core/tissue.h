@@ -63,6 +63,8 @@ class Tissue {
 
   // What is asked after each solve while tools touch.
   struct ContactRounds {
+    // Per vertex of the surface: how far it may go at once from where it is (m); empty: anywhere.
+    std::function<std::vector<double>()> longest;
     // Share of the way from these displacements to the present ones that may be gone at once: the
     // rest is solved for anew, with the contacts at that shape.
     std::function<double(const std::vector<Vec3>& before)> share;
@@ -115,6 +117,7 @@ class Tissue {
 
   SolveReport solve(const std::vector<int>& disturbed);
   void renewContacts();
+  void limitWays();
   bool goBack(const std::vector<Vec3>& before);
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   SolveReport solveOnce(const std::vector<int>& disturbed);

@@ -42,6 +42,10 @@ class ToolContacts {
   // each link (m).
   ToolContacts(std::vector<double> friction, std::vector<double> thickness);
 
+  // Whether a point with these carriers can be pushed; `held` as in meet().
+  static bool givesWay(const std::vector<NodeWeight>& carriers,
+                       const std::vector<std::uint8_t>& held);
+
   // The links go to where they are now, and planes and anchors with them.
   void ride(const RobotPose& pose, const Tissue& tissue);
 

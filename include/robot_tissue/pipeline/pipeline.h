@@ -126,6 +126,11 @@ class Pipeline {
     ToolContacts contacts;
     std::vector<bool> closed;
   };
+  // Of a link: in the box a vertex goes so far at once (m) and no farther.
+  struct Surroundings {
+    Box box;
+    double longest = 0.0;
+  };
   // A tool that a force drives.
   struct Drive {
     std::optional<Vec3> force;  // N
@@ -146,10 +151,13 @@ class Pipeline {
   void touch();
 
   // contact_rounds.cpp
+  std::vector<Surroundings> surroundings() const;
+  std::vector<double> longestWays();
   double contactShare(const std::vector<Vec3>& before);
   bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
-  ContactSet touchesAt(const RobotPose& pose);
+  ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
+  void meet(const RobotPose& pose);
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);
