@@ -91,6 +91,13 @@ SignedDistance CollisionShape::distance(const Vec3& point) const {
   return distance;
 }
 
+SignedDistance CollisionShape::distanceWithin(const Vec3& point, double bound) const {
+  if (!isMesh()) return distance(point);
+  SignedDistance distance = mesh_->distanceWithin(point, bound + shape_.padding);
+  distance.value -= shape_.padding;
+  return distance;
+}
+
 std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) const {
   // Written so that a point that is not finite is outside.
   const bool near = (point.array() >= bounds_.min.array() - reach).all() &&

@@ -25,6 +25,8 @@ class CollisionShape {
 
   // For points in the shape's own frame (m). Distances are from the padded shape.
   SignedDistance distance(const Vec3& point) const;
+  // Of a point that is not farther than `bound` (m) from the padded surface.
+  SignedDistance distanceWithin(const Vec3& point, double bound) const;
   // Nothing when the point is farther than `reach` (m), or not finite.
   std::optional<WayOut> wayOut(const Vec3& point, double reach) const;
   // Where the padded shape reaches farthest in a unit direction; not for meshes and planes.

@@ -79,9 +79,26 @@ struct ContactFinder::Impl {
   std::vector<Link> links;
   std::vector<std::string> warnings;
 
+  // What the last find() met.
+  struct Found {
+    RobotPose pose;
+    std::vector<Vec3> vertices;
+    std::vector<MeshTriangle> triangles;
+    std::vector<double> deepest;  // per link (m)
+  };
+  std::optional<double> deepestFound(std::size_t link, const Pose& tissue_T_link,
+                                     const Surface& surface,
+                                     const std::vector<Vec3>& vertices) const {
+    const bool same = link < found.deepest.size() && found.vertices == vertices &&
+                      found.triangles == surface.triangles &&
+                      found.pose.links[link].matrix() == tissue_T_link.matrix();
+    return same ? std::optional<double>(found.deepest[link]) : std::nullopt;
+  }
+
   // Scratch.
   LinkContacts contacts;
   SurfaceTree surface_tree;
+  Found found;
 };
 
 ContactFinder::~ContactFinder() = default;
@@ -147,6 +164,14 @@ ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
     impl_->contacts.find(placed(link.shapes, pose.links[i]), link.tool, static_cast<int>(i),
                          surface, vertices, margin, found);
   }
+  impl_->found.pose = pose;
+  impl_->found.vertices = vertices;
+  impl_->found.triangles = surface.triangles;
+  impl_->found.deepest.assign(impl_->links.size(), 0.0);
+  for (const Contact& contact : found.contacts) {
+    double& deepest = impl_->found.deepest[at(contact.link)];
+    deepest = std::max(deepest, contact.depth_m);
+  }
   return found;
 }
 
@@ -183,10 +208,13 @@ double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
     if (vertex.allFinite()) growBy({vertex, vertex}, surface_box);
   }
   if (here.empty() || !boxesMeet(boundsOf(here), surface_box, 0.0)) return 0.0;
-  ContactSet found;
-  impl_->contacts.find(here, 0, 0, surface, vertices, 0.0, found);
-  double deepest = 0.0;
-  for (const Contact& contact : found.contacts) deepest = std::max(deepest, contact.depth_m);
+  const auto known = impl_->deepestFound(link, tissue_T_link, surface, vertices);
+  double deepest = known.value_or(0.0);
+  if (!known) {
+    ContactSet found;
+    impl_->contacts.find(here, 0, 0, surface, vertices, 0.0, found);
+    for (const Contact& contact : found.contacts) deepest = std::max(deepest, contact.depth_m);
+  }
   const TriangleTree& tree = impl_->surface_tree.of(surface, vertices);
   for (std::size_t i = 0; i < here.size(); ++i) {
     deepest = deepestInside(here[i], impl_->links[link].surface_points[i], tree, deepest);

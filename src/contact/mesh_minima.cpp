@@ -44,10 +44,11 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
   if (!(area.norm() > 0.0)) return minima;
   // A distance changes by no more than the way.
   const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
-  const double at_center = shape.distance(center).value;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());
-  if (at_center - widest >= limit) return minima;
+  const auto out = shape.wayOut(center, limit + widest);
+  if (!out) return minima;
+  const double at_center = -out->depth_m;
 
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);
@@ -57,8 +58,10 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
   std::sort(faces.begin(), faces.end());
   for (const Vec3& seed : seedsOn(corners, mesh, faces, reach)) {
     const Vec3 start = pointOf(corners, seed);
-    if (isKnown(start, shape.distance(start).value, corners, minima)) continue;
-    const TriangleMinimum found = localMinimum(shape, corners, seed, accuracy);
+    const double bound = boundAfter(at_center, (start - center).norm());
+    const TriangleMinimum there{seed, shape.distanceWithin(start, bound)};
+    if (isKnown(start, there.distance.value, corners, minima)) continue;
+    const TriangleMinimum found = localMinimum(shape, corners, there, accuracy);
     if (found.distance.value < limit) keep(found, corners, minima);
   }
   std::stable_sort(minima.begin(), minima.end(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -25,6 +26,10 @@ class TrianglePlane {
     normal_ = area.normalized();
     to_b_ = ac.cross(area) / area.squaredNorm();
     to_c_ = area.cross(ab) / area.squaredNorm();
+    for (std::size_t k = 0; k < 3; ++k) {
+      start_[k] = corners[k];
+      outwards_[k] = (corners[(k + 1) % 3] - corners[k]).cross(normal_).stableNormalized();
+    }
   }
   double height(const Vec3& point) const { return normal_.dot(point - origin_); }
   Vec3 weights(const Vec3& point) const {
@@ -32,9 +37,26 @@ class TrianglePlane {
     const double c = to_c_.dot(point - origin_);
     return {1.0 - b - c, b, c};
   }
+  // How far a point is beyond the line of the edge from corner k to the next (m); < 0: on the
+  // triangle's side.
+  double beyond(std::size_t k, const Vec3& point) const {
+    return outwards_[k].dot(point - start_[k]);
+  }
+  // All of a face is farther than `reach` from the triangle, to one side of it.
+  bool isFar(const Corners& face, const std::array<double, 3>& heights, double reach) const {
+    const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
+    if (low > reach || high < -reach) return true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (beyond(k, face[0]) > reach && beyond(k, face[1]) > reach && beyond(k, face[2]) > reach) {
+        return true;
+      }
+    }
+    return false;
+  }
 
  private:
   Vec3 origin_, normal_, to_b_, to_c_;
+  std::array<Vec3, 3> start_, outwards_;
 };
 
 // Where a face of the mesh cuts the triangle.
@@ -59,9 +81,7 @@ std::optional<std::array<Vec3, 2>> onTriangle(const Vec3& from, const Vec3& to) 
 }
 
 std::optional<Slit> slitOf(int face, const Corners& face_corners, const Corners& corners,
-                           const TrianglePlane& plane) {
-  std::array<double, 3> heights;
-  for (std::size_t k = 0; k < 3; ++k) heights[k] = plane.height(face_corners[k]);
+                           const TrianglePlane& plane, const std::array<double, 3>& heights) {
   std::array<Vec3, 2> ends;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -144,23 +164,34 @@ bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
   return way.dot(away) <= kSquare * way.norm() * away.norm();
 }
 
-std::vector<int> sortedOnce(std::vector<int> numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
-}
+// Which numbers were named since begin(); keeps its array from call to call.
+class Marks {
+ public:
+  void begin(std::size_t count) {
+    if (named_in_.size() < count) named_in_.resize(count, 0);
+    ++round_;
+  }
+  bool isFirst(int number) { return std::exchange(named_in_[at(number)], round_) != round_; }
+
+ private:
+  std::vector<std::uint64_t> named_in_;
+  std::uint64_t round_ = 0;
+};
 
 // Nearest points of vertices whose neighbors are all farther from the triangle; corners of the
 // triangle are asked in any case.
 void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh,
                         const TrianglePlane& plane, double reach, const Corners& corners,
                         std::vector<Vec3>& seeds) {
+  thread_local Marks marks;
+  marks.begin(mesh.vertices().size());
   std::vector<int> vertices;
   for (const int face : faces) {
-    const MeshTriangle& t = mesh.triangles()[at(face)];
-    vertices.insert(vertices.end(), t.begin(), t.end());
+    for (const int vertex : mesh.triangles()[at(face)]) {
+      if (marks.isFirst(vertex)) vertices.push_back(vertex);
+    }
   }
-  for (const int number : sortedOnce(std::move(vertices))) {
+  for (const int number : vertices) {
     const Vec3& vertex = mesh.vertices()[at(number)];
     if (std::abs(plane.height(vertex)) > reach) continue;
     const Vec3 weights = nearestInTriangle(vertex, corners);
@@ -194,12 +225,15 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
 void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
                       const TrianglePlane& plane, double reach, const Corners& corners,
                       std::vector<Vec3>& seeds) {
+  thread_local Marks marks;
+  marks.begin(mesh.edges().size());
   std::vector<int> edges;
   for (const int face : faces) {
-    const auto& own = mesh.edgesOfTriangles()[at(face)];
-    edges.insert(edges.end(), own.begin(), own.end());
+    for (const int edge : mesh.edgesOfTriangles()[at(face)]) {
+      if (marks.isFirst(edge)) edges.push_back(edge);
+    }
   }
-  for (const int number : sortedOnce(std::move(edges))) {
+  for (const int number : edges) {
     const ToolMesh::Edge& edge = mesh.edges()[at(number)];
     const Vec3& from = mesh.vertices()[at(edge.ends[0])];
     const Vec3& to = mesh.vertices()[at(edge.ends[1])];
@@ -209,6 +243,10 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
+      const double from_beyond = plane.beyond(k, from), to_beyond = plane.beyond(k, to);
+      if (std::min(from_beyond, to_beyond) > reach || std::max(from_beyond, to_beyond) < -reach) {
+        continue;
+      }
       const auto shares = nearestWithin(corners[k], corners[next], from, to);
       if (!shares) continue;
       const Vec3 place = corners[k] + (*shares)[0] * (corners[next] - corners[k]);
@@ -233,14 +271,21 @@ std::vector<Vec3> seedsOn(const Corners& corners, const ToolMesh& mesh,
                           const std::vector<int>& faces, double reach) {
   const TrianglePlane plane(corners);
   std::vector<Slit> slits;
+  std::vector<int> near;
   for (const int face : faces) {
-    if (const auto slit = slitOf(face, mesh.corners(face), corners, plane)) slits.push_back(*slit);
+    const Corners of_face = mesh.corners(face);
+    std::array<double, 3> heights;
+    for (std::size_t k = 0; k < 3; ++k) heights[k] = plane.height(of_face[k]);
+    if (plane.isFar(of_face, heights, reach)) continue;
+    near.push_back(face);
+    const auto slit = slitOf(face, of_face, corners, plane, heights);
+    if (slit) slits.push_back(*slit);
   }
   std::vector<Vec3> seeds;
   seedsOfSlits(slits, mesh, corners, seeds);
   if (reach > 0.0) {
-    seedsUnderVertices(faces, mesh, plane, reach, corners, seeds);
-    seedsBesideEdges(faces, mesh, plane, reach, corners, seeds);
+    seedsUnderVertices(near, mesh, plane, reach, corners, seeds);
+    seedsBesideEdges(near, mesh, plane, reach, corners, seeds);
   }
   seeds.push_back(Vec3::Constant(1.0 / 3.0));
   return seeds;

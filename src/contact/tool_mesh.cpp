@@ -15,6 +15,7 @@ namespace {
 // Nearer to the surface than this (m), the direction to its nearest point is rounding noise.
 constexpr double kOnSurface = 1e-10;
 constexpr std::size_t kWidthDirections = 400;
+constexpr double kPlainSide = 1e-6;  // of the distance: beyond, a side is no rounding noise
 
 // Turned outwards as a whole: which parts of a surface that crosses itself are cavities is not
 // told.
@@ -25,13 +26,14 @@ TriangleMesh turnedOutwards(TriangleMesh mesh) {
 }
 
 TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
-                         std::vector<std::string>& warnings) {
+                         std::vector<std::string>& warnings, bool& crosses_itself) {
   const std::string name = owner + ": mesh '" + resource + "' ";
   try {
     TriangleMesh mesh = welded(loadMeshFile(resource, scale));
     const auto fault = meshFault(mesh);
     if (!fault) return facingOutward(std::move(mesh));
     if (fault->rfind("intersects itself", 0) != 0) throw InputError(*fault);
+    crosses_itself = true;
     warnings.push_back(name + *fault + "; depths near such places are only estimates");
     return turnedOutwards(std::move(mesh));
   } catch (const InputError& error) {
@@ -44,7 +46,8 @@ TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const s
 
 ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
                    std::vector<std::string>& warnings)
-    : mesh_(checkedMesh(resource, scale, owner, warnings)), tree_(mesh_.vertices, mesh_.triangles) {
+    : mesh_(checkedMesh(resource, scale, owner, warnings, crosses_itself_)),
+      tree_(mesh_.vertices, mesh_.triangles) {
   findEdges();
   findNormals();
   measureThickness();
@@ -92,6 +95,11 @@ void ToolMesh::findNormals() {
     }
   }
   for (Vec3& normal : vertex_normals_) normal = normal.stableNormalized();
+  edge_normals_.assign(edges_.size(), Vec3::Zero());
+  for (std::size_t triangle = 0; triangle < normals_.size(); ++triangle) {
+    for (const int edge : edges_of_triangles_[triangle])
+      edge_normals_[at(edge)] += normals_[triangle];
+  }
 }
 
 void ToolMesh::measureThickness() {
@@ -118,16 +126,48 @@ std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach
   const auto nearest =
       tree_.nearest(point, in_box ? std::numeric_limits<double>::infinity() : reach);
   if (!nearest) return std::nullopt;
-  const bool inside = in_box && tree_.isInside(point);
-  if (!inside && nearest->distance > reach) return std::nullopt;
+  const SignedDistance found = signedBy(point, *nearest);
+  if (found.value > reach) return std::nullopt;
+  return found;
+}
+
+SignedDistance ToolMesh::distanceWithin(const Vec3& point, double bound) const {
+  const auto nearest = tree_.nearest(point, bound);
+  if (nearest) return signedBy(point, *nearest);
+  const double infinity = std::numeric_limits<double>::infinity();
+  return distance(point, infinity).value_or(SignedDistance{infinity, Vec3::Zero()});
+}
+
+SignedDistance ToolMesh::signedBy(const Vec3& point, const TriangleTree::Nearest& nearest) const {
   SignedDistance found;
-  found.value = inside ? -nearest->distance : nearest->distance;
-  if (nearest->distance <= kOnSurface) {
-    found.slope = normals_[at(nearest->triangle)];
+  found.value = isInside(point, nearest) ? -nearest.distance : nearest.distance;
+  if (nearest.distance <= kOnSurface) {
+    found.slope = normals_[at(nearest.triangle)];
   } else {
-    found.slope = (point - nearest->point) / found.value;
+    found.slope = (point - nearest.point) / found.value;
   }
   return found;
+}
+
+// By the side of the face that is nearest, or of the mean of the two at an edge (Baerentzen and
+// Aanaes 2005). At a vertex, where more than one fan of faces may meet, and where that does not
+// tell, by how often the surface goes around the point.
+bool ToolMesh::isInside(const Vec3& point, const TriangleTree::Nearest& nearest) const {
+  const Box& box = bounds();
+  const bool in_box =
+      (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+  if (!in_box) return false;
+  const Vec3& weights = nearest.weights;
+  if (crosses_itself_ || weights.maxCoeff() == 1.0) return tree_.isInside(point);
+  Vec3 normal = normals_[at(nearest.triangle)];
+  Eigen::Index opposite = 0;
+  if (weights.minCoeff(&opposite) == 0.0) {
+    normal = edge_normals_[at(
+        edges_of_triangles_[at(nearest.triangle)][(static_cast<std::size_t>(opposite) + 1) % 3])];
+  }
+  const double side = normal.dot(point - nearest.point);
+  if (std::abs(side) <= kPlainSide * nearest.distance) return tree_.isInside(point);
+  return side < 0.0;
 }
 
 }  // namespace robot_tissue

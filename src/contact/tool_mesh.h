@@ -26,6 +26,8 @@ class ToolMesh {
 
   // Nothing when the point is outside and farther than `reach` (m).
   std::optional<SignedDistance> distance(const Vec3& point, double reach) const;
+  // Of a point that the surface is known to be within `bound` (m) of.
+  SignedDistance distanceWithin(const Vec3& point, double bound) const;
 
   const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
   const std::vector<MeshTriangle>& triangles() const { return mesh_.triangles; }
@@ -46,7 +48,10 @@ class ToolMesh {
   void findEdges();
   void findNormals();
   void measureThickness();
+  SignedDistance signedBy(const Vec3& point, const TriangleTree::Nearest& nearest) const;
+  bool isInside(const Vec3& point, const TriangleTree::Nearest& nearest) const;
 
+  bool crosses_itself_ = false;
   TriangleMesh mesh_;  // frame of the shape (m), facing outwards
   TriangleTree tree_;
   std::vector<Edge> edges_;
@@ -54,6 +59,7 @@ class ToolMesh {
   std::vector<std::vector<int>> neighbors_;
   std::vector<Vec3> normals_;  // of the triangles, unit; zero without area
   std::vector<Vec3> vertex_normals_;
+  std::vector<Vec3> edge_normals_;  // sums of the two triangles'
   double thickness_ = 0.0;
 };
 

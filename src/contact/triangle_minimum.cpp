@@ -16,6 +16,7 @@ constexpr std::size_t kMostLocalSteps = 24;
 constexpr double kFirstPart = 0.125;  // of the longest edge
 constexpr double kGoodShare = 0.25;   // of the gain that the planes foretold
 constexpr double kRounding = 1e-12;   // m
+constexpr double kBeyondRounding = 1e-9;
 
 struct Cut {
   Vec3 point;
@@ -62,6 +63,10 @@ Forecast forecast(const std::vector<Cut>& cuts, const Corners& corners,
 }
 
 }  // namespace
+
+double boundAfter(double distance, double way) {
+  return (std::abs(distance) + way) * (1.0 + kBeyondRounding) + kRounding;
+}
 
 double longestEdge(const Corners& corners) {
   return std::sqrt(
@@ -138,18 +143,18 @@ TriangleMinimum convexMinimum(const CollisionShape& shape, const Corners& corner
   return best;
 }
 
-TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners, const Vec3& seed,
-                             double accuracy) {
-  const Vec3 start = pointOf(corners, seed);
-  TriangleMinimum best{seed, shape.distance(start)};
-  std::vector<Cut> cuts = {{start, best.distance}};
+TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners,
+                             const TriangleMinimum& seed, double accuracy) {
+  TriangleMinimum best = seed;
+  std::vector<Cut> cuts = {{pointOf(corners, seed.weights), best.distance}};
   double radius = std::max(kFirstPart * longestEdge(corners), -best.distance.value);
   for (std::size_t step = 0; step < kMostLocalSteps; ++step) {
     const Forecast next = forecast(cuts, corners, partAround(corners, best.weights, radius));
     const double gain = best.distance.value - next.least;
     if (gain <= accuracy) break;
     const Vec3 point = pointOf(corners, next.weights);
-    const Cut cut{point, shape.distance(point)};
+    const double way = (point - pointOf(corners, best.weights)).norm();
+    const Cut cut{point, shape.distanceWithin(point, boundAfter(best.distance.value, way))};
     cuts.push_back(cut);
     if (cut.distance.value < best.distance.value) {
       if (cut.distance.value < best.distance.value - kGoodShare * gain) radius *= 2.0;

@@ -59,7 +59,11 @@ TriangleMinimum convexMinimum(const CollisionShape& shape, const Corners& corner
 // A local least distance near `seed` (weights), for a shape that is convex only in parts (own):
 // planes are believed in a triangle around the best point so far, which grows with what is gained
 // and shrinks where a plane turns out wrong.
-TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners, const Vec3& seed,
-                             double accuracy);
+TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners,
+                             const TriangleMinimum& seed, double accuracy);
+
+// How far at most a shape's surface is from a point (m) that is this way from one with this
+// distance, with something for rounding.
+double boundAfter(double distance, double way);
 
 }  // namespace robot_tissue

@@ -192,6 +192,7 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
       if (!(squared < best)) continue;
       best = squared;
       found.triangle = entries_[i].triangle;
+      found.weights = weights;
       found.point = foot;
       if (squared <= enough * enough) waiting = 0;
     }

@@ -20,6 +20,7 @@ class TriangleTree {
  public:
   struct Nearest {
     int triangle = -1;
+    Vec3 weights = Vec3::Zero();  // of its corners; 0 for those of the other edge or vertex
     Vec3 point = Vec3::Zero();
     double distance = 0.0;
   };

@@ -1,6 +1,9 @@
 #include "robot_tissue/ros/tissue_node.h"
 
+#include <ros/callback_queue.h>
+
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
@@ -18,9 +21,10 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
     : private_node_(private_node),
       parameters_(readNodeParameters(private_node_)),
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
-      listener_(buffer_),
+      listener_(buffer_, true, ros::TransportHints().tcpNoDelay()),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_),
+      pace_(parameters_.rate_hz),
       lowest_rate_hz_(parameters_.rate_hz),
       highest_rate_hz_(parameters_.rate_hz),
       frequency_(diagnostic_updater::FrequencyStatusParam(&lowest_rate_hz_, &highest_rate_hz_,
@@ -37,17 +41,38 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
   timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
-                                     [this](const ros::TimerEvent&) { update(); });
+                                     [this](const ros::TimerEvent&) { onTimer(); });
+  watch_ = std::make_unique<TransformWatch>(buffer_, *ros::getGlobalCallbackQueue(),
+                                            [this] { onTransforms(); });
+}
+
+// A pose that is not new, or no good one, is the timer's.
+void TissueNode::onTransforms() {
+  const ros::Time now = ros::Time::now();
+  if (!robot_is_known_ || !pace_.isDue(now.toSec())) return;
+  PoseLookUp look_up = tool_poses_.lookUp(now);
+  const bool is_good = look_up.status == PoseLookUp::Status::kOk && !look_up.is_static;
+  if (!is_good || look_up.stamp == last_look_up_.stamp) return;
+  pace_.take(now.toSec());
+  update(std::move(look_up));
+}
+
+void TissueNode::onTimer() {
+  diagnostics_.update();
+  if (std::exchange(updated_, false)) return onTransforms();  // one may have come too early
+  if (!robotIsKnown()) {
+    return report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
+                                   "' is not set: waiting for a URDF"});
+  }
+  update(tool_poses_.lookUp(ros::Time::now()));
+  updated_ = false;
 }
 
 // Robot pose -> contacts -> loading patches -> solve (in Pipeline::step) -> publish.
-void TissueNode::update() {
+void TissueNode::update(PoseLookUp look_up) {
+  updated_ = true;
   frequency_.tick();
-  diagnostics_.update();
-  if (!robotIsKnown())
-    return report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
-                                   "' is not set: waiting for a URDF"});
-  last_look_up_ = tool_poses_.lookUp(ros::Time::now());
+  last_look_up_ = std::move(look_up);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
     const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;
     return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});

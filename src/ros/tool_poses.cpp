@@ -39,7 +39,8 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
       common = newest;
       oldest = link;
     }
-    found.stamp = isStatic(common) ? now : common;
+    found.is_static = isStatic(common);
+    found.stamp = found.is_static ? now : common;
     found.age_s = (now - found.stamp).toSec();
     if (std::abs(found.age_s) > timeout_s_) {
       found.status = PoseLookUp::Status::kStale;

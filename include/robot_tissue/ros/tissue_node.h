@@ -1,6 +1,7 @@
 // The node: reads the robot's pose, steps the pipeline, publishes, answers services. It holds no
 // mechanics. Everything runs in one thread, the spinner's, but for wrenches with a rate of their
-// own (WrenchPublisher).
+// own (WrenchPublisher). A new pose is followed as soon as it came, `~rate` times a second at most;
+// where none comes the timer updates at that rate.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -15,12 +16,15 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <memory>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/tissue_publisher.h"
 #include "robot_tissue/ros/tool_poses.h"
+#include "robot_tissue/ros/transform_watch.h"
+#include "robot_tissue/ros/update_pace.h"
 
 namespace robot_tissue {
 
@@ -31,7 +35,9 @@ class TissueNode {
   explicit TissueNode(const ros::NodeHandle& private_node);
 
  private:
-  void update();
+  void onTransforms();
+  void onTimer();
+  void update(PoseLookUp look_up);
   void follow();
   bool robotIsKnown();
   void settleFromRest();
@@ -63,6 +69,8 @@ class TissueNode {
   bool robot_is_known_ = false;
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
+  UpdatePace pace_;
+  bool updated_ = false;  // since the timer's last tick
   NodeStatus status_;
   diagnostic_updater::Updater diagnostics_;
   double lowest_rate_hz_ = 0.0;
@@ -70,6 +78,7 @@ class TissueNode {
   diagnostic_updater::FrequencyStatus frequency_;
   ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
   ros::Timer timer_;
+  std::unique_ptr<TransformWatch> watch_;
 };
 
 }  // namespace robot_tissue

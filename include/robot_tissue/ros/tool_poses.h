@@ -17,9 +17,10 @@ namespace robot_tissue {
 struct PoseLookUp {
   enum class Status { kOk, kNoTransform, kStale };
   Status status = Status::kNoTransform;
-  std::string message;  // one line, empty when OK
-  RobotPose pose;       // only when OK
-  ros::Time stamp;      // of the pose; now when every transform is static
+  std::string message;     // one line, empty when OK
+  RobotPose pose;          // only when OK
+  ros::Time stamp;         // of the pose; now when every transform is static
+  bool is_static = false;  // every transform is
   double age_s = 0.0;
 };
 

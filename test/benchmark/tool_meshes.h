@@ -1,0 +1,48 @@
+// Meshes of tools, written where a scene or a study can load them.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// An ellipsoid of 2,000 triangles about the origin, as ASCII STL. Returns its address.
+inline std::string writeEllipsoid(const Vec3& semi_axes) {
+  constexpr int kSides = 40, kRings = 25;
+  const char* folder = std::getenv("TMPDIR");
+  const std::string path = std::string(folder ? folder : "/tmp") + "/robot_tissue_ellipsoid.stl";
+  std::ofstream stl(path);
+  const auto vertex = [&](int ring, int side) -> Vec3 {
+    const double down = M_PI * ring / kRings, round = 2.0 * M_PI * (side % kSides) / kSides;
+    if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? semi_axes.z() : -semi_axes.z()};
+    const Vec3 unit(std::sin(down) * std::cos(round), std::sin(down) * std::sin(round),
+                    std::cos(down));
+    return semi_axes.cwiseProduct(unit);
+  };
+  const auto facet = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (a == b || b == c || c == a) return;
+    stl << "facet normal 0 0 0\nouter loop\n";
+    for (const Vec3& v : {a, b, c}) {
+      stl << "vertex " << v.x() << ' ' << v.y() << ' ' << v.z() << '\n';
+    }
+    stl << "endloop\nendfacet\n";
+  };
+  stl.precision(9);
+  stl << "solid ellipsoid\n";
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int side = 0; side < kSides; ++side) {
+      const Vec3 a = vertex(ring, side), b = vertex(ring + 1, side), c = vertex(ring + 1, side + 1),
+                 d = vertex(ring, side + 1);
+      facet(a, b, c);
+      facet(a, c, d);
+    }
+  }
+  stl << "endsolid ellipsoid\n";
+  return "file://" + path;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,105 @@
+// What an update of the pipeline takes while tools press a block and go round on it, and what of it
+// is contact. 100 x 100 x 50 mm, 5 mm spacing (4,851 nodes), E 10 kPa, nu 0.45.
+//   tool_speed [sphere|mesh|both] [SPEED in m/s] [RATE in Hz] [UPDATES]
+// Writes one line an update: contact_ms (wall), solve_ms (wall), update_ms (of the processor),
+// substeps, force along z on the tools (N), penetration_mm, status. Sums up on stderr.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "contact_trial.h"
+#include "robot_tissue/pipeline/pipeline.h"
+#include "tool_meshes.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kTop = 0.05;     // m
+constexpr double kPress = 0.005;  // m
+constexpr double kRound = 0.010;  // m: radius of the way
+
+double processorMs() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+struct Way {
+  Vec3 center;
+  double lowest;  // m, of the tool below its origin
+};
+
+// Down by kPress, then round and round.
+Vec3 placeOn(const Way& way, double gone) {
+  const double down = std::min(gone, 2.0 * kPress);
+  const double angle = (gone - down) / kRound;
+  return way.center + Vec3(kRound * std::cos(angle), kRound * std::sin(angle),
+                           kTop + way.lowest + kPress - down);
+}
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const auto last = static_cast<double>(values.size() - 1);
+  return values[static_cast<std::size_t>(share * last)];
+}
+
+void sumUp(const char* name, const std::vector<double>& ms) {
+  std::fprintf(stderr, "%s: median %.3f, 99 %% %.3f, greatest %.3f ms\n", name, quantile(ms, 0.5),
+               quantile(ms, 0.99), quantile(ms, 1.0));
+}
+
+int run(int argc, char** argv) {
+  const std::string which = argc > 1 ? argv[1] : "both";
+  const double speed = argument(argc, argv, 2, 0.05), rate = argument(argc, argv, 3, 200.0);
+  const int updates = static_cast<int>(argument(argc, argv, 4, 1000.0));
+  std::vector<ToolGeometry> tools;
+  std::vector<Way> ways;
+  if (which != "mesh") {
+    tools.push_back(toolOf("sphere", sphereOf(0.01), 0.3));
+    ways.push_back({{0.03, 0.05, 0.0}, 0.01});
+  }
+  if (which != "sphere") {
+    ToolShape mesh;
+    mesh.type = ToolShape::Type::kMesh;
+    mesh.resource = writeEllipsoid({0.01, 0.008, 0.012});
+    tools.push_back(toolOf("mesh", mesh, 0.3));
+    ways.push_back({{0.07, 0.05, 0.0}, 0.012});
+  }
+  Pipeline pipeline(blockOf({0.1, 0.1, kTop}, 0.005), solverOf("layered", 0.01), tools);
+  std::vector<double> contact, solve, total;
+  std::printf("contact_ms,solve_ms,update_ms,substeps,fz,penetration_mm,status\n");
+  for (int update = 0; update < updates; ++update) {
+    RobotPose pose;
+    for (const Way& way : ways) pose.links.push_back(placedAt(placeOn(way, update * speed / rate)));
+    const double start = processorMs();
+    const StepReport& report = pipeline.step(pose);
+    const double update_ms = processorMs() - start;
+    double force = 0.0, penetration = 0.0;
+    int touches = 0;
+    for (const ToolReport& tool : report.tools) {
+      force += tool.force_on_tool.z();
+      touches += tool.contacts;
+      penetration = std::max(penetration, tool.max_penetration);
+    }
+    std::printf("%.4f,%.4f,%.4f,%d,%.5f,%.4f,%s\n", report.contact_ms, report.solve_ms, update_ms,
+                report.substeps, force, 1e3 * penetration,
+                toString(pipeline.tissue().lastReport().status));
+    if (touches == 0) continue;
+    contact.push_back(report.contact_ms);
+    solve.push_back(report.solve_ms);
+    total.push_back(update_ms);
+  }
+  if (total.empty()) return 1;
+  sumUp("contact, wall", contact);
+  sumUp("solve with its contact rounds, wall", solve);
+  sumUp("update, processor", total);
+  return 0;
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) { return robot_tissue::run(argc, argv); }
