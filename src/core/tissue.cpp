@@ -244,7 +244,7 @@ SolveReport Tissue::solveFromRest() {
     patches_[patch] = ramps.back().start;
   }
   if (!ramps.empty()) {
-    report = climb(ramps, chooseIncrements(ramps), {});
+    report = climbByItself(ramps, {});
   } else if (!has_gravity_) {
     describeShape(report);
     last_report_ = report;

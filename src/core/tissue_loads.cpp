@@ -28,14 +28,18 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   for (const LoadingPatch& target : targets) {
     ramps.push_back(makeRamp(target, standingPatch(target.name)));
   }
-  const int increments = step.increments.value_or(chooseIncrements(ramps));
+  const int increments = step.increments.value_or(foreseenIncrements(ramps));
   if (increments > most_increments) {
     refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
            "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
   for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
   leaveRimsToOwners();
-  climb(ramps, increments, on_increment);
+  if (step.increments) {
+    climb(ramps, increments, on_increment);
+  } else {
+    climbByItself(ramps, on_increment);
+  }
 }
 
 SolveReport Tissue::release(const std::vector<std::string>& names) {
@@ -192,68 +196,6 @@ Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* st
   }
   ramp.start.displacement = ownDisplacement(ramp.start, state_.displacement);
   return ramp;
-}
-
-// Steps that the method follows well: a patch's way over the longest step; a force over what the
-// springs at rest answer to that step (own; the paper leaves the step size open).
-int Tissue::chooseIncrements(const std::vector<Ramp>& ramps) const {
-  double steps = 1.0;
-  for (const Ramp& ramp : ramps) {
-    if (byForce(ramp.target)) {
-      double stiffness = 0.0;
-      for (const int node : ramp.target.nodes) {
-        stiffness += model_->nodeStiffness(state_, node).mean();
-      }
-      const double force_step = stiffness * method_->patchStep();
-      if (force_step > 0.0) {
-        steps = std::max(steps, (ramp.target.force - ramp.start.force).norm() / force_step);
-      }
-      continue;
-    }
-    for (std::size_t i = 0; i < ramp.target.nodes.size(); ++i) {
-      Vec3 way = ramp.target.displacement[i] - ramp.start.displacement[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (ramp.target.free_axis[axis]) way[static_cast<Eigen::Index>(axis)] = 0.0;
-      }
-      steps = std::max(steps, way.norm() / method_->patchStep());
-    }
-  }
-  constexpr double kMostSteps = 100000.0;
-  constexpr double kRounding = 1e-9;  // 5 steps of a fifth are 5, not 6
-  return static_cast<int>(std::ceil(std::min(steps, kMostSteps) - kRounding));
-}
-
-// Sets the patch to a share of its way. A patch by force stays where the solver moved it to.
-void Tissue::goAlong(const Ramp& ramp, double share, LoadingPatch& patch) {
-  const auto between = [share](const Vec3& start, const Vec3& target) -> Vec3 {
-    return share < 1.0 ? Vec3(start + share * (target - start)) : target;
-  };
-  patch.force = between(ramp.start.force, ramp.target.force);
-  if (byForce(patch)) return;
-  for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
-    patch.displacement[i] = between(ramp.start.displacement[i], ramp.target.displacement[i]);
-  }
-  for (RimSpring& spring : patch.rim) {
-    const auto same = [&](const RimSpring& other) { return other.node == spring.node; };
-    const auto start = std::find_if(ramp.start.rim.begin(), ramp.start.rim.end(), same);
-    const auto target = std::find_if(ramp.target.rim.begin(), ramp.target.rim.end(), same);
-    spring.anchor = between(start->anchor, target->anchor);
-  }
-}
-
-SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
-                          const OnIncrement& on_increment) {
-  SolveReport report;
-  SolveStatus worst = SolveStatus::kOk;
-  for (int increment = 1; increment <= increments; ++increment) {
-    const double share = static_cast<double>(increment) / increments;
-    for (const Ramp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
-    report = solve({});
-    worst = std::max(worst, report.status);
-    if (on_increment) on_increment(increment, increments, report);
-  }
-  report.status = worst;
-  return report;
 }
 
 Vec3 Tissue::patchForce(const LoadingPatch& patch) const {

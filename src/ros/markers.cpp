@@ -27,6 +27,12 @@ void setColor(Marker& marker, double red, double green, double blue, double alph
 
 geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Constant(diameter)); }
 
+// But for the stamp. Of one namespace and id all else is always the same.
+bool looksAlike(const Marker& a, const Marker& b) {
+  return a.ns == b.ns && a.id == b.id && a.action == b.action && a.scale == b.scale &&
+         a.pose == b.pose && a.points == b.points;
+}
+
 // rviz refuses an empty list: the marker is taken away instead.
 void add(Marker marker, MarkerArray& array) {
   if (marker.points.empty()) {
@@ -53,6 +59,18 @@ MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stam
   return array;
 }
 
+MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Time& stamp) {
+  MarkerArray all = build(pipeline, stamp);
+  MarkerArray changed;
+  told_.resize(all.markers.size());
+  for (std::size_t i = 0; i < all.markers.size(); ++i) {
+    if (looksAlike(all.markers[i], told_[i])) continue;
+    changed.markers.push_back(all.markers[i]);
+    told_[i] = std::move(all.markers[i]);
+  }
+  return changed;
+}
+
 Marker MarkerBuilder::make(const std::string& ns, int id, int type) const {
   Marker marker;
   marker.header.frame_id = frame_id_;
@@ -72,6 +90,7 @@ void MarkerBuilder::addSurface(const Tissue& tissue, MarkerArray& array) const {
   Marker opened = make("cut_faces", 0, Marker::TRIANGLE_LIST);
   setColor(opened, 0.55, 0.06, 0.10);
   const Surface& surface = tissue.surface();
+  outside.points.reserve(3 * surface.triangles.size());
   for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
     Marker& marker = surface.opened[triangle] != 0 ? opened : outside;
     for (const int vertex : surface.triangles[triangle]) {
@@ -87,6 +106,7 @@ void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
   Marker wires = make("wireframe", 0, Marker::LINE_LIST);
   wires.scale.x = kWireWidth;
   setColor(wires, 0.30, 0.13, 0.12);
+  wires.points.reserve(2 * surface_springs_.size());
   for (const int spring : surface_springs_) {
     const Spring& ends = tissue.lattice().springs()[at(spring)];
     wires.points.push_back(toPoint(tissue.nodePosition(ends.a)));

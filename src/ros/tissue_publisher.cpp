@@ -13,6 +13,7 @@ namespace robot_tissue {
 namespace {
 
 const ros::Duration kStatePeriod(1.0);  // of the state while nothing changes
+constexpr unsigned kMarkerQueue = 10;   // arrays of changes: none may be dropped lightly
 
 void addBalance(const ForceBalance& balance, TissueState& message) {
   message.force_of_tools = toVector3(balance.tools);
@@ -59,10 +60,14 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
       marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
       marker_period_(1.0 / parameters.marker_rate_hz),
       wrenches_(private_node_, parameters.wrench_rate_hz) {
-  const auto someone_came = [this](const ros::SingleSubscriberPublisher&) { shapeChanged(); };
+  const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
+    marker_builder_.tellAll();
+    shapeChanged();
+  };
   markers_ = private_node_.advertise<visualization_msgs::MarkerArray>(
-      "markers", 1, someone_came, ros::SubscriberStatusCallback(), ros::VoidConstPtr(), true);
-  contacts_ = private_node_.advertise<ContactArray>("contacts", 1);
+      "markers", kMarkerQueue, someone_came, ros::SubscriberStatusCallback(), ros::VoidConstPtr(),
+      true);
+  contacts_ = private_node_.advertise<ContactArray>("contacts", 1, someone_came);
   state_ = private_node_.advertise<TissueState>("state", 10);
 }
 
@@ -106,15 +111,23 @@ void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& 
   const ros::Time now = ros::Time::now();
   const bool listened = markers_.getNumSubscribers() > 0 || !latched_markers_are_out_;
   const bool too_soon = now >= last_markers_ && now - last_markers_ < marker_period_;
-  if (!markers_due_ || !listened || too_soon) return;
-  markers_.publish(marker_builder_.build(pipeline, stamp));
+  if ((!markers_due_ && whole_array_is_out_) || !listened || too_soon) return;
+  const bool whole = !markers_due_ || !latched_markers_are_out_;
+  if (whole) marker_builder_.tellAll();
+  const visualization_msgs::MarkerArray array = marker_builder_.buildChanged(pipeline, stamp);
+  if (!array.markers.empty()) markers_.publish(array);
+  whole_array_is_out_ = whole;
   latched_markers_are_out_ = true;
   markers_due_ = false;
   last_markers_ = now;
 }
 
 void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time& stamp) {
-  if (contacts_.getNumSubscribers() == 0) return;
+  const bool due =
+      contacts_due_ || stamp - last_contacts_ >= kStatePeriod || stamp < last_contacts_;
+  if (!due || contacts_.getNumSubscribers() == 0) return;
+  contacts_due_ = false;
+  last_contacts_ = stamp;
   ContactArray array;
   array.header.stamp = stamp;
   array.header.frame_id = frame_id_;

@@ -26,7 +26,8 @@ struct CutReport {
 
 class Tissue {
  public:
-  // Called after each increment of a load: 1-based increment, how many there are, what was solved.
+  // Called after each increment of a load: 1-based increment, how many there are as far as is
+  // foreseen, what was solved.
   using OnIncrement = std::function<void(int increment, int increments, const SolveReport&)>;
 
   // Throws InputError: unknown model or method, a box without a node, ...
@@ -131,10 +132,14 @@ class Tissue {
   std::size_t place(const LoadingPatch& patch);
   Ramp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
   const LoadingPatch* standingPatch(const std::string& name) const;
-  int chooseIncrements(const std::vector<Ramp>& ramps) const;
-  // The last increment's report, with the worst status of all.
+  // tissue_climb.cpp; reports are the last increment's, with the worst status of all.
+  double foreseenSteps(const std::vector<Ramp>& ramps) const;
+  int foreseenIncrements(const std::vector<Ramp>& ramps) const;
+  SolveReport climbByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
   SolveReport climb(const std::vector<Ramp>& ramps, int increments,
                     const OnIncrement& on_increment);
+  SolveReport goTo(const std::vector<Ramp>& ramps, double share);
+  double stepsGone(const std::vector<Ramp>& ramps, const std::vector<Vec3>& before) const;
   Vec3 patchForce(const LoadingPatch& patch) const;
   void rebuildSurface();
 

@@ -23,6 +23,10 @@ class MarkerBuilder {
   MarkerBuilder(std::string frame_id, double force_scale, std::vector<SupportConfig> supports);
 
   visualization_msgs::MarkerArray build(const Pipeline& pipeline, const ros::Time& stamp);
+  // Of what build() gives, the markers that look otherwise than when this was asked last; all of
+  // them after tellAll().
+  visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp);
+  void tellAll() { told_.clear(); }
 
  private:
   visualization_msgs::Marker make(const std::string& ns, int id, int type) const;
@@ -40,6 +44,7 @@ class MarkerBuilder {
   ros::Time stamp_;
   unsigned springs_version_ = 0;
   std::vector<int> surface_springs_;
+  std::vector<visualization_msgs::Marker> told_;  // in the order of build(), as last told
 };
 
 }  // namespace robot_tissue

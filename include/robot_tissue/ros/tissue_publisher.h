@@ -1,5 +1,7 @@
 // Everything the node publishes, in one place. Markers go out only when they changed and somebody
-// listens, at most at their own rate.
+// listens, at most at their own rate: those that changed, and all of them when somebody came and
+// when the shape has come to rest, so that the latched array is whole and nothing that a slow
+// listener lost stays lost. Contacts go out when they changed, and as often as the state.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -36,7 +38,7 @@ class TissuePublisher {
 
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {
-    markers_due_ = true;
+    markers_due_ = contacts_due_ = true;
     last_state_ = ros::Time();
   }
 
@@ -50,6 +52,9 @@ class TissuePublisher {
   MarkerBuilder marker_builder_;
   ros::Duration marker_period_;
   bool markers_due_ = true;
+  bool whole_array_is_out_ = false;  // with nothing changed since
+  bool contacts_due_ = true;
+  ros::Time last_contacts_;
   bool latched_markers_are_out_ = false;
   ros::Time last_markers_;
   NodeStatus last_status_;

@@ -1,0 +1,81 @@
+// A finder that has followed a surface through many shapes says what one says that knows only the
+// last of them: its trees are moved, not made anew, and nothing of an earlier shape stays.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "contact_fixtures.h"
+#include "robot_tissue/contact/contact_finder.h"
+
+namespace robot_tissue {
+namespace {
+
+const Eigen::Vector3i kCells(8, 8, 6);
+constexpr double kSpacing = 0.005;  // m: a block of 40 x 40 x 30 mm with its top at z = 0
+constexpr int kSteps = 60;
+
+// A bump and a twist of the block that wander.
+class Walk {
+ public:
+  explicit Walk(const Sheet& block) : block_(block) {}
+
+  std::vector<Vec3> next() {
+    for (double& entry : shape_) entry = 0.9 * entry + 0.4 * random(1.0);
+    std::vector<Vec3> vertices = block_.vertices;
+    for (Vec3& vertex : vertices) {
+      const Vec3 from = vertex - Vec3(0.02 + 0.004 * shape_[0], 0.02 + 0.004 * shape_[1], 0.0);
+      vertex.z() += 0.006 * shape_[2] * std::exp(-from.squaredNorm() / (0.01 * 0.01));
+      vertex.x() += 0.1 * shape_[3] * vertex.z();
+      vertex.y() += 0.1 * shape_[4] * vertex.z();
+    }
+    return vertices;
+  }
+  Pose place() {
+    const Vec3 where(0.02 + random(0.01), 0.02 + random(0.01), random(0.006));
+    Pose pose = makePose(where);
+    pose.linear() = Eigen::AngleAxisd(random(3.0), Vec3(1.0, random(1.0), random(1.0)).normalized())
+                        .toRotationMatrix();
+    return pose;
+  }
+
+ private:
+  double random(double size) {
+    return std::uniform_real_distribution<double>(-size, size)(engine_);
+  }
+
+  const Sheet& block_;
+  std::mt19937 engine_{7};
+  std::array<double, 5> shape_{};
+};
+
+TEST(MovedSurface, IsSeenAsIfItWereNew) {
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ToolGeometry tool = makeTool({sphere(0.006), box(Vec3(0.004, 0.02, 0.006))}, 0.0);
+  const ContactFinder old_finder({tool});
+  Walk walk(block);
+  int met = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Vec3> vertices = walk.next();
+    const Pose pose = walk.place();
+    Surface fresh = block.surface;  // its tree is made from this shape
+    fresh.rest = vertices;
+    const ContactFinder new_finder({tool});
+    const double depth = old_finder.penetration(0, pose, block.surface, vertices);
+    EXPECT_NEAR(depth, new_finder.penetration(0, pose, fresh, vertices), 1e-12);
+    const auto of_old = old_finder.find(at(pose), block.surface, vertices, 0.001).contacts;
+    const auto of_new = new_finder.find(at(pose), fresh, vertices, 0.001).contacts;
+    ASSERT_EQ(of_old.size(), of_new.size());
+    for (std::size_t i = 0; i < of_old.size(); ++i) {
+      EXPECT_EQ(of_old[i].triangle, of_new[i].triangle);
+      EXPECT_EQ(of_old[i].depth_m, of_new[i].depth_m);
+    }
+    // Once more, with what find() has met.
+    EXPECT_EQ(old_finder.penetration(0, pose, block.surface, vertices), depth);
+    if (depth > 1e-4) ++met;
+  }
+  EXPECT_GT(met, kSteps / 4);
+  EXPECT_LT(met, kSteps);
+}
+
+}  // namespace
+}  // namespace robot_tissue
