@@ -115,8 +115,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
 // no shape could follow, all is as it was.
 bool Pipeline::advance(const RobotPose& pose) {
   ++report_.substeps;
-  std::optional<Checkpoint> good;
-  if (!any_rigid_) good = checkpoint();
+  Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   pose_ = pose;
   grasp();
   contacts_.ride(pose, tissue_);  // patches move with their tools
@@ -128,13 +127,14 @@ bool Pipeline::advance(const RobotPose& pose) {
     const std::vector<LoadingPatch>& before = tissue_.patches();
     if (!anyToolIn(patches) && !anyToolIn(before)) break;
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
+    if (!any_rigid_) good.shape = tissue_.shape();
     follow(std::move(patches));  // loading patches -> solve
-    for (int more = 0; good && more < kMoreSolves && isUnsettled() && !isLost(good->shape);
+    for (int more = 0; !any_rigid_ && more < kMoreSolves && isUnsettled() && !isLost(good.shape);
          ++more) {
       follow(patchesOfTools());
     }
-    if (good && isLost(good->shape)) {
-      goBackTo(*good);
+    if (!any_rigid_ && isLost(good.shape)) {
+      goBackTo(good);
       return false;
     }
     if (!any_rigid_) break;

@@ -107,8 +107,14 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
   return pose;
 }
 
+Pipeline::Checkpoint Pipeline::toolsCheckpoint() const {
+  return {pose_, {}, patches_.seats(), contacts_, closed_};
+}
+
 Pipeline::Checkpoint Pipeline::checkpoint() const {
-  return {pose_, tissue_.shape(), patches_.seats(), contacts_, closed_};
+  Checkpoint all = toolsCheckpoint();
+  all.shape = tissue_.shape();
+  return all;
 }
 
 void Pipeline::goBackTo(const Checkpoint& good) {
@@ -122,7 +128,7 @@ void Pipeline::goBackTo(const Checkpoint& good) {
 void Pipeline::checkIn(const RobotPose& pose) {
   if (!any_rigid_ || tissue_.isUntouched()) checkpoints_.clear();
   if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
-  checkpoints_.push_back(checkpoint());
+  checkpoints_.push_back(any_rigid_ ? checkpoint() : toolsCheckpoint());
   checkpoints_.back().pose = pose;
 }
 

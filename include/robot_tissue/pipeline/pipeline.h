@@ -118,7 +118,8 @@ class Pipeline {
  private:
   static constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that counts
 
-  // Where a whole load step ended.
+  // Where a whole load step ended. Only rigid patches come back to its shape later: without them it
+  // has none but on the way through a step.
   struct Checkpoint {
     RobotPose pose;
     Tissue::Shape shape;
@@ -167,6 +168,7 @@ class Pipeline {
   static bool isAway(const Pose& pose);
   RobotPose walk(const RobotPose& pose);
   RobotPose complete(const RobotPose& pose) const;
+  Checkpoint toolsCheckpoint() const;  // without the shape
   Checkpoint checkpoint() const;
   void goBackTo(const Checkpoint& good);
   void checkIn(const RobotPose& pose);
