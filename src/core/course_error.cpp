@@ -48,7 +48,7 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
   levels_->bind(rest, fixed);
   const Field<Real> weight = finest().load;
   finest().clearLoad();
-  levels_->setDisplacement(rest.state.displacement);
+  levels_->setDisplacement(rest.state.displacement, fixed.held());
   finest().findForces(true);
   least_factor_ = 1.0;
   for (int cycle = 0; cycle < kTrialCycles; ++cycle) {

@@ -21,7 +21,7 @@ void CourseIn<Real>::forget() {
   factor_ = least_factor_;
   layers_ = kFirstLayers;
   has_start_ = has_way_ = false;
-  left_displacement_.clear();
+  knows_shape_ = false;
   loaded_.clear();
   held_ = 0.0;
 }
@@ -32,7 +32,7 @@ void CourseIn<Real>::findLevels(const LatticeState& state) {
   levels_ = std::make_unique<LatticeLevels<Real>>(lattice_, model_, *state.cells, workers_.get());
   cells_ = state.cells;
   has_start_ = has_way_ = false;
-  left_displacement_.clear();
+  knows_shape_ = false;
   loaded_.clear();
   steps_ = std::max(
       kFewestSteps,
@@ -54,7 +54,7 @@ SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
     writeBack(shape, hold);
     if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
   }
-  left_displacement_ = shape.state.displacement;
+  knows_shape_ = true;
   report.iterations = cycles_;
   report.error_estimate = std::isfinite(error_) ? error_ : 1.0;
   answer(shape, hold, report);
@@ -66,7 +66,7 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
                              const std::vector<int>& disturbed) {
   findLevels(shape.state);
   levels_->bind(shape, hold);
-  levels_->setDisplacement(shape.state.displacement);
+  const bool others_moved = levels_->setDisplacement(shape.state.displacement, hold.held());
   limited_from_.clear();
   for (const NodeLimit& limit : limits_) {
     limited_from_.push_back(shape.state.displacement[at(limit.node)]);
@@ -74,7 +74,7 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
   if (first_of_step_) noteStep();
   free_nodes_ = 0.0;
   for (const std::uint8_t held : hold.held()) free_nodes_ += held != kAllHeld ? 1.0 : 0.0;
-  findSeeds(shape, hold, disturbed);
+  findSeeds(shape, hold, disturbed, others_moved || !knows_shape_);
   confine(aroundSeeds());
   finest().findForces(true);
   in_contact_ = !hold.touched().empty();

@@ -44,8 +44,8 @@ class CourseIn : public LayeredCourse {
   double answerPatches(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
 
   // course_layers.cpp: which nodes are visited.
-  void findSeeds(const LoadedShape& shape, const PatchHold& hold,
-                 const std::vector<int>& disturbed);
+  void findSeeds(const LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed,
+                 bool others_moved);
   void addSeed(int entry);
   LevelBox wholeBox() const;
   LevelBox aroundSeeds() const;
@@ -91,8 +91,8 @@ class CourseIn : public LayeredCourse {
   std::unique_ptr<Workers> workers_;
   std::unique_ptr<LatticeLevels<Real>> levels_;
   std::shared_ptr<const CellSet> cells_;
-  std::vector<Vec3> left_displacement_;  // what the last solve left
-  std::vector<int> loaded_;              // entries of nodes in patches and contacts
+  bool knows_shape_ = false;  // the finest lattice has what the last solve left
+  std::vector<int> loaded_;   // entries of nodes in patches and contacts
   double free_nodes_ = 0.0;
   LevelBox seeds_;                // what the layers grow around; none: high below low
   double layers_ = kFirstLayers;  // around them

@@ -40,7 +40,7 @@ void CourseIn<Real>::addSeed(int entry) {
 // them.
 template <typename Real>
 void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
-                               const std::vector<int>& disturbed) {
+                               const std::vector<int>& disturbed, bool others_moved) {
   seeds_ = {lattice_.size(), {-1, -1, -1}};
   for (const int entry : loaded_) addSeed(entry);
   const auto load = [this](int node) {
@@ -53,14 +53,7 @@ void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
     for (const RimSpring& spring : shape.patches[index].rim) load(spring.node);
   }
   for (const int node : hold.touched()) load(node);
-  std::vector<std::uint8_t> known(shape.state.displacement.size(), 0);
-  const bool all_new = left_displacement_.size() != known.size();
-  bool moved = false;
-  for (std::size_t node = 0; !all_new && !moved && node < known.size(); ++node) {
-    const bool held = hold.held()[node] != 0;
-    moved = !held && shape.state.displacement[node] != left_displacement_[node];
-  }
-  if (!all_new && !moved && disturbed.empty()) return;
+  if (!others_moved && disturbed.empty()) return;
   confine(wholeBox());
   finest().findForces(true);
   for (const int entry : finest().nodesOutOfBalance(layerMotion())) addSeed(entry);

@@ -10,20 +10,26 @@ namespace robot_tissue {
 
 ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config) : lattice_(lattice) {
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
+  std::vector<const Material*> materials;
+  kinds_.reserve(lattice.cells().size());
   for (const Cell& cell : lattice.cells()) {
     const Material& material = materialAt(config, lattice.cellCenter(cell));
-    substance_.push_back({moduliOf(material), material.density * corner_volume * config.gravity});
+    const auto found = std::find(materials.begin(), materials.end(), &material);
+    kinds_.push_back(static_cast<std::uint16_t>(found - materials.begin()));
+    if (found != materials.end()) continue;
+    materials.push_back(&material);
+    substances_.push_back({moduliOf(material), material.density * corner_volume * config.gravity});
   }
 }
 
 // A cell that is filled in part answers in part.
 Moduli ElasticModel::cellModuli(const Cell& cell) const {
-  const Moduli& full = substance_[at(cell.place)].moduli;
+  const Moduli& full = substanceOf(cell).moduli;
   return {cell.share * full.shear, cell.share * full.bulk};
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
-  return cell.share * substance_[at(cell.place)].corner_weight;
+  return cell.share * substanceOf(cell).corner_weight;
 }
 
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {

@@ -61,6 +61,8 @@ void Lattice::placeNodes(const std::vector<double>& filled) {
     if (filled[at(cell)] <= 0.0) continue;
     for (const int point : grid_.cornersOf(cell)) node_at_[at(point)] = 0;
   }
+  index_of_.reserve(node_at_.size() -
+                    at(static_cast<int>(std::count(node_at_.begin(), node_at_.end(), -1))));
   int count = 0;
   for (std::size_t point = 0; point < node_at_.size(); ++point) {
     if (node_at_[point] < 0) continue;
@@ -83,6 +85,7 @@ void Lattice::placeCells(const std::vector<double>& filled) {
     }
     cells.push_back(cell);
   }
+  cells.shrink_to_fit();
   cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
 }
 
@@ -91,6 +94,7 @@ void Lattice::placeSprings() {
   std::array<int, kNeighbors> none{};
   none.fill(-1);
   springs_of_node_.assign(index_of_.size(), none);
+  springs_.reserve(3 * index_of_.size());
   for (int node = 0; node < nodeCount(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
       for (auto cell = cells_->first(node); cell != cells_->last(node); ++cell) {

@@ -13,6 +13,7 @@ constexpr int kFewest = 3;       // grid points along the longest side of the co
 constexpr int kStepsBefore = 3;  // of the smoother on a coarse level, before it is corrected
 constexpr int kStepsAfter = 3;   // and after
 constexpr int kStepsCoarsest = 12;
+constexpr double kSame = 1e-15;  // relative, of a displacement that went to m and back
 
 }  // namespace
 
@@ -44,14 +45,20 @@ LatticeLevels<Real>::LatticeLevels(const Lattice& lattice, const ElasticModel& m
     grid = coarse;
   }
   levels_.front().firm.setUnits(spacing_, modulus_);
-  motion = motions_.front();
-  weight_ = motion;
+  motion = std::move(motions_.front());
+  weigh(model, cells);
+}
+
+template <typename Real>
+void LatticeLevels<Real>::weigh(const ElasticModel& model, const CellSet& cells) {
   const double unit = modulus_ * spacing_ * spacing_;
   for (const Cell& cell : cells.all()) {
+    const Vec3 weight = model.cornerWeight(cell) / unit;
+    if (weight.isZero(0.0)) continue;
+    for (auto& values : weight_) values.resize(motion.front().size(), Real(0));
     for (const int node : cell.nodes) {
       for (int axis = 0; axis < 3; ++axis) {
-        weight_[at(axis)][at(entryOf(node))] +=
-            static_cast<Real>(model.cornerWeight(cell)[axis] / unit);
+        weight_[at(axis)][at(entryOf(node))] += static_cast<Real>(weight[axis]);
       }
     }
   }
@@ -97,14 +104,21 @@ void LatticeLevels<Real>::confine(const LevelBox& box) {
 
 // Nodes in a row of the grid are neighbors in the fields.
 template <typename Real>
-void LatticeLevels<Real>::setDisplacement(const std::vector<Vec3>& displacement) {
+bool LatticeLevels<Real>::setDisplacement(const std::vector<Vec3>& displacement,
+                                          const std::vector<std::uint8_t>& held) {
   const double unit = 1.0 / spacing_;
+  bool others_moved = false;
   for (int axis = 0; axis < 3; ++axis) {
     Real* to = levels_.front().displacement[at(axis)].data();
     for (std::size_t node = 0; node < entries_.size(); ++node) {
-      to[entries_[node]] = static_cast<Real>(displacement[node][axis] * unit);
+      Real& here = to[entries_[node]];
+      const Real now = static_cast<Real>(displacement[node][axis] * unit);
+      const bool same = std::abs(now - here) <= kSame * std::abs(here);
+      others_moved = others_moved || (!same && held[node] == 0);
+      if (!same) here = now;
     }
   }
+  return others_moved;
 }
 
 template <typename Real>

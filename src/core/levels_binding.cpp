@@ -67,7 +67,7 @@ void LatticeLevels<Real>::bindFinest(const LoadedShape& shape, const PatchHold& 
     level.hold(entries_[node], carried ? 0U : hold.held()[node]);
   }
   level.bind();
-  level.load = weight_;
+  if (!weight_.front().empty()) level.load = weight_;
   const double unit = modulus_ * spacing_ * spacing_;
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     if (byForce(shape.patches[index])) {

@@ -90,7 +90,7 @@ void Tissue::restore(const Shape& shape) {
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
-  deform(surface_, shownDisplacement(), vertices_);
+  deformSurface();
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
@@ -107,7 +107,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   }
   sever(lattice_, crossing, state_, model_->splitCells());
   rebuildSurface();
-  deform(surface_, shownDisplacement(), vertices_);
+  deformSurface();
   renewContacts();
   report.pieces = state_.pieces;
   report.solve = solve(disturbed);
@@ -139,6 +139,16 @@ std::vector<Vec3> Tissue::shownDisplacement() const {
   return shown;
 }
 
+// Where patches have rims their nodes are shown as their own (shownDisplacement).
+void Tissue::deformSurface() {
+  if (std::all_of(patches_.begin(), patches_.end(),
+                  [](const LoadingPatch& patch) { return patch.rim.empty(); })) {
+    deform(surface_, state_.displacement, vertices_);
+  } else {
+    deform(surface_, shownDisplacement(), vertices_);
+  }
+}
+
 // The surface is another one: touches are found anew where it is now.
 void Tissue::renewContacts() {
   std::vector<LoadingPatch> of_tools;
@@ -154,9 +164,9 @@ void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
 
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
+  if (!contact_rounds_.renew) return solveOnce(disturbed);
   std::vector<Vec3> before = state_.displacement;
   SolveReport report = solveOnce(disturbed);
-  if (!contact_rounds_.renew) return report;
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
     const bool solved = report.status != SolveStatus::kUnconverged;
@@ -201,7 +211,7 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   for (std::size_t node = 0; node < before.size(); ++node) {
     state_.displacement[node] = before[node] + share * (state_.displacement[node] - before[node]);
   }
-  deform(surface_, shownDisplacement(), vertices_);
+  deformSurface();
   return true;
 }
 
@@ -263,7 +273,7 @@ bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
 }
 
 void Tissue::describeShape(SolveReport& report) {
-  deform(surface_, shownDisplacement(), vertices_);
+  deformSurface();
   report.volume_ratio = enclosedVolume(surface_, vertices_) / rest_volume_;
   report.inverted_cells = countInvertedCells(lattice_, state_);
   if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;

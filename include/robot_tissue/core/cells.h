@@ -24,8 +24,8 @@ constexpr int kCorners = 8;
 struct Cell {
   std::array<int, kCorners> nodes{};
   int place = 0;            // which of the lattice's cells it is, or is a part of
-  double share = 1.0;       // of that cell's volume h^3 that it holds, in (0, 1]
   std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
+  double share = 1.0;       // of that cell's volume h^3 that it holds, in (0, 1]
 
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
@@ -45,8 +45,12 @@ class CellSet {
  public:
   // Where a node is met: cell (index into all()) and corner of it.
   struct Meeting {
-    int cell = 0;
-    int corner = 0;
+    Meeting(int of_cell = 0, int of_corner = 0)
+        : cell(static_cast<std::uint32_t>(of_cell) & 0x1fffffffU),
+          corner(static_cast<std::uint32_t>(of_corner) & 7U) {}
+
+    std::uint32_t cell : 29;
+    std::uint32_t corner : 3;
   };
 
   CellSet() = default;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "robot_tissue/core/elastic_cell.h"
@@ -42,9 +43,13 @@ class ElasticModel : public EnergyModel {
     Moduli moduli;
     Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
   };
+  const Substance& substanceOf(const Cell& cell) const {
+    return substances_[kinds_[at(cell.place)]];
+  }
 
   const Lattice& lattice_;
-  std::vector<Substance> substance_;  // per cell of the lattice
+  std::vector<Substance> substances_;
+  std::vector<std::uint16_t> kinds_;  // per cell of the lattice, into substances_
 };
 
 }  // namespace robot_tissue

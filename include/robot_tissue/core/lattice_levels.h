@@ -38,7 +38,9 @@ class LatticeLevels {
   void renewGroups(const LoadedShape& shape, const PatchHold& hold);
   // Nodes out of the finest lattice's box stay where they are.
   void confine(const LevelBox& box);
-  void setDisplacement(const std::vector<Vec3>& displacement);
+  // Whether nodes of which nothing is held are elsewhere than this lattice has them.
+  bool setDisplacement(const std::vector<Vec3>& displacement,
+                       const std::vector<std::uint8_t>& held);
   Vec3 displacementOf(int node) const;  // m
 
   // The smooth motion that goes with the finest lattice's forces, into `motion`.
@@ -67,6 +69,7 @@ class LatticeLevels {
 
   std::vector<LevelCell> finestCells(const Lattice& lattice, const ElasticModel& model,
                                      const CellSet& cells);
+  void weigh(const ElasticModel& model, const CellSet& cells);
   static Bond bondOf(const LoadedShape& shape, const PatchHold& hold);
   void bindFinest(const LoadedShape& shape, const PatchHold& hold);
   void renewSprings(const LoadedShape& shape, const PatchHold& hold);
@@ -85,7 +88,7 @@ class LatticeLevels {
   std::vector<LatticeLevel<Real>> levels_;
   std::vector<Step> steps_;   // from level i to i + 1
   std::vector<int> entries_;  // per node of the tissue
-  Field<Real> weight_;        // of the nodes
+  Field<Real> weight_;        // of the nodes; empty without gravity
   Bond bond_;
   double spacing_ = 1.0;
   double modulus_ = 1.0;

@@ -124,6 +124,7 @@ class Tissue {
   SolveReport solveOnce(const std::vector<int>& disturbed);
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
+  void deformSurface();
   bool hasOnlyFiniteNumbers(const SolveReport& report) const;
   LoadingPatch makePatch(const PatchConfig& config) const;
   void leaveRimsToOwners();
