@@ -39,9 +39,9 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 namespace robot_tissue {
 namespace {
 
-constexpr double kTop = 0.05;      // of the block (m)
-constexpr double kRadius = 0.006;  // of the tools (m)
-constexpr int kWarmUp = 100, kUpdates = 500;
+constexpr double kTop = 0.05;                 // of the block (m)
+constexpr double kRadius = 0.006;             // of the tools (m)
+constexpr int kWarmUp = 100, kUpdates = 200;  // two periods of the motion
 
 using Motion = std::function<double(int update)>;  // height of the tools' lowest points (m)
 
