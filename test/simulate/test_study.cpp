@@ -27,6 +27,8 @@ case "$*" in *runs/*)
   if [ "$(wc -l <of_this_start)" -eq "$solve" ]; then
     kill -9 "$(cat study_pid)"
     if [ "$victims" = all ]; then kill -9 $PPID; kill -9 $$; fi
+    tries=0  # this run outlives the study, until the next one waits for it
+    until grep -q waiting log || [ $tries -gt 300 ]; do tries=$((tries + 1)); sleep 0.1; done
   fi;;
 esac
 cd study && exec "$REAL_SIMULATE" "$@"
@@ -49,7 +51,8 @@ class StudyTest : public ::testing::Test {
     std::ofstream(root_ / "kills") << kills << '\n';
     std::ofstream(root_ / "of_this_start");
     const std::string command =
-        "cd '" + root_.string() + "' && REAL_SIMULATE='" SIMULATE_PATH
+        "cd '" + root_.string() +
+        "' && REAL_SIMULATE='" SIMULATE_PATH
         "' sh -c 'echo $$ >study_pid; exec /usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR
         "/scripts/study --simulate ./simulate --folder study --table table.csv --quiet --repeats 1 "
         "--methods layered,newton --only ^press_d1_elastic_nu25_h10000um' >>log 2>&1";
