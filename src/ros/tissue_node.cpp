@@ -2,6 +2,7 @@
 
 #include <ros/callback_queue.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@ namespace {
 const ros::WallDuration kRobotLookUpPeriod(1.0);
 constexpr double kLongestUpdate = 0.1;  // s, without a budget of the solver
 constexpr double kRateTolerance = 0.1;
+constexpr double kWatchPeriod = 0.05;  // s, of the timer while poses come by themselves
 
 }  // namespace
 
@@ -57,8 +59,16 @@ void TissueNode::onTransforms() {
   update(std::move(look_up));
 }
 
+void TissueNode::tick(bool seldom) {
+  if (seldom == ticks_seldom_) return;
+  ticks_seldom_ = seldom;
+  const double period = 1.0 / parameters_.rate_hz;
+  timer_.setPeriod(ros::Duration(seldom ? std::max(period, kWatchPeriod) : period));
+}
+
 void TissueNode::onTimer() {
   diagnostics_.update();
+  tick(updated_);
   if (std::exchange(updated_, false)) return onTransforms();  // one may have come too early
   if (!robotIsKnown()) {
     return report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +

