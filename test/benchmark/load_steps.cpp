@@ -93,14 +93,13 @@ int run() {
     study({"layered", "press", young, 0.005, Vec3(0.0, 0.0, -4e-4 * young)});
   }
   study({"layered", "press", 1e4, 0.005, Vec3(0.0, 0.0, -12.0)});
-  study({"layered", "press", 1e4, 0.005, Vec3(0.0, 0.0, -24.0)});
   study({"layered", "drag", 1e4, 0.005, Vec3(4.0, 0.0, 0.0)});
   study({"layered", "pull", 1e4, 0.005, Vec3(0.0, 0.0, 4.0)});
   study({"layered", "press", 1e4, 0.01, Vec3(0.0, 0.0, -4.0)});
   for (const double young : {1e4, 1e6}) {
-    study({"paper", "press", young, 0.005, Vec3(0.0, 0.0, -1e-4 * young)});
+    study({"paper", "press", young, 0.005, Vec3(0.0, 0.0, -4e-4 * young)});
   }
-  study({"paper", "drag", 1e4, 0.005, Vec3(0.5, 0.0, 0.0)});
+  study({"paper", "drag", 1e4, 0.005, Vec3(2.0, 0.0, 0.0)});
   return 0;
 }
 
