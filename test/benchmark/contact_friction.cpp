@@ -3,10 +3,10 @@
 // plate: larger than the block's top, that all of it slides; box: its edges are on the top;
 // sphere: of 60 mm radius, that its normals are nearly upright.
 // Writes tool,friction,spacing_mm,way_mm,fx,fy,fz,ratio,normal_n,drag_n,steepest,penetration_mm,
-// unbalanced_n,ms,status: one line an increment of the drag; ratio is of the wrench, normal_n and
-// drag_n are sums over the touches.
-#include <chrono>
+// unbalanced_n,ms,status,sliding_normal_n,sliding_drag_n: one line an increment of the drag; ratio
+// is of the wrench, normal_n and drag_n are sums over the touches, sliding_ over those that slide.
 #include <cstdio>
+#include <ctime>
 
 #include "contact_trial.h"
 
@@ -39,17 +39,18 @@ void slide(const Slide& trial, double friction, double spacing, const SolverConf
   const int increments = static_cast<int>(trial.drag / kIncrement + 0.5);
   for (int i = 0; i <= increments; ++i) {
     const double aside = trial.drag * i / increments;
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     const ToolReport& tool = pipeline.step(at_way(trial.press, aside)).tools.front();
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     const TouchSums touches = touchesOf(pipeline.tissue(), trial.name, Vec3::Zero());
     const Vec3& force = tool.force_on_tool;
-    std::printf("%s,%g,%g,%.3f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f,%.6f,%.1f,%s\n",
+    std::printf("%s,%g,%g,%.3f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f,%.6f,%.1f,%s,%.6f,%.6f\n",
                 trial.name.c_str(), friction, 1e3 * spacing, 1e3 * aside, force.x(), force.y(),
                 force.z(), force.head<2>().norm() / force.z(), touches.normal, touches.drag,
                 touches.steepest, 1e3 * tool.max_penetration,
-                pipeline.forceBalance().unbalanced().norm(), took.count(),
-                toString(pipeline.tissue().lastReport().status));
+                pipeline.forceBalance().unbalanced().norm(), ms,
+                toString(pipeline.tissue().lastReport().status), touches.sliding_normal,
+                touches.sliding_drag);
     std::fflush(stdout);
   }
 }
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
       {"sphere", sphereOf(0.06), 0.06, Vec3(0.1, 0.1, 0.05), 0.003, 0.02}};
   std::printf(
       "tool,friction,spacing_mm,way_mm,fx,fy,fz,ratio,normal_n,drag_n,steepest,penetration_mm,"
-      "unbalanced_n,ms,status\n");
+      "unbalanced_n,ms,status,sliding_normal_n,sliding_drag_n\n");
   for (const Slide& trial : trials) {
     if (wanted == "all" || wanted == trial.name) slide(trial, friction, spacing, solver);
   }

@@ -4,8 +4,8 @@
 //                 [STEPS] [METHOD] [TOLERANCE] [SHIFT in spacings: sphere's axis off a node]
 // Writes spacing_mm,radius_mm,layer_mm,width_mm,method,tolerance,shift,depth_mm,force_n,
 // lateral_n,contact_radius_mm,touches,penetration_mm,unbalanced_n,ms,status: one line a step.
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "contact_trial.h"
 
@@ -35,15 +35,15 @@ int main(int argc, char** argv) {
       "contact_radius_mm,touches,penetration_mm,unbalanced_n,ms,status\n");
   for (int step = 1; step <= steps; ++step) {
     const double deep = depth * step / steps;
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     const ToolReport& tool = pipeline.step(at_depth(deep)).tools.front();
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     const TouchSums touches = touchesOf(pipeline.tissue(), "sphere", axis);
     std::printf("%g,%g,%g,%g,%s,%g,%g,%.4f,%.6f,%.6f,%.3f,%d,%.4f,%.6f,%.1f,%s\n", 1e3 * spacing,
                 1e3 * radius, 1e3 * layer, 1e3 * width, method.c_str(), tolerance, shift,
                 1e3 * deep, tool.force_on_tool.z(), tool.force_on_tool.head<2>().norm(),
                 1e3 * touches.radius, touches.pushing, 1e3 * tool.max_penetration,
-                pipeline.forceBalance().unbalanced().norm(), took.count(),
+                pipeline.forceBalance().unbalanced().norm(), ms,
                 toString(pipeline.tissue().lastReport().status));
     std::fflush(stdout);
   }

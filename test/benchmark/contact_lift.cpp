@@ -4,8 +4,8 @@
 // Writes way,spacing_mm,friction,leg,increment,fx,fy,fz,wrench_error_percent,table_n,sunk_mm,
 // penetration_mm,unbalanced_n,ms,status: f is the sum of the jaws' forces on the tissue, sunk_mm
 // how far the block's mean is below where the jaws would carry it.
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "contact_trial.h"
 
@@ -58,9 +58,9 @@ class Lift {
     const Vec3 aside(0.5 * kExtent.x() + 0.5 * kJaw.x() - squeeze_, 0.0, 0.0);
     RobotPose pose;
     pose.links = {placedAt(middle - aside), placedAt(middle + aside)};
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     const StepReport& report = pipeline_->step(pose);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     Vec3 on_tissue = Vec3::Zero();
     double penetration = 0.0, mean = 0.0;
     for (const ToolReport& tool : report.tools) {
@@ -75,8 +75,7 @@ class Lift {
                 on_tissue.x(), on_tissue.y(), on_tissue.z(),
                 100.0 * (on_tissue - Vec3(0.0, 0.0, kWeight)).norm() / kWeight,
                 balance.supports.z(), 1e3 * (up_ - mean), 1e3 * penetration,
-                balance.unbalanced().norm(), took.count(),
-                toString(pipeline_->tissue().lastReport().status));
+                balance.unbalanced().norm(), ms, toString(pipeline_->tissue().lastReport().status));
     std::fflush(stdout);
   }
 

@@ -2,11 +2,12 @@
 // that is shown, how smooth the force is, how long a millimeter takes.
 //   contact_press [TOOL|all] [SPEED in m/s at 100 updates a second, 0 = increments of 0.25 mm]
 //                 [SPACING in mm] [FRICTION] [METHOD]
-// Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update.
-#include <chrono>
+// Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update, ms of
+// processor.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <string>
@@ -138,18 +139,18 @@ class Trial {
   void update(const char* leg, const Vec3& place, double way) {
     RobotPose pose;
     pose.links.push_back(Pose(Eigen::Translation3d(place)));
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     const StepReport& report = pipeline_->step(pose);
-    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     const ToolReport& tool = report.tools.front();
     const SolveReport& solve = pipeline_->tissue().lastReport();
     std::printf("%s,%s,%.3f,%.5f,%.5f,%.5f,%.4f,%.2f,%d,%s\n", name_.c_str(), leg, 1e3 * way,
                 tool.force_on_tool.x(), tool.force_on_tool.y(), tool.force_on_tool.z(),
-                1e3 * tool.max_penetration, took.count(), report.substeps, toString(solve.status));
+                1e3 * tool.max_penetration, ms, report.substeps, toString(solve.status));
     worst_.penetration = std::max(worst_.penetration, tool.max_penetration);
     worst_.jump = std::max(worst_.jump, (tool.force_on_tool - last_).norm());
     worst_.force = std::max(worst_.force, tool.force_on_tool.norm());
-    worst_.ms += took.count();
+    worst_.ms += ms;
     ++worst_.updates;
     if (solve.status != SolveStatus::kOk) ++worst_.not_ok;
     last_ = tool.force_on_tool;

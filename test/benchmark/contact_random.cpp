@@ -1,9 +1,10 @@
 // Three tools that move at random (random_visits.h).
 //   contact_random [MOTIONS] [FRICTION] [SPACING in mm] [SEED] [METHOD] [FIRST motion to tell of]
-// Writes one line a visit (from the rest shape until all tools have left): friction,visit,motions,
-// load_steps,not_finite,inverted_updates,inverted_at_leave,left_mm,greatest_force_n,
-// deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_followed_mm. With FIRST, one line a
-// motion on stderr, too.
+// Writes one line a visit (from the rest shape until all tools have left): seed,friction,visit,
+// motions,load_steps,not_finite,inverted_updates,inverted_at_leave,left_mm,greatest_force_n,
+// deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_followed_mm; lost: updates in which no
+// shape could follow the tools, deepest_followed_mm of the others. With FIRST, one line a motion on
+// stderr, too.
 #include "random_visits.h"
 
 int main(int argc, char** argv) {
@@ -17,13 +18,14 @@ int main(int argc, char** argv) {
   trial.first_told = static_cast<int>(argument(argc, argv, 6, -1.0));
   RandomVisits visits(trial);
   std::printf(
-      "friction,visit,motions,load_steps,not_finite,inverted_updates,inverted_at_leave,left_mm,"
-      "greatest_force_n,deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_followed_mm\n");
+      "seed,friction,visit,motions,load_steps,not_finite,inverted_updates,inverted_at_leave,"
+      "left_mm,greatest_force_n,deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_"
+      "followed_mm\n");
   for (int number = 0; number < motions / RandomVisits::kMotionsOfVisit; ++number) {
     const RandomVisits::Sums sums = visits.visit(number);
-    std::printf("%g,%d,%d,%d,%d,%d,%d,%.9g,%.3f,%.3f,%.2f,%d,%.2f,%d,%.3f\n", trial.friction,
-                number, RandomVisits::kMotionsOfVisit, sums.load_steps, sums.not_finite,
-                sums.inverted, sums.inverted_at_leave, 1e3 * sums.left, sums.force,
+    std::printf("%u,%g,%d,%d,%d,%d,%d,%d,%.9g,%.3f,%.3f,%.2f,%d,%.2f,%d,%.3f\n", trial.seed,
+                trial.friction, number, RandomVisits::kMotionsOfVisit, sums.load_steps,
+                sums.not_finite, sums.inverted, sums.inverted_at_leave, 1e3 * sums.left, sums.force,
                 1e3 * sums.depth, 1e3 * sums.displaced, sums.unconverged, sums.seconds, sums.lost,
                 1e3 * sums.depth_followed);
     std::fflush(stdout);

@@ -70,8 +70,10 @@ inline Pose placedAt(const Vec3& place) { return Pose(Eigen::Translation3d(place
 // Of the touches that the solver's last answer is for.
 struct TouchSums {
   int pushing = 0;
-  double normal = 0.0;    // sum of the normal forces (N)
-  double drag = 0.0;      // sum of the lengths of the drags (N)
+  double normal = 0.0;          // sum of the normal forces (N)
+  double drag = 0.0;            // sum of the lengths of the drags (N)
+  double sliding_normal = 0.0;  // likewise, of the touches that slide: at their bound of drag
+  double sliding_drag = 0.0;
   double steepest = 0.0;  // greatest drag over normal force of one touch, of those that carry 1 %
   double radius = 0.0;    // of the farthest that pushes from `axis`, at rest, along x and y (m)
 };
@@ -93,6 +95,10 @@ inline TouchSums touchesOf(const Tissue& tissue, const std::string& tool, const 
         ++sums.pushing;
         sums.normal += normal;
         sums.drag += drag;
+        if (drag > 0.999 * spring.most_drag) {
+          sums.sliding_normal += normal;
+          sums.sliding_drag += drag;
+        }
         sums.radius = std::max(sums.radius, (spring.rest - axis).head<2>().norm());
       }
     }
