@@ -14,9 +14,9 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kToolStep = 0.2;   // of the spacing
-constexpr int kContactRounds = 16;  // in which the shape is what was solved for
-constexpr int kMostRounds = 80;
+constexpr double kToolStep = 0.2;     // of the spacing
+constexpr int kContactRounds = 16;    // in which the shape is what was solved for
+constexpr int kMostRounds = 80;       // with those that are cut short
 constexpr int kMostIterations = 600;  // of the rounds of one load step
 
 }  // namespace

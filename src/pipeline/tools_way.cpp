@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostCheckpoints = 64;
 constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is none
 constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
-constexpr double kShortest = 1.0 / 8.0;  // of a load step: halved no further
+constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
 constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
 
 // Longest way (m) that a point of the link goes between two poses.
@@ -86,7 +86,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
     const bool followed = advance(on_the_way);
     if (!followed) {
-      if (there - gone <= kShortest) {
+      if (std::min(longest, there - gone) <= kShortest) {
         report_.lost = true;
         return came();
       }

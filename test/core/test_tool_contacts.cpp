@@ -34,7 +34,7 @@ class PlaneOnABlock : public ::testing::Test {
     solver.method = "newton";
     tissue_ = std::make_unique<Tissue>(softBlock(), solver);
     tissue_->setContactRounds(
-        {[](const auto&) { return 1.0; },
+        {[] { return std::vector<double>(); }, [](const auto&) { return 1.0; },
          [this](auto& patches, bool whole, bool last) { return round(patches, whole, last); }});
     held_.assign(at(tissue_->lattice().nodeCount()), 0);
     for (int node = 0; node < tissue_->lattice().nodeCount(); ++node) {
@@ -336,6 +336,31 @@ TEST_F(PlaneOnABlock, SettledTouchesNeedNoFurtherRound) {
   press(1e-3);
   for (int time = 0; time < 3; ++time) follow();
   EXPECT_EQ(rounds_, 1);
+}
+
+// A solve ends where a vertex went farther than it may, and the next goes on from there.
+TEST(LimitedWays, TakeMoreSolvesToTheSameShape) {
+  Tissue free(softBlock(), SolverConfig()), limited(softBlock(), SolverConfig());
+  int solves = 0, whole_ones = 0;
+  limited.setContactRounds(
+      {[&] { return std::vector<double>(limited.vertices().size(), 0.02 * kSpacing); },
+       [](const auto&) { return 1.0; },
+       [&](auto&, bool whole, bool) {
+         ++solves;
+         whole_ones += whole ? 1 : 0;
+         return !whole;
+       }});
+  const Box top{Vec3(-1.0, -1.0, 0.03 - 1e-6), Vec3(1.0, 1.0, 1.0)};
+  const LoadStep load = loadOf({displacedPatch("top", top, Vec3(0.2 * kSpacing, 0.0, 0.0))}, 1);
+  free.load(load);
+  limited.load(load);
+  EXPECT_GT(solves, 2);
+  EXPECT_EQ(whole_ones, 1);
+  EXPECT_EQ(limited.lastReport().status, SolveStatus::kOk);
+  for (std::size_t node = 0; node < free.state().displacement.size(); ++node) {
+    const Vec3 off = limited.state().displacement[node] - free.state().displacement[node];
+    EXPECT_LT(off.norm(), 0.02 * 0.2 * kSpacing);
+  }
 }
 
 }  // namespace
