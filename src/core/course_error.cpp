@@ -158,7 +158,7 @@ bool CourseIn<Real>::wentTooFar() const {
 // Forces on patches, and on the whole, have found their answer.
 template <typename Real>
 bool CourseIn<Real>::isBalanced() const {
-  if (!isCalm()) return false;
+  if (!in_contact_ && !isCalm()) return false;
   Vec3 given = Vec3::Zero(), net = Vec3::Zero();
   for (std::size_t group = 0; group < finest().firm.groups.size(); ++group) {
     const Vec3 load = finest().firm.load[group].template head<3>();
@@ -187,7 +187,7 @@ void CourseIn<Real>::learn(double trend_before) {
   if (cycles_ > 1 && trend_ < kMostLeft * first_left_) {
     factor = std::max(factor, distanceFrom(start_) / (first_left_ - trend_));
   }
-  if (cycles_ >= mark_cycle_ + kShortest && trend_ < kMostLeft * mark_left_) {
+  if (!in_contact_ && cycles_ >= mark_cycle_ + kShortest && trend_ < kMostLeft * mark_left_) {
     factor = std::max(factor, distanceFrom(mark_) / (mark_left_ - trend_));
   }
   if ((cycles_ & (cycles_ - 1)) == 0 && cycles_ >= kFirstMark) {

@@ -22,15 +22,17 @@ int wholeParts(double share) {
 }  // namespace
 
 // How many of the method's longest steps the load takes: the way of a patch by displacement over
-// the step; a force over what its patch answers to the step. A hard patch of n nodes answers like a
-// flat punch, whose stiffness grows with its width, so as sqrt(n) nodes do (own).
+// the step; a force over what its patch answers to the step. In equilibrium a hard patch of n nodes
+// answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes do (own);
+// the paper's moves while the tissue around it stands, so all n nodes answer.
 double Tissue::foreseenSteps(const std::vector<Ramp>& ramps) const {
   double steps = 1.0;
   for (const Ramp& ramp : ramps) {
     if (byForce(ramp.target)) {
       double sum = 0.0;
       for (const int node : ramp.target.nodes) sum += nodeStiffness(node);
-      const double stiffness = sum / std::sqrt(static_cast<double>(ramp.target.nodes.size()));
+      const double nodes = static_cast<double>(ramp.target.nodes.size());
+      const double stiffness = method_->findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
       const double force = (ramp.target.force - ramp.start.force).norm();
       if (stiffness > 0.0) steps = std::max(steps, force / (stiffness * method_->patchStep()));
       continue;
@@ -51,12 +53,13 @@ int Tissue::foreseenIncrements(const std::vector<Ramp>& ramps) const {
 }
 
 // With increments of its own choice. Those of a displacement are equal. Those of a force follow the
-// stiffness that the last one met, so that the next moves its patch by one step; one that went too
-// far is made anew where the method then finds the same equilibrium.
+// stiffness that the last one met, so that the next moves its patch by one step, and one that went
+// too far is made anew, where the method finds equilibria.
 SolveReport Tissue::climbByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment) {
   const bool forced = std::any_of(ramps.begin(), ramps.end(),
                                   [](const Ramp& ramp) { return byForce(ramp.target); });
-  if (!forced) return climb(ramps, foreseenIncrements(ramps), on_increment);
+  if (!forced || !method_->findsEquilibrium())
+    return climb(ramps, foreseenIncrements(ramps), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   const double first = 1.0 / foreseenSteps(ramps), least = kLeastOfFirst * first;
@@ -68,7 +71,7 @@ SolveReport Tissue::climbByItself(const std::vector<Ramp>& ramps, const OnIncrem
     report = goTo(ramps, to);
     const double went = stepsGone(ramps, good.displacement);
     stride = std::max(least, part / std::max(went, 1.0 / kMostGrowth));
-    if (went > kTooFar && stride < part && method_->findsEquilibrium()) {
+    if (went > kTooFar && stride < part) {
       restore(good);
       --increment;
       continue;
