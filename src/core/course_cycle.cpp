@@ -14,6 +14,8 @@ constexpr double kSlow = 0.3;           // of the length left before a cycle: th
 constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no need to look further
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
 constexpr int kTrials = 8;              // of the length along a direction
+constexpr double kForceShare = 2.0;     // of the tolerance: what forces may disagree by
+constexpr int kMostSettling = 3;        // rounds of the smoother, for the forces' sake
 constexpr int kPlainSteps = 8;          // of the smoother, where a cycle led nowhere
 
 }  // namespace
@@ -173,19 +175,37 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
   // What is in balance stays, bit for bit.
   const bool moves = cycles_ > 0 || carried_on || error_ > options_.tolerance;
   if (status == SolveStatus::kOk && moves && left_ > 0.0) {
-    error_ = error_after_;
-    if (conjugate_) keepPlace(before_);
-    const double most = unbalanced();
-    finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
-    finest().findForces(true);
-    finest().smooth(1, true);
-    if (conjugate_ && unbalanced() > most) {
-      putBack(before_);
-      finest().findForces(true);
-      advance();
-    }
+    finish();
+    settleForces();
   }
   return status;
+}
+
+// The last motion that the coarse lattices found.
+template <typename Real>
+void CourseIn<Real>::finish() {
+  error_ = error_after_;
+  if (conjugate_) keepPlace(before_);
+  const double most = unbalanced();
+  finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
+  finest().findForces(true);
+  finest().smooth(1, true);
+  if (conjugate_ && unbalanced() > most) {
+    putBack(before_);
+    finest().findForces(true);
+    advance();
+  }
+}
+
+// What is rough beside a patch hardly shows in displacements, but in its force. What is unbalanced
+// in all is what the forces on the tissue's ends do not agree by.
+template <typename Real>
+void CourseIn<Real>::settleForces() {
+  for (int round = 0; round < kMostSettling; ++round) {
+    const double given = patchForce().norm();
+    if (netForce().norm() <= kForceShare * options_.tolerance * given || given == 0.0) return;
+    finest().smooth(steps_, true);
+  }
 }
 
 // One cycle.

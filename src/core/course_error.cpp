@@ -135,6 +135,28 @@ double CourseIn<Real>::unbalanced() const {
   return unbalanced;
 }
 
+// Sum of what is out of balance.
+template <typename Real>
+Vec3 CourseIn<Real>::netForce() const {
+  Vec3 net = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Span& span : finest().spans()) {
+      net[axis] += sumOf(finest().force[at(axis)].data() + span.first, span.count);
+    }
+  }
+  return net;
+}
+
+// On hard nodes of patches whose places are given.
+template <typename Real>
+Vec3 CourseIn<Real>::patchForce() const {
+  Vec3 force = Vec3::Zero();
+  for (const int entry : loaded_) {
+    if (finest().heldAxes(entry) != 0) force += finest().wholeForce(entry);
+  }
+  return force;
+}
+
 // What hangs by little moves far under forces that cycles hardly lessen.
 template <typename Real>
 bool CourseIn<Real>::isCalm() const {
@@ -168,11 +190,7 @@ bool CourseIn<Real>::isBalanced() const {
     net += left;
   }
   if (given.isZero(0.0)) return true;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const Span& span : finest().spans()) {
-      net[axis] += sumOf(finest().force[at(axis)].data() + span.first, span.count);
-    }
-  }
+  net += netForce();
   return net.norm() < kFalling * given.norm();
 }
 

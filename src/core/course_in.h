@@ -61,6 +61,8 @@ class CourseIn : public LayeredCourse {
   SolveStatus look(bool changed);
   void learn(double trend_before);
   double unbalanced() const;
+  Vec3 netForce() const;
+  Vec3 patchForce() const;
   bool isCalm() const;
   bool isBalanced() const;
   double lengthLeft() const;
@@ -71,6 +73,8 @@ class CourseIn : public LayeredCourse {
   bool carryOn();
   void advance();
   void goPlainly(const Vector& from);
+  void finish();
+  void settleForces();
   bool searchAlong(const Vector& way, double slope, double slope_here);
 
   LatticeLevel<Real>& finest() { return levels_->finest(); }

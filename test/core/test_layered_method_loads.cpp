@@ -40,6 +40,23 @@ TEST_P(LayeredByForce, PatchFindsWhereItsForceAndMomentBalance) {
 INSTANTIATE_TEST_SUITE_P(RatiosAndTurns, LayeredByForce,
                          testing::Combine(testing::Values(0.25, 0.45), testing::Bool()));
 
+// Displacements hide what is rough beside a patch, forces do not.
+TEST(LayeredLoads, ForceOfAShearedBlockIsRightInEachStep) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(16, 16, 8, 0.25));
+  LayeredBlock block(config, within(1e-2)), exact(config, within(1e-5));
+  const std::vector<int> top = block.lattice.nodesIn(nodeBox(config, {0, 0, 8}, {16, 16, 8}));
+  for (const double way : {0.004, 0.008, 0.012, 0.016}) {
+    Vec3 forces[2];
+    for (LayeredBlock* each : {&block, &exact}) {
+      each->method.beginStep(each->state);
+      const SolveReport report = each->solve({displaced(top, Vec3(way, 0.0, 0.0))});
+      ASSERT_EQ(report.status, SolveStatus::kOk);
+      forces[each == &exact] = report.patches[0].force;
+    }
+    EXPECT_LT((forces[0] - forces[1]).norm(), 0.02 * forces[1].norm());
+  }
+}
+
 class LayeredUniaxial : public testing::TestWithParam<double> {};
 
 TEST_P(LayeredUniaxial, FreeAxesGivePoissonsRatioBack) {
