@@ -113,6 +113,10 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   // Contacts, and what was let go, change in ways that are small beside the displacement, but not
   // to them.
   const bool untried = cycles_ == 0 && changed;
+  if (cycles_ == 0 && !raised && isAtRest()) {
+    error_ = error_after_ = left_ = 0.0;
+    return SolveStatus::kOk;
+  }
   if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
     return SolveStatus::kOk;
   if (cycles_ > 0 && wentTooFar()) return SolveStatus::kUnconverged;
@@ -133,6 +137,15 @@ double CourseIn<Real>::unbalanced() const {
     }
   }
   return unbalanced;
+}
+
+// No force at all: whatever coarse lattices make of rounding.
+template <typename Real>
+bool CourseIn<Real>::isAtRest() const {
+  const std::vector<GroupVector>& on_groups = finest().firm.force;
+  return unbalanced() == 0.0 &&
+         std::all_of(on_groups.begin(), on_groups.end(),
+                     [](const GroupVector& force) { return force.isZero(0.0); });
 }
 
 // Sum of what is out of balance.

@@ -61,6 +61,7 @@ class CourseIn : public LayeredCourse {
   SolveStatus look(bool changed);
   void learn(double trend_before);
   double unbalanced() const;
+  bool isAtRest() const;
   Vec3 netForce() const;
   Vec3 patchForce() const;
   bool isCalm() const;

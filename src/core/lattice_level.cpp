@@ -84,6 +84,9 @@ void LatticeLevel<Real>::bind() {
 template <typename Real>
 void LatticeLevel<Real>::confine(const LevelBox& box) {
   cells_.confine(box);
+  for (Field<Real>* forces : {&force, &cells_.whole}) {
+    for (auto& values : *forces) std::fill(values.begin(), values.end(), Real(0));
+  }
   findFree();
 }
 
@@ -166,8 +169,9 @@ void LatticeLevel<Real>::loadFor(const Field<Real>& wanted,
     for (std::size_t i = 0; i < firm_nodes.size(); ++i) {
       const std::size_t node = at(firm_nodes[i]);
       if (!firm.isFree(static_cast<int>(i), static_cast<int>(axis))) continue;
-      load[axis][node] = wanted[axis][node] - force[axis][node];
-      force[axis][node] = wanted[axis][node];
+      const Real here = box().has(placeOf(firm_nodes[i])) ? wanted[axis][node] : Real(0);
+      load[axis][node] = here - force[axis][node];
+      force[axis][node] = here;
     }
   }
   for (std::size_t group = 0; group < firm.groups.size(); ++group) {

@@ -100,6 +100,21 @@ void LatticeLevels<Real>::confine(const LevelBox& box) {
       inside.high[axis] = (inside.high[axis] + (to_the_end ? 1 : 0)) / 2;
     }
   }
+  placeAll();
+}
+
+// All coarse nodes where the shape is: cycles move those in the boxes, whose cells have others,
+// too.
+template <typename Real>
+void LatticeLevels<Real>::placeAll() {
+  for (std::size_t coarse = 1; coarse < levels_.size(); ++coarse) {
+    LevelBox all;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all.high[axis] = levels_[coarse].grid().size[axis] - 1;
+    }
+    steps_[coarse - 1].transfer.restrictDisplacement(levels_[coarse - 1].displacement, all,
+                                                     levels_[coarse].displacement);
+  }
 }
 
 // Nodes in a row of the grid are neighbors in the fields.

@@ -40,6 +40,23 @@ TEST_P(LayeredByForce, PatchFindsWhereItsForceAndMomentBalance) {
 INSTANTIATE_TEST_SUITE_P(RatiosAndTurns, LayeredByForce,
                          testing::Combine(testing::Values(0.25, 0.45), testing::Bool()));
 
+TEST(LayeredLoads, CutAtRestNeedsNoCycle) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(24, 24, 12, 0.45));
+  const double h = config.spacing;
+  LayeredBlock block(config);
+  const std::vector<int> crossing = springsAcross(block.lattice, block.state,
+                                                  {{12.4 * h, 6.3 * h, 7.6 * h},
+                                                   {12.4 * h, 18.7 * h, 7.6 * h},
+                                                   {12.4 * h, 18.7 * h, 13.0 * h},
+                                                   {12.4 * h, 6.3 * h, 13.0 * h}});
+  ASSERT_FALSE(crossing.empty());
+  sever(block.lattice, crossing, block.state, block.model.splitCells());
+  const SolveReport report = block.solve({}, {block.lattice.springs()[at(crossing[0])].a});
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_EQ(report.error_estimate, 0.0);
+}
+
 // Displacements hide what is rough beside a patch, forces do not.
 TEST(LayeredLoads, ForceOfAShearedBlockIsRightInEachStep) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(16, 16, 8, 0.25));

@@ -84,6 +84,7 @@ class LatticeLevels {
   void solveCoarse(std::size_t level);
   std::vector<GroupVector> groupMotion(std::size_t coarse) const;
   bool isFinite() const;
+  void placeAll();
 
   std::vector<LatticeLevel<Real>> levels_;
   std::vector<Step> steps_;   // from level i to i + 1
