@@ -53,10 +53,7 @@ void addSpringForces(const LaneArrays& lanes, const LaneSprings& springs, int bl
 void squeezeOfBlock(const LaneArrays& lanes, const LaneGrid::Around& above, int block,
                     float* tightest);
 
-// Of whole arrays; the count is one of whole blocks.
-double squaredDistance(const float* a, const float* b, int count);
-
-// Of the products' entries.
+// Of the products' entries, over whole arrays; the count is one of whole blocks.
 double squaredProduct(const float* a, const float* b, const float* c, int count);
 
 // Rayleigh's quotient of a motion is work over mass: motion . change of force, and motion^2 /

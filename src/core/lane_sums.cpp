@@ -5,25 +5,6 @@
 namespace robot_tissue {
 
 ROBOT_TISSUE_LANES
-double squaredDistance(const float* a, const float* b, int count) {
-  constexpr int kBlocks = 64;  // summed in single precision
-  double total = 0.0;
-  for (int first = 0; first < count; first += kBlocks * kLanes) {
-    const int end = first + kBlocks * kLanes < count ? first + kBlocks * kLanes : count;
-    Lane sum = {};
-    for (int block = first; block < end; block += kLanes) {
-      ROBOT_TISSUE_ROLLED
-      for (int i = 0; i < kLanes; ++i) {
-        const float difference = a[block + i] - b[block + i];
-        sum[i] += difference * difference;
-      }
-    }
-    for (const float part : sum) total += static_cast<double>(part);
-  }
-  return total;
-}
-
-ROBOT_TISSUE_LANES
 double squaredProduct(const float* a, const float* b, const float* c, int count) {
   constexpr int kBlocks = 64;  // summed in single precision
   double total = 0.0;

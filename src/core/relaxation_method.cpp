@@ -8,6 +8,7 @@
 
 #include "lane_field.h"
 #include "node_step.h"
+#include "robot_tissue/core/field_kernel.h"
 
 namespace robot_tissue {
 namespace {

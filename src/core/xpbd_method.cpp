@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lane_field.h"
+#include "robot_tissue/core/field_kernel.h"
 
 namespace robot_tissue {
 namespace {
