@@ -1,46 +1,21 @@
 // A grasper whose jaws are links of the robot, and supports.
-#include "node_fixture.h"
+#include "forceps_fixture.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kWallTop = 0.03;   // m
-constexpr double kMiddle = 0.005;   // of the wall along y (m)
-constexpr double kJawHalf = 0.002;  // half a jaw's thickness (m)
-constexpr double kOpen = 0.018;     // m between the jaws
-constexpr double kClosed = 0.009;   // m: each jaw is 0.5 mm in the wall
+constexpr double kWallTop = 0.03;  // m
+constexpr double kMiddle = 0.005;  // of the wall along y (m)
+constexpr double kOpen = 0.018;    // m between the jaws
+constexpr double kClosed = 0.009;  // m: each jaw is 0.5 mm in the wall
 
-class Gripper : public NodeTest {
+class Gripper : public Forceps {
  protected:
-  Gripper() : NodeTest("forceps") {}
-
-  void SetUp() override {
-    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
-    follow();
-    ASSERT_TRUE(reset());
-    follow();
-    ASSERT_TRUE(waitFor([this] { return state_ && state_->grasping.empty(); }));
-  }
-
-  std::vector<geometry_msgs::TransformStamped> transforms() const override {
-    const double aside = 0.5 * gap_ + kJawHalf;
-    return {transform("tissue", 1.0, 0.0, 0.0),
-            transform("left_jaw", 1.02, kMiddle - aside, kWallTop + height_),
-            transform("right_jaw", 1.02, kMiddle + aside, kWallTop + height_)};
-  }
-
-  geometry_msgs::Vector3 moveTo(double height, double gap) {
-    height_ = height;
-    gap_ = gap;
-    return follow().wrench.force;
-  }
+  Gripper() : Forceps(kMiddle, kWallTop, 0.02, kOpen) {}
 
   bool holds() {
     return waitFor([this] { return state_->grasping == std::vector<std::string>{"forceps"}; });
   }
-
-  double height_ = 0.02;  // of the jaws' middle above the wall (m)
-  double gap_ = kOpen;    // m
 };
 
 TEST_F(Gripper, HoldsWhatIsBetweenItsJawsUntilTheyOpen) {

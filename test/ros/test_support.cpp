@@ -1,5 +1,5 @@
 // Tissue that lies on a table by its weight alone, and a grasper too weak to lift it.
-#include "node_fixture.h"
+#include "forceps_fixture.h"
 
 namespace robot_tissue {
 namespace {
@@ -8,34 +8,16 @@ constexpr double kWeight = 2000.0 * 9.81 * 0.04 * 0.02 * 0.02;  // N
 constexpr double kMostForce = 0.25;  // N: what the grasper holds, less than that
 constexpr double kSpacing = 0.005;   // m
 constexpr double kMiddle = 0.01;     // of the block, along y and z (m)
-constexpr double kJawHalf = 0.002;   // half a jaw's thickness (m)
 constexpr double kOpen = 0.03;       // m between the jaws
 constexpr double kClosed = 0.0199;   // m: each is 0.05 mm in the block
 
-class Support : public NodeTest {
+class Support : public Forceps {
  protected:
-  Support() : NodeTest("forceps") {}
+  Support() : Forceps(kMiddle, kMiddle, 0.05, kOpen) {}
 
   void SetUp() override {
-    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
-    follow();
-    ASSERT_TRUE(reset());
-    follow();
-    ASSERT_TRUE(waitFor([this] { return state_ && state_->grasping.empty(); }));
+    Forceps::SetUp();
     said_.clear();
-  }
-
-  std::vector<geometry_msgs::TransformStamped> transforms() const override {
-    const double aside = 0.5 * gap_ + kJawHalf;
-    return {transform("tissue", 1.0, 0.0, 0.0),
-            transform("left_jaw", 1.02, kMiddle - aside, kMiddle + height_),
-            transform("right_jaw", 1.02, kMiddle + aside, kMiddle + height_)};
-  }
-
-  void moveTo(double height, double gap) {
-    height_ = height;
-    gap_ = gap;
-    follow();
   }
 
   // The table bears what the jaws do not.
@@ -45,9 +27,6 @@ class Support : public NodeTest {
     EXPECT_NEAR(state_->weight.z, -kWeight, 1e-6);
     EXPECT_LT(state_->unbalanced_force, 0.02 * kWeight);
   }
-
-  double height_ = 0.05;  // of the jaws' middle above the block's (m)
-  double gap_ = kOpen;    // m
 };
 
 TEST_F(Support, TissueRestsOnItsTable) {
