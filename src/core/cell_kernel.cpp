@@ -101,7 +101,8 @@ struct Block {
   L slight;             // bounds how far all corners are from rest
   L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
   L stiffness;
-  bool is_coarse = false;
+  L parts;              // bulk where the volumes of a cell's parts are held
+  bool has_parts = false;
 
   // Sums and differences along one axis after another. Twice gives eight times what was.
   ROBOT_TISSUE_INLINE void transform() {
@@ -206,7 +207,7 @@ struct Block {
         whole[along][axis] = cofactor[along][axis] + Real(along == axis ? 1.0 : 0.0);
       }
     }
-    const L firm = bulk * Real(1.0 / 16.0), firmer = bulk * Real(1.0 / 64.0);
+    const L firm = parts * Real(1.0 / 16.0), firmer = parts * Real(1.0 / 64.0);
     const L x = firm * (product(whole[1], mode[3]) + product(whole[2], mode[5]));
     const L y = firm * (product(whole[0], mode[3]) + product(whole[2], mode[6]));
     const L z = firm * (product(whole[0], mode[5]) + product(whole[1], mode[6]));
@@ -285,11 +286,11 @@ struct Block {
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
     const bool squeezed = any((slight > kSlight) & (shear > Real(0)));
     L push[kCorners][3];
-    const bool more = squeezed || is_coarse;
+    const bool more = squeezed || has_parts;
     if (more) {
       for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
       if (squeezed) addBarrier<kWithStiffness>(push);
-      if (is_coarse) addParts(push);
+      if (has_parts) addParts(push);
     }
     scale();
     if (more) {
@@ -306,8 +307,19 @@ ROBOT_TISSUE_INLINE int offsetOf(const CellGrid<Real>& grid, int corner) {
   return (corner & 1) + (corner >> 1 & 1) * grid.row + (corner >> 2 & 1) * grid.plane;
 }
 
+// 1 in the lanes whose bit is set, else 0.
+template <typename Real>
+ROBOT_TISSUE_INLINE Lanes<Real> onesOf(unsigned bits) {
+  typename Vector<Real>::Bits lanes{};
+  for (int lane = 0; lane < Vector<Real>::kSize; ++lane) lanes[lane] = bits >> lane & 1U;
+  return __builtin_convertvector(lanes, Lanes<Real>);
+}
+
 template <typename Real, bool kWithStiffness>
-ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, int first) {
+ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, const CellBlock& of, int lane) {
+  constexpr unsigned kAll = (1U << Vector<Real>::kSize) - 1U;
+  const unsigned cells = of.cells >> lane & kAll, standing = of.standing >> lane & kAll;
+  const int first = of.first + lane;
   Block<Real> block;
   for (int corner = 0; corner < kCorners; ++corner) {
     const int node = first + offsetOf(grid, corner);
@@ -317,7 +329,12 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, int first) {
   }
   block.shear = load(grid.shear + first);
   block.bulk = load(grid.bulk + first);
-  block.is_coarse = grid.is_coarse;
+  if (cells != kAll) {
+    block.shear *= onesOf<Real>(cells);
+    block.bulk *= onesOf<Real>(cells);
+  }
+  block.has_parts = standing != 0;
+  if (block.has_parts) block.parts = block.bulk * onesOf<Real>(standing);
   block.template solve<kWithStiffness>();
   for (int corner = 0; corner < kCorners; ++corner) {
     const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
@@ -332,14 +349,14 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, int first) {
 }
 
 template <typename Real>
-ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<Real>& grid, const int* first_cells,
+ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<Real>& grid, const CellBlock* blocks,
                                       int count) {
   for (int block = 0; block < count; ++block) {
     for (int lane = 0; lane < kLanes; lane += Vector<Real>::kSize) {
       if (grid.lower_stiffness != nullptr) {
-        addBlock<Real, true>(grid, first_cells[block] + lane);
+        addBlock<Real, true>(grid, blocks[block], lane);
       } else {
-        addBlock<Real, false>(grid, first_cells[block] + lane);
+        addBlock<Real, false>(grid, blocks[block], lane);
       }
     }
   }
@@ -360,7 +377,8 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<Real>& grid, const LooseCe
       }
     }
   }
-  block.is_coarse = grid.is_coarse;
+  block.has_parts = grid.loose_stand;
+  block.parts = block.bulk;
   block.template solve<true>();
   for (int cell = 0; cell < count; ++cell) {
     for (int corner = 0; corner < kCorners; ++corner) {
@@ -384,13 +402,13 @@ ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<Real>& grid, const LooseCell
 
 }  // namespace
 
-ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const int* first_cells, int count) {
-  addAllBlocks(grid, first_cells, count);
+ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks, int count) {
+  addAllBlocks(grid, blocks, count);
 }
 
-ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<double>& grid, const int* first_cells,
+ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks,
                                    int count) {
-  addAllBlocks(grid, first_cells, count);
+  addAllBlocks(grid, blocks, count);
 }
 
 ROBOT_TISSUE_CLONES void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells,

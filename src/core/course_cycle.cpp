@@ -21,43 +21,38 @@ constexpr int kPlainSteps = 8;          // of the smoother, where a cycle led no
 }  // namespace
 
 template <typename Real>
-void CourseIn<Real>::keep(const Field<Real>& nodes, const std::vector<GroupVector>& groups,
-                          Vector& vector) const {
-  vector.spans = finest().spans();
-  vector.groups = groups;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    vector.nodes[axis].resize(nodes[axis].size());
-    for (const Span& span : vector.spans) {
-      std::copy_n(nodes[axis].begin() + span.first, span.count,
-                  vector.nodes[axis].begin() + span.first);
-    }
-  }
+void CourseIn<Real>::keepPlace(Vector& vector) const {
+  vector.nodes = finest().displacement;
+  vector.groups = finest().firm.motion;
+  vector.beyond = levels_->placesBeyond();
 }
 
 template <typename Real>
-void CourseIn<Real>::keepPlace(Vector& vector) const {
-  keep(finest().displacement, finest().firm.motion, vector);
+void CourseIn<Real>::keepForce(Vector& vector) {
+  vector.nodes = finest().force;
+  vector.groups = finest().firm.force;
+  vector.beyond = levels_->findForcesBeyond();
 }
 
 template <typename Real>
 void CourseIn<Real>::putBack(const Vector& vector) {
   finest().firm.motion = vector.groups;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const Span& span : vector.spans) {
-      std::copy_n(vector.nodes[axis].begin() + span.first, span.count,
-                  finest().displacement[axis].begin() + span.first);
-    }
-  }
+  finest().displacement = vector.nodes;
+  levels_->putBeyond(vector.beyond);
+}
+
+template <typename Real>
+void CourseIn<Real>::move(const Vector& way, double share) {
+  finest().moveBy(way.nodes, way.groups, share);
+  levels_->moveBeyond(way.beyond, share);
+  finest().findForces(true);
 }
 
 template <typename Real>
 double CourseIn<Real>::work(const Vector& force, const Vector& motion) const {
-  double work = 0.0;
-  for (const Span& span : motion.spans) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      work += dotOf(force.nodes[axis].data() + span.first, motion.nodes[axis].data() + span.first,
-                    span.count);
-    }
+  double work = LatticeLevels<Real>::workBeyond(force.beyond, motion.beyond);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    work += dotOf(force.nodes[axis].data(), motion.nodes[axis].data(), finest().count());
   }
   for (std::size_t group = 0; group < motion.groups.size(); ++group) {
     work += force.groups[group].dot(motion.groups[group]);
@@ -67,13 +62,10 @@ double CourseIn<Real>::work(const Vector& force, const Vector& motion) const {
 
 // Of the forces as they are now.
 template <typename Real>
-double CourseIn<Real>::workOf(const Vector& motion) const {
-  double work = 0.0;
-  for (const Span& span : motion.spans) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      work += dotOf(finest().force[axis].data() + span.first,
-                    motion.nodes[axis].data() + span.first, span.count);
-    }
+double CourseIn<Real>::workOf(const Vector& motion) {
+  double work = LatticeLevels<Real>::workBeyond(levels_->findForcesBeyond(), motion.beyond);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    work += dotOf(finest().force[axis].data(), motion.nodes[axis].data(), finest().count());
   }
   for (std::size_t group = 0; group < motion.groups.size(); ++group) {
     work += finest().firm.force[group].dot(motion.groups[group]);
@@ -83,36 +75,36 @@ double CourseIn<Real>::workOf(const Vector& motion) const {
 
 template <typename Real>
 void CourseIn<Real>::add(const Vector& other, double share, Vector& to) const {
-  for (const Span& span : to.spans) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      addShare(other.nodes[axis].data() + span.first, static_cast<Real>(share),
-               to.nodes[axis].data() + span.first, span.count);
-    }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addShare(other.nodes[axis].data(), static_cast<Real>(share), to.nodes[axis].data(),
+             finest().count());
   }
   for (std::size_t group = 0; group < to.groups.size(); ++group) {
     to.groups[group] += share * other.groups[group];
+  }
+  for (std::size_t level = 0; level < to.beyond.size(); ++level) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      addShare(other.beyond[level][axis].data(), static_cast<Real>(share),
+               to.beyond[level][axis].data(), static_cast<int>(to.beyond[level][axis].size()));
+    }
   }
 }
 
 template <typename Real>
 double CourseIn<Real>::squared(const Field<Real>& field) const {
   double squared = 0.0;
-  for (const Span& span : finest().spans()) {
-    for (const auto& values : field) {
-      squared += dotOf(values.data() + span.first, values.data() + span.first, span.count);
-    }
+  for (const auto& values : field) {
+    squared += dotOf(values.data(), values.data(), finest().count());
   }
   return squared;
 }
 
 template <typename Real>
 double CourseIn<Real>::distanceFrom(const Vector& vector) const {
-  double squared = 0.0;
-  for (const Span& span : vector.spans) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      squared += squaredDistance(finest().displacement[axis].data() + span.first,
-                                 vector.nodes[axis].data() + span.first, span.count);
-    }
+  double squared = levels_->squaredDistanceBeyond(vector.beyond);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    squared += squaredDistance(finest().displacement[axis].data(), vector.nodes[axis].data(),
+                               finest().count());
   }
   return std::sqrt(squared);
 }
@@ -120,10 +112,8 @@ double CourseIn<Real>::distanceFrom(const Vector& vector) const {
 template <typename Real>
 double CourseIn<Real>::longestSmooth() const {
   double longest = 0.0;
-  for (const Span& span : finest().spans()) {
-    for (const auto& values : levels_->motion) {
-      longest = std::max(longest, greatestOf(values.data() + span.first, span.count));
-    }
+  for (const auto& values : levels_->motion) {
+    longest = std::max(longest, greatestOf(values.data(), finest().count()));
   }
   return longest;
 }
@@ -132,13 +122,12 @@ double CourseIn<Real>::longestSmooth() const {
 template <typename Real>
 bool CourseIn<Real>::carryOn() {
   keepPlace(before_);
-  keep(last_way_, std::vector<GroupVector>(finest().firm.groups.size(), GroupVector::Zero()), way_);
-  const double slope = workOf(way_);
+  last_way_.groups.assign(finest().firm.groups.size(), GroupVector::Zero());
+  const double slope = workOf(last_way_);
   if (slope == 0.0 || !std::isfinite(slope)) return false;
   const double share = slope > 0.0 ? 1.0 : -1.0;
-  finest().moveBy(way_.nodes, way_.groups, share);
-  finest().findForces(true);
-  const double here = workOf(way_);
+  move(last_way_, share);
+  const double here = workOf(last_way_);
   if (std::abs(here) <= kFlatEnough * std::abs(slope)) return true;
   const double best = slope / (slope - here);  // of `share`, were the energy quadratic
   if (!std::isfinite(here) || !(best > 0.0)) {
@@ -146,8 +135,7 @@ bool CourseIn<Real>::carryOn() {
     finest().findForces(true);
     return false;
   }
-  finest().moveBy(way_.nodes, way_.groups, share * (std::min(best, 2.0) - 1.0));
-  finest().findForces(true);
+  move(last_way_, share * (std::min(best, 2.0) - 1.0));
   return true;
 }
 
@@ -164,19 +152,18 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
     advance();
     ++cycles_;
   }
-  // What slips has more left on its way: only a shape that blew up goes back.
-  if (status == SolveStatus::kUnconverged && left_ <= kBlownUp * first_left_) return status;
-  if (status == SolveStatus::kUnconverged) {
-    putBack(best_);
-    finest().findForces(true);
-    error_ = best_error_;
-    return status;
-  }
   // What is in balance stays, bit for bit.
   const bool moves = cycles_ > 0 || carried_on || error_ > options_.tolerance;
   if (status == SolveStatus::kOk && moves && left_ > 0.0) {
     finish();
     settleForces();
+    return status;
+  }
+  // What slips has more left on its way: only a shape that blew up goes back.
+  if (status == SolveStatus::kUnconverged && !(left_ <= kBlownUp * first_left_)) {
+    putBack(best_);
+    finest().findForces(true);
+    error_ = best_error_;
   }
   return status;
 }
@@ -187,7 +174,7 @@ void CourseIn<Real>::finish() {
   error_ = error_after_;
   if (conjugate_) keepPlace(before_);
   const double most = unbalanced();
-  finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
+  levels_->go(1.0);
   finest().findForces(true);
   finest().smooth(1, true);
   if (conjugate_ && unbalanced() > most) {
@@ -216,10 +203,18 @@ void CourseIn<Real>::advance() {
     return keepPlace(before_);
   }
   keepPlace(before_);
-  keep(finest().force, finest().firm.force, force_before_);
   const double longest = longestSmooth();
   const double share = longest > options_.line_step ? options_.line_step / longest : 1.0;
-  finest().moveBy(levels_->motion, levels_->group_motion, share);
+  if (share == 1.0 && isSteady()) {
+    levels_->go(1.0);
+    finest().findForces(true);
+    finest().smooth(steps_, true);
+    fresh_ = true;
+    conjugate_ = false;
+    return;
+  }
+  keepForce(force_before_);
+  levels_->go(share);
   finest().findForces(true);
   finest().smooth(steps_, true);
   keepPlace(way_);
@@ -233,8 +228,7 @@ void CourseIn<Real>::advance() {
       slope += share_kept * along;
       add(direction_, share_kept, way_);
       putBack(before_);
-      finest().moveBy(way_.nodes, way_.groups, 1.0);
-      finest().findForces(true);
+      move(way_, 1.0);
     }
   }
   conjugate_ = !fresh_ && left_ > kSlow * left_before_;
@@ -246,6 +240,14 @@ void CourseIn<Real>::advance() {
   } else {
     goPlainly(before_);
   }
+}
+
+// Where parts are open, cycles that get on need no looking back at what they did: forces beyond cost
+// more than a look.
+template <typename Real>
+bool CourseIn<Real>::isSteady() const {
+  return !levels_->isWhole() && left_ <= kBlownUp * first_left_ &&
+         (cycles_ == 0 || left_ <= kSlow * left_before_);
 }
 
 // Steps of the smoother alone.
@@ -285,8 +287,7 @@ bool CourseIn<Real>::searchAlong(const Vector& way, double slope, double slope_h
       share = 0.5 * (low + high);
     }
     putBack(before_);
-    finest().moveBy(way.nodes, way.groups, share);
-    finest().findForces(true);
+    move(way, share);
     here = workOf(way);
   }
   return low > 0.0 && std::isfinite(here);

@@ -22,6 +22,7 @@ constexpr int kTrialCycles = 6;         // that show how much of what is left th
 constexpr double kTrialMotion = 1e-3;   // in spacings
 constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single precision knows
 constexpr int kFirstMark = 16;          // cycles: from then on, the latest half tells of slow ones
+constexpr int kPatienceInPart = 6;       // cycles that led nowhere: then all is visited
 constexpr int kShortest = 4;            // cycles since the mark
 constexpr double kMostUnbalanced = 0.1;  // of the greatest force
 constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
@@ -57,7 +58,7 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
     if (cycle > 0 && left > 0.0) {
       least_factor_ = std::max(least_factor_, std::sqrt(squared(finest().displacement)) / left);
     }
-    finest().moveBy(levels_->motion, levels_->group_motion, 1.0);
+    levels_->go(1.0);
     finest().findForces(true);
     finest().smooth(steps_, true);
   }
@@ -70,25 +71,20 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
 template <typename Real>
 double CourseIn<Real>::lengthLeft() const {
   return std::sqrt(finest().squaredLocalMotion() + squared(levels_->motion) +
-                   finest().firm.squaredMotionOf(levels_->group_motion));
+                   levels_->squaredMotionBeyond() + finest().firm.squaredMotionOf(levels_->group_motion));
 }
 
 // Where the course stands: kOk, kLate while there is hope, kUnconverged.
 template <typename Real>
 SolveStatus CourseIn<Real>::look(bool changed) {
   levels_->findSmoothMotion();
-  const bool raised = raiseLayers();
-  if (raised) {
-    finest().findForces(true);
-    levels_->findSmoothMotion();
-  }
   left_before_ = left_;
   left_ = lengthLeft();
   // Under conjugate gradients it rises and falls on its way down.
   const double trend_before = trend_;
   trend_ = conjugate_ ? std::max(left_, kDip * trend_) : left_;
   if (cycles_ > 0) learn(trend_before);
-  const double moved = std::sqrt(squared(finest().displacement));
+  const double moved = std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
   const double unit = std::max(moved, kStill * std::sqrt(free_nodes_ + 1.0));
   error_ = factor_ * trend_ / unit;
   const double gain = cycles_ > 0 ? factor_ * std::min(trend_ / trend_before, 1.0) : 0.0;
@@ -113,28 +109,34 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   // Contacts, and what was let go, change in ways that are small beside the displacement, but not
   // to them.
   const bool untried = cycles_ == 0 && changed;
-  if (cycles_ == 0 && !raised && isAtRest()) {
+  if (cycles_ == 0 && isAtRest()) {
     error_ = error_after_ = left_ = 0.0;
     return SolveStatus::kOk;
   }
-  if (!untried && !raised && error_after_ <= options_.tolerance && isBalanced())
-    return SolveStatus::kOk;
+  if (!untried && error_after_ <= allowed() && isBalanced()) return SolveStatus::kOk;
   if (cycles_ > 0 && wentTooFar()) return SolveStatus::kUnconverged;
   const int most = in_contact_ ? options_.max_cycles_in_contact : options_.max_cycles;
   const int patience = in_contact_ ? options_.patience_in_contact : options_.patience;
+  if (!levels_->isWhole() && cycles_ > last_gain_ + kPatienceInPart) {
+    return SolveStatus::kUnconverged;
+  }
   const bool hopeless = cycles_ >= most || cycles_ > last_gain_ + patience;
   return hopeless ? SolveStatus::kUnconverged : SolveStatus::kLate;
+}
+
+// Of the error, beside what coarse lattices alone miss.
+template <typename Real>
+double CourseIn<Real>::allowed() const {
+  const double missed = std::min(missed_, kMostMissed * options_.tolerance);
+  return std::sqrt(options_.tolerance * options_.tolerance - missed * missed);
 }
 
 // The greatest force out of balance.
 template <typename Real>
 double CourseIn<Real>::unbalanced() const {
   double unbalanced = 0.0;
-  for (const Span& span : finest().spans()) {
-    for (const auto& values : finest().force) {
-      unbalanced = std::max(
-          unbalanced, static_cast<double>(greatestOf(values.data() + span.first, span.count)));
-    }
+  for (const auto& values : finest().force) {
+    unbalanced = std::max(unbalanced, greatestOf(values.data(), finest().count()));
   }
   return unbalanced;
 }
@@ -153,9 +155,7 @@ template <typename Real>
 Vec3 CourseIn<Real>::netForce() const {
   Vec3 net = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    for (const Span& span : finest().spans()) {
-      net[axis] += sumOf(finest().force[at(axis)].data() + span.first, span.count);
-    }
+    net[axis] += sumOf(finest().force[at(axis)].data(), finest().count());
   }
   return net;
 }
@@ -164,7 +164,8 @@ Vec3 CourseIn<Real>::netForce() const {
 template <typename Real>
 Vec3 CourseIn<Real>::patchForce() const {
   Vec3 force = Vec3::Zero();
-  for (const int entry : loaded_) {
+  for (const int node : loaded_) {
+    const int entry = levels_->entryOf(node);
     if (finest().heldAxes(entry) != 0) force += finest().wholeForce(entry);
   }
   return force;

@@ -21,9 +21,9 @@ void CourseIn<Real>::forget() {
   factor_ = least_factor_;
   layers_ = kFirstLayers;
   has_start_ = has_way_ = false;
-  knows_shape_ = false;
   loaded_.clear();
   held_ = 0.0;
+  missed_ = 0.0;
 }
 
 template <typename Real>
@@ -32,7 +32,6 @@ void CourseIn<Real>::findLevels(const LatticeState& state) {
   levels_ = std::make_unique<LatticeLevels<Real>>(lattice_, model_, *state.cells, workers_.get());
   cells_ = state.cells;
   has_start_ = has_way_ = false;
-  knows_shape_ = false;
   loaded_.clear();
   steps_ = std::max(
       kFewestSteps,
@@ -43,30 +42,57 @@ void CourseIn<Real>::findLevels(const LatticeState& state) {
 template <typename Real>
 SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
                                 const std::vector<int>& disturbed, const Budget& budget) {
-  prepare(shape, hold, disturbed);
+  findLevels(shape.state);
+  findSeeds(shape, hold, disturbed);
   SolveReport report;
-  if (seeds_.high[0] < 0) return report;
+  if (seeds_.isEmpty()) return report;
+  in_contact_ = !hold.touched().empty();
   const bool changed = in_contact_ || !disturbed.empty();
-  const bool carried_on = first_of_step_ && has_way_ && greatest_ > 0.0 && carryOn();
-  first_of_step_ = false;
+  cycles_ = 0;
   for (int round = 0; round < kMostTurns; ++round) {
-    report.status = iterate(changed, carried_on, budget);
-    writeBack(shape, hold);
+    report.status = solve(shape, hold, changed, budget);
+    levels_->writeTo(shape.state.displacement, hold.held());
     if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
   }
-  knows_shape_ = true;
   report.iterations = cycles_;
-  report.error_estimate = std::isfinite(error_) ? error_ : 1.0;
+  report.error_estimate = std::isfinite(error_) ? std::hypot(error_, missed_) : 1.0;
   answer(shape, hold, report);
   return report;
 }
 
+// In the part around the seeds, in a larger one where it is not smooth beyond that, or in all of it
+// where it does not go well.
 template <typename Real>
-void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
-                             const std::vector<int>& disturbed) {
-  findLevels(shape.state);
+SolveStatus CourseIn<Real>::solve(LoadedShape& shape, const PatchHold& hold, bool changed,
+                                  const Budget& budget) {
+  open(shape, hold, aroundSeeds());
+  while (true) {
+    const bool carried_on = first_of_step_ && has_way_ && greatest_ > 0.0 && carryOn();
+    first_of_step_ = false;
+    const SolveStatus status = iterate(changed, carried_on, budget);
+    if (status == SolveStatus::kUnconverged && !levels_->isWhole()) {
+      open(shape, hold, levels_->whole());
+    } else if (status == SolveStatus::kOk && raiseLayers()) {
+      levels_->writeTo(shape.state.displacement, hold.held());
+      open(shape, hold, aroundSeeds());
+    } else {
+      return status;
+    }
+  }
+}
+
+template <typename Real>
+void CourseIn<Real>::open(const LoadedShape& shape, const PatchHold& hold, const LevelBox& box) {
+  if (levels_->open(box, static_cast<int>(layers_), shape.state.displacement)) {
+    has_start_ = has_way_ = false;
+  }
+  prepare(shape, hold);
+}
+
+template <typename Real>
+void CourseIn<Real>::prepare(const LoadedShape& shape, const PatchHold& hold) {
   levels_->bind(shape, hold);
-  const bool others_moved = levels_->setDisplacement(shape.state.displacement, hold.held());
+  levels_->setDisplacement(shape.state.displacement, hold.held());
   limited_from_.clear();
   for (const NodeLimit& limit : limits_) {
     limited_from_.push_back(shape.state.displacement[at(limit.node)]);
@@ -74,40 +100,24 @@ void CourseIn<Real>::prepare(LoadedShape& shape, const PatchHold& hold,
   if (first_of_step_) noteStep();
   free_nodes_ = 0.0;
   for (const std::uint8_t held : hold.held()) free_nodes_ += held != kAllHeld ? 1.0 : 0.0;
-  findSeeds(shape, hold, disturbed, others_moved || !knows_shape_);
-  confine(aroundSeeds());
   finest().findForces(true);
-  in_contact_ = !hold.touched().empty();
-  cycles_ = 0;
   greatest_ = unbalanced();
 }
 
 // Remembers the way of the last step, if anything moved in it.
 template <typename Real>
 void CourseIn<Real>::noteStep() {
-  const Field<Real>& now = finest().displacement;
-  if (has_start_ && step_start_ != now) {
-    last_way_.swap(step_start_);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      last_way_[axis].resize(now[axis].size());
-      subtract(now[axis].data(), last_way_[axis].data(), last_way_[axis].data(), finest().count());
-    }
+  Vector now;
+  keepPlace(now);
+  if (has_start_ && step_start_.nodes != now.nodes) {
+    last_way_ = now;
+    step_start_.groups.clear();
+    last_way_.groups.clear();
+    add(step_start_, -1.0, last_way_);
     has_way_ = true;
   }
-  step_start_ = now;
+  step_start_ = std::move(now);
   has_start_ = true;
-}
-
-template <typename Real>
-void CourseIn<Real>::writeBack(LoadedShape& shape, const PatchHold& hold) const {
-  for (std::size_t node = 0; node < shape.state.displacement.size(); ++node) {
-    if (hold.held()[node] == kAllHeld) continue;
-    const Vec3 moved = levels_->displacementOf(static_cast<int>(node));
-    Vec3& place = shape.state.displacement[node];
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((hold.held()[node] >> axis & 1) == 0) place[axis] = moved[axis];
-    }
-  }
 }
 
 // Patches by force go where the levels moved them, as rigid bodies do. True: one turned so far that
@@ -139,7 +149,7 @@ void CourseIn<Real>::answer(LoadedShape& shape, const PatchHold& hold, SolveRepo
     left = std::max(left, finest().firm.force[index].template head<3>().norm());
   }
   report.residual = left / std::max({held_, greatest_, kStill});
-  report.active_nodes = nodesInBox(hold);
+  report.active_nodes = openNodes(hold);
   report.layers = layersRaised();
 }
 

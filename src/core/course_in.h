@@ -27,39 +27,40 @@ class CourseIn : public LayeredCourse {
   static constexpr double kFirstLayers = 6;  // around patches and contacts
   static constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
 
-  // Positions, or forces that do work in a motion. Kept where nodes may move.
+  static constexpr double kMostMissed = 0.7;  // of the tolerance, by coarse lattices alone
+
+  // Positions, or forces that do work in a motion, of the finest lattice's open part, and
+  // beyond.
   struct Vector {
     Field<Real> nodes;
     std::vector<GroupVector> groups;
-    std::vector<Span> spans;
+    typename LatticeLevels<Real>::Beyond beyond;
   };
 
   // course_in.cpp: before and after.
   void findLevels(const LatticeState& state);
-  void prepare(LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed);
+  void open(const LoadedShape& shape, const PatchHold& hold, const LevelBox& box);
+  void prepare(const LoadedShape& shape, const PatchHold& hold);
+  SolveStatus solve(LoadedShape& shape, const PatchHold& hold, bool changed, const Budget& budget);
   void noteStep();
   bool settlePatches(LoadedShape& shape, const PatchHold& hold);
-  void writeBack(LoadedShape& shape, const PatchHold& hold) const;
   void answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report);
   double answerPatches(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
 
   // course_layers.cpp: which nodes are visited.
-  void findSeeds(const LoadedShape& shape, const PatchHold& hold, const std::vector<int>& disturbed,
-                 bool others_moved);
-  void addSeed(int entry);
-  LevelBox wholeBox() const;
+  void findSeeds(const LoadedShape& shape, const PatchHold& hold,
+                 const std::vector<int>& disturbed);
+  void addSeed(int node);
   LevelBox aroundSeeds() const;
-  void confine(const LevelBox& box);
   bool raiseLayers();
-  bool isOutermost(std::size_t axis, int place) const;
-  double layerMotion() const;
-  int nodesInBox(const PatchHold& hold) const;
+  int openNodes(const PatchHold& hold) const;
   int layersRaised() const;
 
   // course_error.cpp: how far it is.
   void findLeastFactor(const LatticeState& state);
   SolveStatus look(bool changed);
   void learn(double trend_before);
+  double allowed() const;
   double unbalanced() const;
   bool isAtRest() const;
   Vec3 netForce() const;
@@ -80,15 +81,17 @@ class CourseIn : public LayeredCourse {
 
   LatticeLevel<Real>& finest() { return levels_->finest(); }
   const LatticeLevel<Real>& finest() const { return levels_->finest(); }
-  void keep(const Field<Real>& nodes, const std::vector<GroupVector>& groups, Vector& vector) const;
   void keepPlace(Vector& vector) const;
+  void keepForce(Vector& vector);
+  void move(const Vector& way, double share);
   void putBack(const Vector& vector);
-  double workOf(const Vector& motion) const;
+  double workOf(const Vector& motion);
   double work(const Vector& force, const Vector& motion) const;
   void add(const Vector& other, double share, Vector& to) const;
   double squared(const Field<Real>& field) const;
   double distanceFrom(const Vector& vector) const;
   double longestSmooth() const;
+  bool isSteady() const;
 
   const Lattice& lattice_;
   const ElasticModel& model_;
@@ -96,10 +99,9 @@ class CourseIn : public LayeredCourse {
   std::unique_ptr<Workers> workers_;
   std::unique_ptr<LatticeLevels<Real>> levels_;
   std::shared_ptr<const CellSet> cells_;
-  bool knows_shape_ = false;  // the finest lattice has what the last solve left
-  std::vector<int> loaded_;   // entries of nodes in patches and contacts
+  std::vector<int> loaded_;  // nodes in patches and contacts
   double free_nodes_ = 0.0;
-  LevelBox seeds_;                // what the layers grow around; none: high below low
+  LevelBox seeds_;                // what the layers grow around
   double layers_ = kFirstLayers;  // around them
   std::vector<NodeLimit> limits_;
   std::vector<Vec3> limited_from_;  // where these nodes were when the solve began (m)
@@ -126,7 +128,9 @@ class CourseIn : public LayeredCourse {
   bool fresh_ = true;       // no direction yet
   bool conjugate_ = false;  // the last cycle went on with the one before
 
-  Field<Real> step_start_, last_way_;
+  double missed_ = 0.0;           // by coarse lattices alone, of the displacement; last solve
+
+  Vector step_start_, last_way_;
   bool has_start_ = false, has_way_ = false, first_of_step_ = false;
 };
 

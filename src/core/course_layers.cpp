@@ -3,49 +3,33 @@
 #include <cmath>
 
 #include "course_in.h"
-#include "robot_tissue/core/field_kernel.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kMoreLayers = 1.5;  // times those there are
+constexpr double kMoreLayers = 1.5;    // times those there are
+constexpr double kLeastOfPart = 5e-3;  // tolerance: below it, all is visited
 
 }  // namespace
 
 template <typename Real>
-LevelBox CourseIn<Real>::wholeBox() const {
-  LevelBox box;
-  for (std::size_t axis = 0; axis < 3; ++axis) box.high[axis] = lattice_.size()[axis] - 1;
-  return box;
-}
-
-// Motion (spacings) of a node below which no layer is raised for it.
-template <typename Real>
-double CourseIn<Real>::layerMotion() const {
-  const double mean = std::sqrt(squared(finest().displacement) / (free_nodes_ + 1.0));
-  return std::max(options_.layer_share * options_.tolerance * mean, kStill * options_.tolerance);
-}
-
-template <typename Real>
-void CourseIn<Real>::addSeed(int entry) {
-  const std::array<int, 3> place = finest().placeOf(entry);
+void CourseIn<Real>::addSeed(int node) {
+  const std::array<int, 3>& place = lattice_.gridIndex(cells_->original(node));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     seeds_.low[axis] = std::min(seeds_.low[axis], place[axis]);
     seeds_.high[axis] = std::max(seeds_.high[axis], place[axis]);
   }
 }
 
-// The box around nodes in patches and contacts, now and in the last solve, disturbed ones, and
-// those that are out of balance: of all nodes, where something else than the last solve has moved
-// them.
+// The box around nodes in patches and contacts, now and in the last solve, and disturbed ones.
 template <typename Real>
 void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
-                               const std::vector<int>& disturbed, bool others_moved) {
+                               const std::vector<int>& disturbed) {
   seeds_ = {lattice_.size(), {-1, -1, -1}};
-  for (const int entry : loaded_) addSeed(entry);
+  for (const int node : loaded_) addSeed(node);
   const auto load = [this](int node) {
-    loaded_.push_back(levels_->entryOf(node));
-    addSeed(loaded_.back());
+    loaded_.push_back(node);
+    addSeed(node);
   };
   loaded_.clear();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
@@ -53,78 +37,40 @@ void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
     for (const RimSpring& spring : shape.patches[index].rim) load(spring.node);
   }
   for (const int node : hold.touched()) load(node);
-  if (!others_moved && disturbed.empty()) return;
-  confine(wholeBox());
-  finest().findForces(true);
-  for (const int entry : finest().nodesOutOfBalance(layerMotion())) addSeed(entry);
-  for (const int node : disturbed) addSeed(levels_->entryOf(node));
+  for (const int node : disturbed) addSeed(node);
 }
 
 template <typename Real>
 LevelBox CourseIn<Real>::aroundSeeds() const {
+  if (options_.tolerance < kLeastOfPart) return levels_->whole();
   LevelBox box = seeds_;
-  if (box.high[0] < 0) return {{1, 1, 1}, {0, 0, 0}};
-  const int layers = static_cast<int>(layers_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::max(0, (box.low[axis] - layers) & ~1);
-    box.high[axis] = std::min(lattice_.size()[axis] - 1, (box.high[axis] + layers + 1) & ~1);
+    box.low[axis] -= static_cast<int>(layers_);
+    box.high[axis] += static_cast<int>(layers_);
   }
   return box;
 }
 
-template <typename Real>
-void CourseIn<Real>::confine(const LevelBox& box) {
-  if (box.low != finest().box().low || box.high != finest().box().high) levels_->confine(box);
-}
-
-// Whether layers were raised: the outermost moves by more than layerMotion.
+// Whether more layers are needed, as what is beyond them is not as smooth as coarse lattices are.
 template <typename Real>
 bool CourseIn<Real>::raiseLayers() {
-  const LevelBox& box = finest().box();
-  const LevelGrid& grid = finest().grid();
-  const double still = layerMotion();
-  const auto moves = [&](int i, int j, int k) {
-    double squared = 0.0;
-    for (const auto& values : levels_->motion) {
-      const double moved = static_cast<double>(values[at(grid.index(i, j, k))]);
-      squared += moved * moved;
-    }
-    return squared > still * still;
-  };
-  if (box.low == wholeBox().low && box.high == wholeBox().high) return false;
-  bool any = false;
-  for (int k = box.low[2]; k <= box.high[2]; ++k) {
-    for (int j = box.low[1]; j <= box.high[1]; ++j) {
-      const bool face = isOutermost(2, k) || isOutermost(1, j);
-      for (int i = box.low[0]; !any && i <= box.high[0]; ++i) {
-        if (face || isOutermost(0, i)) any = moves(i, j, k);
-      }
-    }
-  }
-  if (!any) return false;
+  missed_ = 0.0;
+  if (levels_->isWhole()) return false;
+  const double moved = std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
+  if (moved == 0.0) return false;
+  missed_ = std::sqrt(levels_->squaredRoughnessBeyond()) / moved;
+  if (missed_ <= kMostMissed * options_.tolerance) return false;
   layers_ = std::ceil(kMoreLayers * layers_);
-  confine(aroundSeeds());
   return true;
 }
 
-// On a side of the box that is none of the lattice's, or next to it.
 template <typename Real>
-bool CourseIn<Real>::isOutermost(std::size_t axis, int place) const {
-  const LevelBox& box = finest().box();
-  if (box.low[axis] > 0 && place <= box.low[axis] + 1) return true;
-  return box.high[axis] < lattice_.size()[axis] - 1 && place >= box.high[axis] - 1;
-}
-
-template <typename Real>
-int CourseIn<Real>::nodesInBox(const PatchHold& hold) const {
-  if (seeds_.high[0] < 0) return 0;
-  const bool whole = finest().box().low == wholeBox().low && finest().box().high == wholeBox().high;
+int CourseIn<Real>::openNodes(const PatchHold& hold) const {
   int count = 0;
   for (std::size_t node = 0; node < hold.held().size(); ++node) {
     if (hold.held()[node] == kAllHeld && hold.carriers()[node] < 0) continue;
-    if (whole || finest().box().has(finest().placeOf(levels_->entryOf(static_cast<int>(node))))) {
-      ++count;
-    }
+    const int original = cells_->original(static_cast<int>(node));
+    if (levels_->free().has(lattice_.gridIndex(original))) ++count;
   }
   return count;
 }
@@ -133,9 +79,9 @@ int CourseIn<Real>::nodesInBox(const PatchHold& hold) const {
 template <typename Real>
 int CourseIn<Real>::layersRaised() const {
   int layers = 0;
-  for (std::size_t axis = 0; seeds_.high[0] >= 0 && axis < 3; ++axis) {
-    layers = std::max({layers, seeds_.low[axis] - finest().box().low[axis],
-                       finest().box().high[axis] - seeds_.high[axis]});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    layers = std::max({layers, seeds_.low[axis] - levels_->free().low[axis],
+                       levels_->free().high[axis] - seeds_.high[axis]});
   }
   return layers;
 }

@@ -41,6 +41,17 @@ ROBOT_TISSUE_INLINE void loadAll(const Real* __restrict wanted, const Real* __re
 }
 
 template <typename Real>
+ROBOT_TISSUE_INLINE void loadAllInstead(const Real* __restrict wanted, const Real* __restrict known,
+                                        const Real* __restrict free, Real* __restrict load,
+                                        Real* __restrict force, int count) {
+  for (int i = 0; i < count; ++i) {
+    const Real change = free[i] * (wanted[i] - known[i]);
+    load[i] += change;
+    force[i] += change;
+  }
+}
+
+template <typename Real>
 ROBOT_TISSUE_INLINE void stepAll(const Real* __restrict inverse, const Real* __restrict force,
                                  Real keep, Real share, Real longest, Real* __restrict way,
                                  Real* __restrict displacement, int count) {
@@ -173,6 +184,16 @@ ROBOT_TISSUE_CLONES void makeLoad(const float* wanted, const float* free, float*
 ROBOT_TISSUE_CLONES void makeLoad(const double* wanted, const double* free, double* load,
                                   double* force, int count) {
   loadAll(wanted, free, load, force, count);
+}
+
+ROBOT_TISSUE_CLONES void loadInstead(const float* wanted, const float* known, const float* free,
+                                     float* load, float* force, int count) {
+  loadAllInstead(wanted, known, free, load, force, count);
+}
+
+ROBOT_TISSUE_CLONES void loadInstead(const double* wanted, const double* known, const double* free,
+                                     double* load, double* force, int count) {
+  loadAllInstead(wanted, known, free, load, force, count);
 }
 
 ROBOT_TISSUE_CLONES void stepAlong(const float* inverse, const float* force, float keep,

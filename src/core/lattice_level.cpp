@@ -17,8 +17,9 @@ constexpr double kLongestStep = 0.25;  // of a node along an axis, in spacings
 
 template <typename Real>
 LatticeLevel<Real>::LatticeLevel(const LevelGrid& grid, int beside,
-                                 const std::vector<LevelCell>& cells, bool is_coarse)
-    : cells_(grid, beside, cells, is_coarse) {
+                                 const std::vector<LevelCell>& cells, const LevelPart& part,
+                                 double greatest_stiffness)
+    : cells_(grid, beside, cells, part) {
   for (Field<Real>* field : {&displacement, &load, &force, &way_}) {
     for (auto& values : *field) values.assign(at(count()), Real(0));
   }
@@ -27,7 +28,11 @@ LatticeLevel<Real>::LatticeLevel(const LevelGrid& grid, int beside,
   cells_.findForces({displacement, load, free_, force, inverse_}, true);
   rest_stiffness_ = cells_.stiffness;
   bind();
-  measureSteps();
+  if (greatest_stiffness > 0.0) {
+    step_ = 1.0 / greatest_stiffness;
+  } else {
+    measureSteps();
+  }
 }
 
 // The power method from rest, its start any numbers that are the same each time.
@@ -82,33 +87,40 @@ void LatticeLevel<Real>::bind() {
 }
 
 template <typename Real>
-void LatticeLevel<Real>::confine(const LevelBox& box) {
-  cells_.confine(box);
-  for (Field<Real>* forces : {&force, &cells_.whole}) {
-    for (auto& values : *forces) std::fill(values.begin(), values.end(), Real(0));
+void LatticeLevel<Real>::findFree() {
+  std::fill(free_.begin(), free_.end(), Real(0));
+  rim_.clear();
+  const LevelBox& free = part().free;
+  const auto look = [&](int node, const std::array<int, 3>& place) {
+    if (held_[at(node)] != 0 || !exists(node)) return;
+    if (free.has(place)) {
+      free_[at(node)] = Real(1);
+    } else {
+      rim_.push_back(node);
+    }
+  };
+  const LevelBox all = grid().whole();
+  for (int k = 0; k <= all.high[2]; ++k) {
+    for (int j = 0; j <= all.high[1]; ++j) {
+      for (int i = 0; i <= all.high[0]; ++i) look(grid().index(i, j, k), {i, j, k});
+    }
   }
-  findFree();
+  for (int node = grid().beside; node < count(); ++node) look(node, placeOf(node));
+  for (const int node : firm.nodes()) free_[at(node)] = Real(0);
 }
 
 template <typename Real>
-void LatticeLevel<Real>::findFree() {
-  for (const Span& span : spans()) {
-    std::fill_n(free_.begin() + span.first, span.count, Real(0));
+void LatticeLevel<Real>::showRim() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int node : rim_) force[axis][at(node)] = cells_.whole[axis][at(node)];
   }
-  const auto look = [this](int node) {
-    if (held_[at(node)] == 0 && exists(node)) free_[at(node)] = Real(1);
-  };
-  const LevelBox& within = box();
-  for (int k = within.low[2]; k <= within.high[2]; ++k) {
-    for (int j = within.low[1]; j <= within.high[1]; ++j) {
-      const int row = grid().index(0, j, k);
-      for (int i = within.low[0]; i <= within.high[0]; ++i) look(row + i);
-    }
+}
+
+template <typename Real>
+void LatticeLevel<Real>::hideRim() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int node : rim_) force[axis][at(node)] = Real(0);
   }
-  for (int node = grid().beside; node < count(); ++node) {
-    if (within.has(placeOf(node))) look(node);
-  }
-  for (const int node : firm.nodes()) free_[at(node)] = Real(0);
 }
 
 template <typename Real>
@@ -124,13 +136,10 @@ void LatticeLevel<Real>::smooth(int steps, bool forces_at_end) {
   for (int k = 1; k <= steps; ++k) {
     const double keep = k == 1 ? 0.0 : (2.0 * k - 3.0) / (2.0 * k + 1.0);
     const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
-    for (const Span& span : spans()) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        stepAlong(inverse_.data() + span.first, force[axis].data() + span.first,
-                  static_cast<Real>(keep), static_cast<Real>(share),
-                  static_cast<Real>(kLongestStep), way_[axis].data() + span.first,
-                  displacement[axis].data() + span.first, span.count);
-      }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      stepAlong(inverse_.data(), force[axis].data(), static_cast<Real>(keep),
+                static_cast<Real>(share), static_cast<Real>(kLongestStep), way_[axis].data(),
+                displacement[axis].data(), count());
     }
     firm.step(keep, share, kLongestStep, displacement);
     if (k < steps) findForces(false);
@@ -140,9 +149,7 @@ void LatticeLevel<Real>::smooth(int steps, bool forces_at_end) {
 
 template <typename Real>
 void LatticeLevel<Real>::calm() {
-  for (const Span& span : spans()) {
-    for (auto& values : way_) std::fill_n(values.begin() + span.first, span.count, Real(0));
-  }
+  for (auto& values : way_) std::fill(values.begin(), values.end(), Real(0));
   firm.calm();
 }
 
@@ -155,23 +162,56 @@ void LatticeLevel<Real>::clearLoad() {
 template <typename Real>
 void LatticeLevel<Real>::loadFor(const Field<Real>& wanted,
                                  const std::vector<GroupVector>& wanted_of_groups) {
-  for (const Span& span : spans()) {
-    for (auto& values : load) std::fill_n(values.begin() + span.first, span.count, Real(0));
+  clearLoad();
+  const bool covers_all = part().covered == part().free;
+  if (!covers_all) {
+    cells_.findForcesOfCovered({displacement, load, free_, force, inverse_});
+    of_covered_ = cells_.whole;
   }
-  std::fill(firm.load.begin(), firm.load.end(), GroupVector::Zero());
   findForces(true);
+  if (covers_all) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      makeLoad(wanted[axis].data(), free_.data(), load[axis].data(), force[axis].data(), count());
+    }
+  } else {
+    loadBeside(wanted);
+  }
+  loadFirm(wanted, wanted_of_groups);
+}
+
+// In the covered part and on its rim, the cells of the finer level act in place of the covered
+// ones.
+template <typename Real>
+void LatticeLevel<Real>::loadBeside(const Field<Real>& wanted) {
+  LevelBox with_rim = part().covered;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    with_rim.low[axis] = std::max(with_rim.low[axis] - 1, 0);
+    with_rim.high[axis] = std::min(with_rim.high[axis] + 1, grid().size[axis] - 1);
+  }
+  const int length = with_rim.high[0] - with_rim.low[0] + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int k = with_rim.low[2]; k <= with_rim.high[2]; ++k) {
+      for (int j = with_rim.low[1]; j <= with_rim.high[1]; ++j) {
+        const int first = grid().index(with_rim.low[0], j, k);
+        loadInstead(wanted[axis].data() + first, of_covered_[axis].data() + first,
+                    free_.data() + first, load[axis].data() + first, force[axis].data() + first,
+                    length);
+      }
+    }
+  }
+}
+
+template <typename Real>
+void LatticeLevel<Real>::loadFirm(const Field<Real>& wanted,
+                                  const std::vector<GroupVector>& wanted_of_groups) {
   const std::vector<int> firm_nodes = firm.nodes();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const Span& span : spans()) {
-      makeLoad(wanted[axis].data() + span.first, free_.data() + span.first,
-               load[axis].data() + span.first, force[axis].data() + span.first, span.count);
-    }
     for (std::size_t i = 0; i < firm_nodes.size(); ++i) {
       const std::size_t node = at(firm_nodes[i]);
       if (!firm.isFree(static_cast<int>(i), static_cast<int>(axis))) continue;
-      const Real here = box().has(placeOf(firm_nodes[i])) ? wanted[axis][node] : Real(0);
-      load[axis][node] = here - force[axis][node];
-      force[axis][node] = here;
+      if (!part().covered.has(placeOf(firm_nodes[i]))) continue;
+      load[axis][node] = wanted[axis][node] - force[axis][node];
+      force[axis][node] = wanted[axis][node];
     }
   }
   for (std::size_t group = 0; group < firm.groups.size(); ++group) {
@@ -184,11 +224,9 @@ void LatticeLevel<Real>::loadFor(const Field<Real>& wanted,
 template <typename Real>
 void LatticeLevel<Real>::moveBy(const Field<Real>& motion,
                                 const std::vector<GroupVector>& of_groups, double share) {
-  for (const Span& span : spans()) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      addWhereFree(motion[axis].data() + span.first, free_.data() + span.first,
-                   static_cast<Real>(share), displacement[axis].data() + span.first, span.count);
-    }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addWhereFree(motion[axis].data(), free_.data(), static_cast<Real>(share),
+                 displacement[axis].data(), count());
   }
   firm.moveBy(motion, of_groups, share, displacement);
 }
@@ -196,27 +234,10 @@ void LatticeLevel<Real>::moveBy(const Field<Real>& motion,
 template <typename Real>
 double LatticeLevel<Real>::squaredLocalMotion() const {
   double squared = firm.squaredLocalMotion();
-  for (const Span& span : spans()) {
-    for (const auto& values : force) {
-      squared +=
-          squaredProduct(inverse_.data() + span.first, values.data() + span.first, span.count);
-    }
+  for (const auto& values : force) {
+    squared += squaredProduct(inverse_.data(), values.data(), count());
   }
   return squared;
-}
-
-template <typename Real>
-std::vector<int> LatticeLevel<Real>::nodesOutOfBalance(double motion) const {
-  std::vector<int> nodes;
-  const Real still = static_cast<Real>(motion * motion);
-  for (const Span& span : spans()) {
-    for (int node = span.first; node < span.first + span.count; ++node) {
-      Real squared = 0;
-      for (const auto& values : force) squared += values[at(node)] * values[at(node)];
-      if (squared * inverse_[at(node)] * inverse_[at(node)] > still) nodes.push_back(node);
-    }
-  }
-  return nodes;
 }
 
 template <typename Real>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "robot_tissue/core/field_kernel.h"
@@ -20,33 +21,64 @@ constexpr double kSame = 1e-15;  // relative, of a displacement that went to m a
 template <typename Real>
 LatticeLevels<Real>::LatticeLevels(const Lattice& lattice, const ElasticModel& model,
                                    const CellSet& cells, Workers* workers)
-    : spacing_(lattice.spacing()) {
-  LevelGrid grid(lattice.size());
+    : lattice_(lattice), workers_(workers), spacing_(lattice.spacing()) {
+  modulus_ = 0.0;
+  for (const Cell& cell : cells.all()) {
+    modulus_ = std::max(modulus_, model.cellModuli(cell).shear);
+  }
+  if (modulus_ == 0.0) modulus_ = 1.0;
+  sources_ = levelSources(lattice, model, cells, modulus_, kFewest);
+  if (!sources_.empty()) {
+    open(whole(), 0, std::vector<Vec3>(at(lattice.nodeCount()), Vec3::Zero()));
+  } else {
+    openAll(model, cells);
+  }
+}
+
+// What is no block: all of it, with the nodes that stand beside the grid.
+template <typename Real>
+void LatticeLevels<Real>::openAll(const ElasticModel& model, const CellSet& cells) {
+  LevelGrid grid(lattice_.size());
   int beside = static_cast<int>(cells.ghosts().size());
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    const std::array<int, 3>& place = lattice.gridIndex(cells.original(node));
+    const std::array<int, 3>& place = lattice_.gridIndex(cells.original(node));
     entries_.push_back(cells.isGhost(node) ? grid.beside + node - cells.latticeNodeCount()
                                            : grid.index(place[0], place[1], place[2]));
   }
-  std::vector<LevelCell> level_cells = finestCells(lattice, model, cells);
+  nodes_.resize(entries_.size());
+  std::iota(nodes_.begin(), nodes_.end(), 0);
+  std::vector<LevelCell> level_cells = finestCells(model, cells);
   while (true) {
-    levels_.emplace_back(grid, beside, level_cells, !levels_.empty());
-    if (workers != nullptr) levels_.back().share(*workers);
-    const int count = levels_.back().count();
-    motions_.emplace_back();
-    for (auto& values : motions_.back()) values.assign(at(count), Real(0));
-    if (levels_.size() > 1) steps_.back().start = steps_.back().wanted = motions_.back();
+    const LevelBox all = grid.whole();
+    addLevel(grid, beside, level_cells, {all, levels_.empty() ? LevelBox{{1}, {0}} : all}, 0.0);
+    free_.push_back(all);
     if (*std::max_element(grid.size.begin(), grid.size.end()) <= kFewest) break;
-    Coarsening to = coarsened(grid, level_cells, count);
+    Coarsening to = coarsened(grid, level_cells, levels_.back().count());
     level_cells = std::move(to.cells);
     beside = to.nodes_beside;
     const LevelGrid coarse = to.grid;
-    steps_.push_back({{grid, std::move(to)}, {}, {}, {}, {}});
+    addStep({grid, std::move(to)});
     grid = coarse;
   }
-  levels_.front().firm.setUnits(spacing_, modulus_);
   motion = std::move(motions_.front());
+  levels_.front().firm.setUnits(spacing_, modulus_);
   weigh(model, cells);
+}
+
+template <typename Real>
+void LatticeLevels<Real>::addLevel(const LevelGrid& grid, int beside,
+                                   const std::vector<LevelCell>& cells, const LevelPart& part,
+                                   double greatest_stiffness) {
+  levels_.emplace_back(grid, beside, cells, part, greatest_stiffness);
+  if (workers_ != nullptr) levels_.back().share(*workers_);
+  motions_.emplace_back();
+  for (auto& values : motions_.back()) values.assign(at(levels_.back().count()), Real(0));
+  if (!steps_.empty()) steps_.back().start = steps_.back().wanted = motions_.back();
+}
+
+template <typename Real>
+void LatticeLevels<Real>::addStep(LevelTransfer<Real> transfer) {
+  steps_.push_back({std::move(transfer), {}, {}, {}, {}, {}});
 }
 
 template <typename Real>
@@ -65,19 +97,13 @@ void LatticeLevels<Real>::weigh(const ElasticModel& model, const CellSet& cells)
 }
 
 template <typename Real>
-std::vector<LevelCell> LatticeLevels<Real>::finestCells(const Lattice& lattice,
-                                                        const ElasticModel& model,
-                                                        const CellSet& cells) {
-  modulus_ = 0.0;
-  for (const Cell& cell : cells.all()) {
-    modulus_ = std::max(modulus_, model.cellModuli(cell).shear);
-  }
-  if (modulus_ == 0.0) modulus_ = 1.0;
+std::vector<LevelCell> LatticeLevels<Real>::finestCells(const ElasticModel& model,
+                                                        const CellSet& cells) const {
   std::vector<LevelCell> level_cells;
   level_cells.reserve(cells.all().size());
   for (const Cell& cell : cells.all()) {
     LevelCell level_cell;
-    level_cell.place = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes[0]);
+    level_cell.place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
     const Moduli moduli = model.cellModuli(cell);
     level_cell.shear = moduli.shear / modulus_;
     level_cell.bulk = moduli.bulk / modulus_;
@@ -89,34 +115,6 @@ std::vector<LevelCell> LatticeLevels<Real>::finestCells(const Lattice& lattice,
   return level_cells;
 }
 
-template <typename Real>
-void LatticeLevels<Real>::confine(const LevelBox& box) {
-  LevelBox inside = box;
-  for (LatticeLevel<Real>& level : levels_) {
-    level.confine(inside);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const bool to_the_end = inside.high[axis] == level.grid().size[axis] - 1;
-      inside.low[axis] = (inside.low[axis] + 1) / 2;
-      inside.high[axis] = (inside.high[axis] + (to_the_end ? 1 : 0)) / 2;
-    }
-  }
-  placeAll();
-}
-
-// All coarse nodes where the shape is: cycles move those in the boxes, whose cells have others,
-// too.
-template <typename Real>
-void LatticeLevels<Real>::placeAll() {
-  for (std::size_t coarse = 1; coarse < levels_.size(); ++coarse) {
-    LevelBox all;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      all.high[axis] = levels_[coarse].grid().size[axis] - 1;
-    }
-    steps_[coarse - 1].transfer.restrictDisplacement(levels_[coarse - 1].displacement, all,
-                                                     levels_[coarse].displacement);
-  }
-}
-
 // Nodes in a row of the grid are neighbors in the fields.
 template <typename Real>
 bool LatticeLevels<Real>::setDisplacement(const std::vector<Vec3>& displacement,
@@ -125,24 +123,17 @@ bool LatticeLevels<Real>::setDisplacement(const std::vector<Vec3>& displacement,
   bool others_moved = false;
   for (int axis = 0; axis < 3; ++axis) {
     Real* to = levels_.front().displacement[at(axis)].data();
-    for (std::size_t node = 0; node < entries_.size(); ++node) {
-      Real& here = to[entries_[node]];
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const std::size_t node = at(nodes_[i]);
+      Real& here = to[entries_[i]];
       const Real now = static_cast<Real>(displacement[node][axis] * unit);
       const bool same = std::abs(now - here) <= kSame * std::abs(here);
       others_moved = others_moved || (!same && held[node] == 0);
       if (!same) here = now;
     }
   }
+  if (others_moved) placeCoarse(displacement);
   return others_moved;
-}
-
-template <typename Real>
-Vec3 LatticeLevels<Real>::displacementOf(int node) const {
-  const auto& displacement = levels_.front().displacement;
-  const std::size_t entry = at(entries_[at(node)]);
-  return spacing_ * Vec3(static_cast<double>(displacement[0][entry]),
-                         static_cast<double>(displacement[1][entry]),
-                         static_cast<double>(displacement[2][entry]));
 }
 
 template <typename Real>
@@ -151,24 +142,38 @@ void LatticeLevels<Real>::findSmoothMotion() {
   if (levels_.size() == 1) return;
   restrictTo(1);
   solveCoarse(1);
-  steps_.front().transfer.prolong(levels_[1].displacement, steps_.front().start,
-                                  levels_.front().box(), motion);
+  steps_.front().transfer.prolong(levels_[1].displacement, steps_.front().start, motion);
   group_motion = groupMotion(1);
-  if (isFinite()) return;
+  if (!isWhole()) takeMotion();
+  if (!isFinite()) noMotion();
+}
+
+template <typename Real>
+void LatticeLevels<Real>::noMotion() {
   for (auto& values : motion) std::fill(values.begin(), values.end(), Real(0));
   for (GroupVector& vector : group_motion) vector.setZero();
+  for (Step& step : steps_) {
+    for (auto& values : step.motion) std::fill(values.begin(), values.end(), Real(0));
+  }
 }
 
 template <typename Real>
 bool LatticeLevels<Real>::isFinite() const {
-  double sum = 0.0;
-  for (const Span& span : levels_.front().spans()) {
-    for (const auto& values : motion) {
-      sum += dotOf(values.data() + span.first, values.data() + span.first, span.count);
-    }
+  double sum = squaredMotionBeyond();
+  for (const auto& values : motion) {
+    sum += dotOf(values.data(), values.data(), static_cast<int>(values.size()));
   }
   for (const GroupVector& vector : group_motion) sum += vector.squaredNorm();
   return std::isfinite(sum);
+}
+
+template <typename Real>
+void LatticeLevels<Real>::go(double share) {
+  finest().moveBy(motion, group_motion, share);
+  if (isWhole()) return;
+  Beyond beyond;
+  for (const Step& step : steps_) beyond.push_back(step.motion);
+  moveBeyond(beyond, share);
 }
 
 // In the finer level's units.
@@ -198,28 +203,27 @@ void LatticeLevels<Real>::solveCoarse(std::size_t index) {
 template <typename Real>
 void LatticeLevels<Real>::correct(std::size_t index) {
   LatticeLevel<Real>& level = levels_[index];
+  const Step& step = steps_[index];
   restrictTo(index + 1);
   solveCoarse(index + 1);
-  steps_[index].transfer.prolong(levels_[index + 1].displacement, steps_[index].start, level.box(),
-                                 motions_[index]);
+  step.transfer.prolong(levels_[index + 1].displacement, step.start, motions_[index]);
   level.moveBy(motions_[index], groupMotion(index + 1), 1.0);
+  step.transfer.place(levels_[index + 1].displacement, level.rim(), level.displacement);
 }
 
 // Displacement and forces of the finer level: the coarse one starts with them.
 template <typename Real>
 void LatticeLevels<Real>::restrictTo(std::size_t index) {
   constexpr double kTwice = LevelTransfer<Real>::kTwice;
-  const LatticeLevel<Real>& fine = levels_[index - 1];
+  LatticeLevel<Real>& fine = levels_[index - 1];
   LatticeLevel<Real>& coarse = levels_[index];
   Step& step = steps_[index - 1];
-  step.transfer.restrictForces(fine.force, coarse.box(), step.wanted);
-  step.transfer.restrictDisplacement(fine.displacement, coarse.box(), coarse.displacement);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const Span& span : coarse.spans()) {
-      std::copy_n(coarse.displacement[axis].begin() + span.first, span.count,
-                  step.start[axis].begin() + span.first);
-    }
-  }
+  fine.showRim();
+  step.transfer.restrictForces(fine.force, step.wanted);
+  fine.hideRim();
+  step.transfer.restrictDisplacement(fine.displacement, coarse.part().covered,
+                                     coarse.displacement);
+  step.start = coarse.displacement;
   for (GroupVector& vector : coarse.firm.motion) vector.setZero();
   for (std::size_t i = 0; i < coarse.firm.springs.size(); ++i) {
     LevelSpring& spring = coarse.firm.springs[i];

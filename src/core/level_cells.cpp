@@ -14,18 +14,14 @@ constexpr int kWorthSharing =
 
 template <typename Real>
 LevelCells<Real>::LevelCells(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
-                             bool is_coarse)
-    : grid_(grid),
-      count_((grid.beside + beside + kLanes - 1) / kLanes * kLanes),
-      is_coarse_(is_coarse) {
+                             const LevelPart& part)
+    : grid_(grid), count_((grid.beside + beside + kLanes - 1) / kLanes * kLanes), part_(part) {
   for (auto& values : whole) values.assign(at(count_), Real(0));
   for (auto* values : {&stiffness, &shear_, &bulk_}) values->assign(at(count_), Real(0));
   makeSums(1);
   beside_places_.assign(at(count_ - grid.beside), {});
   place(cells);
-  LevelBox everything;
-  for (std::size_t axis = 0; axis < 3; ++axis) everything.high[axis] = grid.size[axis] - 1;
-  confine(everything);
+  findBlocks();
 }
 
 template <typename Real>
@@ -64,36 +60,34 @@ void LevelCells<Real>::place(const std::vector<LevelCell>& cells) {
 }
 
 template <typename Real>
-void LevelCells<Real>::confine(const LevelBox& box) {
-  box_ = box;
-  spans_.clear();
-  blocks_.assign(at(grid_.size[2]), {});
-  const auto add = [this](int first, int end) {
-    if (!spans_.empty() && spans_.back().first + spans_.back().count >= first) {
-      spans_.back().count = end - spans_.back().first;
-    } else {
-      spans_.push_back({first, end - first});
+void LevelCells<Real>::findBlocks() {
+  const LevelBox& covered = part_.covered;
+  const auto stands = [&covered](const std::array<int, 3>& cell) {
+    bool all = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all = all && cell[axis] + 1 >= covered.low[axis] && cell[axis] <= covered.high[axis];
     }
+    return all && !covered.isEmpty();
   };
-  const auto& size = grid_.size;
-  const int x = std::max(box.low[0] - 1, 0), y = std::max(box.low[1] - 1, 0);
-  const int last_y = std::min(box.high[1] + 1, size[1] - 1);
-  const bool whole_planes = y == 0 && last_y == size[1] - 1;
-  rows_ = {y * grid_.row, whole_planes ? grid_.plane : (last_y + 1 - y) * grid_.row};
-  for (int k = std::max(box.low[2] - 1, 0); k <= std::min(box.high[2] + 1, size[2] - 1); ++k) {
-    add(k * grid_.plane + rows_.first, k * grid_.plane + rows_.first + rows_.count);
-    if (k > box.high[2]) break;
+  blocks_.assign(at(grid_.size[2]), {});
+  covered_blocks_.assign(at(grid_.size[2]), {});
+  for (int k = 0; k < grid_.size[2]; ++k) {
     for (int first = k * grid_.plane; first < (k + 1) * grid_.plane; first += kLanes) {
-      bool any = false;
-      for (int cell = first; !any && cell < first + kLanes; ++cell) {
-        const std::array<int, 3> place = grid_.placeOf(cell);
-        any = shear_[at(cell)] > Real(0) && place[0] >= x && place[0] <= box.high[0] &&
-              place[1] >= y && place[1] <= box.high[1];
+      CellBlock block{first, 0, 0};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (!(shear_[at(first + lane)] > Real(0))) continue;
+        const auto bit = static_cast<std::uint16_t>(1U << lane);
+        block.cells |= bit;
+        if (stands(grid_.placeOf(first + lane))) block.standing |= bit;
       }
-      if (any) blocks_[at(k)].push_back(first);
+      if (block.standing != 0) {
+        covered_blocks_[at(k)].push_back({first, block.standing, block.standing});
+      }
+      if (block.cells == 0) continue;
+      block.cells = kAllLanes;
+      blocks_[at(k)].push_back(block);
     }
   }
-  add(grid_.beside, count_);
 }
 
 template <typename Real>
@@ -113,18 +107,27 @@ void LevelCells<Real>::share(Workers& workers) {
   makeSums(workers.count());
 }
 
-// Threads take planes that lie together; the plane of cells between two shares is summed by both.
 template <typename Real>
 void LevelCells<Real>::findForces(const Loads& loads, bool with_steps) {
-  const int first = std::max(box_.low[2] - 1, 0);
-  const int planes = std::min(box_.high[2] + 2, grid_.size[2]) - first;
-  if (workers_ == nullptr || rows_.count * planes < kWorthSharing) {
-    findPlanes(loads, with_steps, first, first + planes, sums_.front());
+  findForces(loads, with_steps, blocks_);
+}
+
+template <typename Real>
+void LevelCells<Real>::findForcesOfCovered(const Loads& loads) {
+  findForces(loads, false, covered_blocks_);
+}
+
+// Threads take planes that lie together; the plane of cells between two shares is summed by both.
+template <typename Real>
+void LevelCells<Real>::findForces(const Loads& loads, bool with_steps, const Blocks& blocks) {
+  const int planes = grid_.size[2];
+  if (workers_ == nullptr || grid_.plane * planes < kWorthSharing) {
+    findPlanes(loads, with_steps, blocks, 0, planes, sums_.front());
   } else {
     const int threads = workers_->count();
     workers_->run([&](int part) {
-      findPlanes(loads, with_steps, first + planes * part / threads,
-                 first + planes * (part + 1) / threads, sums_[at(part)]);
+      findPlanes(loads, with_steps, blocks, planes * part / threads, planes * (part + 1) / threads,
+                 sums_[at(part)]);
     });
   }
   finishBeside(loads, with_steps);
@@ -140,35 +143,34 @@ CellGrid<Real> LevelCells<Real>::gridOf(const Loads& loads) const {
   cells.bulk = bulk_.data();
   cells.row = grid_.row;
   cells.plane = grid_.plane;
-  cells.is_coarse = is_coarse_;
+  cells.loose_stand = !part_.covered.isEmpty();
   return cells;
 }
 
 // Planes of nodes first .. end - 1, each as soon as both planes of cells at it are done, while all
 // is near at hand. What is found on a plane does not hang on where the planes begin.
 template <typename Real>
-void LevelCells<Real>::findPlanes(const Loads& loads, bool with_steps, int first, int end,
-                                  Sums& sums) {
+void LevelCells<Real>::findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks,
+                                  int first, int end, Sums& sums) {
   if (first >= end) return;
   if (first > 0) {
-    addPlane(loads, with_steps, first - 1, sums);
+    addPlane(loads, with_steps, blocks[at(first - 1)], first - 1, sums);
   } else {
     for (auto& values : sums.upper) std::fill(values.begin(), values.end(), Real(0));
   }
   for (int plane = first; plane < end; ++plane) {
     sums.below.swap(sums.upper);
-    addPlane(loads, with_steps, plane, sums);
+    addPlane(loads, with_steps, blocks[at(plane)], plane, sums);
     finishPlane(loads, with_steps, plane, sums);
   }
 }
 
 template <typename Real>
-void LevelCells<Real>::addPlane(const Loads& loads, bool with_steps, int plane, Sums& sums) const {
-  const int slack = grid_.row + 1 + kLanes;
+void LevelCells<Real>::addPlane(const Loads& loads, bool with_steps,
+                                const std::vector<CellBlock>& blocks, int plane,
+                                Sums& sums) const {
   for (auto* both : {&sums.lower, &sums.upper}) {
-    for (auto& values : *both) {
-      std::fill_n(values.begin() + rows_.first, rows_.count + slack, Real(0));
-    }
+    for (auto& values : *both) std::fill(values.begin(), values.end(), Real(0));
   }
   CellGrid<Real> cells = gridOf(loads);
   cells.origin = plane * grid_.plane;
@@ -180,23 +182,21 @@ void LevelCells<Real>::addPlane(const Loads& loads, bool with_steps, int plane, 
     cells.lower_stiffness = sums.lower[3].data();
     cells.upper_stiffness = sums.upper[3].data();
   }
-  const std::vector<int>& blocks = blocks_[at(plane)];
   addBlocks(cells, blocks.data(), static_cast<int>(blocks.size()));
 }
 
 template <typename Real>
 void LevelCells<Real>::finishPlane(const Loads& loads, bool with_steps, int plane,
                                    const Sums& sums) {
-  const int first = plane * grid_.plane + rows_.first;
+  const int first = plane * grid_.plane;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    sumForces(sums.below[axis].data() + rows_.first, sums.lower[axis].data() + rows_.first,
+    sumForces(sums.below[axis].data(), sums.lower[axis].data(),
               loads.load[axis].data() + first, loads.free.data() + first,
-              whole[axis].data() + first, loads.force[axis].data() + first, rows_.count);
+              whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
   }
   if (!with_steps) return;
-  invertStiffness(sums.below[3].data() + rows_.first, sums.lower[3].data() + rows_.first,
-                  loads.free.data() + first, stiffness.data() + first, loads.inverse.data() + first,
-                  rows_.count);
+  invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
+                  stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
 }
 
 // Nodes beside the grid, and those on it that loose cells have.

@@ -20,26 +20,40 @@ struct Around {
 }  // namespace
 
 template <typename Real>
-LevelTransfer<Real>::LevelTransfer(const LevelGrid& fine, Coarsening to)
-    : fine_(fine), to_(std::move(to)) {}
+LevelTransfer<Real>::LevelTransfer(const LevelGrid& fine, Coarsening to,
+                                   const std::array<int, 3>& at)
+    : fine_(fine), to_(std::move(to)), at_(at) {}
+
+template <typename Real>
+int LevelTransfer<Real>::coarseRow(int j, int k) const {
+  return to_.grid.index(at_[0], at_[1] + j, at_[2] + k);
+}
+
+template <typename Real>
+LevelBox LevelTransfer<Real>::around() const {
+  LevelBox box{at_, at_};
+  for (std::size_t axis = 0; axis < 3; ++axis) box.high[axis] += fine_.size[axis] / 2;
+  return box;
+}
 
 template <typename Real>
 NodeShares LevelTransfer<Real>::carriersOf(int fine_node) const {
   const auto found = to_.carriers.find(fine_node);
   if (found != to_.carriers.end()) return found->second;
-  return sharesAround(to_.grid, fine_.placeOf(fine_node));
+  std::array<int, 3> place = fine_.placeOf(fine_node);
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += 2 * at_[axis];
+  return sharesAround(to_.grid, place);
 }
 
 template <typename Real>
-void LevelTransfer<Real>::restrictForces(const Field<Real>& fine, const LevelBox& box,
-                                         Field<Real>& coarse) const {
+void LevelTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& coarse) const {
   const auto& size = fine_.size;
-  std::vector<Real> line(at(2 * to_.grid.size[0] + 1), Real(0));
+  std::vector<Real> line(at(2 * countAlongX() + 1), Real(0));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Real* to = coarse[axis].data();
     std::fill(coarse[axis].begin() + to_.grid.beside, coarse[axis].end(), Real(0));
-    for (int k = box.low[2]; k <= box.high[2]; ++k) {
-      for (int j = box.low[1]; j <= box.high[1]; ++j) {
+    for (int k = 0; k <= size[2] / 2; ++k) {
+      for (int j = 0; j <= size[1] / 2; ++j) {
         std::fill(line.begin(), line.end(), Real(0));
         for (int z = std::max(0, 2 * k - 1); z <= std::min(size[2] - 1, 2 * k + 1); ++z) {
           for (int y = std::max(0, 2 * j - 1); y <= std::min(size[1] - 1, 2 * j + 1); ++y) {
@@ -47,7 +61,7 @@ void LevelTransfer<Real>::restrictForces(const Field<Real>& fine, const LevelBox
             addShare(fine[axis].data() + fine_.index(0, y, z), weight, line.data() + 1, size[0]);
           }
         }
-        gatherRow(line.data(), to + to_.grid.index(0, j, k), to_.grid.size[0]);
+        gatherRow(line.data(), to + coarseRow(j, k), countAlongX());
       }
     }
     for (const int node : to_.carried) {
@@ -67,14 +81,16 @@ void LevelTransfer<Real>::restrictForces(const Field<Real>& fine, const LevelBox
 template <typename Real>
 void LevelTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const LevelBox& box,
                                                Field<Real>& coarse) const {
-  const auto end = [&](std::size_t axis) {
-    return std::min(box.high[axis] + 1, (fine_.size[axis] - 1) / 2);
-  };
+  LevelBox inside = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (int k = std::max(0, box.low[2] - 1); k <= end(2); ++k) {
-      for (int j = std::max(0, box.low[1] - 1); j <= end(1); ++j) {
-        halveRow(fine[axis].data() + fine_.index(0, 2 * j, 2 * k),
-                 coarse[axis].data() + to_.grid.index(0, j, k), (fine_.size[0] + 1) / 2);
+    inside.high[axis] = std::min(box.high[axis], at_[axis] + (fine_.size[axis] - 1) / 2);
+  }
+  const int from = inside.low[0] - at_[0], count = inside.high[0] - inside.low[0] + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int k = inside.low[2] - at_[2]; k <= inside.high[2] - at_[2]; ++k) {
+      for (int j = inside.low[1] - at_[1]; j <= inside.high[1] - at_[1]; ++j) {
+        halveRow(fine[axis].data() + fine_.index(2 * from, 2 * j, 2 * k),
+                 coarse[axis].data() + coarseRow(j, k) + from, count);
       }
     }
     for (const Coarsening::Start& start : to_.starts) {
@@ -89,17 +105,17 @@ void LevelTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const Le
 
 template <typename Real>
 void LevelTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& start,
-                                  const LevelBox& box, Field<Real>& fine) const {
-  const int length = to_.grid.size[0];
+                                  Field<Real>& fine) const {
+  const int length = countAlongX();
   std::vector<Real> line(at(length) + 1);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (int k = box.low[2]; k <= box.high[2]; ++k) {
-      for (int j = box.low[1]; j <= box.high[1]; ++j) {
+    for (int k = 0; k < fine_.size[2]; ++k) {
+      for (int j = 0; j < fine_.size[1]; ++j) {
         const Around y(j), z(k);
         std::fill(line.begin(), line.end(), Real(0));
         for (int b = 0; b < z.count; ++b) {
           for (int a = 0; a < y.count; ++a) {
-            const int first = to_.grid.index(0, y.low + a, z.low + b);
+            const int first = coarseRow(y.low + a, z.low + b);
             const Real weight = static_cast<Real>(kTwice * y.weight() * z.weight());
             addShare(now[axis].data() + first, weight, line.data(), length);
             addShare(start[axis].data() + first, -weight, line.data(), length);
@@ -115,6 +131,52 @@ void LevelTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& sta
         mean += share.weight * static_cast<double>(now[axis][from] - start[axis][from]);
       }
       fine[axis][at(node)] = static_cast<Real>(kTwice * mean);
+    }
+  }
+}
+
+template <typename Real>
+void LevelTransfer<Real>::spread(const Field<Real>& coarse, Field<Real>& fine) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < fine_.size[2]; ++k) {
+      for (int j = 0; j < fine_.size[1]; ++j) {
+        spreadTo(coarse[axis], j, k, fine[axis].data() + fine_.index(0, j, k));
+      }
+    }
+  }
+}
+
+template <typename Real>
+void LevelTransfer<Real>::spreadTo(const std::vector<Real>& coarse, int j, int k,
+                                   Real* row) const {
+  const int length = countAlongX();
+  const Around y(j), z(k);
+  std::vector<Real> line(at(length) + 1, Real(0));
+  for (int b = 0; b < z.count; ++b) {
+    for (int a = 0; a < y.count; ++a) {
+      addShare(coarse.data() + coarseRow(y.low + a, z.low + b),
+               static_cast<Real>(kTwice * y.weight() * z.weight()), line.data(), length);
+    }
+  }
+  spreadRow(line.data(), row, fine_.size[0]);
+}
+
+template <typename Real>
+void LevelTransfer<Real>::place(const Field<Real>& coarse, const std::vector<int>& nodes,
+                                Field<Real>& fine) const {
+  for (const int node : nodes) {
+    const std::array<int, 3> place = fine_.placeOf(node);
+    const Around x(place[0]), y(place[1]), z(place[2]);
+    const Real weight = static_cast<Real>(kTwice * x.weight() * y.weight() * z.weight());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Real sum = 0;
+      for (int c = 0; c < z.count; ++c) {
+        for (int b = 0; b < y.count; ++b) {
+          const Real* from = coarse[axis].data() + coarseRow(y.low + b, z.low + c) + x.low;
+          for (int a = 0; a < x.count; ++a) sum += from[a];
+        }
+      }
+      fine[axis][at(node)] = weight * sum;
     }
   }
 }

@@ -13,6 +13,7 @@ void LatticeLevels<Real>::bind(const LoadedShape& shape, const PatchHold& hold) 
   bond_ = by_force ? Bond() : std::move(bond);
   bindFinest(shape, hold);
   for (std::size_t level = 0; level + 1 < levels_.size(); ++level) bindCoarse(level);
+  placeRims();
 }
 
 template <typename Real>
@@ -62,9 +63,9 @@ void LatticeLevels<Real>::bindFinest(const LoadedShape& shape, const PatchHold& 
     }
   }
   renewSprings(shape, hold);
-  for (std::size_t node = 0; node < entries_.size(); ++node) {
-    const bool carried = hold.carriers()[node] >= 0;
-    level.hold(entries_[node], carried ? 0U : hold.held()[node]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t node = at(nodes_[i]);
+    level.hold(entries_[i], hold.carriers()[node] >= 0 ? 0U : hold.held()[node]);
   }
   level.bind();
   if (!weight_.front().empty()) level.load = weight_;
@@ -117,6 +118,7 @@ void LatticeLevels<Real>::bindCoarse(std::size_t index) {
   const LatticeLevel<Real>& fine = levels_[index];
   LatticeLevel<Real>& coarse = levels_[index + 1];
   coarse.freeAll();
+  if (!sources_.empty()) holdFixed(index + 1);
   for (std::size_t group = 0; group < fine.firm.groups.size(); ++group) {
     coarse.firm.groups.emplace_back();
     coarse.firm.groups.back().turns = fine.firm.groups[group].turns;

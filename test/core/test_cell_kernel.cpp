@@ -50,7 +50,10 @@ struct Around {
     }
   }
   void find(const Field<Real>& displacement, bool with_steps) {
-    cells.findForces({displacement, load, free, force, inverse}, with_steps);
+    cells.findForces(loads(displacement), with_steps);
+  }
+  typename LevelCells<Real>::Loads loads(const Field<Real>& displacement) {
+    return {displacement, load, free, force, inverse};
   }
 
   LevelCells<Real>& cells;
@@ -75,7 +78,7 @@ class CellKernel : public testing::Test {
 
   void expectForcesOfEachCell(double far, double tolerance) {
     const Cells given;
-    LevelCells<Real> cells(given.grid, 4, given.all, false);
+    LevelCells<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
     const Field<Real> moved = shaken(cells, far);
     Around<Real> around(cells);
     around.find(moved, true);
@@ -133,26 +136,37 @@ TYPED_TEST(CellKernel, LosesNothingNearRest) {
   }
 }
 
-TYPED_TEST(CellKernel, CellsOutOfTheBoxAreLeftOut) {
+// Cells that stand for finer ones, beside others that do not: theirs are the forces of a lattice
+// that has no others.
+TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
   const Cells given;
-  LevelCells<TypeParam> cells(given.grid, 4, given.all, false);
+  const LevelBox covered{{5, 2, 1}, {6, 3, 2}};
+  const std::vector<LevelCell> on_grid(given.all.begin(), given.all.end() - 1);
+  std::vector<LevelCell> standing;
+  for (const LevelCell& cell : on_grid) {
+    bool at_one = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      at_one = at_one && cell.place[axis] + 1 >= covered.low[axis] &&
+               cell.place[axis] <= covered.high[axis];
+    }
+    if (at_one) standing.push_back(cell);
+  }
+  ASSERT_EQ(standing.size(), 27U);
+  const LevelBox all = given.grid.whole();
+  LevelCells<TypeParam> cells(given.grid, 4, on_grid, {all, covered});
+  LevelCells<TypeParam> alone(given.grid, 4, standing, {all, all});
   const Field<TypeParam> moved = this->shaken(cells, 0.1);
-  Around<TypeParam> around(cells);
-  around.find(moved, false);
-  const Field<TypeParam> whole = cells.whole;
-  const LevelBox box{{5, 2, 1}, {6, 3, 2}};
-  cells.confine(box);
-  around.find(moved, false);
-  for (int k = 1; k <= 2; ++k) {
-    for (int j = 2; j <= 3; ++j) {
-      for (int i = 5; i <= 6; ++i) {
-        const std::size_t node = at(given.grid.index(i, j, k));
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          EXPECT_EQ(cells.whole[axis][node], whole[axis][node]);
-        }
-      }
+  Around<TypeParam> around(cells), around_alone(alone);
+  cells.findForcesOfCovered(around.loads(moved));
+  around_alone.find(moved, false);
+  double greatest = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int node = 0; node < given.grid.beside; ++node) {
+      EXPECT_EQ(cells.whole[axis][at(node)], alone.whole[axis][at(node)]);
+      greatest = std::max(greatest, std::abs(static_cast<double>(alone.whole[axis][at(node)])));
     }
   }
+  EXPECT_GT(greatest, 0.0);
 }
 
 }  // namespace

@@ -121,17 +121,17 @@ TEST(Layered, RestStaysAtRestAndNothingIsVisited) {
   for (const Vec3& moved : block.state.displacement) EXPECT_EQ(moved, Vec3(Vec3::Zero()));
 }
 
-TEST(Layered, UntouchedTissueIsNotVisited) {
-  const TissueConfig config = withFixedBottom(elasticBlockOf(60, 3, 2, 0.3));
+TEST(Layered, TissueFarFromTheLoadIsNotVisited) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(60, 4, 4, 0.3));
   LayeredBlock block(config);
-  const std::vector<int> end = block.lattice.nodesIn(nodeBox(config, {0, 1, 2}, {1, 2, 2}));
+  const std::vector<int> end = block.lattice.nodesIn(nodeBox(config, {0, 1, 4}, {1, 2, 4}));
   const SolveReport report = block.solve({displaced(end, Vec3(0, 0, -0.003))});
   ASSERT_EQ(report.status, SolveStatus::kOk);
   EXPECT_GT(report.layers, 3);
   EXPECT_LT(report.layers, 40);
   EXPECT_LT(report.active_nodes, block.lattice.nodeCount() / 2);
-  for (const int node : block.lattice.nodesIn(nodeBox(config, {45, 0, 0}, {60, 3, 2}))) {
-    EXPECT_EQ(block.state.displacement[at(node)], Vec3(Vec3::Zero()));
+  for (const int node : block.lattice.nodesIn(nodeBox(config, {45, 0, 0}, {60, 4, 4}))) {
+    EXPECT_LT(block.state.displacement[at(node)].norm(), 1e-4 * 0.003);
   }
   ElasticBlock exact(config);
   exact.solve({displaced(end, Vec3(0, 0, -0.003))});
@@ -186,12 +186,13 @@ TEST(Layered, SaysSoWhenItDidNotConverge) {
 TEST(Layered, CrushedCellsRecover) {
   const TissueConfig config = pressBlock(0.3);
   LayeredBlock block(config);
-  for (const int node : block.lattice.nodesIn(nodeBox(config, {2, 2, 2}, {6, 6, 4}))) {
+  const std::vector<int> crushed = block.lattice.nodesIn(nodeBox(config, {2, 2, 2}, {6, 6, 4}));
+  for (const int node : crushed) {
     Shaker shaker(static_cast<unsigned>(node));
     block.state.displacement[at(node)] = shaker.displacement(0.012);
   }
   ASSERT_GT(countInvertedCells(block.lattice, block.state), 0);
-  const SolveReport report = block.solve({});
+  const SolveReport report = block.solve({}, crushed);
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_EQ(countInvertedCells(block.lattice, block.state), 0);
   for (const Vec3& moved : block.state.displacement) EXPECT_LT(moved.norm(), 1e-6 * 0.01);

@@ -12,12 +12,21 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "robot_tissue/core/cells.h"
 
 namespace robot_tissue {
 
 constexpr int kLanes = 16;  // cells in a block
+constexpr std::uint16_t kAllLanes = 0xffff;
+
+// Cells first .. first + kLanes - 1, bits from the lowest on.
+struct CellBlock {
+  int first = 0;
+  std::uint16_t cells = kAllLanes;  // those that count
+  std::uint16_t standing = 0;  // for eight finer ones each, whose volumes they hold too
+};
 
 // Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
 // lowest node. Displacement and moduli reach kLanes beyond the highest node that a block touches.
@@ -28,7 +37,7 @@ struct CellGrid {
   const Real* bulk;
   int row;         // from a node to the next along y
   int plane;       // and along z
-  bool is_coarse;  // cells stand for eight each: their volumes are held too
+  bool loose_stand;  // loose cells, as blocks may
   // Sums of a plane of cells, from node `origin` on: on their lower and on their upper four
   // corners.
   int origin;
@@ -38,9 +47,9 @@ struct CellGrid {
   Real* upper_stiffness;
 };
 
-// Adds the forces of the cells first .. first + kLanes - 1, for each of the blocks.
-void addBlocks(const CellGrid<float>& grid, const int* first_cells, int count);
-void addBlocks(const CellGrid<double>& grid, const int* first_cells, int count);
+// Adds the forces of the blocks' cells.
+void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks, int count);
+void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks, int count);
 
 // A cell anywhere.
 template <typename Real>

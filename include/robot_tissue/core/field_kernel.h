@@ -19,6 +19,12 @@ void invertStiffness(const double* below, const double* lower, const double* fre
 void makeLoad(const float* wanted, const float* free, float* load, float* force, int count);
 void makeLoad(const double* wanted, const double* free, double* load, double* force, int count);
 
+// Likewise, to what makes it differ from the known part of it by the wanted.
+void loadInstead(const float* wanted, const float* known, const float* free, float* load,
+                 float* force, int count);
+void loadInstead(const double* wanted, const double* known, const double* free, double* load,
+                 double* force, int count);
+
 // way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
 void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
                float* way, float* displacement, int count);

@@ -1,6 +1,6 @@
-// One lattice of several, each of twice the spacing of the one before: nodes on a grid, cells with
-// moduli between them, and what holds the nodes (own). The finest is the tissue's; the others are
-// lattices of the same kind, whose cells have the mean moduli of the eight in them.
+// One lattice of several, each of twice the spacing of the one before, or a part of it: nodes on a
+// grid, cells with moduli between them, and what holds the nodes (own). The finest is the tissue's;
+// the others are lattices of the same kind, whose cells have the mean moduli of the eight in them.
 //
 // Lengths are in the level's own spacing h, moduli in E0, forces in E0 h^2, stiffness in E0 h.
 #pragma once
@@ -18,13 +18,12 @@ namespace robot_tissue {
 template <typename Real>
 class LatticeLevel {
  public:
-  // As LevelCells.
+  // As LevelCells. The greatest stiffness is measured where it is not known.
   LatticeLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
-               bool is_coarse);
+               const LevelPart& part, double greatest_stiffness = 0.0);
 
   const LevelGrid& grid() const { return cells_.grid(); }
   int count() const { return cells_.count(); }  // entries of a field
-  const std::vector<Span>& spans() const { return cells_.spans(); }
   std::array<int, 3> placeOf(int node) const { return cells_.placeOf(node); }
   double restStiffness(int node) const { return static_cast<double>(rest_stiffness_[at(node)]); }
   bool exists(int node) const { return rest_stiffness_[at(node)] > 0; }
@@ -38,9 +37,12 @@ class LatticeLevel {
   FirmNodes<Real> firm;  // with springs and groups
   void bind();
 
-  // Where nodes may move; the others stay, and count as balanced.
-  void confine(const LevelBox& box);
-  const LevelBox& box() const { return cells_.box(); }
+  const LevelPart& part() const { return cells_.part(); }
+  // Nodes that only a coarser level moves, but that neither are held nor out of reach of free ones.
+  const std::vector<int>& rim() const { return rim_; }
+  // Shows the forces on them, or counts them as balanced again.
+  void showRim();
+  void hideRim();
 
   void share(Workers& workers) { cells_.share(workers); }
 
@@ -50,7 +52,8 @@ class LatticeLevel {
   void smooth(int steps, bool forces_at_end);
   // Drops the way that the smoother was on.
   void calm();
-  // Makes the force what is asked, by a load.
+  // Makes the force what is asked, by a load: where it covers a finer level. Beside that, what the
+  // cells of the covered part do is asked for.
   void loadFor(const Field<Real>& wanted, const std::vector<GroupVector>& wanted_of_groups);
   void clearLoad();
   // Adds a share of a motion, held components left out.
@@ -62,8 +65,6 @@ class LatticeLevel {
 
   // Motion that would balance each node alone, squared and summed.
   double squaredLocalMotion() const;
-  // Nodes that such a motion, alone, would take further than that.
-  std::vector<int> nodesOutOfBalance(double motion) const;
   // Of all that acts on the node but holds: cells, load and springs (as of findForces).
   Vec3 wholeForce(int node) const;
 
@@ -71,11 +72,16 @@ class LatticeLevel {
   void measureSteps();
   void findFree();
 
+  void loadBeside(const Field<Real>& wanted);
+  void loadFirm(const Field<Real>& wanted, const std::vector<GroupVector>& wanted_of_groups);
+
   LevelCells<Real> cells_;
   std::vector<std::uint8_t> held_;
   std::vector<Real> rest_stiffness_;
   double step_ = 0.5;  // one over the greatest stiffness of a motion in nodes' stiffnesses
   Field<Real> way_;
+  Field<Real> of_covered_;     // forces; empty where the covered part is the whole
+  std::vector<int> rim_;
   std::vector<Real> free_;     // 1 where a node may move and is not firm, else 0
   std::vector<Real> inverse_;  // of the stiffness of such nodes, else 0
 };

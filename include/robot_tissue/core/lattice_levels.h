@@ -7,6 +7,12 @@
 // load, chosen such that at the start they are P^T of the fine lattice's. What holds a fine node
 // holds the coarse node at its place, and ties those around it; springs hang on the means.
 //
+// Of a block that is all there, each lattice is solved for in a part only, wider from level to
+// level: nodes beyond are where the next coarser lattice has them, P again, so that what is solved
+// for is a lattice whose spacing doubles with the distance (multilevel adaptive technique: Brandt
+// 1977). Where two spacings meet, the forces of the fine cells go to the coarse nodes by P^T, so
+// that nothing is lost there (fast adaptive composite grid: McCormick 1984).
+//
 // Lengths in spacings of the finest lattice, forces in modulus() * spacing^2, as LatticeLevel.
 #pragma once
 
@@ -15,6 +21,7 @@
 #include "robot_tissue/core/elastic_model.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_level.h"
+#include "robot_tissue/core/level_source.h"
 #include "robot_tissue/core/level_transfer.h"
 #include "robot_tissue/core/patch_motion.h"
 
@@ -23,30 +30,57 @@ namespace robot_tissue {
 template <typename Real>
 class LatticeLevels {
  public:
-  // The workers, null for none, must outlive the levels.
+  // Open as a whole. The workers, null for none, must outlive the levels.
   LatticeLevels(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
                 Workers* workers);
 
+  // Opens the least part that has the box (grid points), and more so many layers beyond on each
+  // coarser lattice; all of it where that is little less. With the shape as it is; to be bound.
+  // False: it was open, and still is.
+  bool open(const LevelBox& box, int layers, const std::vector<Vec3>& displacement);
+  bool isWhole() const { return free_.front() == whole(); }
+  const LevelBox& free() const { return free_.front(); }  // nodes of the finest lattice
+  LevelBox whole() const;
+
   LatticeLevel<Real>& finest() { return levels_.front(); }
   const LatticeLevel<Real>& finest() const { return levels_.front(); }
-  int entryOf(int node) const { return entries_[at(node)]; }
+  // Of the finest lattice; -1: not in the open part.
+  int entryOf(int node) const;
   double modulus() const { return modulus_; }  // E0 (Pa)
 
   // Takes over what holds the nodes, and gravity. The shape's contacts must stay where they are.
   void bind(const LoadedShape& shape, const PatchHold& hold);
   // Places patches by force, and takes their motion so far as done.
   void renewGroups(const LoadedShape& shape, const PatchHold& hold);
-  // Nodes out of the finest lattice's box stay where they are.
-  void confine(const LevelBox& box);
-  // Whether nodes of which nothing is held are elsewhere than this lattice has them.
+  // Where nodes of which nothing is held are elsewhere than this lattice has them, all levels start
+  // from there. True: there were some.
   bool setDisplacement(const std::vector<Vec3>& displacement,
                        const std::vector<std::uint8_t>& held);
   Vec3 displacementOf(int node) const;  // m
+  // Components that are not held.
+  void writeTo(std::vector<Vec3>& displacement, const std::vector<std::uint8_t>& held) const;
 
   // The smooth motion that goes with the finest lattice's forces, into `motion`.
   void findSmoothMotion();
+  // Makes a share of it.
+  void go(double share);
   Field<Real> motion;  // zero where the coarse lattices went astray
   std::vector<GroupVector> group_motion;
+
+  // What is beyond the open part, by levels from the first coarse one on, in each one's units; what
+  // finer ones cover is zero or left alone. Nothing where the whole is open.
+  using Beyond = std::vector<Field<Real>>;
+  Beyond placesBeyond() const;
+  void putBeyond(const Beyond& places);
+  void moveBeyond(const Beyond& way, double share);
+  // Unbalanced there, with the finest lattice's forces as they are.
+  Beyond findForcesBeyond();
+  static double workBeyond(const Beyond& force, const Beyond& motion);
+  // Squared and summed over the finest lattice's nodes, in its spacings.
+  double squaredDistanceBeyond(const Beyond& places) const;
+  double squaredMotionBeyond() const;  // of the smooth motion
+  double squaredDisplacementBeyond() const;
+  double squaredRoughnessBeyond() const;  // what trilinear means miss of the displacement
 
  private:
   // From a level to the next coarser one.
@@ -54,6 +88,7 @@ class LatticeLevels {
     LevelTransfer<Real> transfer;
     std::vector<int> sources;  // per coarse spring that stands for a fine one: that one
     Field<Real> start;         // displacement of the coarse nodes
+    Field<Real> motion;        // theirs, where parts are open
     Field<Real> wanted;        // their forces
     std::vector<GroupVector> wanted_of_groups;
   };
@@ -67,9 +102,21 @@ class LatticeLevels {
     }
   };
 
-  std::vector<LevelCell> finestCells(const Lattice& lattice, const ElasticModel& model,
-                                     const CellSet& cells);
+  // lattice_levels.cpp
+  void openAll(const ElasticModel& model, const CellSet& cells);
+  std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
   void weigh(const ElasticModel& model, const CellSet& cells);
+  void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
+                const LevelPart& part, double greatest_stiffness);
+  void addStep(LevelTransfer<Real> transfer);
+  void noMotion();
+  void correct(std::size_t level);
+  void restrictTo(std::size_t coarse);
+  void solveCoarse(std::size_t level);
+  std::vector<GroupVector> groupMotion(std::size_t coarse) const;
+  bool isFinite() const;
+
+  // levels_binding.cpp
   static Bond bondOf(const LoadedShape& shape, const PatchHold& hold);
   void bindFinest(const LoadedShape& shape, const PatchHold& hold);
   void renewSprings(const LoadedShape& shape, const PatchHold& hold);
@@ -79,16 +126,37 @@ class LatticeLevels {
   std::vector<LevelSpring::Carrier> freeCarriers(
       std::size_t level, const std::vector<LevelSpring::Carrier>& fine) const;
 
-  void correct(std::size_t level);
-  void restrictTo(std::size_t coarse);
-  void solveCoarse(std::size_t level);
-  std::vector<GroupVector> groupMotion(std::size_t coarse) const;
-  bool isFinite() const;
-  void placeAll();
+  // levels_opening.cpp
+  std::vector<LevelBox> partsAround(const LevelBox& box, int layers) const;
+  void openParts(const std::vector<LevelBox>& free);
+  LevelTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid);
+  LevelBox pointsOf(std::size_t level) const;
+  template <typename Visit>
+  void forPoints(std::size_t level, Visit visit) const;
+  void placeCoarse(const std::vector<Vec3>& displacement);
+  void holdFixed(std::size_t level);
 
+  // levels_beyond.cpp
+  template <typename Visit>
+  void forRowsBeyond(std::size_t level, Visit visit) const;
+  double squaredBeyond(std::size_t level, const Field<Real>& of, const Field<Real>* less) const;
+  double roughness(std::size_t level) const;
+  void takeMotion();
+  Vec3 valueAt(std::size_t level, const std::array<int, 3>& place) const;
+  void writeBeyond(std::vector<Vec3>& displacement) const;
+  void putOpen(std::size_t level, const LevelGrid& grid, Field<Real>& all) const;
+  void writeRows(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
+                 std::vector<Vec3>& displacement) const;
+  void placeRims();
+
+  const Lattice& lattice_;
+  Workers* workers_;
+  std::vector<LevelSource> sources_;  // empty where parts cannot be open
+  std::vector<LevelBox> free_;        // per level, in points of its whole grid
   std::vector<LatticeLevel<Real>> levels_;
   std::vector<Step> steps_;   // from level i to i + 1
-  std::vector<int> entries_;  // per node of the tissue
+  std::vector<int> nodes_;    // of the tissue, in the open part
+  std::vector<int> entries_;  // theirs
   Field<Real> weight_;        // of the nodes; empty without gravity
   Bond bond_;
   double spacing_ = 1.0;

@@ -17,31 +17,18 @@ namespace robot_tissue {
 template <typename Real>
 using Field = std::array<std::vector<Real>, 3>;
 
-// Grid points from low to high, both included.
-struct LevelBox {
-  std::array<int, 3> low{};
-  std::array<int, 3> high{};
-
-  bool has(const std::array<int, 3>& place) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (place[axis] < low[axis] || place[axis] > high[axis]) return false;
-    }
-    return true;
-  }
-};
-
-// Entries first .. first + count - 1 of a field.
-struct Span {
-  int first = 0;
-  int count = 0;
+// What a level is for.
+struct LevelPart {
+  LevelBox free;     // nodes that may move; the others stay, and count as balanced
+  LevelBox covered;  // by a finer level: cells with a corner in it stand for eight finer ones each
 };
 
 template <typename Real>
 class LevelCells {
  public:
-  // With `beside` nodes beside the grid. A coarse lattice stands for a finer one.
+  // With `beside` nodes beside the grid.
   LevelCells(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
-             bool is_coarse);
+             const LevelPart& part);
 
   const LevelGrid& grid() const { return grid_; }
   int count() const { return count_; }  // entries of a field
@@ -49,15 +36,10 @@ class LevelCells {
     return node < grid_.beside ? grid_.placeOf(node) : beside_places_[at(node - grid_.beside)];
   }
 
-  // Only cells with a corner in the box from now on.
-  void confine(const LevelBox& box);
-  const LevelBox& box() const { return box_; }
-  // Entries of all nodes in the box, and of some around it.
-  const std::vector<Span>& spans() const { return spans_; }
+  const LevelPart& part() const { return part_; }
 
-  // All that cells and the load do to the nodes of the spans: `whole`, and `force`, the same where
-  // `free` is 1, else 0. With steps also bounds of the nodes' stiffness and their inverses where
-  // free.
+  // All that cells and the load do to the nodes: `whole`, and `force`, the same where `free` is 1,
+  // else 0. With steps also bounds of the nodes' stiffness and their inverses where free.
   struct Loads {
     const Field<Real>& displacement;
     const Field<Real>& load;
@@ -66,6 +48,8 @@ class LevelCells {
     std::vector<Real>& inverse;
   };
   void findForces(const Loads& loads, bool with_steps);
+  // Of the cells that stand for finer ones alone, and of the load.
+  void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.
   void share(Workers& workers);
   Field<Real> whole;
@@ -78,26 +62,30 @@ class LevelCells {
     std::array<std::vector<Real>, 4> below, lower, upper;
   };
 
+  using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
+
   void place(const std::vector<LevelCell>& cells);
+  void findBlocks();
   void makeSums(int threads);
-  void findPlanes(const Loads& loads, bool with_steps, int first, int end, Sums& sums);
+  void findForces(const Loads& loads, bool with_steps, const Blocks& blocks);
+  void findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks, int first, int end,
+                  Sums& sums);
   CellGrid<Real> gridOf(const Loads& loads) const;
-  void addPlane(const Loads& loads, bool with_steps, int plane, Sums& sums) const;
+  void addPlane(const Loads& loads, bool with_steps, const std::vector<CellBlock>& blocks,
+                int plane, Sums& sums) const;
   void finishPlane(const Loads& loads, bool with_steps, int plane, const Sums& sums);
   void finishBeside(const Loads& loads, bool with_steps);
 
   LevelGrid grid_;
   int count_ = 0;
-  bool is_coarse_ = false;
   std::vector<Real> shear_, bulk_;
   std::vector<LooseCell<Real>> loose_;
   std::vector<int> loose_nodes_;                 // of loose cells
   std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness
   std::vector<std::array<int, 3>> beside_places_;
-  LevelBox box_;
-  std::vector<Span> spans_;
-  Span rows_;                             // likewise, in each plane
-  std::vector<std::vector<int>> blocks_;  // per plane of cells: first cells
+  LevelPart part_;
+  Blocks blocks_;
+  Blocks covered_blocks_;  // of cells that stand for finer ones
   Workers* workers_ = nullptr;
   std::vector<Sums> sums_;  // per thread
 };

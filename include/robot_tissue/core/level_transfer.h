@@ -13,22 +13,34 @@ class LevelTransfer {
  public:
   static constexpr double kTwice = 2.0;  // the coarse level's spacing in the fine one's
 
-  LevelTransfer(const LevelGrid& fine, Coarsening to);
+  // The fine grid's lowest point stands at the coarse grid's point `at`.
+  LevelTransfer(const LevelGrid& fine, Coarsening to, const std::array<int, 3>& at = {});
 
   // The coarse nodes that carry a fine one.
   NodeShares carriersOf(int fine_node) const;
+  // Those that fine nodes are at or beside.
+  LevelBox around() const;
 
-  // In the rows of the coarse box, and next to it.
-  void restrictForces(const Field<Real>& fine, const LevelBox& box, Field<Real>& coarse) const;
+  // To the coarse nodes around the fine grid.
+  void restrictForces(const Field<Real>& fine, Field<Real>& coarse) const;
+  // Of the coarse nodes in the box.
   void restrictDisplacement(const Field<Real>& fine, const LevelBox& box,
                             Field<Real>& coarse) const;
-  // The coarse motion, now less start, in the rows of the fine box.
-  void prolong(const Field<Real>& now, const Field<Real>& start, const LevelBox& box,
-               Field<Real>& fine) const;
+  // The coarse motion, now less start.
+  void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine) const;
+  // Where the coarse nodes have all fine ones, or a row of them.
+  void spread(const Field<Real>& coarse, Field<Real>& fine) const;
+  void spreadTo(const std::vector<Real>& coarse, int j, int k, Real* row) const;
+  // Puts fine nodes where the coarse nodes have them.
+  void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
  private:
+  int coarseRow(int j, int k) const;  // entry at the lowest fine point's x
+  int countAlongX() const { return fine_.size[0] / 2 + 1; }
+
   LevelGrid fine_;
   Coarsening to_;
+  std::array<int, 3> at_;
 };
 
 extern template class LevelTransfer<float>;

@@ -1,0 +1,319 @@
+// LatticeLevels: what is beyond the part that the finest lattice is solved for.
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/core/field_kernel.h"
+#include "robot_tissue/core/lattice_levels.h"
+
+namespace robot_tissue {
+namespace {
+
+// Root mean square of t (1 - t) / 2, t in 0 .. 1: what a linear mean misses of a second difference
+// of 1, on the way from one point to the next.
+constexpr double kMissed = 0.0913;
+
+// Nodes of the finest lattice for one of the level, times a square of its spacing.
+double weightOf(std::size_t level) { return std::pow(32.0, static_cast<double>(level)); }
+
+}  // namespace
+
+// Visits a level's own rows, less what a finer one covers: their first entries and lengths.
+template <typename Real>
+template <typename Visit>
+void LatticeLevels<Real>::forRowsBeyond(std::size_t level, Visit visit) const {
+  const LevelGrid& grid = levels_[level].grid();
+  const LevelBox& free = levels_[level].part().free;
+  const LevelBox& covered = levels_[level].part().covered;
+  const auto row = [&](int from, int to, int j, int k) {
+    if (from <= to) visit(grid.index(from, j, k), to - from + 1);
+  };
+  for (int k = free.low[2]; k <= free.high[2]; ++k) {
+    for (int j = free.low[1]; j <= free.high[1]; ++j) {
+      if (covered.has({covered.low[0], j, k})) {
+        row(free.low[0], covered.low[0] - 1, j, k);
+        row(covered.high[0] + 1, free.high[0], j, k);
+      } else {
+        row(free.low[0], free.high[0], j, k);
+      }
+    }
+  }
+}
+
+template <typename Real>
+double LatticeLevels<Real>::squaredBeyond(std::size_t level, const Field<Real>& of,
+                                          const Field<Real>* less) const {
+  double squared = 0.0;
+  forRowsBeyond(level, [&](int first, int count) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Real* values = of[axis].data() + first;
+      squared += less == nullptr ? dotOf(values, values, count)
+                                 : squaredDistance(values, (*less)[axis].data() + first, count);
+    }
+  });
+  return weightOf(level) * squared;
+}
+
+template <typename Real>
+double LatticeLevels<Real>::squaredMotionBeyond() const {
+  double squared = 0.0;
+  for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
+    squared += squaredBeyond(level, steps_[level - 1].motion, nullptr);
+  }
+  return squared;
+}
+
+template <typename Real>
+double LatticeLevels<Real>::squaredDisplacementBeyond() const {
+  double squared = 0.0;
+  for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
+    squared += squaredBeyond(level, levels_[level].displacement, nullptr);
+  }
+  return squared;
+}
+
+template <typename Real>
+double LatticeLevels<Real>::squaredDistanceBeyond(const Beyond& places) const {
+  double squared = 0.0;
+  for (std::size_t index = 0; index < places.size(); ++index) {
+    squared += squaredBeyond(index + 1, levels_[index + 1].displacement, &places[index]);
+  }
+  return squared;
+}
+
+template <typename Real>
+double LatticeLevels<Real>::squaredRoughnessBeyond() const {
+  double squared = 0.0;
+  for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
+    squared += roughness(level);
+  }
+  return squared;
+}
+
+// What the coarse levels moved, as a motion yet to be made.
+template <typename Real>
+void LatticeLevels<Real>::takeMotion() {
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    Step& step = steps_[level - 1];
+    Field<Real>& now = levels_[level].displacement;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      step.motion[axis].resize(now[axis].size());
+      subtract(now[axis].data(), step.start[axis].data(), step.motion[axis].data(),
+               levels_[level].count());
+    }
+    now = step.start;
+  }
+}
+
+template <typename Real>
+typename LatticeLevels<Real>::Beyond LatticeLevels<Real>::placesBeyond() const {
+  Beyond places;
+  for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
+    places.push_back(levels_[level].displacement);
+  }
+  return places;
+}
+
+template <typename Real>
+void LatticeLevels<Real>::putBeyond(const Beyond& places) {
+  for (std::size_t index = 0; index < places.size(); ++index) {
+    levels_[index + 1].displacement = places[index];
+  }
+  if (!places.empty()) placeRims();
+}
+
+template <typename Real>
+void LatticeLevels<Real>::moveBeyond(const Beyond& way, double share) {
+  for (std::size_t index = 0; index < way.size(); ++index) {
+    LatticeLevel<Real>& level = levels_[index + 1];
+    level.moveBy(way[index],
+                 std::vector<GroupVector>(level.firm.groups.size(), GroupVector::Zero()), share);
+  }
+  if (!way.empty()) placeRims();
+}
+
+template <typename Real>
+typename LatticeLevels<Real>::Beyond LatticeLevels<Real>::findForcesBeyond() {
+  Beyond forces;
+  for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
+    restrictTo(level);
+    const Field<Real>& all = levels_[level].force;
+    forces.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      forces.back()[axis].assign(all[axis].size(), Real(0));
+    }
+    forRowsBeyond(level, [&](int first, int count) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(all[axis].begin() + first, count, forces.back()[axis].begin() + first);
+      }
+    });
+  }
+  return forces;
+}
+
+template <typename Real>
+double LatticeLevels<Real>::workBeyond(const Beyond& force, const Beyond& motion) {
+  double work = 0.0, unit = 1.0;
+  for (std::size_t index = 0; index < motion.size(); ++index) {
+    unit *= 8.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      work += unit * dotOf(force[index][axis].data(), motion[index][axis].data(),
+                           static_cast<int>(motion[index][axis].size()));
+    }
+  }
+  return work;
+}
+
+// By second differences along the axes.
+template <typename Real>
+double LatticeLevels<Real>::roughness(std::size_t level) const {
+  const LatticeLevel<Real>& lattice = levels_[level];
+  const LevelGrid& grid = lattice.grid();
+  const LevelBox& free = lattice.part().free;
+  const std::array<int, 3> strides = {1, grid.row, grid.plane};
+  double squared = 0.0;
+  for (int k = free.low[2]; k <= free.high[2]; ++k) {
+    for (int j = free.low[1]; j <= free.high[1]; ++j) {
+      for (int i = free.low[0]; i <= free.high[0]; ++i) {
+        const std::array<int, 3> place = {i, j, k};
+        if (lattice.part().covered.has(place)) continue;
+        const int node = grid.index(i, j, k);
+        for (const auto& values : lattice.displacement) {
+          for (std::size_t along = 0; along < 3; ++along) {
+            if (place[along] == 0 || place[along] == grid.size[along] - 1) continue;
+            const double difference = static_cast<double>(
+                values[at(node + strides[along])] + values[at(node - strides[along])] -
+                2 * values[at(node)]);
+            squared += difference * difference;
+          }
+        }
+      }
+    }
+  }
+  return kMissed * kMissed * weightOf(level) * squared;
+}
+
+// In spacings of the finest lattice; the place is one of the level's whole grid.
+template <typename Real>
+Vec3 LatticeLevels<Real>::valueAt(std::size_t level, const std::array<int, 3>& place) const {
+  const LevelBox points = pointsOf(level);
+  if (points.has(place)) {
+    const int entry = levels_[level].grid().index(
+        place[0] - points.low[0], place[1] - points.low[1], place[2] - points.low[2]);
+    return std::ldexp(1.0, static_cast<int>(level)) *
+           vectorAt(levels_[level].displacement, entry);
+  }
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int z = place[2] / 2; z <= (place[2] + 1) / 2; ++z) {
+    for (int y = place[1] / 2; y <= (place[1] + 1) / 2; ++y) {
+      for (int x = place[0] / 2; x <= (place[0] + 1) / 2; ++x) {
+        sum += valueAt(level + 1, {x, y, z});
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+template <typename Real>
+Vec3 LatticeLevels<Real>::displacementOf(int node) const {
+  if (!sources_.empty()) return spacing_ * valueAt(0, lattice_.gridIndex(node));
+  return spacing_ * vectorAt(levels_.front().displacement, entryOf(node));
+}
+
+template <typename Real>
+void LatticeLevels<Real>::writeTo(std::vector<Vec3>& displacement,
+                                  const std::vector<std::uint8_t>& held) const {
+  const auto& from = levels_.front().displacement;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::size_t node = at(nodes_[i]);
+    if (held[node] == kAllHeld) continue;
+    const Vec3 moved = spacing_ * vectorAt(from, entries_[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((held[node] >> axis & 1) == 0) displacement[node][axis] = moved[axis];
+    }
+  }
+  if (!isWhole()) writeBeyond(displacement);
+}
+
+// Rows of the next coarser lattice, all of it, then of the finest.
+template <typename Real>
+void LatticeLevels<Real>::writeBeyond(std::vector<Vec3>& displacement) const {
+  Field<Real> coarse = levels_.back().displacement;
+  LevelGrid coarse_grid(sources_.back().size);
+  for (std::size_t level = levels_.size() - 1; level-- > 0;) {
+    const LevelGrid grid(sources_[level].size);
+    Coarsening to;
+    to.grid = coarse_grid;
+    const LevelTransfer<Real> transfer(grid, std::move(to));
+    if (level == 0) {
+      writeRows(transfer, coarse, displacement);
+      break;
+    }
+    Field<Real> fine;
+    for (auto& values : fine) values.assign(at(grid.beside), Real(0));
+    transfer.spread(coarse, fine);
+    putOpen(level, grid, fine);
+    coarse = std::move(fine);
+    coarse_grid = grid;
+  }
+}
+
+// What is solved for on a level.
+template <typename Real>
+void LatticeLevels<Real>::putOpen(std::size_t level, const LevelGrid& grid,
+                                  Field<Real>& all) const {
+  const LevelBox points = pointsOf(level);
+  for (int k = points.low[2]; k <= points.high[2]; ++k) {
+    for (int j = points.low[1]; j <= points.high[1]; ++j) {
+      const int first = levels_[level].grid().index(0, j - points.low[1], k - points.low[2]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(levels_[level].displacement[axis].begin() + first,
+                    points.high[0] - points.low[0] + 1,
+                    all[axis].begin() + grid.index(points.low[0], j, k));
+      }
+    }
+  }
+}
+
+template <typename Real>
+void LatticeLevels<Real>::writeRows(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
+                                    std::vector<Vec3>& displacement) const {
+  const LevelBox& open = free_.front();
+  const auto& size = lattice_.size();
+  Field<Real> row;
+  for (auto& values : row) values.resize(at(size[0]));
+  const auto put = [&](int from, int to, int first) {
+    for (int i = from; i <= to; ++i) {
+      displacement[at(first + i)] =
+          spacing_ * Vec3(static_cast<double>(row[0][at(i)]), static_cast<double>(row[1][at(i)]),
+                          static_cast<double>(row[2][at(i)]));
+    }
+  };
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      const bool beside = open.has({open.low[0], j, k});
+      if (beside && open.low[0] == 0 && open.high[0] == size[0] - 1) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        transfer.spreadTo(coarse[axis], j, k, row[axis].data());
+      }
+      const int first = lattice_.node(0, j, k);
+      put(0, beside ? open.low[0] - 1 : size[0] - 1, first);
+      if (beside) put(open.high[0] + 1, size[0] - 1, first);
+    }
+  }
+}
+
+// From the coarsest on.
+template <typename Real>
+void LatticeLevels<Real>::placeRims() {
+  for (std::size_t level = steps_.size(); level-- > 0;) {
+    steps_[level].transfer.place(levels_[level + 1].displacement, levels_[level].rim(),
+                                 levels_[level].displacement);
+  }
+}
+
+template class LatticeLevels<float>;
+template class LatticeLevels<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,236 @@
+// LatticeLevels: the parts of the levels that are solved for.
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/core/lattice_levels.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kBesideRough = 2;   // layers, of what a coarser lattice does not tell
+constexpr double kMostOpen = 0.6;  // of a level's points: beyond, it is open as a whole
+
+int countOf(const LevelBox& box) {
+  return (box.high[0] - box.low[0] + 1) * (box.high[1] - box.low[1] + 1) *
+         (box.high[2] - box.low[2] + 1);
+}
+
+// Coarse nodes whose fine ones, those next to them too, may all move.
+LevelBox coveredBy(const LevelBox& free, const LevelBox& whole) {
+  LevelBox covered;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool to_the_end = free.high[axis] == whole.high[axis];
+    covered.low[axis] = (free.low[axis] + 1) / 2;
+    covered.high[axis] = (free.high[axis] + (to_the_end ? 1 : 0)) / 2;
+  }
+  return covered;
+}
+
+LevelBox around(const LevelBox& box, int layers) {
+  LevelBox wider = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    wider.low[axis] -= layers;
+    wider.high[axis] += layers;
+  }
+  return wider;
+}
+
+LevelBox joined(const LevelBox& a, const LevelBox& b) {
+  if (b.isEmpty()) return a;
+  LevelBox both = a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    both.low[axis] = std::min(a.low[axis], b.low[axis]);
+    both.high[axis] = std::max(a.high[axis], b.high[axis]);
+  }
+  return both;
+}
+
+// So that the points just beyond are points of the next coarser level, or the block ends there.
+LevelBox fitted(const LevelBox& box, const LevelBox& whole) {
+  LevelBox fit = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    fit.low[axis] = box.low[axis] <= 2 ? 0 : box.low[axis] - 1 + box.low[axis] % 2;
+    const int high = box.high[axis] + 1 - box.high[axis] % 2;
+    fit.high[axis] = high >= whole.high[axis] - 2 ? whole.high[axis] : high;
+  }
+  return countOf(fit) > kMostOpen * countOf(whole) ? whole : fit;
+}
+
+LevelGrid gridOf(const LevelBox& points) {
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = points.high[axis] - points.low[axis] + 1;
+  return LevelGrid(size);
+}
+
+LevelBox from(const LevelBox& box, const std::array<int, 3>& origin) {
+  LevelBox local = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    local.low[axis] -= origin[axis];
+    local.high[axis] -= origin[axis];
+  }
+  return local;
+}
+
+}  // namespace
+
+template <typename Real>
+LevelBox LatticeLevels<Real>::whole() const {
+  const auto& size = lattice_.size();
+  return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
+}
+
+template <typename Real>
+bool LatticeLevels<Real>::open(const LevelBox& box, int layers,
+                               const std::vector<Vec3>& displacement) {
+  if (sources_.empty()) return false;
+  const std::vector<LevelBox> free = partsAround(box, layers);
+  if (free == free_) return false;
+  openParts(free);
+  bond_ = Bond();
+  setDisplacement(displacement, std::vector<std::uint8_t>(displacement.size(), 0));
+  placeCoarse(displacement);
+  return true;
+}
+
+// Where a level is open as a whole, the coarser ones are.
+template <typename Real>
+std::vector<LevelBox> LatticeLevels<Real>::partsAround(const LevelBox& box, int layers) const {
+  std::vector<LevelBox> free;
+  LevelBox wanted = box;
+  for (std::size_t level = 0; level < sources_.size(); ++level) {
+    const LevelSource& source = sources_[level];
+    const bool has_coarser = level + 1 < sources_.size();
+    if (!source.rough.isEmpty()) wanted = joined(wanted, around(source.rough, kBesideRough));
+    free.push_back(has_coarser ? fitted(wanted, source.whole()) : source.whole());
+    wanted = around(coveredBy(free.back(), source.whole()), layers);
+  }
+  return free;
+}
+
+// The nodes that may move, and those next to them.
+template <typename Real>
+LevelBox LatticeLevels<Real>::pointsOf(std::size_t level) const {
+  const LevelBox whole = sources_[level].whole();
+  LevelBox points = around(free_[level], 1);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    points.low[axis] = std::max(points.low[axis], 0);
+    points.high[axis] = std::min(points.high[axis], whole.high[axis]);
+  }
+  return points;
+}
+
+template <typename Real>
+void LatticeLevels<Real>::openParts(const std::vector<LevelBox>& free) {
+  free_ = free;
+  levels_.clear();
+  steps_.clear();
+  motions_.clear();
+  for (std::size_t level = 0; level < free_.size(); ++level) {
+    LevelSource& source = sources_[level];
+    const LevelBox points = pointsOf(level);
+    const LevelGrid grid = gridOf(points);
+    const LevelPart part = {
+        from(free_[level], points.low),
+        level == 0 ? LevelBox{{1}, {0}}
+                   : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
+    if (level > 0) addStep(transferTo(level, grid));
+    const bool uniform = source.isUniform(points);
+    addLevel(grid, 0, source.cellsIn(points, grid), part,
+             uniform ? source.greatest_stiffness : 0.0);
+    if (uniform) source.greatest_stiffness = levels_.back().greatestStiffness();
+  }
+  motion = std::move(motions_.front());
+  levels_.front().firm.setUnits(spacing_, modulus_);
+  nodes_.clear();
+  entries_.clear();
+  const LevelBox points = pointsOf(0);
+  for (int k = points.low[2]; k <= points.high[2]; ++k) {
+    for (int j = points.low[1]; j <= points.high[1]; ++j) {
+      for (int i = points.low[0]; i <= points.high[0]; ++i) {
+        nodes_.push_back(lattice_.node(i, j, k));
+        entries_.push_back(entryOf(nodes_.back()));
+      }
+    }
+  }
+}
+
+template <typename Real>
+LevelTransfer<Real> LatticeLevels<Real>::transferTo(std::size_t level, const LevelGrid& grid) {
+  const LevelBox fine = pointsOf(level - 1), points = pointsOf(level);
+  const LevelGrid& fine_grid = levels_.back().grid();
+  std::array<int, 3> place{};
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = fine.low[axis] / 2 - points.low[axis];
+  Coarsening to;
+  to.grid = grid;
+  for (int k = 0; k <= fine_grid.size[2] / 2; ++k) {
+    for (int j = 0; j <= fine_grid.size[1] / 2; ++j) {
+      for (int i = 0; i <= fine_grid.size[0] / 2; ++i) {
+        const std::array<int, 3> at_fine = {std::min(2 * i, fine_grid.size[0] - 1),
+                                            std::min(2 * j, fine_grid.size[1] - 1),
+                                            std::min(2 * k, fine_grid.size[2] - 1)};
+        if (at_fine == std::array<int, 3>{2 * i, 2 * j, 2 * k}) continue;
+        to.starts.push_back({grid.index(place[0] + i, place[1] + j, place[2] + k),
+                             {{fine_grid.index(at_fine[0], at_fine[1], at_fine[2]), 1.0}}});
+      }
+    }
+  }
+  return {fine_grid, std::move(to), place};
+}
+
+template <typename Real>
+int LatticeLevels<Real>::entryOf(int node) const {
+  if (sources_.empty()) return entries_[at(node)];
+  const LevelBox points = pointsOf(0);
+  const std::array<int, 3>& place = lattice_.gridIndex(node);
+  if (!points.has(place)) return -1;
+  return levels_.front().grid().index(place[0] - points.low[0], place[1] - points.low[1],
+                                      place[2] - points.low[2]);
+}
+
+// Visits the points that a coarse level has open, with the node at each one's place, or next to it
+// where the block ends before.
+template <typename Real>
+template <typename Visit>
+void LatticeLevels<Real>::forPoints(std::size_t level, Visit visit) const {
+  const LevelBox points = pointsOf(level);
+  const LevelGrid& grid = levels_[level].grid();
+  const auto& last = whole().high;
+  for (int k = points.low[2]; k <= points.high[2]; ++k) {
+    for (int j = points.low[1]; j <= points.high[1]; ++j) {
+      for (int i = points.low[0]; i <= points.high[0]; ++i) {
+        const std::array<int, 3> there = {std::min(i << level, last[0]),
+                                          std::min(j << level, last[1]),
+                                          std::min(k << level, last[2])};
+        visit(grid.index(i - points.low[0], j - points.low[1], k - points.low[2]),
+              lattice_.node(there[0], there[1], there[2]));
+      }
+    }
+  }
+}
+
+// Of a block, in all the coarse parts that are open: where the nodes at their places are.
+template <typename Real>
+void LatticeLevels<Real>::placeCoarse(const std::vector<Vec3>& displacement) {
+  if (sources_.empty()) return;
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    const double unit = 1.0 / (spacing_ * (1 << level));
+    forPoints(level, [&](int entry, int node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        levels_[level].displacement[at(axis)][at(entry)] =
+            static_cast<Real>(unit * displacement[at(node)][axis]);
+      }
+    });
+  }
+}
+
+template <typename Real>
+void LatticeLevels<Real>::holdFixed(std::size_t level) {
+  forPoints(level, [&](int entry, int node) {
+    if (lattice_.isFixed(node)) levels_[level].hold(entry, kAllHeld);
+  });
+}
+
+template class LatticeLevels<float>;
+template class LatticeLevels<double>;
+
+}  // namespace robot_tissue
