@@ -101,7 +101,7 @@ struct Block {
   L slight;             // bounds how far all corners are from rest
   L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
   L stiffness;
-  L parts;              // bulk where the volumes of a cell's parts are held
+  L parts{};  // bulk where the volumes of a cell's parts are held
   bool has_parts = false;
 
   // Sums and differences along one axis after another. Twice gives eight times what was.
@@ -402,7 +402,8 @@ ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<Real>& grid, const LooseCell
 
 }  // namespace
 
-ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks, int count) {
+ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks,
+                                   int count) {
   addAllBlocks(grid, blocks, count);
 }
 

@@ -44,19 +44,43 @@ bool isFixed(const Lattice& lattice, const CellSet& cells, int node) {
   return cells.ghosts()[at(node - lattice.nodeCount())].fixed;
 }
 
+namespace {
+
+bool isInverted(const Cell& cell, const LatticeState& state, double share) {
+  const auto moved = [&](std::size_t corner) -> const Vec3& {
+    return state.displacement[at(cell.nodes[corner])];
+  };
+  const Vec3 low = moved(1) - moved(6), high = moved(7) - moved(0);
+  const Vec3 near = moved(3) - moved(4), far = moved(5) - moved(2);
+  const Vec3 x = share * (low + high + near + far) + Vec3::UnitX();
+  const Vec3 y = share * (near + high - low - far) + Vec3::UnitY();
+  const Vec3 z = share * (far + high - low - near) + Vec3::UnitZ();
+  return x.dot(y.cross(z)) <= 0.0;
+}
+
+}  // namespace
+
 int countInvertedCells(const Lattice& lattice, const LatticeState& state) {
   const double share = 0.25 / lattice.spacing();
   int inverted = 0;
-  for (const Cell& cell : state.cells->all()) {
-    const auto moved = [&](std::size_t corner) -> const Vec3& {
-      return state.displacement[at(cell.nodes[corner])];
-    };
-    const Vec3 low = moved(1) - moved(6), high = moved(7) - moved(0);
-    const Vec3 near = moved(3) - moved(4), far = moved(5) - moved(2);
-    const Vec3 x = share * (low + high + near + far) + Vec3::UnitX();
-    const Vec3 y = share * (near + high - low - far) + Vec3::UnitY();
-    const Vec3 z = share * (far + high - low - near) + Vec3::UnitZ();
-    if (x.dot(y.cross(z)) <= 0.0) ++inverted;
+  for (const Cell& cell : state.cells->all()) inverted += isInverted(cell, state, share) ? 1 : 0;
+  return inverted;
+}
+
+int countInvertedCells(const Lattice& lattice, const LatticeState& state, const GridBox& points) {
+  const double share = 0.25 / lattice.spacing();
+  int inverted = 0;
+  for (int k = points.low[2] - 1; k <= points.high[2]; ++k) {
+    for (int j = points.low[1] - 1; j <= points.high[1]; ++j) {
+      for (int i = points.low[0] - 1; i <= points.high[0]; ++i) {
+        const int lowest = lattice.node(i, j, k);
+        if (lowest < 0) continue;
+        const CellSet& cells = *state.cells;
+        for (const auto* met = cells.first(lowest); met != cells.last(lowest); ++met) {
+          if (met->corner == 0 && isInverted(cells.all()[met->cell], state, share)) ++inverted;
+        }
+      }
+    }
   }
   return inverted;
 }

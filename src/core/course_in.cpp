@@ -51,11 +51,25 @@ SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
   cycles_ = 0;
   for (int round = 0; round < kMostTurns; ++round) {
     report.status = solve(shape, hold, changed, budget);
+    if (!levels_->isFinite()) return giveUp(shape, hold);
     levels_->writeTo(shape.state.displacement, hold.held());
     if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
   }
   report.iterations = cycles_;
   report.error_estimate = std::isfinite(error_) ? std::hypot(error_, missed_) : 1.0;
+  answer(shape, hold, report);
+  return report;
+}
+
+// As it was when the solve began.
+template <typename Real>
+SolveReport CourseIn<Real>::giveUp(const LoadedShape& shape, const PatchHold& hold) {
+  prepare(shape, hold);
+  has_start_ = has_way_ = false;
+  SolveReport report;
+  report.status = SolveStatus::kUnconverged;
+  report.iterations = cycles_;
+  report.error_estimate = 1.0;
   answer(shape, hold, report);
   return report;
 }
@@ -82,7 +96,7 @@ SolveStatus CourseIn<Real>::solve(LoadedShape& shape, const PatchHold& hold, boo
 }
 
 template <typename Real>
-void CourseIn<Real>::open(const LoadedShape& shape, const PatchHold& hold, const LevelBox& box) {
+void CourseIn<Real>::open(const LoadedShape& shape, const PatchHold& hold, const GridBox& box) {
   if (levels_->open(box, static_cast<int>(layers_), shape.state.displacement)) {
     has_start_ = has_way_ = false;
   }
@@ -98,8 +112,9 @@ void CourseIn<Real>::prepare(const LoadedShape& shape, const PatchHold& hold) {
     limited_from_.push_back(shape.state.displacement[at(limit.node)]);
   }
   if (first_of_step_) noteStep();
-  free_nodes_ = 0.0;
-  for (const std::uint8_t held : hold.held()) free_nodes_ += held != kAllHeld ? 1.0 : 0.0;
+  const std::vector<std::uint8_t>& held = hold.held();
+  free_nodes_ = static_cast<double>(held.end() - held.begin() -
+                                    std::count(held.begin(), held.end(), kAllHeld));
   finest().findForces(true);
   greatest_ = unbalanced();
 }
@@ -141,7 +156,7 @@ bool CourseIn<Real>::settlePatches(LoadedShape& shape, const PatchHold& hold) {
 }
 
 template <typename Real>
-void CourseIn<Real>::answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report) {
+void CourseIn<Real>::answer(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) {
   held_ = answerPatches(shape, hold, report);
   double left = unbalanced();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
@@ -160,12 +175,12 @@ double CourseIn<Real>::answerPatches(const LoadedShape& shape, const PatchHold& 
   const std::vector<Vec3>& displacement = shape.state.displacement;
   const double unit = levels_->modulus() * lattice_.spacing() * lattice_.spacing();
   double held = 0.0;
-  std::vector<Vec3> raw(shape.patches.empty() ? 0 : displacement.size());
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
+    std::vector<Vec3> of_hard;
     for (const int node : hold.hardOf(index)) {
-      raw[at(node)] = unit * finest().wholeForce(levels_->entryOf(node));
-      held = std::max(held, raw[at(node)].norm() / unit);
+      of_hard.push_back(unit * finest().wholeForce(levels_->entryOf(node)));
+      held = std::max(held, of_hard.back().norm() / unit);
     }
     for (const RimSpring& spring : patch.rim) {
       const Vec3 stretch = spring.anchor - displacement[at(spring.node)];
@@ -174,7 +189,7 @@ double CourseIn<Real>::answerPatches(const LoadedShape& shape, const PatchHold& 
     for (const ContactSpring& spring : patch.contacts) {
       held = std::max(held, forceOf(spring, displacement).norm() / unit);
     }
-    report.patches.push_back(answerOf(lattice_, shape.state, patch, raw));
+    report.patches.push_back(answerOf(lattice_, shape.state, patch, of_hard));
   }
   return held;
 }

@@ -21,6 +21,9 @@ class CourseIn : public LayeredCourse {
                   const Budget& budget) override;
   void limitWays(std::vector<NodeLimit> limits) override { limits_ = std::move(limits); }
   void beginStep() override { first_of_step_ = true; }
+  const GridBox* visited() const override {
+    return levels_ == nullptr || levels_->isWhole() ? nullptr : &levels_->free();
+  }
   void forget() override;
 
  private:
@@ -39,19 +42,20 @@ class CourseIn : public LayeredCourse {
 
   // course_in.cpp: before and after.
   void findLevels(const LatticeState& state);
-  void open(const LoadedShape& shape, const PatchHold& hold, const LevelBox& box);
+  void open(const LoadedShape& shape, const PatchHold& hold, const GridBox& box);
   void prepare(const LoadedShape& shape, const PatchHold& hold);
   SolveStatus solve(LoadedShape& shape, const PatchHold& hold, bool changed, const Budget& budget);
   void noteStep();
   bool settlePatches(LoadedShape& shape, const PatchHold& hold);
-  void answer(LoadedShape& shape, const PatchHold& hold, SolveReport& report);
+  SolveReport giveUp(const LoadedShape& shape, const PatchHold& hold);
+  void answer(const LoadedShape& shape, const PatchHold& hold, SolveReport& report);
   double answerPatches(const LoadedShape& shape, const PatchHold& hold, SolveReport& report) const;
 
   // course_layers.cpp: which nodes are visited.
   void findSeeds(const LoadedShape& shape, const PatchHold& hold,
                  const std::vector<int>& disturbed);
   void addSeed(int node);
-  LevelBox aroundSeeds() const;
+  GridBox aroundSeeds() const;
   bool raiseLayers();
   int openNodes(const PatchHold& hold) const;
   int layersRaised() const;
@@ -101,7 +105,7 @@ class CourseIn : public LayeredCourse {
   std::shared_ptr<const CellSet> cells_;
   std::vector<int> loaded_;  // nodes in patches and contacts
   double free_nodes_ = 0.0;
-  LevelBox seeds_;                // what the layers grow around
+  GridBox seeds_;                 // what the layers grow around
   double layers_ = kFirstLayers;  // around them
   std::vector<NodeLimit> limits_;
   std::vector<Vec3> limited_from_;  // where these nodes were when the solve began (m)
@@ -128,7 +132,7 @@ class CourseIn : public LayeredCourse {
   bool fresh_ = true;       // no direction yet
   bool conjugate_ = false;  // the last cycle went on with the one before
 
-  double missed_ = 0.0;           // by coarse lattices alone, of the displacement; last solve
+  double missed_ = 0.0;  // by coarse lattices alone, of the displacement; last solve
 
   Vector step_start_, last_way_;
   bool has_start_ = false, has_way_ = false, first_of_step_ = false;

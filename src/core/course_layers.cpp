@@ -41,9 +41,9 @@ void CourseIn<Real>::findSeeds(const LoadedShape& shape, const PatchHold& hold,
 }
 
 template <typename Real>
-LevelBox CourseIn<Real>::aroundSeeds() const {
+GridBox CourseIn<Real>::aroundSeeds() const {
   if (options_.tolerance < kLeastOfPart) return levels_->whole();
-  LevelBox box = seeds_;
+  GridBox box = seeds_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.low[axis] -= static_cast<int>(layers_);
     box.high[axis] += static_cast<int>(layers_);
@@ -56,7 +56,8 @@ template <typename Real>
 bool CourseIn<Real>::raiseLayers() {
   missed_ = 0.0;
   if (levels_->isWhole()) return false;
-  const double moved = std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
+  const double moved =
+      std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
   if (moved == 0.0) return false;
   missed_ = std::sqrt(levels_->squaredRoughnessBeyond()) / moved;
   if (missed_ <= kMostMissed * options_.tolerance) return false;
@@ -66,11 +67,21 @@ bool CourseIn<Real>::raiseLayers() {
 
 template <typename Real>
 int CourseIn<Real>::openNodes(const PatchHold& hold) const {
+  const auto moves = [&hold](std::size_t node) {
+    return hold.held()[node] != kAllHeld || hold.carriers()[node] >= 0;
+  };
   int count = 0;
-  for (std::size_t node = 0; node < hold.held().size(); ++node) {
-    if (hold.held()[node] == kAllHeld && hold.carriers()[node] < 0) continue;
-    const int original = cells_->original(static_cast<int>(node));
-    if (levels_->free().has(lattice_.gridIndex(original))) ++count;
+  if (levels_->isWhole()) {
+    for (std::size_t node = 0; node < hold.held().size(); ++node) count += moves(node) ? 1 : 0;
+    return count;
+  }
+  const GridBox& open = levels_->free();
+  for (int k = open.low[2]; k <= open.high[2]; ++k) {
+    for (int j = open.low[1]; j <= open.high[1]; ++j) {
+      for (int i = open.low[0]; i <= open.high[0]; ++i) {
+        count += moves(at(lattice_.node(i, j, k))) ? 1 : 0;
+      }
+    }
   }
   return count;
 }

@@ -90,7 +90,7 @@ template <typename Real>
 void LatticeLevel<Real>::findFree() {
   std::fill(free_.begin(), free_.end(), Real(0));
   rim_.clear();
-  const LevelBox& free = part().free;
+  const GridBox& free = part().free;
   const auto look = [&](int node, const std::array<int, 3>& place) {
     if (held_[at(node)] != 0 || !exists(node)) return;
     if (free.has(place)) {
@@ -99,7 +99,7 @@ void LatticeLevel<Real>::findFree() {
       rim_.push_back(node);
     }
   };
-  const LevelBox all = grid().whole();
+  const GridBox all = grid().whole();
   for (int k = 0; k <= all.high[2]; ++k) {
     for (int j = 0; j <= all.high[1]; ++j) {
       for (int i = 0; i <= all.high[0]; ++i) look(grid().index(i, j, k), {i, j, k});
@@ -183,7 +183,7 @@ void LatticeLevel<Real>::loadFor(const Field<Real>& wanted,
 // ones.
 template <typename Real>
 void LatticeLevel<Real>::loadBeside(const Field<Real>& wanted) {
-  LevelBox with_rim = part().covered;
+  GridBox with_rim = part().covered;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     with_rim.low[axis] = std::max(with_rim.low[axis] - 1, 0);
     with_rim.high[axis] = std::min(with_rim.high[axis] + 1, grid().size[axis] - 1);

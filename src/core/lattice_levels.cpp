@@ -49,8 +49,8 @@ void LatticeLevels<Real>::openAll(const ElasticModel& model, const CellSet& cell
   std::iota(nodes_.begin(), nodes_.end(), 0);
   std::vector<LevelCell> level_cells = finestCells(model, cells);
   while (true) {
-    const LevelBox all = grid.whole();
-    addLevel(grid, beside, level_cells, {all, levels_.empty() ? LevelBox{{1}, {0}} : all}, 0.0);
+    const GridBox all = grid.whole();
+    addLevel(grid, beside, level_cells, {all, levels_.empty() ? GridBox{{1}, {0}} : all}, 0.0);
     free_.push_back(all);
     if (*std::max_element(grid.size.begin(), grid.size.end()) <= kFewest) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());
@@ -145,7 +145,7 @@ void LatticeLevels<Real>::findSmoothMotion() {
   steps_.front().transfer.prolong(levels_[1].displacement, steps_.front().start, motion);
   group_motion = groupMotion(1);
   if (!isWhole()) takeMotion();
-  if (!isFinite()) noMotion();
+  if (!isMotionFinite()) noMotion();
 }
 
 template <typename Real>
@@ -158,12 +158,24 @@ void LatticeLevels<Real>::noMotion() {
 }
 
 template <typename Real>
-bool LatticeLevels<Real>::isFinite() const {
+bool LatticeLevels<Real>::isMotionFinite() const {
   double sum = squaredMotionBeyond();
   for (const auto& values : motion) {
     sum += dotOf(values.data(), values.data(), static_cast<int>(values.size()));
   }
   for (const GroupVector& vector : group_motion) sum += vector.squaredNorm();
+  return std::isfinite(sum);
+}
+
+template <typename Real>
+bool LatticeLevels<Real>::isFinite() const {
+  double sum = 0.0;
+  for (const LatticeLevel<Real>& level : levels_) {
+    for (const auto& values : level.displacement) {
+      sum += dotOf(values.data(), values.data(), level.count());
+    }
+  }
+  for (const GroupVector& vector : levels_.front().firm.motion) sum += vector.squaredNorm();
   return std::isfinite(sum);
 }
 
@@ -221,8 +233,7 @@ void LatticeLevels<Real>::restrictTo(std::size_t index) {
   fine.showRim();
   step.transfer.restrictForces(fine.force, step.wanted);
   fine.hideRim();
-  step.transfer.restrictDisplacement(fine.displacement, coarse.part().covered,
-                                     coarse.displacement);
+  step.transfer.restrictDisplacement(fine.displacement, coarse.part().covered, coarse.displacement);
   step.start = coarse.displacement;
   for (GroupVector& vector : coarse.firm.motion) vector.setZero();
   for (std::size_t i = 0; i < coarse.firm.springs.size(); ++i) {

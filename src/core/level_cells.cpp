@@ -61,7 +61,7 @@ void LevelCells<Real>::place(const std::vector<LevelCell>& cells) {
 
 template <typename Real>
 void LevelCells<Real>::findBlocks() {
-  const LevelBox& covered = part_.covered;
+  const GridBox& covered = part_.covered;
   const auto stands = [&covered](const std::array<int, 3>& cell) {
     bool all = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -167,8 +167,7 @@ void LevelCells<Real>::findPlanes(const Loads& loads, bool with_steps, const Blo
 
 template <typename Real>
 void LevelCells<Real>::addPlane(const Loads& loads, bool with_steps,
-                                const std::vector<CellBlock>& blocks, int plane,
-                                Sums& sums) const {
+                                const std::vector<CellBlock>& blocks, int plane, Sums& sums) const {
   for (auto* both : {&sums.lower, &sums.upper}) {
     for (auto& values : *both) std::fill(values.begin(), values.end(), Real(0));
   }
@@ -190,9 +189,9 @@ void LevelCells<Real>::finishPlane(const Loads& loads, bool with_steps, int plan
                                    const Sums& sums) {
   const int first = plane * grid_.plane;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    sumForces(sums.below[axis].data(), sums.lower[axis].data(),
-              loads.load[axis].data() + first, loads.free.data() + first,
-              whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
+    sumForces(sums.below[axis].data(), sums.lower[axis].data(), loads.load[axis].data() + first,
+              loads.free.data() + first, whole[axis].data() + first,
+              loads.force[axis].data() + first, grid_.plane);
   }
   if (!with_steps) return;
   invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,

@@ -5,9 +5,9 @@
 namespace robot_tissue {
 namespace {
 
-constexpr LevelBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
+constexpr GridBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
 
-void include(const std::array<int, 3>& low, const std::array<int, 3>& high, LevelBox& box) {
+void include(const std::array<int, 3>& low, const std::array<int, 3>& high, GridBox& box) {
   if (box.isEmpty()) box = {low, high};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.low[axis] = std::min(box.low[axis], low[axis]);
@@ -59,7 +59,8 @@ LevelSource coarser(LevelSource& fine) {
       const std::size_t cell = fine.cellAt(x, y, z);
       shear += fine.shear[cell];
       bulk += fine.bulk[cell];
-      differ = differ || fine.shear[cell] != fine.shear[first] || fine.bulk[cell] != fine.bulk[first];
+      differ =
+          differ || fine.shear[cell] != fine.shear[first] || fine.bulk[cell] != fine.bulk[first];
     }
     coarse.shear[coarse.cellAt(i, j, k)] = shear / kCorners;
     coarse.bulk[coarse.cellAt(i, j, k)] = bulk / kCorners;
@@ -108,7 +109,7 @@ bool isBlock(const Lattice& lattice, const ElasticModel& model, const CellSet& c
 
 }  // namespace
 
-std::vector<LevelCell> LevelSource::cellsIn(const LevelBox& points, const LevelGrid& grid) const {
+std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGrid& grid) const {
   std::vector<LevelCell> cells;
   const std::array<int, 3> count = {points.high[0] - points.low[0], points.high[1] - points.low[1],
                                     points.high[2] - points.low[2]};
@@ -128,7 +129,7 @@ std::vector<LevelCell> LevelSource::cellsIn(const LevelBox& points, const LevelG
   return cells;
 }
 
-bool LevelSource::isUniform(const LevelBox& points) const {
+bool LevelSource::isUniform(const GridBox& points) const {
   bool uniform = true;
   const std::size_t first = cellAt(points.low[0], points.low[1], points.low[2]);
   forAll({points.high[0] - points.low[0], points.high[1] - points.low[1],

@@ -30,8 +30,8 @@ int LevelTransfer<Real>::coarseRow(int j, int k) const {
 }
 
 template <typename Real>
-LevelBox LevelTransfer<Real>::around() const {
-  LevelBox box{at_, at_};
+GridBox LevelTransfer<Real>::around() const {
+  GridBox box{at_, at_};
   for (std::size_t axis = 0; axis < 3; ++axis) box.high[axis] += fine_.size[axis] / 2;
   return box;
 }
@@ -79,9 +79,9 @@ void LevelTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& c
 }
 
 template <typename Real>
-void LevelTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const LevelBox& box,
+void LevelTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const GridBox& box,
                                                Field<Real>& coarse) const {
-  LevelBox inside = box;
+  GridBox inside = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     inside.high[axis] = std::min(box.high[axis], at_[axis] + (fine_.size[axis] - 1) / 2);
   }
@@ -147,8 +147,7 @@ void LevelTransfer<Real>::spread(const Field<Real>& coarse, Field<Real>& fine) c
 }
 
 template <typename Real>
-void LevelTransfer<Real>::spreadTo(const std::vector<Real>& coarse, int j, int k,
-                                   Real* row) const {
+void LevelTransfer<Real>::spreadTo(const std::vector<Real>& coarse, int j, int k, Real* row) const {
   const int length = countAlongX();
   const Around y(j), z(k);
   std::vector<Real> line(at(length) + 1, Real(0));

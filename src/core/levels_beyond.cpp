@@ -22,8 +22,8 @@ template <typename Real>
 template <typename Visit>
 void LatticeLevels<Real>::forRowsBeyond(std::size_t level, Visit visit) const {
   const LevelGrid& grid = levels_[level].grid();
-  const LevelBox& free = levels_[level].part().free;
-  const LevelBox& covered = levels_[level].part().covered;
+  const GridBox& free = levels_[level].part().free;
+  const GridBox& covered = levels_[level].part().covered;
   const auto row = [&](int from, int to, int j, int k) {
     if (from <= to) visit(grid.index(from, j, k), to - from + 1);
   };
@@ -168,7 +168,7 @@ template <typename Real>
 double LatticeLevels<Real>::roughness(std::size_t level) const {
   const LatticeLevel<Real>& lattice = levels_[level];
   const LevelGrid& grid = lattice.grid();
-  const LevelBox& free = lattice.part().free;
+  const GridBox& free = lattice.part().free;
   const std::array<int, 3> strides = {1, grid.row, grid.plane};
   double squared = 0.0;
   for (int k = free.low[2]; k <= free.high[2]; ++k) {
@@ -180,9 +180,9 @@ double LatticeLevels<Real>::roughness(std::size_t level) const {
         for (const auto& values : lattice.displacement) {
           for (std::size_t along = 0; along < 3; ++along) {
             if (place[along] == 0 || place[along] == grid.size[along] - 1) continue;
-            const double difference = static_cast<double>(
-                values[at(node + strides[along])] + values[at(node - strides[along])] -
-                2 * values[at(node)]);
+            const double difference =
+                static_cast<double>(values[at(node + strides[along])] +
+                                    values[at(node - strides[along])] - 2 * values[at(node)]);
             squared += difference * difference;
           }
         }
@@ -195,12 +195,11 @@ double LatticeLevels<Real>::roughness(std::size_t level) const {
 // In spacings of the finest lattice; the place is one of the level's whole grid.
 template <typename Real>
 Vec3 LatticeLevels<Real>::valueAt(std::size_t level, const std::array<int, 3>& place) const {
-  const LevelBox points = pointsOf(level);
+  const GridBox points = pointsOf(level);
   if (points.has(place)) {
     const int entry = levels_[level].grid().index(
         place[0] - points.low[0], place[1] - points.low[1], place[2] - points.low[2]);
-    return std::ldexp(1.0, static_cast<int>(level)) *
-           vectorAt(levels_[level].displacement, entry);
+    return std::ldexp(1.0, static_cast<int>(level)) * vectorAt(levels_[level].displacement, entry);
   }
   Vec3 sum = Vec3::Zero();
   int count = 0;
@@ -263,7 +262,7 @@ void LatticeLevels<Real>::writeBeyond(std::vector<Vec3>& displacement) const {
 template <typename Real>
 void LatticeLevels<Real>::putOpen(std::size_t level, const LevelGrid& grid,
                                   Field<Real>& all) const {
-  const LevelBox points = pointsOf(level);
+  const GridBox points = pointsOf(level);
   for (int k = points.low[2]; k <= points.high[2]; ++k) {
     for (int j = points.low[1]; j <= points.high[1]; ++j) {
       const int first = levels_[level].grid().index(0, j - points.low[1], k - points.low[2]);
@@ -279,7 +278,7 @@ void LatticeLevels<Real>::putOpen(std::size_t level, const LevelGrid& grid,
 template <typename Real>
 void LatticeLevels<Real>::writeRows(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
                                     std::vector<Vec3>& displacement) const {
-  const LevelBox& open = free_.front();
+  const GridBox open = pointsOf(0);
   const auto& size = lattice_.size();
   Field<Real> row;
   for (auto& values : row) values.resize(at(size[0]));

@@ -7,17 +7,17 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kBesideRough = 2;   // layers, of what a coarser lattice does not tell
+constexpr int kBesideRough = 2;    // layers, of what a coarser lattice does not tell
 constexpr double kMostOpen = 0.6;  // of a level's points: beyond, it is open as a whole
 
-int countOf(const LevelBox& box) {
+int countOf(const GridBox& box) {
   return (box.high[0] - box.low[0] + 1) * (box.high[1] - box.low[1] + 1) *
          (box.high[2] - box.low[2] + 1);
 }
 
 // Coarse nodes whose fine ones, those next to them too, may all move.
-LevelBox coveredBy(const LevelBox& free, const LevelBox& whole) {
-  LevelBox covered;
+GridBox coveredBy(const GridBox& free, const GridBox& whole) {
+  GridBox covered;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool to_the_end = free.high[axis] == whole.high[axis];
     covered.low[axis] = (free.low[axis] + 1) / 2;
@@ -26,8 +26,8 @@ LevelBox coveredBy(const LevelBox& free, const LevelBox& whole) {
   return covered;
 }
 
-LevelBox around(const LevelBox& box, int layers) {
-  LevelBox wider = box;
+GridBox around(const GridBox& box, int layers) {
+  GridBox wider = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     wider.low[axis] -= layers;
     wider.high[axis] += layers;
@@ -35,9 +35,9 @@ LevelBox around(const LevelBox& box, int layers) {
   return wider;
 }
 
-LevelBox joined(const LevelBox& a, const LevelBox& b) {
+GridBox joined(const GridBox& a, const GridBox& b) {
   if (b.isEmpty()) return a;
-  LevelBox both = a;
+  GridBox both = a;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     both.low[axis] = std::min(a.low[axis], b.low[axis]);
     both.high[axis] = std::max(a.high[axis], b.high[axis]);
@@ -46,8 +46,8 @@ LevelBox joined(const LevelBox& a, const LevelBox& b) {
 }
 
 // So that the points just beyond are points of the next coarser level, or the block ends there.
-LevelBox fitted(const LevelBox& box, const LevelBox& whole) {
-  LevelBox fit = box;
+GridBox fitted(const GridBox& box, const GridBox& whole) {
+  GridBox fit = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     fit.low[axis] = box.low[axis] <= 2 ? 0 : box.low[axis] - 1 + box.low[axis] % 2;
     const int high = box.high[axis] + 1 - box.high[axis] % 2;
@@ -56,14 +56,15 @@ LevelBox fitted(const LevelBox& box, const LevelBox& whole) {
   return countOf(fit) > kMostOpen * countOf(whole) ? whole : fit;
 }
 
-LevelGrid gridOf(const LevelBox& points) {
+LevelGrid gridOf(const GridBox& points) {
   std::array<int, 3> size{};
-  for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = points.high[axis] - points.low[axis] + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    size[axis] = points.high[axis] - points.low[axis] + 1;
   return LevelGrid(size);
 }
 
-LevelBox from(const LevelBox& box, const std::array<int, 3>& origin) {
-  LevelBox local = box;
+GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
+  GridBox local = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     local.low[axis] -= origin[axis];
     local.high[axis] -= origin[axis];
@@ -74,16 +75,16 @@ LevelBox from(const LevelBox& box, const std::array<int, 3>& origin) {
 }  // namespace
 
 template <typename Real>
-LevelBox LatticeLevels<Real>::whole() const {
+GridBox LatticeLevels<Real>::whole() const {
   const auto& size = lattice_.size();
   return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
 }
 
 template <typename Real>
-bool LatticeLevels<Real>::open(const LevelBox& box, int layers,
+bool LatticeLevels<Real>::open(const GridBox& box, int layers,
                                const std::vector<Vec3>& displacement) {
   if (sources_.empty()) return false;
-  const std::vector<LevelBox> free = partsAround(box, layers);
+  const std::vector<GridBox> free = partsAround(box, layers);
   if (free == free_) return false;
   openParts(free);
   bond_ = Bond();
@@ -94,9 +95,9 @@ bool LatticeLevels<Real>::open(const LevelBox& box, int layers,
 
 // Where a level is open as a whole, the coarser ones are.
 template <typename Real>
-std::vector<LevelBox> LatticeLevels<Real>::partsAround(const LevelBox& box, int layers) const {
-  std::vector<LevelBox> free;
-  LevelBox wanted = box;
+std::vector<GridBox> LatticeLevels<Real>::partsAround(const GridBox& box, int layers) const {
+  std::vector<GridBox> free;
+  GridBox wanted = box;
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     const LevelSource& source = sources_[level];
     const bool has_coarser = level + 1 < sources_.size();
@@ -109,9 +110,9 @@ std::vector<LevelBox> LatticeLevels<Real>::partsAround(const LevelBox& box, int 
 
 // The nodes that may move, and those next to them.
 template <typename Real>
-LevelBox LatticeLevels<Real>::pointsOf(std::size_t level) const {
-  const LevelBox whole = sources_[level].whole();
-  LevelBox points = around(free_[level], 1);
+GridBox LatticeLevels<Real>::pointsOf(std::size_t level) const {
+  const GridBox whole = sources_[level].whole();
+  GridBox points = around(free_[level], 1);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     points.low[axis] = std::max(points.low[axis], 0);
     points.high[axis] = std::min(points.high[axis], whole.high[axis]);
@@ -120,18 +121,18 @@ LevelBox LatticeLevels<Real>::pointsOf(std::size_t level) const {
 }
 
 template <typename Real>
-void LatticeLevels<Real>::openParts(const std::vector<LevelBox>& free) {
+void LatticeLevels<Real>::openParts(const std::vector<GridBox>& free) {
   free_ = free;
   levels_.clear();
   steps_.clear();
   motions_.clear();
   for (std::size_t level = 0; level < free_.size(); ++level) {
     LevelSource& source = sources_[level];
-    const LevelBox points = pointsOf(level);
+    const GridBox points = pointsOf(level);
     const LevelGrid grid = gridOf(points);
     const LevelPart part = {
         from(free_[level], points.low),
-        level == 0 ? LevelBox{{1}, {0}}
+        level == 0 ? GridBox{{1}, {0}}
                    : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
     if (level > 0) addStep(transferTo(level, grid));
     const bool uniform = source.isUniform(points);
@@ -143,7 +144,7 @@ void LatticeLevels<Real>::openParts(const std::vector<LevelBox>& free) {
   levels_.front().firm.setUnits(spacing_, modulus_);
   nodes_.clear();
   entries_.clear();
-  const LevelBox points = pointsOf(0);
+  const GridBox points = pointsOf(0);
   for (int k = points.low[2]; k <= points.high[2]; ++k) {
     for (int j = points.low[1]; j <= points.high[1]; ++j) {
       for (int i = points.low[0]; i <= points.high[0]; ++i) {
@@ -156,7 +157,7 @@ void LatticeLevels<Real>::openParts(const std::vector<LevelBox>& free) {
 
 template <typename Real>
 LevelTransfer<Real> LatticeLevels<Real>::transferTo(std::size_t level, const LevelGrid& grid) {
-  const LevelBox fine = pointsOf(level - 1), points = pointsOf(level);
+  const GridBox fine = pointsOf(level - 1), points = pointsOf(level);
   const LevelGrid& fine_grid = levels_.back().grid();
   std::array<int, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = fine.low[axis] / 2 - points.low[axis];
@@ -180,7 +181,7 @@ LevelTransfer<Real> LatticeLevels<Real>::transferTo(std::size_t level, const Lev
 template <typename Real>
 int LatticeLevels<Real>::entryOf(int node) const {
   if (sources_.empty()) return entries_[at(node)];
-  const LevelBox points = pointsOf(0);
+  const GridBox points = pointsOf(0);
   const std::array<int, 3>& place = lattice_.gridIndex(node);
   if (!points.has(place)) return -1;
   return levels_.front().grid().index(place[0] - points.low[0], place[1] - points.low[1],
@@ -192,7 +193,7 @@ int LatticeLevels<Real>::entryOf(int node) const {
 template <typename Real>
 template <typename Visit>
 void LatticeLevels<Real>::forPoints(std::size_t level, Visit visit) const {
-  const LevelBox points = pointsOf(level);
+  const GridBox points = pointsOf(level);
   const LevelGrid& grid = levels_[level].grid();
   const auto& last = whole().high;
   for (int k = points.low[2]; k <= points.high[2]; ++k) {

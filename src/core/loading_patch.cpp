@@ -117,8 +117,14 @@ double contactEnergy(const LoadingPatch& patch, const std::vector<Vec3>& displac
   return energy;
 }
 
+std::vector<Vec3> onHardNodes(const LoadingPatch& patch, const std::vector<Vec3>& forces) {
+  std::vector<Vec3> on_hard_nodes;
+  for (const int node : hardNodes(patch)) on_hard_nodes.push_back(forces[at(node)]);
+  return on_hard_nodes;
+}
+
 PatchAnswer answerOf(const Lattice& lattice, const LatticeState& state, const LoadingPatch& patch,
-                     const std::vector<Vec3>& tissue_forces) {
+                     const std::vector<Vec3>& on_hard_nodes) {
   PatchAnswer answer;
   const std::vector<Vec3>& displacement = state.displacement;
   answer.displacement = meanDisplacement(patch, displacement);
@@ -132,7 +138,8 @@ PatchAnswer answerOf(const Lattice& lattice, const LatticeState& state, const Lo
   const auto position = [&](int node) -> Vec3 {
     return restPosition(lattice, *state.cells, node) + displacement[at(node)];
   };
-  for (const int node : hardNodes(patch)) add(position(node), -tissue_forces[at(node)]);
+  const std::vector<int> hard = hardNodes(patch);
+  for (std::size_t i = 0; i < hard.size(); ++i) add(position(hard[i]), -on_hard_nodes[i]);
   for (const RimSpring& spring : patch.rim) {
     add(position(spring.node), stiffnessOf(patch, spring) * stretch(spring, displacement));
   }

@@ -195,7 +195,7 @@ void NewtonMethod::describe(const LoadedShape& shape, SolveReport& report) {
   std::vector<Vec3> forces = model_.nodeForces(shape.state);
   for (const LoadingPatch& patch : shape.patches) addContactForces(patch, displacement, forces);
   for (const LoadingPatch& patch : shape.patches) {
-    report.patches.push_back(answerOf(lattice_, shape.state, patch, forces));
+    report.patches.push_back(answerOf(lattice_, shape.state, patch, onHardNodes(patch, forces)));
   }
   double moved_squared = 0.0;
   for (int node = 0; node < static_cast<int>(displacement.size()); ++node) {

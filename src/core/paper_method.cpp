@@ -275,7 +275,7 @@ void PaperMethod::describe(const std::vector<LoadingPatch>& patches, const Latti
   std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
   for (const LoadingPatch& patch : patches) {
     for (const int node : patch.nodes) forces[at(node)] = model_.nodeForce(state, node);
-    report.patches.push_back(answerOf(lattice_, state, patch, forces));
+    report.patches.push_back(answerOf(lattice_, state, patch, onHardNodes(patch, forces)));
     if (maskOf(patch) == kAllAxes) report.active_nodes += static_cast<int>(patch.nodes.size());
   }
   double greatest_force = 0.0, missing_squared = 0.0, moved_squared = 0.0;

@@ -9,12 +9,15 @@ bool isLoose(const CellSet& cells, int node) { return cells.first(node) == cells
 
 }  // namespace
 
-void PatchHold::SpringList::clear(std::size_t nodes) {
+void PatchHold::SpringList::clear(std::size_t node_count) {
   all.clear();
-  first.assign(nodes, -1);
+  if (first.size() != node_count) first.assign(node_count, -1);
+  for (const int node : nodes) first[at(node)] = -1;
+  nodes.clear();
 }
 
 void PatchHold::SpringList::add(int node, std::size_t patch, std::size_t spring, double weight) {
+  if (first[at(node)] < 0) nodes.push_back(node);
   all.push_back({patch, spring, weight, first[at(node)]});
   first[at(node)] = static_cast<int>(all.size()) - 1;
 }
@@ -23,17 +26,7 @@ PatchHold::PatchHold(const Lattice& lattice, const EnergyModel& model)
     : lattice_(lattice), model_(model) {}
 
 void PatchHold::bind(LoadedShape& shape) {
-  const std::size_t nodes = shape.state.displacement.size();
-  held_.assign(nodes, 0);
-  carriers_.assign(nodes, -1);
-  rims_.clear(nodes);
-  contacts_.clear(nodes);
-  hard_.clear();
-  for (std::size_t node = 0; node < nodes; ++node) {
-    const int index = static_cast<int>(node);
-    if (isFixed(lattice_, *shape.state.cells, index) || isLoose(*shape.state.cells, index))
-      held_[node] = kAllHeld;
-  }
+  letGo(shape.state);
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
     hard_.push_back(hardNodes(patch));
@@ -52,14 +45,33 @@ void PatchHold::bind(LoadedShape& shape) {
       }
     }
   }
-  findTouched();
+  touched_ = contacts_.nodes;
+  std::sort(touched_.begin(), touched_.end());
 }
 
-void PatchHold::findTouched() {
-  touched_.clear();
-  for (std::size_t node = 0; node < contacts_.first.size(); ++node) {
-    if (contacts_.first[node] >= 0) touched_.push_back(static_cast<int>(node));
+// Back to what no patch holds: what was held before is undone, not all looked at again.
+void PatchHold::letGo(const LatticeState& state) {
+  const std::size_t nodes = state.displacement.size();
+  if (cells_ != state.cells || held_by_itself_.size() != nodes) {
+    cells_ = state.cells;
+    carriers_.assign(nodes, -1);
+    held_by_itself_.assign(nodes, 0);
+    for (std::size_t node = 0; node < nodes; ++node) {
+      const int index = static_cast<int>(node);
+      if (isFixed(lattice_, *cells_, index) || isLoose(*cells_, index)) {
+        held_by_itself_[node] = kAllHeld;
+      }
+    }
   }
+  for (const std::vector<int>& hard : hard_) {
+    for (const int node : hard) {
+      if (at(node) < nodes) carriers_[at(node)] = -1;
+    }
+  }
+  held_ = held_by_itself_;
+  rims_.clear(nodes);
+  contacts_.clear(nodes);
+  hard_.clear();
 }
 
 void PatchHold::place(LoadedShape& shape) const {

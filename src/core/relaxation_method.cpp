@@ -372,7 +372,7 @@ void RelaxationMethod::describe(const Course& course, SolveReport& report) {
     for (const ContactSpring& spring : patch.contacts) {
       held = std::max(held, forceOf(spring, state.displacement).norm());
     }
-    report.patches.push_back(answerOf(lattice_, state, patch, forces));
+    report.patches.push_back(answerOf(lattice_, state, patch, onHardNodes(patch, forces)));
     unbalanced = std::max(unbalanced, patch_forces_[index].shift.norm());
   }
   for (std::size_t node = 0; node < state.displacement.size(); ++node) {

@@ -141,12 +141,18 @@ std::vector<Vec3> Tissue::shownDisplacement() const {
 
 // Where patches have rims their nodes are shown as their own (shownDisplacement).
 void Tissue::deformSurface() {
-  if (std::all_of(patches_.begin(), patches_.end(),
-                  [](const LoadingPatch& patch) { return patch.rim.empty(); })) {
-    deform(surface_, state_.displacement, vertices_);
-  } else {
-    deform(surface_, shownDisplacement(), vertices_);
+  std::vector<std::pair<int, Vec3>> own;
+  for (const LoadingPatch& patch : patches_) {
+    if (patch.rim.empty()) continue;
+    const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
+    for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
   }
+  const auto exchange = [&](std::pair<int, Vec3>& of_node) {
+    std::swap(state_.displacement[at(of_node.first)], of_node.second);
+  };
+  std::for_each(own.begin(), own.end(), exchange);
+  deform(surface_, state_.displacement, vertices_);
+  std::for_each(own.rbegin(), own.rend(), exchange);
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -216,11 +222,12 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
 }
 
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
-  const std::vector<Vec3> last_good = state_.displacement;
+  const bool may_fail = !method_->staysFinite();
+  const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
   const std::vector<LoadingPatch> last_good_patches = patches_;
   limitWays();
   SolveReport report = method_->solve(patches_, disturbed, state_);
-  if (!hasOnlyFiniteNumbers(report)) {
+  if (may_fail && !hasOnlyFiniteNumbers(report)) {
     state_.displacement = last_good;
     patches_ = last_good_patches;
     report = SolveReport();
@@ -275,7 +282,9 @@ bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
 void Tissue::describeShape(SolveReport& report) {
   deformSurface();
   report.volume_ratio = enclosedVolume(surface_, vertices_) / rest_volume_;
-  report.inverted_cells = countInvertedCells(lattice_, state_);
+  const GridBox* visited = method_->visited();
+  report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
+                                             : countInvertedCells(lattice_, state_, *visited);
   if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <unordered_map>
 #include <utility>
 
 #include "robot_tissue/core/patch_rim.h"
@@ -111,10 +112,10 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
 
 // A node obeys one patch.
 void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
-  std::vector<const LoadingPatch*> owners(state_.displacement.size(), nullptr);
+  std::unordered_map<int, const LoadingPatch*> owners;
   const auto claim = [&](const LoadingPatch& patch) {
     for (const int node : patch.nodes) {
-      const LoadingPatch*& owner = owners[at(node)];
+      const LoadingPatch*& owner = owners[node];
       if (owner != nullptr && owner->name != patch.name) {
         refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
                "patches without a common node");
@@ -155,14 +156,14 @@ std::size_t Tissue::place(const LoadingPatch& patch) {
 
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
 void Tissue::leaveRimsToOwners() {
-  std::vector<const LoadingPatch*> owners(state_.displacement.size(), nullptr);
+  std::unordered_map<int, const LoadingPatch*> owners;
   for (const LoadingPatch& patch : patches_) {
-    for (const int node : patch.nodes) owners[at(node)] = &patch;
+    for (const int node : patch.nodes) owners[node] = &patch;
   }
   for (LoadingPatch& patch : patches_) {
     const auto foreign = [&](const RimSpring& spring) {
-      const LoadingPatch* owner = owners[at(spring.node)];
-      return owner != nullptr && owner != &patch;
+      const auto owner = owners.find(spring.node);
+      return owner != owners.end() && owner->second != &patch;
     };
     patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
   }
@@ -202,7 +203,7 @@ Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
   std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
   for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
   for (const LoadingPatch& other : patches_) addContactForces(other, state_.displacement, forces);
-  return robot_tissue::answerOf(lattice_, state_, patch, forces).force;
+  return robot_tissue::answerOf(lattice_, state_, patch, onHardNodes(patch, forces)).force;
 }
 
 }  // namespace robot_tissue

@@ -140,7 +140,7 @@ TYPED_TEST(CellKernel, LosesNothingNearRest) {
 // that has no others.
 TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
   const Cells given;
-  const LevelBox covered{{5, 2, 1}, {6, 3, 2}};
+  const GridBox covered{{5, 2, 1}, {6, 3, 2}};
   const std::vector<LevelCell> on_grid(given.all.begin(), given.all.end() - 1);
   std::vector<LevelCell> standing;
   for (const LevelCell& cell : on_grid) {
@@ -152,7 +152,7 @@ TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
     if (at_one) standing.push_back(cell);
   }
   ASSERT_EQ(standing.size(), 27U);
-  const LevelBox all = given.grid.whole();
+  const GridBox all = given.grid.whole();
   LevelCells<TypeParam> cells(given.grid, 4, on_grid, {all, covered});
   LevelCells<TypeParam> alone(given.grid, 4, standing, {all, all});
   const Field<TypeParam> moved = this->shaken(cells, 0.1);

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "robot_tissue/core/grid_box.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -86,5 +87,7 @@ bool isFixed(const Lattice& lattice, const CellSet& cells, int node);
 
 // Cells turned inside out: the mean deformation gradient's determinant is not positive.
 int countInvertedCells(const Lattice& lattice, const LatticeState& state);
+// Of those with a corner among the points.
+int countInvertedCells(const Lattice& lattice, const LatticeState& state, const GridBox& points);
 
 }  // namespace robot_tissue

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/grid_box.h"
 
 namespace robot_tissue {
 
@@ -18,22 +19,6 @@ struct LevelCell {
   std::array<int, kCorners> nodes{};
   double shear = 0.0;
   double bulk = 0.0;
-};
-
-// Grid points from low to high, both included; none where low is above high.
-struct LevelBox {
-  std::array<int, 3> low{};
-  std::array<int, 3> high{};
-
-  bool has(const std::array<int, 3>& place) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (place[axis] < low[axis] || place[axis] > high[axis]) return false;
-    }
-    return true;
-  }
-  bool isEmpty() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
-  bool operator==(const LevelBox& other) const { return low == other.low && high == other.high; }
-  bool operator!=(const LevelBox& other) const { return !(*this == other); }
 };
 
 // Entries of a level's fields: the grid's points, x fastest, planes padded so that what a block of
@@ -48,7 +33,7 @@ struct LevelGrid {
   LevelGrid() = default;
   explicit LevelGrid(const std::array<int, 3>& points);
   int index(int i, int j, int k) const { return i + row * j + plane * k; }
-  LevelBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
+  GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
   std::array<int, 3> placeOf(int entry) const {
     return {entry % plane % row, entry % plane / row, entry / plane};
   }

@@ -37,10 +37,10 @@ class LatticeLevels {
   // Opens the least part that has the box (grid points), and more so many layers beyond on each
   // coarser lattice; all of it where that is little less. With the shape as it is; to be bound.
   // False: it was open, and still is.
-  bool open(const LevelBox& box, int layers, const std::vector<Vec3>& displacement);
+  bool open(const GridBox& box, int layers, const std::vector<Vec3>& displacement);
   bool isWhole() const { return free_.front() == whole(); }
-  const LevelBox& free() const { return free_.front(); }  // nodes of the finest lattice
-  LevelBox whole() const;
+  const GridBox& free() const { return free_.front(); }  // nodes of the finest lattice
+  GridBox whole() const;
 
   LatticeLevel<Real>& finest() { return levels_.front(); }
   const LatticeLevel<Real>& finest() const { return levels_.front(); }
@@ -59,6 +59,8 @@ class LatticeLevels {
   Vec3 displacementOf(int node) const;  // m
   // Components that are not held.
   void writeTo(std::vector<Vec3>& displacement, const std::vector<std::uint8_t>& held) const;
+
+  bool isFinite() const;  // the shape
 
   // The smooth motion that goes with the finest lattice's forces, into `motion`.
   void findSmoothMotion();
@@ -114,7 +116,7 @@ class LatticeLevels {
   void restrictTo(std::size_t coarse);
   void solveCoarse(std::size_t level);
   std::vector<GroupVector> groupMotion(std::size_t coarse) const;
-  bool isFinite() const;
+  bool isMotionFinite() const;
 
   // levels_binding.cpp
   static Bond bondOf(const LoadedShape& shape, const PatchHold& hold);
@@ -127,10 +129,10 @@ class LatticeLevels {
       std::size_t level, const std::vector<LevelSpring::Carrier>& fine) const;
 
   // levels_opening.cpp
-  std::vector<LevelBox> partsAround(const LevelBox& box, int layers) const;
-  void openParts(const std::vector<LevelBox>& free);
+  std::vector<GridBox> partsAround(const GridBox& box, int layers) const;
+  void openParts(const std::vector<GridBox>& free);
   LevelTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid);
-  LevelBox pointsOf(std::size_t level) const;
+  GridBox pointsOf(std::size_t level) const;
   template <typename Visit>
   void forPoints(std::size_t level, Visit visit) const;
   void placeCoarse(const std::vector<Vec3>& displacement);
@@ -152,7 +154,7 @@ class LatticeLevels {
   const Lattice& lattice_;
   Workers* workers_;
   std::vector<LevelSource> sources_;  // empty where parts cannot be open
-  std::vector<LevelBox> free_;        // per level, in points of its whole grid
+  std::vector<GridBox> free_;         // per level, in points of its whole grid
   std::vector<LatticeLevel<Real>> levels_;
   std::vector<Step> steps_;   // from level i to i + 1
   std::vector<int> nodes_;    // of the tissue, in the open part

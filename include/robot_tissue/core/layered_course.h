@@ -63,6 +63,7 @@ class LayeredCourse {
   };
   virtual void limitWays(std::vector<NodeLimit> limits) = 0;
   virtual void beginStep() = 0;
+  virtual const GridBox* visited() const = 0;  // as SolverMethod
   virtual void forget() = 0;
 };
 

@@ -23,6 +23,8 @@ class LayeredMethod : public SolverMethod {
   void beginStep(const LatticeState&) override { course_->beginStep(); }
   void limitWays(std::vector<double> longest) override;
   void forget() override { course_->forget(); }
+  const GridBox* visited() const override { return course_->visited(); }
+  bool staysFinite() const override { return true; }
   bool findsEquilibrium() const override { return true; }
   double patchStep() const override;
 

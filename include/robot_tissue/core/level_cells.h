@@ -19,8 +19,8 @@ using Field = std::array<std::vector<Real>, 3>;
 
 // What a level is for.
 struct LevelPart {
-  LevelBox free;     // nodes that may move; the others stay, and count as balanced
-  LevelBox covered;  // by a finer level: cells with a corner in it stand for eight finer ones each
+  GridBox free;     // nodes that may move; the others stay, and count as balanced
+  GridBox covered;  // by a finer level: cells with a corner in it stand for eight finer ones each
 };
 
 template <typename Real>

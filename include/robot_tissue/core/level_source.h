@@ -18,13 +18,13 @@ struct LevelSource {
   std::vector<double> bulk;
   // Points beside which the eight cells of a coarse one differ, or nodes are held that no coarse
   // node stands for. Empty: low above high.
-  LevelBox rough;
+  GridBox rough;
   double greatest_stiffness = 0.0;  // of a lattice of equal cells, once it is known
 
-  LevelBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
+  GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
   // Of the cells between these points, placed from its low corner.
-  std::vector<LevelCell> cellsIn(const LevelBox& points, const LevelGrid& grid) const;
-  bool isUniform(const LevelBox& points) const;
+  std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
+  bool isUniform(const GridBox& points) const;
   std::size_t cellAt(int i, int j, int k) const {
     return shear.size() == 1 ? 0 : at(i + (size[0] - 1) * (j + (size[1] - 1) * k));
   }

@@ -19,13 +19,12 @@ class LevelTransfer {
   // The coarse nodes that carry a fine one.
   NodeShares carriersOf(int fine_node) const;
   // Those that fine nodes are at or beside.
-  LevelBox around() const;
+  GridBox around() const;
 
   // To the coarse nodes around the fine grid.
   void restrictForces(const Field<Real>& fine, Field<Real>& coarse) const;
   // Of the coarse nodes in the box.
-  void restrictDisplacement(const Field<Real>& fine, const LevelBox& box,
-                            Field<Real>& coarse) const;
+  void restrictDisplacement(const Field<Real>& fine, const GridBox& box, Field<Real>& coarse) const;
   // The coarse motion, now less start.
   void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine) const;
   // Where the coarse nodes have all fine ones, or a row of them.

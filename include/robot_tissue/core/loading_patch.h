@@ -85,8 +85,11 @@ struct PatchAnswer {
   Vec3 displacement = Vec3::Zero();  // mean over its nodes, from rest (m)
 };
 
-// From the forces of the tissue, and of others' contacts, on its nodes (N; without those of rims).
+// From the forces of the tissue, and of others' contacts, on its hard nodes, in their order (N;
+// without those of rims).
 PatchAnswer answerOf(const Lattice& lattice, const LatticeState& state, const LoadingPatch& patch,
-                     const std::vector<Vec3>& tissue_forces);
+                     const std::vector<Vec3>& on_hard_nodes);
+// The hard nodes' of the forces on all nodes.
+std::vector<Vec3> onHardNodes(const LoadingPatch& patch, const std::vector<Vec3>& forces);
 
 }  // namespace robot_tissue

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "robot_tissue/core/energy_model.h"
@@ -56,7 +57,7 @@ class PatchHold {
   Vec3 armOf(const LoadedShape& shape, std::size_t patch, int node) const;
 
  private:
-  void findTouched();
+  void letGo(const LatticeState& state);
   void addContacts(const LoadedShape& shape, int node, NodeBalance& balance) const;
 
   // Where a spring of a node stands.
@@ -70,13 +71,16 @@ class PatchHold {
   struct SpringList {
     std::vector<SpringPlace> all;
     std::vector<int> first;  // per node, into all, -1 = none
+    std::vector<int> nodes;  // that have some
 
-    void clear(std::size_t nodes);
+    void clear(std::size_t node_count);
     void add(int node, std::size_t patch, std::size_t spring, double weight);
   };
 
   const Lattice& lattice_;
   const EnergyModel& model_;
+  std::shared_ptr<const CellSet> cells_;  // of the last bind
+  std::vector<std::uint8_t> held_by_itself_;
   std::vector<std::uint8_t> held_;
   std::vector<int> carriers_;
   std::vector<std::vector<int>> hard_;  // per patch

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "robot_tissue/core/grid_box.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
 
@@ -26,6 +27,14 @@ class SolverMethod {
 
   // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
   virtual void forget() {}
+
+  // Grid points among which the last solve moved nodes one by one, of lattices of which it moves
+  // the others as a lattice of a greater spacing has them; null where it moves all one by one.
+  virtual const GridBox* visited() const { return nullptr; }
+
+  // Whether a solve leaves the shape and the patches as they were rather than put numbers into them
+  // that are not finite.
+  virtual bool staysFinite() const { return false; }
 
   // Whether it finds the equilibrium of an energy: then patches may turn and have springs, at their
   // rims and in contact; if not, all their nodes are hard.
