@@ -63,7 +63,14 @@ double CourseIn<Real>::work(const Vector& force, const Vector& motion) const {
 // Of the forces as they are now.
 template <typename Real>
 double CourseIn<Real>::workOf(const Vector& motion) {
-  double work = LatticeLevels<Real>::workBeyond(levels_->findForcesBeyond(), motion.beyond);
+  return nearWorkOf(motion) +
+         LatticeLevels<Real>::workBeyond(levels_->findForcesBeyond(), motion.beyond);
+}
+
+// In the open part alone.
+template <typename Real>
+double CourseIn<Real>::nearWorkOf(const Vector& motion) const {
+  double work = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     work += dotOf(finest().force[axis].data(), motion.nodes[axis].data(), finest().count());
   }
@@ -123,11 +130,11 @@ template <typename Real>
 bool CourseIn<Real>::carryOn() {
   keepPlace(before_);
   last_way_.groups.assign(finest().firm.groups.size(), GroupVector::Zero());
-  const double slope = workOf(last_way_);
+  const double slope = nearWorkOf(last_way_);
   if (slope == 0.0 || !std::isfinite(slope)) return false;
   const double share = slope > 0.0 ? 1.0 : -1.0;
   move(last_way_, share);
-  const double here = workOf(last_way_);
+  const double here = nearWorkOf(last_way_);
   if (std::abs(here) <= kFlatEnough * std::abs(slope)) return true;
   const double best = slope / (slope - here);  // of `share`, were the energy quadratic
   if (!std::isfinite(here) || !(best > 0.0)) {
@@ -242,8 +249,8 @@ void CourseIn<Real>::advance() {
   }
 }
 
-// Where parts are open, cycles that get on need no looking back at what they did: forces beyond cost
-// more than a look.
+// Where parts are open, cycles that get on need no looking back at what they did: forces beyond
+// cost more than a look.
 template <typename Real>
 bool CourseIn<Real>::isSteady() const {
   return !levels_->isWhole() && left_ <= kBlownUp * first_left_ &&

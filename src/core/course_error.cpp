@@ -22,7 +22,7 @@ constexpr int kTrialCycles = 6;         // that show how much of what is left th
 constexpr double kTrialMotion = 1e-3;   // in spacings
 constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single precision knows
 constexpr int kFirstMark = 16;          // cycles: from then on, the latest half tells of slow ones
-constexpr int kPatienceInPart = 6;       // cycles that led nowhere: then all is visited
+constexpr int kPatienceInPart = 6;      // cycles that led nowhere: then all is visited
 constexpr int kShortest = 4;            // cycles since the mark
 constexpr double kMostUnbalanced = 0.1;  // of the greatest force
 constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
@@ -56,7 +56,8 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
     levels_->findSmoothMotion();
     const double left = lengthLeft();
     if (cycle > 0 && left > 0.0) {
-      least_factor_ = std::max(least_factor_, std::sqrt(squared(finest().displacement)) / left);
+      const double off = squared(finest().displacement) + levels_->squaredDisplacementBeyond();
+      least_factor_ = std::max(least_factor_, std::sqrt(off) / left);
     }
     levels_->go(1.0);
     finest().findForces(true);
@@ -71,7 +72,8 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
 template <typename Real>
 double CourseIn<Real>::lengthLeft() const {
   return std::sqrt(finest().squaredLocalMotion() + squared(levels_->motion) +
-                   levels_->squaredMotionBeyond() + finest().firm.squaredMotionOf(levels_->group_motion));
+                   levels_->squaredMotionBeyond() +
+                   finest().firm.squaredMotionOf(levels_->group_motion));
 }
 
 // Where the course stands: kOk, kLate while there is hope, kUnconverged.
@@ -84,7 +86,8 @@ SolveStatus CourseIn<Real>::look(bool changed) {
   const double trend_before = trend_;
   trend_ = conjugate_ ? std::max(left_, kDip * trend_) : left_;
   if (cycles_ > 0) learn(trend_before);
-  const double moved = std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
+  const double moved =
+      std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
   const double unit = std::max(moved, kStill * std::sqrt(free_nodes_ + 1.0));
   error_ = factor_ * trend_ / unit;
   const double gain = cycles_ > 0 ? factor_ * std::min(trend_ / trend_before, 1.0) : 0.0;

@@ -90,6 +90,7 @@ class CourseIn : public LayeredCourse {
   void move(const Vector& way, double share);
   void putBack(const Vector& vector);
   double workOf(const Vector& motion);
+  double nearWorkOf(const Vector& motion) const;
   double work(const Vector& force, const Vector& motion) const;
   void add(const Vector& other, double share, Vector& to) const;
   double squared(const Field<Real>& field) const;

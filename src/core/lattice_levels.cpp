@@ -14,6 +14,7 @@ constexpr int kFewest = 3;       // grid points along the longest side of the co
 constexpr int kStepsBefore = 3;  // of the smoother on a coarse level, before it is corrected
 constexpr int kStepsAfter = 3;   // and after
 constexpr int kStepsCoarsest = 12;
+constexpr int kLayersAroundMiddle = 6;
 constexpr double kSame = 1e-15;  // relative, of a displacement that went to m and back
 
 }  // namespace
@@ -29,7 +30,8 @@ LatticeLevels<Real>::LatticeLevels(const Lattice& lattice, const ElasticModel& m
   if (modulus_ == 0.0) modulus_ = 1.0;
   sources_ = levelSources(lattice, model, cells, modulus_, kFewest);
   if (!sources_.empty()) {
-    open(whole(), 0, std::vector<Vec3>(at(lattice.nodeCount()), Vec3::Zero()));
+    measureStiffness();
+    openParts(partsAround(middle(), kLayersAroundMiddle));
   } else {
     openAll(model, cells);
   }

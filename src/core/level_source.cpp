@@ -129,18 +129,6 @@ std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGr
   return cells;
 }
 
-bool LevelSource::isUniform(const GridBox& points) const {
-  bool uniform = true;
-  const std::size_t first = cellAt(points.low[0], points.low[1], points.low[2]);
-  forAll({points.high[0] - points.low[0], points.high[1] - points.low[1],
-          points.high[2] - points.low[2]},
-         [&](int i, int j, int k) {
-           const std::size_t here = cellAt(points.low[0] + i, points.low[1] + j, points.low[2] + k);
-           uniform = uniform && shear[here] == shear[first] && bulk[here] == bulk[first];
-         });
-  return uniform;
-}
-
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
                                       const CellSet& cells, double modulus, int fewest) {
   if (!isBlock(lattice, model, cells)) return {};

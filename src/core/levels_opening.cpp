@@ -8,6 +8,8 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kBesideRough = 2;    // layers, of what a coarser lattice does not tell
+constexpr int kMiddle = 2;         // layers around a point
+constexpr int kMeasured = 12;      // cells along an axis that tell the greatest stiffness
 constexpr double kMostOpen = 0.6;  // of a level's points: beyond, it is open as a whole
 
 int countOf(const GridBox& box) {
@@ -80,6 +82,32 @@ GridBox LatticeLevels<Real>::whole() const {
   return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
 }
 
+// Of lattices of equal cells, by a block of them that all stand for finer ones, the stiffest there
+// is: not of each part anew.
+template <typename Real>
+void LatticeLevels<Real>::measureStiffness() {
+  for (std::size_t level = 0; level < sources_.size(); ++level) {
+    LevelSource& source = sources_[level];
+    if (!source.isUniform()) continue;
+    GridBox points = source.whole();
+    for (int& high : points.high) high = std::min(high, kMeasured);
+    const LevelGrid grid = gridOf(points);
+    const LatticeLevel<Real> block(grid, 0, source.cellsIn(points, grid),
+                                   {points, level == 0 ? GridBox{{1}, {0}} : points});
+    source.greatest_stiffness = block.greatestStiffness();
+  }
+}
+
+// As what a tool touches, but always the same.
+template <typename Real>
+GridBox LatticeLevels<Real>::middle() const {
+  GridBox box = whole();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] = box.high[axis] = box.high[axis] / 2;
+  }
+  return around(box, kMiddle);
+}
+
 template <typename Real>
 bool LatticeLevels<Real>::open(const GridBox& box, int layers,
                                const std::vector<Vec3>& displacement) {
@@ -135,10 +163,7 @@ void LatticeLevels<Real>::openParts(const std::vector<GridBox>& free) {
         level == 0 ? GridBox{{1}, {0}}
                    : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
     if (level > 0) addStep(transferTo(level, grid));
-    const bool uniform = source.isUniform(points);
-    addLevel(grid, 0, source.cellsIn(points, grid), part,
-             uniform ? source.greatest_stiffness : 0.0);
-    if (uniform) source.greatest_stiffness = levels_.back().greatestStiffness();
+    addLevel(grid, 0, source.cellsIn(points, grid), part, source.greatest_stiffness);
   }
   motion = std::move(motions_.front());
   levels_.front().firm.setUnits(spacing_, modulus_);

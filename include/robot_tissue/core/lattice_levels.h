@@ -30,7 +30,8 @@ namespace robot_tissue {
 template <typename Real>
 class LatticeLevels {
  public:
-  // Open as a whole. The workers, null for none, must outlive the levels.
+  // Open in the middle, where parts can be; else as a whole. The workers, null for none, must
+  // outlive the levels.
   LatticeLevels(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
                 Workers* workers);
 
@@ -129,6 +130,8 @@ class LatticeLevels {
       std::size_t level, const std::vector<LevelSpring::Carrier>& fine) const;
 
   // levels_opening.cpp
+  void measureStiffness();
+  GridBox middle() const;
   std::vector<GridBox> partsAround(const GridBox& box, int layers) const;
   void openParts(const std::vector<GridBox>& free);
   LevelTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid);

@@ -19,12 +19,12 @@ struct LevelSource {
   // Points beside which the eight cells of a coarse one differ, or nodes are held that no coarse
   // node stands for. Empty: low above high.
   GridBox rough;
-  double greatest_stiffness = 0.0;  // of a lattice of equal cells, once it is known
+  double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
 
   GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
   // Of the cells between these points, placed from its low corner.
   std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
-  bool isUniform(const GridBox& points) const;
+  bool isUniform() const { return shear.size() == 1; }
   std::size_t cellAt(int i, int j, int k) const {
     return shear.size() == 1 ? 0 : at(i + (size[0] - 1) * (j + (size[1] - 1) * k));
   }
