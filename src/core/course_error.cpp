@@ -163,6 +163,22 @@ Vec3 CourseIn<Real>::netForce() const {
   return net;
 }
 
+template <typename Real>
+Vec3 CourseIn<Real>::forceLeft() {
+  if (levels_ == nullptr) return Vec3::Zero();
+  Vec3 left = netForce();
+  for (const GroupVector& force : finest().firm.force) left += force.template head<3>();
+  double unit = 1.0;
+  for (const Field<Real>& forces : levels_->findForcesBeyond()) {
+    unit *= 4.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& values = forces[at(axis)];
+      left[axis] += unit * sumOf(values.data(), static_cast<int>(values.size()));
+    }
+  }
+  return levels_->modulus() * lattice_.spacing() * lattice_.spacing() * left;
+}
+
 // On hard nodes of patches whose places are given.
 template <typename Real>
 Vec3 CourseIn<Real>::patchForce() const {

@@ -12,6 +12,7 @@ constexpr int kFewestSteps = 3;            // of the smoother in a cycle
 constexpr double kStepsOfRoot = 1.6;       // likewise, of the root of the greatest stiffness
 constexpr double kSinglePrecision = 1e-3;  // tolerance that single precision reaches
 constexpr int kMostTurns = 20;             // solves, until turning patches have settled
+constexpr int kMostRounds = 8;             // of a solve, in wider parts or for what these miss
 constexpr double kTurned = 1e-4;           // rad
 
 }  // namespace
@@ -80,7 +81,7 @@ template <typename Real>
 SolveStatus CourseIn<Real>::solve(LoadedShape& shape, const PatchHold& hold, bool changed,
                                   const Budget& budget) {
   open(shape, hold, aroundSeeds());
-  while (true) {
+  for (int round = 1;; ++round) {
     const bool carried_on = first_of_step_ && has_way_ && greatest_ > 0.0 && carryOn();
     first_of_step_ = false;
     const SolveStatus status = iterate(changed, carried_on, budget);
@@ -89,7 +90,7 @@ SolveStatus CourseIn<Real>::solve(LoadedShape& shape, const PatchHold& hold, boo
     } else if (status == SolveStatus::kOk && raiseLayers()) {
       levels_->writeTo(shape.state.displacement, hold.held());
       open(shape, hold, aroundSeeds());
-    } else {
+    } else if (status != SolveStatus::kOk || error_ <= allowed() || round > kMostRounds) {
       return status;
     }
   }

@@ -21,6 +21,7 @@ class CourseIn : public LayeredCourse {
                   const Budget& budget) override;
   void limitWays(std::vector<NodeLimit> limits) override { limits_ = std::move(limits); }
   void beginStep() override { first_of_step_ = true; }
+  Vec3 forceLeft() override;
   const GridBox* visited() const override {
     return levels_ == nullptr || levels_->isWhole() ? nullptr : &levels_->free();
   }

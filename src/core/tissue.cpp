@@ -49,6 +49,7 @@ Vec3 Tissue::weight() const { return weight_; }
 
 // What holds them: minus what the tissue, and springs in contact, do to them.
 Vec3 Tissue::forceOfFixedNodes() const {
+  if (method_->visited() != nullptr) return method_->forceLeft() - weight_ - forceOfPatches();
   const CellSet& cells = *state_.cells;
   Vec3 force = Vec3::Zero();
   for (int node = 0; node < cells.nodeCount(); ++node) {
@@ -62,6 +63,12 @@ Vec3 Tissue::forceOfFixedNodes() const {
       }
     }
   }
+  return force;
+}
+
+Vec3 Tissue::forceOfPatches() const {
+  Vec3 force = Vec3::Zero();
+  for (const PatchAnswer& answer : last_report_.patches) force += answer.force;
   return force;
 }
 

@@ -64,6 +64,7 @@ class LayeredCourse {
   virtual void limitWays(std::vector<NodeLimit> limits) = 0;
   virtual void beginStep() = 0;
   virtual const GridBox* visited() const = 0;  // as SolverMethod
+  virtual Vec3 forceLeft() = 0;                // likewise (N)
   virtual void forget() = 0;
 };
 

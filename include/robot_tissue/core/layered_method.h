@@ -24,6 +24,7 @@ class LayeredMethod : public SolverMethod {
   void limitWays(std::vector<double> longest) override;
   void forget() override { course_->forget(); }
   const GridBox* visited() const override { return course_->visited(); }
+  Vec3 forceLeft() override { return course_->forceLeft(); }
   bool staysFinite() const override { return true; }
   bool findsEquilibrium() const override { return true; }
   double patchStep() const override;

@@ -31,6 +31,9 @@ class SolverMethod {
   // Grid points among which the last solve moved nodes one by one, of lattices of which it moves
   // the others as a lattice of a greater spacing has them; null where it moves all one by one.
   virtual const GridBox* visited() const { return nullptr; }
+  // Sum of the forces that the last solve left unbalanced on all that may move (N), where it did
+  // not visit all nodes: those of the others, one by one, do not tell it.
+  virtual Vec3 forceLeft() { return Vec3::Zero(); }
 
   // Whether a solve leaves the shape and the patches as they were rather than put numbers into them
   // that are not finite.

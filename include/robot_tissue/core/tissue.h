@@ -116,6 +116,7 @@ class Tissue {
     LoadingPatch target;
   };
 
+  Vec3 forceOfPatches() const;
   SolveReport solve(const std::vector<int>& disturbed);
   void renewContacts();
   void limitWays();
