@@ -8,8 +8,8 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kBesideRough = 2;    // layers, of what a coarser lattice does not tell
-constexpr int kMiddle = 2;         // layers around a point
-constexpr int kMeasured = 12;      // cells along an axis that tell the greatest stiffness
+constexpr int kMiddle = 8;         // layers around a point
+constexpr int kMeasured = 24;      // cells along an axis that tell the greatest stiffness
 constexpr double kMostOpen = 0.6;  // of a level's points: beyond, it is open as a whole
 
 int countOf(const GridBox& box) {
