@@ -120,6 +120,7 @@ bool ToolContacts::update(const std::vector<std::optional<Contact>>& tracked,
                           const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, bool whole) {
   bool settled = whole && takeForces(tissue);
+  if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
   }
@@ -210,6 +211,16 @@ bool ToolContacts::takeForces(const Tissue& tissue) {
         std::min(std::max(soft, most_drag / (kMostSlip * fine)), most_drag / (kElasticSlip * fine));
   }
   return std::abs(drag_now - drag_before) <= kSameForce * drag_now;
+}
+
+// On the way to balance nothing is known of forces, but what went into a link is to come out of it.
+void ToolContacts::pressHarder(const Tissue& tissue) {
+  for (Touch& touch : touches_) {
+    ContactSpring& spring = touch.spring;
+    if (gapOf(spring, tissue.state().displacement) >= -slackOf(touch, tissue)) continue;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+  }
 }
 
 bool ToolContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {

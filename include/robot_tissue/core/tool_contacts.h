@@ -88,6 +88,7 @@ class ToolContacts {
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
   static void carry(const Tissue& tissue, const Held& held, Touch& touch);
   bool takeForces(const Tissue& tissue);
+  void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);
   void anchor(const RobotPose& pose, Touch& touch) const;
   Vec3 dragRatioAround(const Touch& touch) const;
