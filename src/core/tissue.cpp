@@ -14,10 +14,10 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kToolStep = 0.2;     // of the spacing
-constexpr int kContactRounds = 16;    // in which the shape is what was solved for
-constexpr int kMostRounds = 80;       // with those that are cut short
-constexpr int kMostIterations = 600;  // of the rounds of one load step
+constexpr double kToolStep = 0.2;      // of the spacing
+constexpr int kContactRounds = 16;     // in which the shape is what was solved for
+constexpr int kMostRounds = 200;       // with those that are cut short
+constexpr int kMostIterations = 1500;  // of the rounds of one load step
 
 }  // namespace
 

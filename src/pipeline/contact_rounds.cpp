@@ -8,13 +8,19 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kNear = 0.25;        // of the spacing: a gap that a solve may close
-constexpr double kLongestWay = 0.5;   // of the spacing, of the tissue beside a tool in one round
-constexpr double kShareOfTool = 0.5;  // of a link's thickness, likewise
-constexpr double kReach = 1.0;        // of the spacing: farther from its tool, a touch is forgotten
-constexpr double kClear = 0.03;       // of the spacing: off a tool, where its edges look round
-constexpr double kDetour = 2.0;       // of the nearest way out: the surface's may be so long,
-constexpr double kLongDetour = 0.5;   // and so much of the spacing longer
+constexpr double kNear = 0.25;         // of the spacing: a gap that a solve may close
+constexpr double kLongestWay = 0.5;    // of the spacing, of the tissue beside a tool in one round
+constexpr double kShareOfTool = 0.25;  // of a link's thickness, likewise
+constexpr double kDepth = 0.1;         // of the spacing: how deep a point goes on such a way, and
+constexpr double kDepthInTool = 0.2;   // of the link's thickness, whichever is less
+constexpr double kDepthGrowth = 0.1;   // of that, where one is deeper already
+constexpr int kDepthTrials = 4;        // of half the way each, to get less deep
+constexpr double kReach = 1.0;       // of the spacing: farther from its tool, a touch is forgotten
+constexpr double kClear = 0.03;      // of the spacing: off a tool, where its edges look round
+constexpr double kDetour = 2.0;      // of the nearest way out: the surface's may be so long,
+constexpr double kLongDetour = 0.5;  // and so much of the spacing, or of the link, longer
+constexpr double kAcross = 0.3;      // cosine of two normals that look to the same side
+constexpr double kInside = 1e-3;     // barycentric: a point that is not on an edge
 
 bool isIn(const Box& box, const Vec3& point) {
   return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
@@ -64,7 +70,41 @@ double Pipeline::contactShare(const std::vector<Vec3>& before) {
       if (way > near.longest) share = std::min(share, near.longest / way);
     }
   }
+  return shareOutside(share);
+}
+
+// Of that share of the way from `vertices_` to the shape, as much as takes no point deep into a
+// link: from its middle on, nothing tells on which side it came in.
+double Pipeline::shareOutside(double share) const {
+  const std::vector<Vec3>& now = tissue_.vertices();
+  std::vector<Vec3> there(now.size());
+  std::vector<double> before;
+  for (int trial = 0; trial < kDepthTrials; ++trial, share *= 0.5) {
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
+    }
+    const std::vector<double> depths = depthsIn(there);
+    bool deep = false;
+    for (std::size_t link = 0; link < depths.size(); ++link) {
+      const double most =
+          std::min(kDepth * tissue_.lattice().spacing(), kDepthInTool * finder_.thickness(link));
+      if (depths[link] <= most) continue;
+      if (before.empty()) before = depthsIn(vertices_);
+      deep = deep || depths[link] > before[link] + kDepthGrowth * most;
+    }
+    if (!deep) break;
+  }
   return share;
+}
+
+// Of the deepest point of the surface in each of the tools' links (m).
+std::vector<double> Pipeline::depthsIn(const std::vector<Vec3>& vertices) const {
+  std::vector<double> depths(first_link_[tools_.size()], 0.0);
+  for (const Contact& contact : finder_.find(pose_, tissue_.surface(), vertices, 0.0).contacts) {
+    if (at(contact.link) >= depths.size()) continue;
+    depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
+  }
+  return depths;
 }
 
 // The shape was solved for the contacts of before: are they those of the shape?
@@ -102,32 +142,40 @@ std::vector<std::optional<Contact>> Pipeline::trackTouches(const RobotPose& pose
   return tracked;
 }
 
+// Into the tissue, across the surface at the point; zero where it has no normal there.
+Vec3 Pipeline::inwardsAt(const Contact& contact) const {
+  const int vertex = vertexAt(tissue_.surface(), contact.triangle, contact.barycentric);
+  if (vertex >= 0) return -outwards_[at(vertex)].normalized();
+  const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
+  const Vec3& a = vertices_[at(corners[0])];
+  return -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a).normalized();
+}
+
 // A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
-// also where another side of the tool is nearer, as at edges and on thin tools.
+// also where another side of the tool is nearer, as at edges and on thin tools. Between its edges a
+// triangle is pressed across itself: what touches it there is a corner, an edge or a rim, which has
+// no normal of its own.
 bool Pipeline::turnOut(const RobotPose& pose, Contact& contact) const {
   const double spacing = tissue_.lattice().spacing();
-  const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
-  Vec3 inwards = Vec3::Zero();
-  const int vertex = vertexAt(tissue_.surface(), contact.triangle, contact.barycentric);
-  if (vertex >= 0) {
-    inwards = -outwards_[at(vertex)];
-  } else {
-    const Vec3& a = vertices_[at(corners[0])];
-    inwards = -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);
-  }
-  if (!(inwards.norm() > 0.0)) return false;
-  const Pose& tissue_T_link = pose.links[at(contact.link)];
-  const auto nearest =
-      finder_.wayOut(at(contact.link), tissue_T_link, contact.point, kReach * spacing);
+  const std::size_t link = at(contact.link);
+  const Vec3 inwards = inwardsAt(contact);
+  if (inwards.isZero(0.0)) return false;
+  const Pose& tissue_T_link = pose.links[link];
+  const auto nearest = finder_.wayOut(link, tissue_T_link, contact.point, kReach * spacing);
   if (!nearest) return false;
-  const double farthest = kDetour * std::max(nearest->depth_m, 0.0) + kLongDetour * spacing;
-  auto out =
-      finder_.wayOutAlong(at(contact.link), tissue_T_link, contact.point, inwards.normalized(),
-                          kClear * spacing, kReach * spacing, farthest);
-  if (!out) out = nearest;
-  if (out->normal.norm() < 0.5) return true;
-  contact.normal = out->normal;
-  contact.depth_m = out->depth_m;
+  const double farthest = kDetour * std::max(nearest->depth_m, 0.0) +
+                          kLongDetour * std::min(spacing, finder_.thickness(link));
+  const auto along = finder_.wayOutAlong(link, tissue_T_link, contact.point, inwards,
+                                         kClear * spacing, kReach * spacing, farthest);
+  const WayOut& out = along ? *along : *nearest;
+  if (out.normal.norm() < 0.5) return true;
+  contact.normal = out.normal;
+  contact.depth_m = out.depth_m;
+  const double cosine = out.normal.dot(inwards);
+  if (contact.barycentric.minCoeff() > kInside && cosine > kAcross) {
+    contact.normal = inwards;
+    contact.depth_m = out.depth_m / cosine;
+  }
   return true;
 }
 

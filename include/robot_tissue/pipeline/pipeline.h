@@ -155,10 +155,13 @@ class Pipeline {
   std::vector<Surroundings> surroundings() const;
   std::vector<double> longestWays();
   double contactShare(const std::vector<Vec3>& before);
+  double shareOutside(double share) const;
+  std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
   bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
   void meet(const RobotPose& pose);
+  Vec3 inwardsAt(const Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);
