@@ -196,7 +196,7 @@ void CourseIn<Real>::finish() {
 template <typename Real>
 void CourseIn<Real>::settleForces() {
   for (int round = 0; round < kMostSettling; ++round) {
-    const double given = patchForce().norm();
+    const double given = patchForce().norm() + finest().firm.contactForce().norm();
     if (netForce().norm() <= kForceShare * options_.tolerance * given || given == 0.0) return;
     finest().smooth(steps_, true);
   }

@@ -115,6 +115,7 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
   } else {
     const Vec3 point = spring.contact->rest + spacing_ * mean;
     on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
+    contact_force_ += on_nodes;
     if (with_steps) {
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
     }
@@ -143,6 +144,7 @@ void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real
     firm.stiffness = stiffness * Eigen::Matrix3d::Identity();
   }
   force = load;
+  contact_force_.setZero();
   if (with_steps) group_stiffness_.assign(groups.size(), Matrix6::Zero());
   for (LevelSpring& spring : springs) addSpring(spring, displacement, with_steps);
   for (Firm& firm : all_) {

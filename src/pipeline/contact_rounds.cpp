@@ -97,11 +97,14 @@ double Pipeline::shareOutside(double share) const {
   return share;
 }
 
-// Of the deepest point of the surface in each of the tools' links (m).
+// Of the deepest point that gives way in each of the tools' links (m).
 std::vector<double> Pipeline::depthsIn(const std::vector<Vec3>& vertices) const {
+  const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
   std::vector<double> depths(first_link_[tools_.size()], 0.0);
   for (const Contact& contact : finder_.find(pose_, tissue_.surface(), vertices, 0.0).contacts) {
-    if (at(contact.link) >= depths.size()) continue;
+    if (at(contact.link) >= depths.size() || isRigid(contact.tool)) continue;
+    const auto carriers = carriersAt(tissue_.surface(), contact.triangle, contact.barycentric);
+    if (!ToolContacts::givesWay(carriers, held)) continue;
     depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
   }
   return depths;
@@ -159,7 +162,7 @@ bool Pipeline::turnOut(const RobotPose& pose, Contact& contact) const {
   const double spacing = tissue_.lattice().spacing();
   const std::size_t link = at(contact.link);
   const Vec3 inwards = inwardsAt(contact);
-  if (inwards.isZero(0.0)) return false;
+  if (!(inwards.norm() > 0.0)) return false;
   const Pose& tissue_T_link = pose.links[link];
   const auto nearest = finder_.wayOut(link, tissue_T_link, contact.point, kReach * spacing);
   if (!nearest) return false;

@@ -76,6 +76,8 @@ class FirmNodes {
   // All but holds; null where the node is none of these.
   const Vec3* wholeForce(int node) const;
   bool isFree(int firm, int axis) const { return (all_[at(firm)].held >> axis & 1U) == 0; }
+  // Sum over the springs in contact, as last found.
+  const Vec3& contactForce() const { return contact_force_; }
   // Mean displacement of what carries the spring, less the group's motion there.
   Vec3 meanOf(const LevelSpring& spring, const Field<Real>& displacement) const;
 
@@ -98,6 +100,7 @@ class FirmNodes {
   void invertGroups();
 
   double spacing_ = 1.0, modulus_ = 1.0;
+  Vec3 contact_force_ = Vec3::Zero();
   std::vector<Firm> all_;
   std::vector<Matrix6> group_stiffness_, group_inverse_;
   std::vector<GroupVector> group_way_;
