@@ -26,6 +26,7 @@ constexpr int kPatienceInPart = 6;      // cycles that led nowhere: then all is 
 constexpr int kShortest = 4;            // cycles since the mark
 constexpr double kMostUnbalanced = 0.1;  // of the greatest force
 constexpr double kContactBalance = 0.05;  // of the contacts' force: unbalanced in all
+constexpr double kLightContact = 1e-3;    // of modulus and spacing squared: less needs no balance
 constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
 
 }  // namespace
@@ -216,7 +217,9 @@ template <typename Real>
 bool CourseIn<Real>::isBalanced() const {
   if (!in_contact_ && !isCalm()) return false;
   const double pushed = finest().firm.contactForce().norm();
-  if (pushed > 0.0 && netForce().norm() > kContactBalance * pushed) return false;
+  if (pushed > 0.0 && netForce().norm() > std::max(kContactBalance * pushed, kLightContact)) {
+    return false;
+  }
   Vec3 given = Vec3::Zero(), net = Vec3::Zero();
   for (std::size_t group = 0; group < finest().firm.groups.size(); ++group) {
     const Vec3 load = finest().firm.load[group].template head<3>();

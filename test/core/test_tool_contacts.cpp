@@ -212,6 +212,26 @@ TEST_F(PlaneOnABlock, TouchesRideWithTheLink) {
   }
 }
 
+// On the way of a slip no solve is whole, but what goes into the link meets more and more force.
+TEST_F(PlaneOnABlock, WhatGoesIntoItOnTheWayIsPressedOut) {
+  press(0.002);
+  const std::vector<ContactSpring> before = contacts_.springsOf(0);
+  goTo(pose_.links[0].translation() - Vec3(0.0, 0.0, 0.001));
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  const std::vector<ContactSpring> deeper = contacts_.springsOf(0);
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  const std::vector<ContactSpring> still_deeper = contacts_.springsOf(0);
+  goTo(pose_.links[0].translation() + Vec3(0.0, 0.0, 0.003));
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  const std::vector<ContactSpring> off = contacts_.springsOf(0);
+  ASSERT_EQ(before.size(), off.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_GE(deeper[i].multiplier, before[i].multiplier);
+    EXPECT_GT(still_deeper[i].multiplier, deeper[i].multiplier);
+    EXPECT_EQ(off[i].multiplier, still_deeper[i].multiplier);
+  }
+}
+
 TEST_F(PlaneOnABlock, ForgetsTouchesThatItHasLeft) {
   press(1e-3);
   ASSERT_EQ(contacts_.touches().size(), 25u);
