@@ -65,6 +65,23 @@ LevelGrid gridOf(const GridBox& points) {
   return LevelGrid(size);
 }
 
+// Where a place next to the grid's end would be, as the nodes before it go on.
+NodeShares goingOn(const LevelGrid& grid, const std::array<int, 3>& beyond) {
+  std::array<int, 3> last = beyond;
+  for (std::size_t axis = 0; axis < 3; ++axis) last[axis] = std::min(last[axis], grid.size[axis] - 1);
+  NodeShares shares = {{grid.index(last[0], last[1], last[2]), 1.0}};
+  const std::array<int, 3> strides = {1, grid.row, grid.plane};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (last[axis] == beyond[axis]) continue;
+    const std::size_t count = shares.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      shares.push_back({shares[i].node - strides[axis], -shares[i].weight});
+      shares[i].weight *= 2.0;
+    }
+  }
+  return shares;
+}
+
 GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
   GridBox local = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -191,12 +208,10 @@ LevelTransfer<Real> LatticeLevels<Real>::transferTo(std::size_t level, const Lev
   for (int k = 0; k <= fine_grid.size[2] / 2; ++k) {
     for (int j = 0; j <= fine_grid.size[1] / 2; ++j) {
       for (int i = 0; i <= fine_grid.size[0] / 2; ++i) {
-        const std::array<int, 3> at_fine = {std::min(2 * i, fine_grid.size[0] - 1),
-                                            std::min(2 * j, fine_grid.size[1] - 1),
-                                            std::min(2 * k, fine_grid.size[2] - 1)};
-        if (at_fine == std::array<int, 3>{2 * i, 2 * j, 2 * k}) continue;
+        const std::array<int, 3> twice = {2 * i, 2 * j, 2 * k};
+        if (fine_grid.whole().has(twice)) continue;
         to.starts.push_back({grid.index(place[0] + i, place[1] + j, place[2] + k),
-                             {{fine_grid.index(at_fine[0], at_fine[1], at_fine[2]), 1.0}}});
+                             goingOn(fine_grid, twice)});
       }
     }
   }

@@ -130,6 +130,7 @@ void Tissue::reset() {
   last_report_ = SolveReport();
   if (was_cut) rebuildSurface();
   vertices_ = surface_.rest;
+  bounds_ = boundsOf(vertices_);
 }
 
 Vec3 Tissue::nodePosition(int node) const {
@@ -160,6 +161,7 @@ void Tissue::deformSurface() {
   std::for_each(own.begin(), own.end(), exchange);
   deform(surface_, state_.displacement, vertices_);
   std::for_each(own.rbegin(), own.rend(), exchange);
+  bounds_ = boundsOf(vertices_);
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -301,6 +303,7 @@ void Tissue::rebuildSurface() {
   ++surface_version_;
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;
+  bounds_ = boundsOf(vertices_);
 }
 
 std::vector<int> Tissue::freeNodes() const {

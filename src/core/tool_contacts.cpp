@@ -336,6 +336,10 @@ void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
 }
 
+void ToolContacts::pass(const RobotPose& pose) {
+  if (!since_links_.empty()) since_links_ = pose.links;
+}
+
 bool ToolContacts::pushesAbsurdly(const Tissue& tissue) {
   const auto is_absurd = [&](const ContactSpring& spring) {
     return normalForceOf(spring, tissue.state().displacement) > mostForceOf(spring, tissue);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/pipeline/pipeline.h"
@@ -14,12 +15,6 @@ constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is non
 constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
 constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
 constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
-
-// Longest way (m) that a point of the link goes between two poses.
-double motion(const Pose& from, const Pose& to, double reach) {
-  const double angle = Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
-  return (to.translation() - from.translation()).norm() + std::abs(angle) * reach;
-}
 
 RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
   RobotPose between = to;
@@ -35,7 +30,11 @@ RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
   return between;
 }
 
+// Infinite where one is empty.
 double distance(const Box& a, const Box& b) {
+  if ((a.min.array() > a.max.array()).any() || (b.min.array() > b.max.array()).any()) {
+    return std::numeric_limits<double>::infinity();
+  }
   const Vec3 apart = (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(Vec3::Zero());
   return apart.norm();
 }
@@ -75,6 +74,10 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
   const RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
   asked_ = pose;
   const double steps = stepsBetween(start, pose);
+  if (passesBy(start, pose, steps)) {
+    passTo(pose);
+    return pose;
+  }
   double gone = 0.0, longest = 1.0;
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
@@ -272,11 +275,26 @@ bool Pipeline::standsStill(const RobotPose& pose) const {
   if (!last_pose_) return false;
   const double still = kStandsStill * tissue_.lattice().spacing();
   for (std::size_t link = 0; link < pose.links.size(); ++link) {
-    if (motion(asked_.links[link], pose.links[link], finder_.reach(link)) > still) {
+    if (longestWay(asked_.links[link], pose.links[link], finder_.reach(link)) > still) {
       return false;
     }
   }
   return true;
+}
+
+std::optional<StillPose> Pipeline::stillPose() const {
+  const bool is_driven = std::any_of(drives_.begin(), drives_.end(),
+                                     [](const Drive& drive) { return drive.force.has_value(); });
+  const bool is_late = tissue_.lastReport().status == SolveStatus::kLate;
+  if (!last_pose_ || touched_ || is_late || is_driven) return std::nullopt;
+  RobotPose of_tools = asked_;
+  of_tools.links.resize(first_link_[tools_.size()]);
+  std::vector<double> reach;
+  for (std::size_t link = 0; link < of_tools.links.size(); ++link) {
+    reach.push_back(finder_.reach(link));
+  }
+  return StillPose(std::move(of_tools), std::move(reach),
+                   kStandsStill * tissue_.lattice().spacing());
 }
 
 // Longest step of a link (m): no thin one is through what it meets.
@@ -291,7 +309,7 @@ double Pipeline::stepsTo(const RobotPose& pose) const {
 double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const {
   double steps = 0.0;
   for (std::size_t link = 0; link < to.links.size(); ++link) {
-    const double way = motion(from.links[link], to.links[link], finder_.reach(link));
+    const double way = longestWay(from.links[link], to.links[link], finder_.reach(link));
     steps = std::max(steps, way / stepOf(link));
   }
   return steps;
@@ -299,18 +317,41 @@ double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const 
 
 // Steps that every link may go from here before it can touch.
 double Pipeline::freeSteps(const RobotPose& pose) const {
-  Box box{tissue_.vertices().front(), tissue_.vertices().front()};
-  for (const Vec3& vertex : tissue_.vertices()) {
-    box.min = box.min.cwiseMin(vertex);
-    box.max = box.max.cwiseMax(vertex);
-  }
   double steps = std::numeric_limits<double>::infinity();
   for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
-    const Box of_link = finder_.bounds(link, pose.links[link]);
-    if ((of_link.min.array() > of_link.max.array()).any()) continue;
-    steps = std::min(steps, distance(of_link, box) / stepOf(link));
+    const Box box = finder_.bounds(link, pose.links[link]);
+    steps = std::min(steps, distance(box, tissue_.bounds()) / stepOf(link));
   }
   return steps;
+}
+
+// No tool touches or holds anything, and none comes near, nor has tissue between its links, on its
+// way of so many steps.
+bool Pipeline::passesBy(const RobotPose& from, const RobotPose& to, double steps) const {
+  const auto& touches = contacts_.touches();
+  const auto is_tools = [&](const auto& touch) { return at(touch.tool) < tools_.size(); };
+  if (any_rigid_ || !patches_.empty() || anyToolIn(tissue_.patches()) ||
+      std::any_of(touches.begin(), touches.end(), is_tools) || freeSteps(from) < steps) {
+    return false;
+  }
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    Box around;
+    around.min.setConstant(std::numeric_limits<double>::infinity());
+    around.max = -around.min;
+    for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+      const Box box = finder_.bounds(link, to.links[link]);
+      around.min = around.min.cwiseMin(box.min);
+      around.max = around.max.cwiseMax(box.max);
+    }
+    if (distance(around, tissue_.bounds()) < tissue_.lattice().spacing()) return false;
+  }
+  return true;
+}
+
+void Pipeline::passTo(const RobotPose& pose) {
+  pose_ = pose;
+  contacts_.pass(pose);
+  grasp();
 }
 
 }  // namespace robot_tissue

@@ -15,7 +15,7 @@ namespace {
 const ros::WallDuration kRobotLookUpPeriod(1.0);
 constexpr double kLongestUpdate = 0.1;  // s, without a budget of the solver
 constexpr double kRateTolerance = 0.1;
-constexpr double kWatchPeriod = 0.05;  // s, of the timer while poses come by themselves
+constexpr double kWatchPeriod = 0.1;  // s, of the timer while nothing waits for it
 
 }  // namespace
 
@@ -23,15 +23,17 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
     : private_node_(private_node),
       parameters_(readNodeParameters(private_node_)),
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
-      listener_(buffer_, true, ros::TransportHints().tcpNoDelay()),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_),
-      pace_(parameters_.rate_hz),
       lowest_rate_hz_(parameters_.rate_hz),
       highest_rate_hz_(parameters_.rate_hz),
       frequency_(diagnostic_updater::FrequencyStatusParam(&lowest_rate_hz_, &highest_rate_hz_,
                                                           kRateTolerance),
-                 "update rate") {
+                 "update rate"),
+      watch_(
+          buffer_, tool_poses_, parameters_.rate_hz, *ros::getGlobalCallbackQueue(),
+          [this](const ros::Time& stamp) { onStill(stamp); },
+          [this](PoseLookUp look_up) { update(std::move(look_up)); }) {
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   const double budget_ms = parameters_.scene.solver.max_ms;
   pipeline_.setBudget(budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate);
@@ -44,19 +46,12 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
   timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
                                      [this](const ros::TimerEvent&) { onTimer(); });
-  watch_ = std::make_unique<TransformWatch>(buffer_, *ros::getGlobalCallbackQueue(),
-                                            [this] { onTransforms(); });
 }
 
-// A pose that is not new, or no good one, is the timer's.
-void TissueNode::onTransforms() {
-  const ros::Time now = ros::Time::now();
-  if (!robot_is_known_ || !pace_.isDue(now.toSec())) return;
-  PoseLookUp look_up = tool_poses_.lookUp(now);
-  const bool is_good = look_up.status == PoseLookUp::Status::kOk && !look_up.is_static;
-  if (!is_good || look_up.stamp == last_look_up_.stamp) return;
-  pace_.take(now.toSec());
-  update(std::move(look_up));
+// In the thread that receives transforms.
+void TissueNode::onStill(const ros::Time& stamp) {
+  frequency_.tick();
+  publisher_.publishStill(stamp);
 }
 
 void TissueNode::tick(bool seldom) {
@@ -68,19 +63,35 @@ void TissueNode::tick(bool seldom) {
 
 void TissueNode::onTimer() {
   diagnostics_.update();
-  tick(updated_);
-  if (std::exchange(updated_, false)) return onTransforms();  // one may have come too early
   if (!robotIsKnown()) {
-    return report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
-                                   "' is not set: waiting for a URDF"});
+    report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
+                            "' is not set: waiting for a URDF"});
+    return tick(true);
   }
+  const PoseWatch::Seen seen = watch_.seen();
+  if (seen.still > last_look_up_.stamp) tellStill(seen.still);
+  if (seen.any) return tick(true);
+  watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
   update(tool_poses_.lookUp(ros::Time::now()));
-  updated_ = false;
+  const bool is_good = last_look_up_.status == PoseLookUp::Status::kOk;
+  tick(!is_good || (isStill() && !publisher_.tellsWrenches()));
+}
+
+// What goes out seldom, at a pose at which nothing was to do.
+void TissueNode::tellStill(const ros::Time& stamp) {
+  last_look_up_.stamp = stamp;
+  last_look_up_.age_s = (ros::Time::now() - stamp).toSec();
+  publisher_.publishSeldom(pipeline_, stamp, status_);
+}
+
+// The next update at the same pose would do nothing but tell the wrenches again.
+bool TissueNode::isStill() const {
+  return !pipeline_.report().changed && pipeline_.stillPose() && publisher_.isUpToDate();
 }
 
 // Robot pose -> contacts -> loading patches -> solve (in Pipeline::step) -> publish.
 void TissueNode::update(PoseLookUp look_up) {
-  updated_ = true;
+  watch_.standAt(std::nullopt);
   frequency_.tick();
   last_look_up_ = std::move(look_up);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
@@ -104,6 +115,7 @@ void TissueNode::follow() {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   }
   publisher_.publish(pipeline_, last_look_up_.stamp, status_);
+  if (isStill()) watch_.standAt(pipeline_.stillPose());
 }
 
 // What acts without tools: gravity and the supports.
@@ -134,6 +146,7 @@ bool TissueNode::robotIsKnown() {
       links.insert(links.end(), frames.begin(), frames.end());
     }
     tool_poses_.setLinks(links);
+    watch_.start();
   }
   robot_is_known_ = true;
   return true;

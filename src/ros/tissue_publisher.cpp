@@ -77,12 +77,27 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
   if (pipeline.report().changed) shapeChanged();
   if (status.message != last_status_.message) last_state_ = ros::Time();
   wrenches_.publish(pipeline.report().tools, stamp);
-  publishContacts(pipeline, stamp);
-  publishMarkers(pipeline, stamp);
-  publishState(pipeline, stamp, status);
+  publishSeldom(pipeline, stamp, status);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   publish_ms_ = elapsed.count();
+}
+
+void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& stamp,
+                                    const NodeStatus& status) {
+  publishContacts(pipeline, stamp);
+  publishMarkers(pipeline, stamp);
+  publishState(pipeline, stamp, status);
+}
+
+bool TissuePublisher::isUpToDate() const {
+  return !last_state_.isZero() && (!contacts_due_ || contacts_.getNumSubscribers() == 0) &&
+         ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted());
+}
+
+// The first array stays for who comes later.
+bool TissuePublisher::areMarkersWanted() const {
+  return markers_.getNumSubscribers() > 0 || !latched_markers_are_out_;
 }
 
 void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Time& now,
@@ -109,9 +124,8 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
 
 void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {
   const ros::Time now = ros::Time::now();
-  const bool listened = markers_.getNumSubscribers() > 0 || !latched_markers_are_out_;
   const bool too_soon = now >= last_markers_ && now - last_markers_ < marker_period_;
-  if ((!markers_due_ && whole_array_is_out_) || !listened || too_soon) return;
+  if ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted() || too_soon) return;
   const bool whole = !markers_due_ || !latched_markers_are_out_;
   if (whole) marker_builder_.tellAll();
   const visualization_msgs::MarkerArray array = marker_builder_.buildChanged(pipeline, stamp);

@@ -50,12 +50,24 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
 
 }  // namespace
 
+// What it asks for may be something to do at a pose at which there was nothing.
+template <class Request, class Response>
+ros::ServiceServer TissueNode::advertise(const std::string& name,
+                                         bool (TissueNode::*answer)(Request&, Response&)) {
+  const boost::function<bool(Request&, Response&)> wakes = [this, answer](Request& request,
+                                                                          Response& response) {
+    watch_.standAt(std::nullopt);
+    return (this->*answer)(request, response);
+  };
+  return private_node_.advertiseService(name, wakes);
+}
+
 void TissueNode::advertiseServices() {
-  reset_service_ = private_node_.advertiseService("reset", &TissueNode::onReset, this);
-  cut_service_ = private_node_.advertiseService("cut", &TissueNode::onCut, this);
-  load_service_ = private_node_.advertiseService("apply_load", &TissueNode::onApplyLoad, this);
-  grasp_service_ = private_node_.advertiseService("grasp", &TissueNode::onGrasp, this);
-  release_service_ = private_node_.advertiseService("release", &TissueNode::onRelease, this);
+  reset_service_ = advertise("reset", &TissueNode::onReset);
+  cut_service_ = advertise("cut", &TissueNode::onCut);
+  load_service_ = advertise("apply_load", &TissueNode::onApplyLoad);
+  grasp_service_ = advertise("grasp", &TissueNode::onGrasp);
+  release_service_ = advertise("release", &TissueNode::onRelease);
 }
 
 bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

@@ -31,10 +31,11 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
   std::string looked_up, oldest;
   try {
     ros::Time common;
+    std::vector<geometry_msgs::TransformStamped> newest_of;
     for (const std::string& link : links_) {
       looked_up = link;
-      const ros::Time newest =
-          buffer_.lookupTransform(tissue_frame_, link, ros::Time(0)).header.stamp;
+      newest_of.push_back(buffer_.lookupTransform(tissue_frame_, link, ros::Time(0)));
+      const ros::Time newest = newest_of.back().header.stamp;
       if (isStatic(newest) || (!isStatic(common) && newest >= common)) continue;
       common = newest;
       oldest = link;
@@ -50,10 +51,13 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
                       "; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
       return found;
     }
-    for (const std::string& link : links_) {
-      looked_up = link;
-      found.pose.links.push_back(
-          tf2::transformToEigen(buffer_.lookupTransform(tissue_frame_, link, common)));
+    for (std::size_t link = 0; link < links_.size(); ++link) {
+      looked_up = links_[link];
+      const ros::Time stamp = newest_of[link].header.stamp;
+      if (stamp != common && !isStatic(stamp)) {
+        newest_of[link] = buffer_.lookupTransform(tissue_frame_, looked_up, common);
+      }
+      found.pose.links.push_back(tf2::transformToEigen(newest_of[link]));
     }
   } catch (const tf2::TransformException& error) {
     found.message =

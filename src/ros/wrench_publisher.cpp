@@ -1,6 +1,5 @@
 #include "robot_tissue/ros/wrench_publisher.h"
 
-#include <ros/init.h>
 #include <ros/rate.h>
 
 #include <algorithm>
@@ -11,8 +10,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr unsigned kQueue = 10;       // messages that a busy socket may hold up
-const ros::WallDuration kIdle(0.02);  // between looks whether somebody listens
+constexpr unsigned kQueue = 10;  // messages that a busy socket may hold up
 
 }  // namespace
 
@@ -26,9 +24,14 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
   publishers_.clear();
   messages_.assign(tools.size(), {});
   silent_ = true;
+  const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    listener_came_.notify_one();
+  };
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
     const std::string topic = tools[tool].name + "/measured_cf";
-    publishers_.push_back(private_node_.advertise<geometry_msgs::WrenchStamped>(topic, kQueue));
+    publishers_.push_back(
+        private_node_.advertise<geometry_msgs::WrenchStamped>(topic, kQueue, someone_came));
     messages_[tool].header.frame_id = linkFrames(tools[tool]).front();
   }
   if (rate_hz_ <= 0.0 || tools.empty()) return;
@@ -37,15 +40,19 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
 }
 
 void WrenchPublisher::publish(const std::vector<ToolReport>& reports, const ros::Time& stamp) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    for (std::size_t tool = 0; tool < messages_.size(); ++tool) {
-      messages_[tool].header.stamp = stamp;
-      messages_[tool].wrench.force = toVector3(reports[tool].force_on_tool);
-      messages_[tool].wrench.torque = toVector3(reports[tool].torque_on_tool);
-    }
-    silent_ = false;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (std::size_t tool = 0; tool < messages_.size(); ++tool) {
+    messages_[tool].header.stamp = stamp;
+    messages_[tool].wrench.force = toVector3(reports[tool].force_on_tool);
+    messages_[tool].wrench.torque = toVector3(reports[tool].torque_on_tool);
   }
+  silent_ = false;
+  if (rate_hz_ <= 0.0) send();
+}
+
+void WrenchPublisher::publishAgain(const ros::Time& stamp) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (geometry_msgs::WrenchStamped& message : messages_) message.header.stamp = stamp;
   if (rate_hz_ <= 0.0) send();
 }
 
@@ -54,26 +61,25 @@ void WrenchPublisher::fallSilent() {
   silent_ = true;
 }
 
+// With the mutex locked.
 void WrenchPublisher::send() {
-  std::vector<geometry_msgs::WrenchStamped> messages;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (silent_) return;
-    messages = messages_;
-  }
-  for (std::size_t tool = 0; tool < messages.size(); ++tool) {
-    publishers_[tool].publish(messages[tool]);
+  if (silent_) return;
+  for (std::size_t tool = 0; tool < messages_.size(); ++tool) {
+    if (publishers_[tool].getNumSubscribers() > 0) publishers_[tool].publish(messages_[tool]);
   }
 }
 
 void WrenchPublisher::repeat() {
   ros::WallRate rate(rate_hz_);
-  while (!stops_ && ros::ok()) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stops_) {
     if (isListenedTo()) {
       send();
+      lock.unlock();
       rate.sleep();
+      lock.lock();
     } else {
-      kIdle.sleep();
+      listener_came_.wait(lock);
       rate.reset();
     }
   }
@@ -86,7 +92,11 @@ bool WrenchPublisher::isListenedTo() const {
 }
 
 void WrenchPublisher::stop() {
-  stops_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stops_ = true;
+    listener_came_.notify_one();
+  }
   if (thread_.joinable()) thread_.join();
 }
 

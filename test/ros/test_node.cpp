@@ -168,6 +168,31 @@ TEST_F(RunningNode, OldTransformsAreReportedAndTheShapeStays) {
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
 }
 
+// A controller takes silence for a fault.
+TEST_F(RunningNode, ToolThatStandsGetsItsWrenchAtEveryPose) {
+  const auto pressed = press(0.004);
+  publishes_transform_ = false;
+  for (int pose = 0; pose < 50; ++pose) {
+    const ros::Time answered = ros::Time::now();
+    const ros::Duration period(0.01);  // of the node's updates
+    ASSERT_TRUE(waitFor([&] { return ros::Time::now() - answered >= period; }));
+    auto moved = transforms();
+    for (auto& transform : moved) transform.header.stamp = moved.front().header.stamp;
+    broadcaster_.sendTransform(moved);
+    ASSERT_TRUE(waitFor([&] { return wrench_->header.stamp == moved.front().header.stamp; }))
+        << "pose " << pose;
+    EXPECT_TRUE(wrench_->wrench == pressed.wrench);
+  }
+}
+
+TEST_F(RunningNode, ToolThatStoodIsFollowedWhenItMovesAgain) {
+  const double force = press(0.004).wrench.force.z;
+  for (int time = 0; time < 5; ++time) {
+    EXPECT_LT(press(0.005).wrench.force.z, 1.1 * force);
+    EXPECT_NEAR(press(0.004).wrench.force.z, force, -0.05 * force);
+  }
+}
+
 TEST_F(RunningNode, StateFollowsAServiceAndTheToolsLeaving) {
   ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
   EXPECT_TRUE(waitFor([this] { return state_->volume_ratio < 0.9999; }));

@@ -39,6 +39,7 @@ class Tissue {
   const Surface& surface() const { return surface_; }
   // Deformed vertices of the surface (m, tissue frame).
   const std::vector<Vec3>& vertices() const { return vertices_; }
+  const Box& bounds() const { return bounds_; }  // of the vertices
   // No tool touched it in the last solve.
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
@@ -156,6 +157,7 @@ class Tissue {
   Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;
   std::vector<Vec3> vertices_;  // deformed, of the surface
+  Box bounds_;                  // of them
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
   SolveReport last_report_;

@@ -63,6 +63,9 @@ class ToolContacts {
   // From here on tissue and links stick, or slip anew. Forgets touches that the tools have left.
   void commit(const RobotPose& pose, const Tissue& tissue);
 
+  // As commit(), when no tool touches and the tissue is as it was then.
+  void pass(const RobotPose& pose);
+
   void clear();
   void clear(int tool);
 

@@ -24,6 +24,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "robot_tissue/core/tool_contacts.h"
 #include "robot_tissue/core/tool_patches.h"
+#include "robot_tissue/pipeline/still_pose.h"
 
 namespace robot_tissue {
 
@@ -84,6 +85,9 @@ class Pipeline {
   // Follows the tools to their new pose, one entry a link of the tools. Poses with a non-finite
   // number throw InputError.
   const StepReport& step(const RobotPose& pose);
+  // The poses at which step() does nothing, until one of the calls below; none while something is
+  // left to do, or a force drives a tool.
+  std::optional<StillPose> stillPose() const;
   // Load steps that the tools' way to the pose takes; 0 before the first step. With more of them a
   // step is a jump, too fast to be followed.
   double stepsTo(const RobotPose& pose) const;
@@ -187,6 +191,8 @@ class Pipeline {
   bool standsStill(const RobotPose& pose) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& pose) const;
+  bool passesBy(const RobotPose& from, const RobotPose& to, double steps) const;
+  void passTo(const RobotPose& pose);
   double stepOf(std::size_t link) const;
 
   // tool_actions.cpp

@@ -1,7 +1,8 @@
 // The node: reads the robot's pose, steps the pipeline, publishes, answers services. It holds no
-// mechanics. Everything runs in one thread, the spinner's, but for wrenches with a rate of their
-// own (WrenchPublisher). A new pose is followed as soon as it came, `~rate` times a second at most.
-// Where none comes the timer updates at that rate; while poses come it only watches, seldom.
+// mechanics. Everything runs in one thread, the spinner's, but for poses at which nothing is to be
+// done (PoseWatch) and wrenches with a rate of their own (WrenchPublisher). A new pose is followed
+// as soon as it came, `~rate` times a second at most. Where none comes the timer goes on at that
+// rate with what is left to do; else it only watches, seldom.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -14,17 +15,15 @@
 #include <ros/timer.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <memory>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/tissue_publisher.h"
 #include "robot_tissue/ros/tool_poses.h"
-#include "robot_tissue/ros/transform_watch.h"
-#include "robot_tissue/ros/update_pace.h"
 
 namespace robot_tissue {
 
@@ -35,9 +34,11 @@ class TissueNode {
   explicit TissueNode(const ros::NodeHandle& private_node);
 
  private:
-  void onTransforms();
+  void onStill(const ros::Time& stamp);
   void onTimer();
   void tick(bool seldom);
+  void tellStill(const ros::Time& stamp);
+  bool isStill() const;
   void update(PoseLookUp look_up);
   void follow();
   bool robotIsKnown();
@@ -59,19 +60,19 @@ class TissueNode {
   bool isTool(const std::string& name) const;
   std::size_t toolIndex(const std::string& name) const;
   void advertiseServices();
+  template <class Request, class Response>
+  ros::ServiceServer advertise(const std::string& name,
+                               bool (TissueNode::*answer)(Request&, Response&));
 
   ros::NodeHandle private_node_;
   NodeParameters parameters_;
   Pipeline pipeline_;
   tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
   ToolPoses tool_poses_;
   TissuePublisher publisher_;
   bool robot_is_known_ = false;
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
-  UpdatePace pace_;
-  bool updated_ = false;  // since the timer's last tick
   bool ticks_seldom_ = false;
   NodeStatus status_;
   diagnostic_updater::Updater diagnostics_;
@@ -80,7 +81,7 @@ class TissueNode {
   diagnostic_updater::FrequencyStatus frequency_;
   ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
   ros::Timer timer_;
-  std::unique_ptr<TransformWatch> watch_;
+  PoseWatch watch_;  // the first to go: it calls into the others
 };
 
 }  // namespace robot_tissue

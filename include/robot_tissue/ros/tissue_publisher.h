@@ -33,6 +33,13 @@ class TissuePublisher {
 
   // After an update at a good pose. `stamp` is the pose's.
   void publish(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  // At a pose at which nothing was to do; in any thread. What else is due then waits for
+  // publishSeldom.
+  void publishStill(const ros::Time& stamp) { wrenches_.publishAgain(stamp); }
+  void publishSeldom(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  // Nothing but what goes out once a second and at every pose is to be published.
+  bool isUpToDate() const;
+  bool tellsWrenches() const { return wrenches_.isListenedTo(); }
   // When there is no good pose: what is wrong, with the last good shape; no wrenches.
   void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status);
 
@@ -43,6 +50,7 @@ class TissuePublisher {
   }
 
  private:
+  bool areMarkersWanted() const;
   void publishMarkers(const Pipeline& pipeline, const ros::Time& stamp);
   void publishContacts(const Pipeline& pipeline, const ros::Time& stamp);
   void publishState(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);

@@ -1,7 +1,8 @@
 // The wrench of the tissue on each tool, in the tool's frame, about its origin (N, N m).
 //
 // With a rate of its own a thread sends the last wrench solved again and again, so that the rate
-// stays while a solve takes long; the stamp is that of the pose that was solved.
+// stays while a solve takes long; the stamp is that of the pose that was solved. While nobody
+// listens it sleeps.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -9,7 +10,7 @@
 #include <ros/publisher.h>
 #include <ros/time.h>
 
-#include <atomic>
+#include <condition_variable>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -30,22 +31,25 @@ class WrenchPublisher {
   void setTools(const std::vector<ToolGeometry>& tools);
   // After an update at a good pose; one report a tool. `stamp` is the pose's.
   void publish(const std::vector<ToolReport>& reports, const ros::Time& stamp);
+  // The last ones hold at this pose as well. In any thread.
+  void publishAgain(const ros::Time& stamp);
   // No good pose: nothing is sent until there is one again.
   void fallSilent();
+  bool isListenedTo() const;
 
  private:
   void repeat();
-  bool isListenedTo() const;
   void send();
   void stop();
 
   ros::NodeHandle private_node_;
   double rate_hz_;
   std::vector<ros::Publisher> publishers_;  // do not change while the thread runs
-  std::mutex mutex_;                        // of the messages
+  std::mutex mutex_;                        // of the members up to the thread
   std::vector<geometry_msgs::WrenchStamped> messages_;
   bool silent_ = true;
-  std::atomic<bool> stops_{false};
+  bool stops_ = false;
+  std::condition_variable listener_came_;  // or the thread is to stop
   std::thread thread_;
 };
 

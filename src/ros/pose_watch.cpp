@@ -1,0 +1,96 @@
+#include "robot_tissue/ros/pose_watch.h"
+
+#include <boost/make_shared.hpp>
+#include <utility>
+
+namespace robot_tissue {
+
+class PoseWatch::HandOver : public ros::CallbackInterface {
+ public:
+  explicit HandOver(PoseWatch& watch) : watch_(watch) {}
+
+  CallResult call() override {
+    watch_.handOver();
+    return Success;
+  }
+
+ private:
+  PoseWatch& watch_;  // takes its callbacks out of the queue before it goes
+};
+
+void PoseWatch::AtOnce::addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) {
+  callback->call();
+}
+
+// A subscription goes only when it is not being called.
+void PoseWatch::AtOnce::removeByID(std::uint64_t) {}
+
+PoseWatch::PoseWatch(tf2_ros::Buffer& buffer, const ToolPoses& poses, double rate_hz,
+                     ros::CallbackQueueInterface& queue, OnStill on_still, OnPose on_pose)
+    : buffer_(buffer),
+      poses_(poses),
+      queue_(queue),
+      on_still_(std::move(on_still)),
+      on_pose_(std::move(on_pose)),
+      pace_(rate_hz) {
+  connection_ = buffer_._addTransformsChangedListener([this] { onTransforms(); });
+  ros::NodeHandle node;
+  node.setCallbackQueue(&at_once_);
+  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_, node, false,
+                                                           ros::TransportHints().tcpNoDelay());
+}
+
+PoseWatch::~PoseWatch() {
+  listener_.reset();  // first: from here on nothing is received
+  buffer_._removeTransformsChangedListener(connection_);
+  queue_.removeByID(reinterpret_cast<std::uint64_t>(this));
+}
+
+void PoseWatch::start() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  started_ = true;
+}
+
+PoseWatch::Seen PoseWatch::seen() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(seen_, Seen());
+}
+
+void PoseWatch::standAt(std::optional<StillPose> still) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  still_ = std::move(still);
+}
+
+// A pose that is not new, or no good one, is the timer's.
+void PoseWatch::onTransforms() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const ros::Time now = ros::Time::now();
+  if (!started_ || !pace_.isDue(now.toSec())) return;
+  PoseLookUp look_up = poses_.lookUp(now);
+  const bool is_good = look_up.status == PoseLookUp::Status::kOk && !look_up.is_static;
+  if (!is_good || look_up.stamp == last_stamp_) return;
+  pace_.take(now.toSec());
+  last_stamp_ = look_up.stamp;
+  seen_.any = true;
+  if (!waiting_ && still_ && still_->holds(look_up.pose)) {
+    seen_.still = look_up.stamp;
+    return on_still_(look_up.stamp);
+  }
+  const bool is_awake = waiting_.has_value();
+  waiting_ = std::move(look_up);
+  if (!is_awake) {
+    queue_.addCallback(boost::make_shared<HandOver>(*this), reinterpret_cast<std::uint64_t>(this));
+  }
+}
+
+void PoseWatch::handOver() {
+  std::optional<PoseLookUp> look_up;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    look_up.swap(waiting_);
+    still_.reset();
+  }
+  if (look_up) on_pose_(std::move(*look_up));
+}
+
+}  // namespace robot_tissue
