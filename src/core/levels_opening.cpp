@@ -68,7 +68,8 @@ LevelGrid gridOf(const GridBox& points) {
 // Where a place next to the grid's end would be, as the nodes before it go on.
 NodeShares goingOn(const LevelGrid& grid, const std::array<int, 3>& beyond) {
   std::array<int, 3> last = beyond;
-  for (std::size_t axis = 0; axis < 3; ++axis) last[axis] = std::min(last[axis], grid.size[axis] - 1);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    last[axis] = std::min(last[axis], grid.size[axis] - 1);
   NodeShares shares = {{grid.index(last[0], last[1], last[2]), 1.0}};
   const std::array<int, 3> strides = {1, grid.row, grid.plane};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -210,8 +211,8 @@ LevelTransfer<Real> LatticeLevels<Real>::transferTo(std::size_t level, const Lev
       for (int i = 0; i <= fine_grid.size[0] / 2; ++i) {
         const std::array<int, 3> twice = {2 * i, 2 * j, 2 * k};
         if (fine_grid.whole().has(twice)) continue;
-        to.starts.push_back({grid.index(place[0] + i, place[1] + j, place[2] + k),
-                             goingOn(fine_grid, twice)});
+        to.starts.push_back(
+            {grid.index(place[0] + i, place[1] + j, place[2] + k), goingOn(fine_grid, twice)});
       }
     }
   }
