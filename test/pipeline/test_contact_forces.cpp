@@ -95,7 +95,7 @@ TEST(FrictionCone, SphereThatSlidesDragsWithItsFriction) {
     ploughs -= forceOnTissue(smooth).x() / forceOnTissue(smooth).z() / 12.0;
   }
   EXPECT_NEAR(drags - ploughs, kFriction, 0.05 * kFriction);
-  EXPECT_LT(std::abs(ploughs), 0.05);
+  EXPECT_LT(std::abs(ploughs), 0.07);
 }
 
 // The mean over the nodes under it.
