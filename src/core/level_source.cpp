@@ -52,10 +52,7 @@ LevelSource coarser(LevelSource& fine) {
     const std::size_t first = fine.cellAt(2 * i, 2 * j, 2 * k);
     for (int part = 0; part < kCorners; ++part) {
       const int x = 2 * i + (part & 1), y = 2 * j + (part >> 1 & 1), z = 2 * k + (part >> 2 & 1);
-      if (x >= fine_cells[0] || y >= fine_cells[1] || z >= fine_cells[2]) {
-        differ = true;
-        continue;
-      }
+      if (x >= fine_cells[0] || y >= fine_cells[1] || z >= fine_cells[2]) continue;
       const std::size_t cell = fine.cellAt(x, y, z);
       shear += fine.shear[cell];
       bulk += fine.bulk[cell];

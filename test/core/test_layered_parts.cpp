@@ -57,6 +57,21 @@ TEST_P(LayeredParts, AreAsNearTheEquilibriumAsTheWhole) {
   }
 }
 
+// With coarse cells that are filled by half, at all ends of the block.
+TEST_P(LayeredParts, GetOnWithAnOddNumberOfCells) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(35, 33, 17, GetParam()));
+  LayeredBlock block(config, within(kTolerance));
+  Exact exact(config);
+  for (const double depth : {0.005, 0.01, 0.015}) {
+    const LoadingPatch punch = displaced(
+        block.lattice.nodesIn(nodeBox(config, {15, 14, 17}, {19, 18, 17})), Vec3(0, 0, -depth));
+    const SolveReport report = block.solve({punch});
+    exact.solve(punch);
+    expectNear(block, report, exact);
+    EXPECT_LT(report.active_nodes, block.lattice.nodeCount() / 3);
+  }
+}
+
 // What the patch does to the tissue, the fixed nodes far off have to bear. They tell it where the
 // tissue may be squeezed: else means of coarse nodes put more on them than there is.
 TEST(LayeredParts, LoseNoForceWhereTheyMeet) {
