@@ -26,7 +26,7 @@ constexpr int kPatienceInPart = 6;      // cycles that led nowhere: then all is 
 constexpr int kShortest = 4;            // cycles since the mark
 constexpr double kMostUnbalanced = 0.1;  // of the greatest force
 constexpr double kContactBalance = 0.05;  // of the contacts' force: unbalanced in all
-constexpr double kLightContact = 1e-3;    // of modulus and spacing squared: less needs no balance
+constexpr int kCyclesForBalance = 6;      // that a solve may take for it
 constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
 
 }  // namespace
@@ -217,7 +217,7 @@ template <typename Real>
 bool CourseIn<Real>::isBalanced() const {
   if (!in_contact_ && !isCalm()) return false;
   const double pushed = finest().firm.contactForce().norm();
-  if (pushed > 0.0 && netForce().norm() > std::max(kContactBalance * pushed, kLightContact)) {
+  if (cycles_ < kCyclesForBalance && netForce().norm() > kContactBalance * pushed && pushed > 0.0) {
     return false;
   }
   Vec3 given = Vec3::Zero(), net = Vec3::Zero();
