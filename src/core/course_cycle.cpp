@@ -10,6 +10,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kBlownUp = 100.0;      // times the length left when a solve begins
+constexpr double kAstray = 3.0;         // likewise, where a solve ends late
 constexpr double kSlow = 0.3;           // of the length left before a cycle: then gradients help
 constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no need to look further
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
@@ -133,9 +134,10 @@ bool CourseIn<Real>::carryOn() {
   const double slope = nearWorkOf(last_way_);
   if (slope == 0.0 || !std::isfinite(slope)) return false;
   const double share = slope > 0.0 ? 1.0 : -1.0;
+  const double local = ended_late_ ? finest().squaredLocalMotion() : 0.0;
   move(last_way_, share);
   const double here = nearWorkOf(last_way_);
-  if (std::abs(here) <= kFlatEnough * std::abs(slope)) return true;
+  if (std::abs(here) <= kFlatEnough * std::abs(slope)) return isWayGood(local);
   const double best = slope / (slope - here);  // of `share`, were the energy quadratic
   if (!std::isfinite(here) || !(best > 0.0)) {
     putBack(before_);
@@ -143,7 +145,17 @@ bool CourseIn<Real>::carryOn() {
     return false;
   }
   move(last_way_, share * (std::min(best, 2.0) - 1.0));
-  return true;
+  return isWayGood(local);
+}
+
+// A step that ended late also made up for what was left before, which is not to be gone on with.
+// local: the squared motion left to nodes alone, before.
+template <typename Real>
+bool CourseIn<Real>::isWayGood(double local) {
+  if (!ended_late_ || finest().squaredLocalMotion() <= local) return true;
+  putBack(before_);
+  finest().findForces(true);
+  return false;
 }
 
 template <typename Real>
@@ -159,6 +171,7 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
     advance();
     ++cycles_;
   }
+  if (status == SolveStatus::kLate) endLate();
   // What is in balance stays, bit for bit.
   const bool moves = cycles_ > 0 || carried_on || error_ > options_.tolerance;
   if (status == SolveStatus::kOk && moves && left_ > 0.0) {
@@ -173,6 +186,15 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
     error_ = best_error_;
   }
   return status;
+}
+
+// Cut short, a cycle leaves what is rough unbalanced: springs in contact, the stiffest of all,
+// would tell forces that nothing answers. What went astray is not told.
+template <typename Real>
+void CourseIn<Real>::endLate() {
+  if (left_ <= kAstray * first_left_) return finest().smooth(steps_, true);
+  goPlainly(best_);
+  error_ = best_error_;
 }
 
 // The last motion that the coarse lattices found.

@@ -56,6 +56,7 @@ SolveReport CourseIn<Real>::run(LoadedShape& shape, const PatchHold& hold,
     levels_->writeTo(shape.state.displacement, hold.held());
     if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
   }
+  ended_late_ = report.status == SolveStatus::kLate;
   report.iterations = cycles_;
   report.error_estimate = std::isfinite(error_) ? std::hypot(error_, missed_) : 1.0;
   answer(shape, hold, report);

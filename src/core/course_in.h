@@ -78,8 +78,10 @@ class CourseIn : public LayeredCourse {
   // course_cycle.cpp: how it goes on.
   SolveStatus iterate(bool changed, bool carried_on, const Budget& budget);
   bool carryOn();
+  bool isWayGood(double local);
   void advance();
   void goPlainly(const Vector& from);
+  void endLate();
   void finish();
   void settleForces();
   bool searchAlong(const Vector& way, double slope, double slope_here);
@@ -138,6 +140,7 @@ class CourseIn : public LayeredCourse {
 
   Vector step_start_, last_way_;
   bool has_start_ = false, has_way_ = false, first_of_step_ = false;
+  bool ended_late_ = false;  // the solve before
 };
 
 extern template class CourseIn<float>;

@@ -18,6 +18,8 @@ constexpr double kToolStep = 0.2;      // of the spacing
 constexpr int kContactRounds = 16;     // in which the shape is what was solved for
 constexpr int kMostRounds = 200;       // with those that are cut short
 constexpr int kMostIterations = 1500;  // of the rounds of one load step
+constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
+constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
 
 }  // namespace
 
@@ -26,7 +28,8 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       state_(lattice_.restState()),
       model_(makeModel(tissue, lattice_)),
       method_(makeMethod(solver, lattice_, *model_)),
-      has_gravity_(!tissue.gravity.isZero()) {
+      has_gravity_(!tissue.gravity.isZero()),
+      max_ms_(solver.max_ms) {
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
   for (int node = 0; node < lattice_.nodeCount(); ++node) {
@@ -184,14 +187,19 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   SolveReport report = solveOnce(disturbed);
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
-    const bool solved = report.status != SolveStatus::kUnconverged;
+    const bool late = deadline_ && deadline_->isOver();
+    const bool hurried = deadline_ && report.status == SolveStatus::kLate;
+    const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(before) && solved;
     if (whole) ++whole_rounds;
-    const bool last = whole_rounds == kContactRounds || rounds == kMostRounds ||
+    const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
                       report.iterations > kMostIterations ||
-                      (!solved && rounds > 1 && state_.displacement == before);
-    if (!contact_rounds_.renew(of_tools, whole, last)) break;
-    putToolPatches(std::move(of_tools));
+                      (!solved && !hurried && rounds > 1 && state_.displacement == before);
+    const bool renewed = contact_rounds_.renew(of_tools, whole, last);
+    if (!renewed && (last || !hurried)) break;
+    if (late) last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
+    if (last) break;
+    if (renewed) putToolPatches(std::move(of_tools));
     before = state_.displacement;
     const SolveReport earlier = report;
     report = solveOnce({});
@@ -235,6 +243,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
   const std::vector<LoadingPatch> last_good_patches = patches_;
   limitWays();
+  method_->limitTime(deadline_ ? std::max(kLeastMs, kShareOfTime * deadline_->leftMs()) : max_ms_);
   SolveReport report = method_->solve(patches_, disturbed, state_);
   if (may_fail && !hasOnlyFiniteNumbers(report)) {
     state_.displacement = last_good;

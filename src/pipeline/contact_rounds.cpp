@@ -124,8 +124,9 @@ bool Pipeline::contactRound(std::vector<LoadingPatch>& of_tools, bool whole, boo
   } else {
     const bool settled =
         contacts_.update(trackTouches(pose_), contacts, pose_, tissue_, held, whole);
-    if (settled || last) return false;
+    if (settled) return false;
   }
+  if (last) return true;
   of_tools = patchesOfTools();
   return !of_tools.empty();
 }

@@ -40,7 +40,8 @@ Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
       supports_(supports),
       finder_({}),
       patches_(tissue_.lattice(), {}),
-      contacts_({}, {}) {
+      contacts_({}, {}),
+      bounds_solves_(solver.max_ms > 0.0) {
   surface_version_ = tissue_.surfaceVersion();
   takeTools(tools);
   tissue_.setContactRounds({[this] { return longestWays(); },
@@ -73,6 +74,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   contacts_ = ToolContacts(friction, thickness);
   drives_.assign(tools.size(), {});
   closed_.assign(tools.size(), false);
+  unfinished_ = false;
   pose_ = complete({});
   report_ = StepReport();
   report_.tools.resize(tools.size());
@@ -89,13 +91,26 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = driven(pose);
   report_.changed = touched_;
-  report_.too_fast = report_.was_inside = report_.torn_off = report_.lost = false;
+  report_.too_fast = report_.was_inside = report_.torn_off = report_.lost = report_.late = false;
   report_.contact_ms = report_.solve_ms = 0.0;
   report_.substeps = 0;
-  if (standsStill(goal) && !touched_) {
-    if (tissue_.lastReport().status == SolveStatus::kLate) carryOn();
-    return report_;
+  const bool stands = standsStill(goal) && !touched_;
+  if (stands && !isLate()) return report_;
+  unfinished_ = false;
+  deadline_ = Deadline(budget_s_);
+  if (bounds_solves_ && std::isfinite(budget_s_)) tissue_.setDeadline(deadline_);
+  if (stands) {
+    carryOn();
+  } else {
+    stepTo(goal, pose);
   }
+  tissue_.setDeadline(std::nullopt);
+  report_.late = isLate();
+  return report_;
+}
+
+// goal: the pose, with the ways of tools that a force drives.
+void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   report_.changed = report_.changed || !tissue_.isUntouched();
   if (!last_pose_ || checkpoints_.empty()) {
     startAnew(goal);
@@ -107,7 +122,10 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   if (report_.lost) leaveStuck(goal);
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
   describeTools();
-  return report_;
+}
+
+bool Pipeline::isLate() const {
+  return unfinished_ || tissue_.lastReport().status == SolveStatus::kLate;
 }
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
@@ -131,6 +149,8 @@ bool Pipeline::advance(const RobotPose& pose) {
     follow(std::move(patches));  // loading patches -> solve
     for (int more = 0; !any_rigid_ && more < kMoreSolves && isUnsettled() && !isLost(good.shape);
          ++more) {
+      unfinished_ = isOutOfTime();
+      if (unfinished_) break;
       follow(patchesOfTools());
     }
     if (!any_rigid_ && isLost(good.shape)) {
@@ -140,6 +160,8 @@ bool Pipeline::advance(const RobotPose& pose) {
     if (!any_rigid_) break;
     const ContactSet left = contactsAt(pose, tissue_.state().displacement);
     if (deepest(left) <= kDeepEnough * tissue_.lattice().spacing()) break;
+    unfinished_ = round + 1 < kRigidRounds && isOutOfTime();
+    if (unfinished_) break;
   }
   contacts_.commit(pose, tissue_);
   tearOff();
@@ -274,6 +296,7 @@ void Pipeline::reset() {
   checkpoints_.clear();
   last_pose_.reset();
   pose_ = complete({});
+  unfinished_ = false;
   touched_ = true;
   describeTools();
 }

@@ -158,7 +158,7 @@ bool Pipeline::drive(const RobotPose& pose) {
       const double now = answerOf(tool).force.dot(direction);
       if (met > 0.0 && now > 0.0 && (now - met) / way > 0.0) stiffness = (now - met) / way;
       met = now;
-      if (report_.too_fast || report_.lost) break;
+      if (report_.too_fast || report_.lost || isOutOfTime()) break;
     }
     const bool met_it = std::abs(met - wanted) <= kPushed * wanted || report_.lost;
     goes_on = goes_on || (!met_it && drive.way < (kFarthest - 1.0) * longest);

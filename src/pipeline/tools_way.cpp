@@ -1,6 +1,5 @@
 // Pipeline: the way of the tools in load steps.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -70,7 +69,6 @@ RobotPose Pipeline::complete(const RobotPose& pose) const {
 // Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
 // or in time.
 RobotPose Pipeline::walk(const RobotPose& pose) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(budget_s_);
   const RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
   asked_ = pose;
   const double steps = stepsBetween(start, pose);
@@ -100,7 +98,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
       longest = std::min(1.0, 2.0 * longest);
     }
     if (any_rigid_) checkIn(on_the_way);
-    if (gone < steps && std::chrono::steady_clock::now() > deadline) {
+    if (gone < steps && deadline_.isOver()) {
       report_.too_fast = true;
       return came();
     }
@@ -285,8 +283,7 @@ bool Pipeline::standsStill(const RobotPose& pose) const {
 std::optional<StillPose> Pipeline::stillPose() const {
   const bool is_driven = std::any_of(drives_.begin(), drives_.end(),
                                      [](const Drive& drive) { return drive.force.has_value(); });
-  const bool is_late = tissue_.lastReport().status == SolveStatus::kLate;
-  if (!last_pose_ || touched_ || is_late || is_driven) return std::nullopt;
+  if (!last_pose_ || touched_ || isLate() || is_driven) return std::nullopt;
   RobotPose of_tools = asked_;
   of_tools.links.resize(first_link_[tools_.size()]);
   std::vector<double> reach;

@@ -180,8 +180,8 @@ NodeStatus TissueNode::statusOf(const StepReport& report) const {
         "no shape follows a tool, as between tools that meet: the last good one stays");
   }
   const SolveReport& solve = pipeline_.tissue().lastReport();
-  if (solve.status == SolveStatus::kLate) {
-    say("LATE", "the solver ran out of its budget (solver.max_ms)");
+  if (report.late) {
+    say("LATE", "the update ran out of its budget (solver.max_ms) and is carried on");
   } else if (solve.status == SolveStatus::kUnconverged) {
     say("UNCONVERGED", "a layer or patch did not come to balance");
   } else if (solve.status == SolveStatus::kInverted) {

@@ -112,14 +112,15 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
   const bool news = status.status != last_status_.status || last_state_.isZero() ||
                     stamp - last_state_ >= kStatePeriod || stamp < last_state_;
   if (!news) return;
+  last_status_ = status;
+  last_state_ = stamp;
+  if (state_.getNumSubscribers() == 0) return;
   TissueState message = stateMessage(pipeline, status);
   message.header.stamp = stamp;
   message.header.frame_id = frame_id_;
   message.publish_ms = publish_ms_;
   message.pose_age_ms = 1e3 * (ros::Time::now() - stamp).toSec();
   state_.publish(message);
-  last_status_ = status;
-  last_state_ = stamp;
 }
 
 void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {

@@ -249,7 +249,7 @@ TEST(LateBlock, GoesOnUntilItIsInBalance) {
   const auto status = [&] { return pipeline.tissue().lastReport().status; };
   ASSERT_EQ(status(), SolveStatus::kLate);
   int more = 0;
-  while (status() == SolveStatus::kLate && more < 100) {
+  while (status() == SolveStatus::kLate && more < 400) {
     EXPECT_TRUE(pipeline.step(pressed(0.003)).changed);
     ++more;
   }

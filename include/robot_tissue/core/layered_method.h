@@ -27,6 +27,7 @@ class LayeredMethod : public SolverMethod {
   Vec3 forceLeft() override { return course_->forceLeft(); }
   bool staysFinite() const override { return true; }
   bool findsEquilibrium() const override { return true; }
+  void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
 
  private:

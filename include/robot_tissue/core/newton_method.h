@@ -37,6 +37,7 @@ class NewtonMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   bool findsEquilibrium() const override { return true; }
+  void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
 
  private:

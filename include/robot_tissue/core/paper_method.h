@@ -44,6 +44,7 @@ class PaperMethod : public SolverMethod {
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
+  void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
 
  private:

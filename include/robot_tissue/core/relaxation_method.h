@@ -36,6 +36,7 @@ class RelaxationMethod : public SolverMethod {
                     LatticeState& state) final;
   void forget() override;
   bool findsEquilibrium() const override { return true; }
+  void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
 
  protected:

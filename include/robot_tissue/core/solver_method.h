@@ -25,6 +25,10 @@ class SolverMethod {
   // in which one went farther may end there, unconverged.
   virtual void limitWays(std::vector<double>) {}
 
+  // Time that each solve may take from here on (ms), in the place of the options' max_ms; 0: no
+  // bound.
+  virtual void limitTime(double) {}
+
   // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
   virtual void forget() {}
 

@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/deadline.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
@@ -72,10 +74,14 @@ class Tissue {
     std::function<double(const std::vector<Vec3>& before)> share;
     // When the contacts are no longer those that the shape was solved for, puts the tools' new
     // patches in and returns true: it is solved again. `whole`: the shape is what was solved for,
-    // and in balance. `last`: there is no next time.
+    // and in balance. `last`: there is no next time, the patches are not put in.
     std::function<bool(std::vector<LoadingPatch>& of_tools, bool whole, bool last)> renew;
   };
   void setContactRounds(ContactRounds rounds) { contact_rounds_ = std::move(rounds); }
+
+  // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
+  // one solve at least, with one cycle of the method. None: solver.max_ms bounds each solve.
+  void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
 
   // Equilibrium under what acts now.
   SolveReport settle();
@@ -161,6 +167,8 @@ class Tissue {
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
   SolveReport last_report_;
+  double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
+  std::optional<Deadline> deadline_;
   ContactRounds contact_rounds_;
 };
 

@@ -49,6 +49,7 @@ struct StepReport {
   bool was_inside = false;  // a tool appeared inside the tissue and was walked in from outside
   bool torn_off = false;    // a grasper lost what it held
   bool lost = false;        // no shape could follow the tools: the last good one stays
+  bool late = false;        // it ran out of its time before the shape was in balance
   int substeps = 0;         // load steps that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
@@ -92,7 +93,9 @@ class Pipeline {
   // step is a jump, too fast to be followed.
   double stepsTo(const RobotPose& pose) const;
   static constexpr int kMostLoadSteps = 400;
-  // Time that a step may take (s), after which it leaves the rest of the way to the next one.
+  // Time that a step may take (s), after which it leaves the rest of the way to the next one. With
+  // solver.max_ms it begins no further solve then either, and is late: the next step goes on from
+  // there, also when the tools stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
 
   // As Tissue's, with the tools and supports where they are.
@@ -148,6 +151,9 @@ class Pipeline {
   void follow(std::vector<LoadingPatch> patches);
   bool isLost(const Tissue::Shape& good) const;
   bool isUnsettled() const;
+  bool isOutOfTime() const { return bounds_solves_ && deadline_.isOver(); }
+  bool isLate() const;
+  void stepTo(const RobotPose& goal, const RobotPose& pose);
   std::vector<LoadingPatch> patchesOfTools() const;
   void pushRigid(const RobotPose& pose);
   bool isRigid(int tool) const;
@@ -226,6 +232,9 @@ class Pipeline {
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
+  bool bounds_solves_ = false;  // with the budget
+  Deadline deadline_;           // of the step under way
+  bool unfinished_ = false;     // the last load step had no time for all that it would have done
   bool touched_ = true;         // the reports are to be brought up to date
   std::vector<Vec3> vertices_;  // of the last contacts
   std::vector<Vec3> outwards_;  // their normals
