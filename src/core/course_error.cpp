@@ -24,10 +24,10 @@ constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single 
 constexpr int kFirstMark = 16;          // cycles: from then on, the latest half tells of slow ones
 constexpr int kPatienceInPart = 6;      // cycles that led nowhere: then all is visited
 constexpr int kShortest = 4;            // cycles since the mark
-constexpr double kMostUnbalanced = 0.1;  // of the greatest force
+constexpr double kMostUnbalanced = 0.1;   // of the greatest force
 constexpr double kContactBalance = 0.05;  // of the contacts' force: unbalanced in all
 constexpr int kCyclesForBalance = 6;      // that a solve may take for it
-constexpr double kFalling = 0.5;         // of the given force: unbalanced, where nothing holds
+constexpr double kFalling = 0.5;          // of the given force: unbalanced, where nothing holds
 
 }  // namespace
 

@@ -25,7 +25,7 @@ constexpr std::uint16_t kAllLanes = 0xffff;
 struct CellBlock {
   int first = 0;
   std::uint16_t cells = kAllLanes;  // those that count
-  std::uint16_t standing = 0;  // for eight finer ones each, whose volumes they hold too
+  std::uint16_t standing = 0;       // for eight finer ones each, whose volumes they hold too
 };
 
 // Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
@@ -35,8 +35,8 @@ struct CellGrid {
   std::array<const Real*, 3> displacement;
   const Real* shear;  // per cell, 0 where there is none
   const Real* bulk;
-  int row;         // from a node to the next along y
-  int plane;       // and along z
+  int row;           // from a node to the next along y
+  int plane;         // and along z
   bool loose_stand;  // loose cells, as blocks may
   // Sums of a plane of cells, from node `origin` on: on their lower and on their upper four
   // corners.

@@ -80,7 +80,7 @@ class LatticeLevel {
   std::vector<Real> rest_stiffness_;
   double step_ = 0.5;  // one over the greatest stiffness of a motion in nodes' stiffnesses
   Field<Real> way_;
-  Field<Real> of_covered_;     // forces; empty where the covered part is the whole
+  Field<Real> of_covered_;  // forces; empty where the covered part is the whole
   std::vector<int> rim_;
   std::vector<Real> free_;     // 1 where a node may move and is not firm, else 0
   std::vector<Real> inverse_;  // of the stiffness of such nodes, else 0
