@@ -19,6 +19,7 @@ constexpr double kRemembered = 0.9;     // of the factor, from cycle to cycle
 constexpr double kDip = 0.5;            // of the length left before a cycle: counts as left after
 constexpr double kLeastAfter = 0.6;     // of the length left before a cycle: is after it
 constexpr int kTrialCycles = 6;         // that show how much of what is left they see
+constexpr int kTrialCyclesInPart = 12;  // what is beyond comes later
 constexpr double kTrialMotion = 1e-3;   // in spacings
 constexpr double kPatchBalance = 1e-5;  // of the force on a patch: what single precision knows
 constexpr int kFirstMark = 16;          // cycles: from then on, the latest half tells of slow ones
@@ -54,7 +55,8 @@ void CourseIn<Real>::findLeastFactor(const LatticeState& state) {
   levels_->setDisplacement(rest.state.displacement, fixed.held());
   finest().findForces(true);
   least_factor_ = 1.0;
-  for (int cycle = 0; cycle < kTrialCycles; ++cycle) {
+  const int cycles = levels_->isWhole() ? kTrialCycles : kTrialCyclesInPart;
+  for (int cycle = 0; cycle < cycles; ++cycle) {
     levels_->findSmoothMotion();
     const double left = lengthLeft();
     if (cycle > 0 && left > 0.0) {

@@ -5,6 +5,8 @@
 namespace robot_tissue {
 namespace {
 
+constexpr int kThick = 8;        // cells along the shortest side
+constexpr int kMostSlender = 4;  // times the shortest side is the longest
 constexpr GridBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
 
 void include(const std::array<int, 3>& low, const std::array<int, 3>& high, GridBox& box) {
@@ -105,6 +107,11 @@ bool isBlock(const Lattice& lattice, const ElasticModel& model, const CellSet& c
 }
 
 }  // namespace
+
+bool LevelSource::isThick() const {
+  const auto [shortest, longest] = std::minmax_element(size.begin(), size.end());
+  return *shortest > kThick && *longest - 1 <= kMostSlender * (*shortest - 1);
+}
 
 std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGrid& grid) const {
   std::vector<LevelCell> cells;

@@ -146,7 +146,7 @@ std::vector<GridBox> LatticeLevels<Real>::partsAround(const GridBox& box, int la
   GridBox wanted = box;
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     const LevelSource& source = sources_[level];
-    const bool has_coarser = level + 1 < sources_.size();
+    const bool has_coarser = level + 1 < sources_.size() && sources_[level + 1].isThick();
     if (!source.rough.isEmpty()) wanted = joined(wanted, around(source.rough, kBesideRough));
     free.push_back(has_coarser ? fitted(wanted, source.whole()) : source.whole());
     wanted = around(coveredBy(free.back(), source.whole()), layers);

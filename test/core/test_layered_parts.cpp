@@ -142,6 +142,29 @@ TEST(LayeredParts, TakeInWhatCoarseLatticesDoNotTell) {
   expectNear(block, report, exact);
 }
 
+// Sheets and beams bend: coarse cells are too stiff for that, and cycles see it late.
+TEST(LayeredParts, AreNotMadeOfWhatBends) {
+  for (const std::array<int, 3>& cells :
+       {std::array<int, 3>{48, 48, 2}, std::array<int, 3>{40, 40, 8},
+        std::array<int, 3>{80, 16, 16}}) {
+    TissueConfig config = elasticBlockOf(cells[0], cells[1], cells[2], 0.45);
+    config.fixed.push_back(nodeBox(config, {0, 0, 0}, {0, cells[1], cells[2]}));
+    LayeredBlock block(config, within(kTolerance));
+    const int x = cells[0] / 2, y = cells[1] / 2;
+    const LoadingPatch punch = displaced(
+        block.lattice.nodesIn(nodeBox(config, {x, y, cells[2]}, {x + 4, y + 4, cells[2]})),
+        Vec3(0, 0, -0.005));
+    const SolveReport report = block.solve({punch});
+    EXPECT_EQ(report.status, SolveStatus::kOk);
+    EXPECT_GT(report.active_nodes, block.lattice.nodeCount() / 2);
+    Exact exact(config);
+    exact.solve(punch);
+    EXPECT_LE(errorOf(block.lattice, block.patches, block.state.displacement,
+                      exact.block.state.displacement),
+              3.0 * kTolerance);
+  }
+}
+
 TEST(LevelSource, TellsWhereACoarserLatticeDiffers) {
   TissueConfig config = withFixedBottom(elasticBlockOf(16, 16, 8, 0.3));
   const auto sources = [](const TissueConfig& of) {

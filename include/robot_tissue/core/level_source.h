@@ -21,6 +21,9 @@ struct LevelSource {
   GridBox rough;
   double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
 
+  // Whether the block is so thick, in its cells and beside its length, that these bend as finer ones
+  // do, and cycles see it.
+  bool isThick() const;
   GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
   // Of the cells between these points, placed from its low corner.
   std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
