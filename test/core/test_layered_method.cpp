@@ -137,7 +137,7 @@ TEST(Layered, TissueFarFromTheLoadIsNotVisited) {
   exact.solve({displaced(end, Vec3(0, 0, -0.003))});
   EXPECT_LE(
       errorOf(block.lattice, block.patches, block.state.displacement, exact.state.displacement),
-      0.01);
+      3.0 * report.error_estimate);
 }
 
 TEST(Layered, ReleasedAtOnceGoesBackToRest) {
