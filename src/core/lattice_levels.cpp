@@ -80,7 +80,7 @@ void LatticeLevels<Real>::addLevel(const LevelGrid& grid, int beside,
 
 template <typename Real>
 void LatticeLevels<Real>::addStep(LevelTransfer<Real> transfer) {
-  steps_.push_back({std::move(transfer), {}, {}, {}, {}, {}});
+  steps_.push_back({std::move(transfer), {}, {}, {}, {}});
 }
 
 template <typename Real>
@@ -154,8 +154,8 @@ template <typename Real>
 void LatticeLevels<Real>::noMotion() {
   for (auto& values : motion) std::fill(values.begin(), values.end(), Real(0));
   for (GroupVector& vector : group_motion) vector.setZero();
-  for (Step& step : steps_) {
-    for (auto& values : step.motion) std::fill(values.begin(), values.end(), Real(0));
+  for (Field<Real>& of_level : motion_beyond_) {
+    for (auto& values : of_level) std::fill(values.begin(), values.end(), Real(0));
   }
 }
 
@@ -184,10 +184,7 @@ bool LatticeLevels<Real>::isFinite() const {
 template <typename Real>
 void LatticeLevels<Real>::go(double share) {
   finest().moveBy(motion, group_motion, share);
-  if (isWhole()) return;
-  Beyond beyond;
-  for (const Step& step : steps_) beyond.push_back(step.motion);
-  moveBeyond(beyond, share);
+  if (!isWhole()) moveBeyond(motion_beyond_, share);
 }
 
 // In the finer level's units.

@@ -30,13 +30,6 @@ int LevelTransfer<Real>::coarseRow(int j, int k) const {
 }
 
 template <typename Real>
-GridBox LevelTransfer<Real>::around() const {
-  GridBox box{at_, at_};
-  for (std::size_t axis = 0; axis < 3; ++axis) box.high[axis] += fine_.size[axis] / 2;
-  return box;
-}
-
-template <typename Real>
 NodeShares LevelTransfer<Real>::carriersOf(int fine_node) const {
   const auto found = to_.carriers.find(fine_node);
   if (found != to_.carriers.end()) return found->second;

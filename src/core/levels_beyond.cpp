@@ -57,7 +57,7 @@ template <typename Real>
 double LatticeLevels<Real>::squaredMotionBeyond() const {
   double squared = 0.0;
   for (std::size_t level = 1; level < levels_.size() && !isWhole(); ++level) {
-    squared += squaredBeyond(level, steps_[level - 1].motion, nullptr);
+    squared += squaredBeyond(level, motion_beyond_[level - 1], nullptr);
   }
   return squared;
 }
@@ -92,15 +92,16 @@ double LatticeLevels<Real>::squaredRoughnessBeyond() const {
 // What the coarse levels moved, as a motion yet to be made.
 template <typename Real>
 void LatticeLevels<Real>::takeMotion() {
+  motion_beyond_.resize(steps_.size());
   for (std::size_t level = 1; level < levels_.size(); ++level) {
-    Step& step = steps_[level - 1];
+    const Field<Real>& start = steps_[level - 1].start;
+    Field<Real>& moved = motion_beyond_[level - 1];
     Field<Real>& now = levels_[level].displacement;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      step.motion[axis].resize(now[axis].size());
-      subtract(now[axis].data(), step.start[axis].data(), step.motion[axis].data(),
-               levels_[level].count());
+      moved[axis].resize(now[axis].size());
+      subtract(now[axis].data(), start[axis].data(), moved[axis].data(), levels_[level].count());
     }
-    now = step.start;
+    now = start;
   }
 }
 

@@ -91,7 +91,6 @@ class LatticeLevels {
     LevelTransfer<Real> transfer;
     std::vector<int> sources;  // per coarse spring that stands for a fine one: that one
     Field<Real> start;         // displacement of the coarse nodes
-    Field<Real> motion;        // theirs, where parts are open
     Field<Real> wanted;        // their forces
     std::vector<GroupVector> wanted_of_groups;
   };
@@ -167,6 +166,7 @@ class LatticeLevels {
   double spacing_ = 1.0;
   double modulus_ = 1.0;
   std::vector<Field<Real>> motions_;  // per level, on their way to it
+  Beyond motion_beyond_;              // the smooth motion there
 };
 
 extern template class LatticeLevels<float>;

@@ -26,9 +26,8 @@ struct LayeredOptions {
   // Likewise where contacts are: what goes far there slips, and a smaller step follows it better.
   int max_cycles_in_contact = 300;
   int patience_in_contact = 40;
-  double patch_step = 0.5;   // longest motion of a patch in one solve, in spacings
-  double line_step = 2.0;    // of a node in one cycle, likewise
-  double layer_share = 0.1;  // of the tolerance: motion below which no further layer is raised
+  double patch_step = 0.5;  // longest motion of a patch in one solve, in spacings
+  double line_step = 2.0;   // of a node in one cycle, likewise
 };
 
 // A clock that may run out.

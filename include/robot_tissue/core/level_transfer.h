@@ -18,8 +18,6 @@ class LevelTransfer {
 
   // The coarse nodes that carry a fine one.
   NodeShares carriersOf(int fine_node) const;
-  // Those that fine nodes are at or beside.
-  GridBox around() const;
 
   // To the coarse nodes around the fine grid.
   void restrictForces(const Field<Real>& fine, Field<Real>& coarse) const;
