@@ -16,6 +16,7 @@ constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no ne
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
 constexpr int kTrials = 8;              // of the length along a direction
 constexpr double kForceShare = 2.0;     // of the tolerance: what forces may disagree by
+constexpr double kMoreInContact = 1.6;  // steps of the smoother in a later cycle, over the first's
 constexpr int kMostSettling = 3;        // rounds of the smoother, for the forces' sake
 constexpr int kPlainSteps = 8;          // of the smoother, where a cycle led nowhere
 
@@ -220,7 +221,7 @@ void CourseIn<Real>::settleForces() {
   for (int round = 0; round < kMostSettling; ++round) {
     const double given = patchForce().norm() + finest().firm.contactForce().norm();
     if (netForce().norm() <= kForceShare * options_.tolerance * given || given == 0.0) return;
-    finest().smooth(steps_, true);
+    finest().smooth(steps(), true);
   }
 }
 
@@ -237,7 +238,7 @@ void CourseIn<Real>::advance() {
   if (share == 1.0 && isSteady()) {
     levels_->go(1.0);
     finest().findForces(true);
-    finest().smooth(steps_, true);
+    finest().smooth(steps(), true);
     fresh_ = true;
     conjugate_ = false;
     return;
@@ -245,7 +246,7 @@ void CourseIn<Real>::advance() {
   keepForce(force_before_);
   levels_->go(share);
   finest().findForces(true);
-  finest().smooth(steps_, true);
+  finest().smooth(steps(), true);
   keepPlace(way_);
   add(before_, -1.0, way_);
   const double promised = work(force_before_, way_);
@@ -277,6 +278,14 @@ template <typename Real>
 bool CourseIn<Real>::isSteady() const {
   return !levels_->isWhole() && left_ <= kBlownUp * first_left_ &&
          (cycles_ == 0 || left_ <= kSlow * left_before_);
+}
+
+// Springs in contact are the stiffest of all, and begin and end: what is rough beside them lasts.
+// Where tissue slips, the first cycle is all that a solve has.
+template <typename Real>
+int CourseIn<Real>::steps() const {
+  const bool more = in_contact_ && cycles_ > 0;
+  return more ? static_cast<int>(std::lround(kMoreInContact * steps_)) : steps_;
 }
 
 // Steps of the smoother alone.

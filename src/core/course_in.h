@@ -28,7 +28,7 @@ class CourseIn : public LayeredCourse {
   void forget() override;
 
  private:
-  static constexpr double kFirstLayers = 6;  // around patches and contacts
+  static constexpr double kFirstLayers = 4;  // around patches and contacts
   static constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
 
   static constexpr double kMostMissed = 0.7;  // of the tolerance, by coarse lattices alone
@@ -86,6 +86,7 @@ class CourseIn : public LayeredCourse {
   void settleForces();
   bool searchAlong(const Vector& way, double slope, double slope_here);
 
+  int steps() const;
   LatticeLevel<Real>& finest() { return levels_->finest(); }
   const LatticeLevel<Real>& finest() const { return levels_->finest(); }
   void keepPlace(Vector& vector) const;
@@ -113,7 +114,7 @@ class CourseIn : public LayeredCourse {
   double layers_ = kFirstLayers;  // around them
   std::vector<NodeLimit> limits_;
   std::vector<Vec3> limited_from_;  // where these nodes were when the solve began (m)
-  int steps_ = 3;                   // of the smoother in a cycle
+  int steps_ = 3;                   // of the smoother in a cycle without contacts
   double least_factor_ = 1.0;
   double factor_ = 1.0;  // of the length left: what cycles showed to be left
 

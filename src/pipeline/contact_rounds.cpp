@@ -199,6 +199,10 @@ ContactSet Pipeline::touchesAt(const RobotPose& pose, const std::vector<std::uin
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(report_.contact_ms);
+  depths_.assign(pose.links.size(), 0.0);
+  for (const Contact& contact : all) {
+    depths_[at(contact.link)] = std::max(depths_[at(contact.link)], contact.depth_m);
+  }
   outwards_.assign(vertices_.size(), Vec3::Zero());
   for (const MeshTriangle& corners : tissue_.surface().triangles) {
     const Vec3& a = vertices_[at(corners[0])];

@@ -16,6 +16,8 @@ constexpr int kMoreSolves = 2;     // where one ended on its way
 constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
 constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
 constexpr double kMostLeap = 10.0;       // of the spacing, of a node in a load step
+constexpr double kThrough = 0.25;        // of the spacing: how deep a link is that goes through
+constexpr double kThroughTool = 0.25;    // of the link's thickness, likewise, whichever is less
 
 ToolGeometry asTool(const SupportConfig& support) {
   ToolGeometry tool;
@@ -120,6 +122,7 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   goBackTo(goal);
   last_pose_ = walk(goal);
   if (report_.lost) leaveStuck(goal);
+  unhook(goal);
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
   describeTools();
 }
@@ -147,13 +150,13 @@ bool Pipeline::advance(const RobotPose& pose) {
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
     if (!any_rigid_) good.shape = tissue_.shape();
     follow(std::move(patches));  // loading patches -> solve
-    for (int more = 0; !any_rigid_ && more < kMoreSolves && isUnsettled() && !isLost(good.shape);
+    for (int more = 0; !any_rigid_ && more < kMoreSolves && isUnsettled() && !isLost(good);
          ++more) {
       unfinished_ = isOutOfTime();
       if (unfinished_) break;
       follow(patchesOfTools());
     }
-    if (!any_rigid_ && isLost(good.shape)) {
+    if (!any_rigid_ && isLost(good)) {
       goBackTo(good);
       return false;
     }
@@ -175,16 +178,30 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
 }
 
 // No tissue gets into this shape from the last good one, as where tools squeeze it flat.
-bool Pipeline::isLost(const Tissue::Shape& good) const {
+bool Pipeline::isLost(const Checkpoint& good) const {
   const std::vector<Vec3>& now = tissue_.state().displacement;
   double farthest = 0.0;
   for (std::size_t node = 0; node < now.size(); ++node) {
-    farthest = std::max(farthest, (now[node] - good.displacement[node]).squaredNorm());
+    farthest = std::max(farthest, (now[node] - good.shape.displacement[node]).squaredNorm());
   }
   const double leap = kMostLeap * tissue_.lattice().spacing();
   if (farthest > leap * leap && !tissue_.isUntouched()) return true;
-  if (tissue_.lastReport().inverted_cells > good.report.inverted_cells) return true;
-  return ToolContacts::pushesAbsurdly(tissue_);
+  if (tissue_.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
+  return wentThrough(good) || ToolContacts::pushesAbsurdly(tissue_);
+}
+
+// Into what gives way, deeper than it was.
+bool Pipeline::wentThrough(const Checkpoint& good) const {
+  for (std::size_t link = 0; link < first_link_[tools_.size()] && link < depths_.size(); ++link) {
+    const double before = link < good.depths.size() ? good.depths[link] : 0.0;
+    if (depths_[link] > std::max(throughAt(link), before)) return true;
+  }
+  return false;
+}
+
+// Deeper in the surface (m), a link is on its way to the other side of it.
+double Pipeline::throughAt(std::size_t link) const {
+  return std::min(kThrough * tissue_.lattice().spacing(), kThroughTool * finder_.thickness(link));
 }
 
 // The solve ended on its way, as where tissue slips far.

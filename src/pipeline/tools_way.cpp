@@ -109,7 +109,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
 }
 
 Pipeline::Checkpoint Pipeline::toolsCheckpoint() const {
-  return {pose_, {}, patches_.seats(), contacts_, closed_};
+  return {pose_, {}, patches_.seats(), contacts_, closed_, depths_};
 }
 
 Pipeline::Checkpoint Pipeline::checkpoint() const {
@@ -124,6 +124,7 @@ void Pipeline::goBackTo(const Checkpoint& good) {
   patches_.restore(good.seats);
   contacts_ = good.contacts;
   closed_ = good.closed;
+  depths_ = good.depths;
 }
 
 void Pipeline::checkIn(const RobotPose& pose) {
@@ -214,6 +215,44 @@ void Pipeline::leaveStuck(const RobotPose& pose) {
     startAnew(pose);
     last_pose_ = walk(pose);
   }
+}
+
+// A tool that drags tissue out with it that stands through it, as where it went beneath fixed
+// nodes, lets go: the tissue comes back without it, and what it still meets it meets from outside.
+void Pipeline::unhook(const RobotPose& pose) {
+  RobotPose without = *last_pose_;
+  bool any = false;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (!isHooked(tool)) continue;
+    any = true;
+    without = withTool(tool, complete({}), without);
+    letGoOf(tool);
+  }
+  if (!any) return;
+  last_pose_ = without;
+  if (advance(without)) {
+    comeAndGo(pose);
+  } else {
+    startAnew(pose);
+  }
+  last_pose_ = walk(pose);
+  report_.was_inside = true;
+}
+
+// Away from where the tissue is at rest, and through its surface.
+bool Pipeline::isHooked(std::size_t tool) const {
+  if (!contacts_.pushes(static_cast<int>(tool), tissue_)) return false;
+  const std::size_t first = first_link_[tool], end = first_link_[tool + 1];
+  for (std::size_t link = first; link < end; ++link) {
+    const Box box = finder_.bounds(link, last_pose_->links[link]);
+    if (distance(box, tissue_.lattice().bounds()) < tissue_.lattice().spacing()) return false;
+  }
+  for (std::size_t link = first; link < end; ++link) {
+    const double depth =
+        finder_.penetration(link, last_pose_->links[link], tissue_.surface(), tissue_.vertices());
+    if (depth > throughAt(link)) return true;
+  }
+  return false;
 }
 
 void Pipeline::letGoOf(std::size_t tool) {

@@ -1,5 +1,6 @@
 // Three tools that move at random (random_visits.h).
 //   contact_random [MOTIONS] [FRICTION] [SPACING in mm] [SEED] [METHOD] [FIRST motion to tell of]
+//                  [FIRST VISIT, those before are left out]
 // Writes one line a visit (from the rest shape until all tools have left): seed,friction,visit,
 // motions,load_steps,not_finite,inverted_updates,inverted_at_leave,left_mm,greatest_force_n,
 // deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_followed_mm; lost: updates in which no
@@ -21,7 +22,9 @@ int main(int argc, char** argv) {
       "seed,friction,visit,motions,load_steps,not_finite,inverted_updates,inverted_at_leave,"
       "left_mm,greatest_force_n,deepest_mm,most_displacement_mm,unconverged,s,lost,deepest_"
       "followed_mm\n");
-  for (int number = 0; number < motions / RandomVisits::kMotionsOfVisit; ++number) {
+  const int first = static_cast<int>(argument(argc, argv, 7, 0.0));
+  for (int number = 0; number < first; ++number) visits.skip();
+  for (int number = first; number < motions / RandomVisits::kMotionsOfVisit; ++number) {
     const RandomVisits::Sums sums = visits.visit(number);
     std::printf("%u,%g,%d,%d,%d,%d,%d,%d,%.9g,%.3f,%.3f,%.2f,%d,%.2f,%d,%.3f\n", trial.seed,
                 trial.friction, number, RandomVisits::kMotionsOfVisit, sums.load_steps,

@@ -49,6 +49,14 @@ class RandomVisits {
     pipeline_.step(pose_);
   }
 
+  // Draws the numbers of a visit that is left out.
+  void skip() {
+    for (int motion = 1; motion < kMotionsOfVisit; ++motion) {
+      for (Pose& link : pose_.links) move(link);
+    }
+    leave();
+  }
+
   Sums visit(int number) {
     sums_ = Sums();
     const auto begin = std::chrono::steady_clock::now();
@@ -56,9 +64,7 @@ class RandomVisits {
       for (Pose& link : pose_.links) move(link);
       update(kMotionsOfVisit * number + motion);
     }
-    for (std::size_t link = 0; link < 3; ++link) {
-      pose_.links[link] = placedAt(outside(static_cast<int>(link)));
-    }
+    leave();
     update(kMotionsOfVisit * (number + 1));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     sums_.seconds = took.count();
@@ -92,6 +98,12 @@ class RandomVisits {
     return Vec3(uniform(low.x(), high.x()), uniform(low.y(), high.y()), uniform(low.z(), high.z()));
   }
   static Vec3 outside(int tool) { return Vec3(0.03, 0.03, 0.3 + 0.1 * tool); }
+
+  void leave() {
+    for (std::size_t link = 0; link < 3; ++link) {
+      pose_.links[link] = placedAt(outside(static_cast<int>(link)));
+    }
+  }
 
   // Of a hundred motions of a tool 84 are short, in 10 it stays, and 6 take it anywhere in or
   // around the block, down to the ground, in one update: at 100 of them a second up to 12 m/s.

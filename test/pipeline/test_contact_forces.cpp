@@ -81,8 +81,10 @@ TEST(FrictionCone, PlaneThatSlidesDragsWithItsFriction) {
 // What it ploughs is what it meets without friction.
 TEST(FrictionCone, SphereThatSlidesDragsWithItsFriction) {
   constexpr double kFriction = 0.3;
-  Pipeline rough(block(), {}, {withFriction(kFriction, probe())});
-  Pipeline smooth(block(), {}, {withFriction(0.0, probe())});
+  SolverConfig exact;  // the forces of the default tolerance are off by about what is allowed here
+  exact.tolerance = 1e-3;
+  Pipeline rough(block(), exact, {withFriction(kFriction, probe())});
+  Pipeline smooth(block(), exact, {withFriction(0.0, probe())});
   const Vec3 above(0.02, kMiddle, kTop + kRadius + 0.001),
       down(0.02, kMiddle, kTop + kRadius - 0.003);
   double drags = 0.0, ploughs = 0.0;  // over the normal force, mean

@@ -133,6 +133,7 @@ class Pipeline {
     ToolPatches::Seats seats;
     ToolContacts contacts;
     std::vector<bool> closed;
+    std::vector<double> depths;
   };
   // Of a link: in the box a vertex goes so far at once (m) and no farther.
   struct Surroundings {
@@ -149,7 +150,9 @@ class Pipeline {
   void takeTools(const std::vector<ToolGeometry>& tools);
   bool advance(const RobotPose& pose);
   void follow(std::vector<LoadingPatch> patches);
-  bool isLost(const Tissue::Shape& good) const;
+  bool isLost(const Checkpoint& good) const;
+  bool wentThrough(const Checkpoint& good) const;
+  double throughAt(std::size_t link) const;
   bool isUnsettled() const;
   bool isOutOfTime() const { return bounds_solves_ && deadline_.isOver(); }
   bool isLate() const;
@@ -187,6 +190,8 @@ class Pipeline {
   void checkIn(const RobotPose& pose);
   void goBackTo(const RobotPose& pose);
   void leaveStuck(const RobotPose& pose);
+  void unhook(const RobotPose& pose);
+  bool isHooked(std::size_t tool) const;
   void letGoOf(std::size_t tool);
   RobotPose withTool(std::size_t tool, const RobotPose& pose, RobotPose others) const;
   void startAnew(const RobotPose& pose);
@@ -239,6 +244,7 @@ class Pipeline {
   std::vector<Vec3> vertices_;  // of the last contacts
   std::vector<Vec3> outwards_;  // their normals
   double left_inside_ = 0.0;    // depth of the deepest of them, after the last solve (m)
+  std::vector<double> depths_;  // likewise, in each link by the nearest way out (m)
   StepReport report_;
 };
 
