@@ -114,9 +114,7 @@ void CourseIn<Real>::prepare(const LoadedShape& shape, const PatchHold& hold) {
     limited_from_.push_back(shape.state.displacement[at(limit.node)]);
   }
   if (first_of_step_) noteStep();
-  const std::vector<std::uint8_t>& held = hold.held();
-  free_nodes_ = static_cast<double>(held.end() - held.begin() -
-                                    std::count(held.begin(), held.end(), kAllHeld));
+  free_nodes_ = hold.freeNodes();
   finest().findForces(true);
   greatest_ = unbalanced();
 }

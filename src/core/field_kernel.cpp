@@ -75,9 +75,15 @@ ROBOT_TISSUE_INLINE void addAll(const Real* __restrict other, Real share, Real* 
 }
 
 template <typename Real>
-ROBOT_TISSUE_INLINE void subtractAll(const Real* __restrict a, const Real* __restrict b,
+ROBOT_TISSUE_INLINE void subtractAll(const Real* __restrict a, const Real* __restrict b, Real share,
                                      Real* __restrict difference, int count) {
-  for (int i = 0; i < count; ++i) difference[i] = a[i] - b[i];
+  for (int i = 0; i < count; ++i) difference[i] = share * (a[i] - b[i]);
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void meanAll(const Real* __restrict a, const Real* __restrict b,
+                                 Real* __restrict mean, int count) {
+  for (int i = 0; i < count; ++i) mean[i] = Real(0.5) * (a[i] + b[i]);
 }
 
 template <typename Real>
@@ -226,12 +232,22 @@ ROBOT_TISSUE_CLONES void addShare(const double* other, double share, double* to,
   addAll(other, share, to, count);
 }
 
-ROBOT_TISSUE_CLONES void subtract(const float* a, const float* b, float* difference, int count) {
-  subtractAll(a, b, difference, count);
+ROBOT_TISSUE_CLONES void subtract(const float* a, const float* b, float share, float* difference,
+                                  int count) {
+  subtractAll(a, b, share, difference, count);
 }
 
-ROBOT_TISSUE_CLONES void subtract(const double* a, const double* b, double* difference, int count) {
-  subtractAll(a, b, difference, count);
+ROBOT_TISSUE_CLONES void subtract(const double* a, const double* b, double share,
+                                  double* difference, int count) {
+  subtractAll(a, b, share, difference, count);
+}
+
+ROBOT_TISSUE_CLONES void meanOf(const float* a, const float* b, float* mean, int count) {
+  meanAll(a, b, mean, count);
+}
+
+ROBOT_TISSUE_CLONES void meanOf(const double* a, const double* b, double* mean, int count) {
+  meanAll(a, b, mean, count);
 }
 
 ROBOT_TISSUE_CLONES void spreadRow(const float* coarse, float* fine, int count) {

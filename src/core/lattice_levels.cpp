@@ -214,7 +214,7 @@ void LatticeLevels<Real>::solveCoarse(std::size_t index) {
 template <typename Real>
 void LatticeLevels<Real>::correct(std::size_t index) {
   LatticeLevel<Real>& level = levels_[index];
-  const Step& step = steps_[index];
+  Step& step = steps_[index];
   restrictTo(index + 1);
   solveCoarse(index + 1);
   step.transfer.prolong(levels_[index + 1].displacement, step.start, motions_[index]);

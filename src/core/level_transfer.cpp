@@ -98,59 +98,46 @@ void LevelTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const Gr
 
 template <typename Real>
 void LevelTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& start,
-                                  Field<Real>& fine) const {
-  const int length = countAlongX();
-  std::vector<Real> line(at(length) + 1);
+                                  Field<Real>& fine) {
+  motion_.resize(now.front().size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    subtract(now[axis].data(), start[axis].data(), static_cast<Real>(kTwice), motion_.data(),
+             static_cast<int>(motion_.size()));
     for (int k = 0; k < fine_.size[2]; ++k) {
-      for (int j = 0; j < fine_.size[1]; ++j) {
-        const Around y(j), z(k);
-        std::fill(line.begin(), line.end(), Real(0));
-        for (int b = 0; b < z.count; ++b) {
-          for (int a = 0; a < y.count; ++a) {
-            const int first = coarseRow(y.low + a, z.low + b);
-            const Real weight = static_cast<Real>(kTwice * y.weight() * z.weight());
-            addShare(now[axis].data() + first, weight, line.data(), length);
-            addShare(start[axis].data() + first, -weight, line.data(), length);
-          }
-        }
-        spreadRow(line.data(), fine[axis].data() + fine_.index(0, j, k), fine_.size[0]);
-      }
+      spreadPlane(motion_, k, between_, fine[axis].data() + fine_.index(0, 0, k));
     }
     for (const int node : to_.carried) {
       double mean = 0.0;
       for (const NodeShare& share : to_.carriers.at(node)) {
-        const std::size_t from = at(share.node);
-        mean += share.weight * static_cast<double>(now[axis][from] - start[axis][from]);
+        mean += share.weight * static_cast<double>(motion_[at(share.node)]);
       }
-      fine[axis][at(node)] = static_cast<Real>(kTwice * mean);
+      fine[axis][at(node)] = static_cast<Real>(mean);
     }
   }
 }
 
 template <typename Real>
-void LevelTransfer<Real>::spread(const Field<Real>& coarse, Field<Real>& fine) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (int k = 0; k < fine_.size[2]; ++k) {
-      for (int j = 0; j < fine_.size[1]; ++j) {
-        spreadTo(coarse[axis], j, k, fine[axis].data() + fine_.index(0, j, k));
-      }
-    }
+void LevelTransfer<Real>::spreadPlane(const std::vector<Real>& coarse, int k,
+                                      std::vector<Real>& between, Real* plane) const {
+  const int length = countAlongX(), stride = to_.grid.row;
+  const int count = fine_.size[1] / 2 * stride + length;
+  between.resize(at(count + length));
+  const Around z(k);
+  const Real* rows = coarse.data() + coarseRow(0, z.low);
+  if (z.count > 1) {
+    meanOf(rows, rows + to_.grid.plane, between.data(), count);
+    rows = between.data();
   }
-}
-
-template <typename Real>
-void LevelTransfer<Real>::spreadTo(const std::vector<Real>& coarse, int j, int k, Real* row) const {
-  const int length = countAlongX();
-  const Around y(j), z(k);
-  std::vector<Real> line(at(length) + 1, Real(0));
-  for (int b = 0; b < z.count; ++b) {
-    for (int a = 0; a < y.count; ++a) {
-      addShare(coarse.data() + coarseRow(y.low + a, z.low + b),
-               static_cast<Real>(kTwice * y.weight() * z.weight()), line.data(), length);
+  Real* const line = between.data() + count;
+  for (int j = 0; j < fine_.size[1]; ++j) {
+    const Around y(j);
+    const Real* row = rows + y.low * stride;
+    if (y.count > 1) {
+      meanOf(row, row + stride, line, length);
+      row = line;
     }
+    spreadRow(row, plane + j * fine_.row, fine_.size[0]);
   }
-  spreadRow(line.data(), row, fine_.size[0]);
 }
 
 template <typename Real>

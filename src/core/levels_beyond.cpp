@@ -99,7 +99,8 @@ void LatticeLevels<Real>::takeMotion() {
     Field<Real>& now = levels_[level].displacement;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       moved[axis].resize(now[axis].size());
-      subtract(now[axis].data(), start[axis].data(), moved[axis].data(), levels_[level].count());
+      subtract(now[axis].data(), start[axis].data(), Real(1), moved[axis].data(),
+               levels_[level].count());
     }
     now = start;
   }
@@ -236,23 +237,31 @@ void LatticeLevels<Real>::writeTo(std::vector<Vec3>& displacement,
   if (!isWhole()) writeBeyond(displacement);
 }
 
-// Rows of the next coarser lattice, all of it, then of the finest.
+// All of the next coarser lattice, then of the finest.
 template <typename Real>
 void LatticeLevels<Real>::writeBeyond(std::vector<Vec3>& displacement) const {
   Field<Real> coarse = levels_.back().displacement;
   LevelGrid coarse_grid(sources_.back().size);
   for (std::size_t level = levels_.size() - 1; level-- > 0;) {
+    for (auto& values : coarse) {
+      for (Real& value : values) value *= static_cast<Real>(LevelTransfer<Real>::kTwice);
+    }
     const LevelGrid grid(sources_[level].size);
     Coarsening to;
     to.grid = coarse_grid;
     const LevelTransfer<Real> transfer(grid, std::move(to));
     if (level == 0) {
-      writeRows(transfer, coarse, displacement);
+      writePlanes(transfer, coarse, displacement);
       break;
     }
     Field<Real> fine;
-    for (auto& values : fine) values.assign(at(grid.beside), Real(0));
-    transfer.spread(coarse, fine);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fine[axis].resize(at(grid.beside));
+      std::vector<Real> between;
+      for (int k = 0; k < grid.size[2]; ++k) {
+        transfer.spreadPlane(coarse[axis], k, between, fine[axis].data() + grid.index(0, 0, k));
+      }
+    }
     putOpen(level, grid, fine);
     coarse = std::move(fine);
     coarse_grid = grid;
@@ -276,30 +285,42 @@ void LatticeLevels<Real>::putOpen(std::size_t level, const LevelGrid& grid,
   }
 }
 
+// In all threads there are.
 template <typename Real>
-void LatticeLevels<Real>::writeRows(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
-                                    std::vector<Vec3>& displacement) const {
+void LatticeLevels<Real>::writePlanes(const LevelTransfer<Real>& transfer,
+                                      const Field<Real>& coarse,
+                                      std::vector<Vec3>& displacement) const {
+  const int planes = lattice_.size()[2];
+  if (workers_ == nullptr) return writePlanes(transfer, coarse, 0, planes, displacement);
+  const int threads = workers_->count();
+  workers_->run([&](int part) {
+    writePlanes(transfer, coarse, planes * part / threads, planes * (part + 1) / threads,
+                displacement);
+  });
+}
+
+template <typename Real>
+void LatticeLevels<Real>::writePlanes(const LevelTransfer<Real>& transfer,
+                                      const Field<Real>& coarse, int first, int end,
+                                      std::vector<Vec3>& displacement) const {
   const GridBox open = pointsOf(0);
   const auto& size = lattice_.size();
-  Field<Real> row;
-  for (auto& values : row) values.resize(at(size[0]));
-  const auto put = [&](int from, int to, int first) {
-    for (int i = from; i <= to; ++i) {
-      displacement[at(first + i)] =
-          spacing_ * Vec3(static_cast<double>(row[0][at(i)]), static_cast<double>(row[1][at(i)]),
-                          static_cast<double>(row[2][at(i)]));
+  const LevelGrid grid(sources_.front().size);
+  Field<Real> plane;
+  for (auto& values : plane) values.resize(at(grid.plane));
+  std::vector<Real> between;
+  for (int k = first; k < end; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      transfer.spreadPlane(coarse[axis], k, between, plane[axis].data());
     }
-  };
-  for (int k = 0; k < size[2]; ++k) {
     for (int j = 0; j < size[1]; ++j) {
+      Vec3* const row = displacement.data() + lattice_.node(0, j, k);
+      const auto put = [&](int from, int to) {
+        for (int i = from; i <= to; ++i) row[i] = spacing_ * vectorAt(plane, grid.index(i, j, 0));
+      };
       const bool beside = open.has({open.low[0], j, k});
-      if (beside && open.low[0] == 0 && open.high[0] == size[0] - 1) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        transfer.spreadTo(coarse[axis], j, k, row[axis].data());
-      }
-      const int first = lattice_.node(0, j, k);
-      put(0, beside ? open.low[0] - 1 : size[0] - 1, first);
-      if (beside) put(open.high[0] + 1, size[0] - 1, first);
+      put(0, beside ? open.low[0] - 1 : size[0] - 1);
+      if (beside) put(open.high[0] + 1, size[0] - 1);
     }
   }
 }

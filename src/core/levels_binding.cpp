@@ -19,17 +19,21 @@ void LatticeLevels<Real>::bind(const LoadedShape& shape, const PatchHold& hold) 
 template <typename Real>
 typename LatticeLevels<Real>::Bond LatticeLevels<Real>::bondOf(const LoadedShape& shape,
                                                                const PatchHold& hold) {
-  Bond bond;
-  bond.held = hold.held();
-  for (const LoadingPatch& patch : shape.patches) {
-    bond.springs.push_back(-1.0);
-    for (const RimSpring& rim : patch.rim) bond.springs.push_back(rim.node);
-    bond.springs.push_back(-1.0);
+  Bond bond = {-1.0};
+  for (std::size_t index = 0; index < shape.patches.size(); ++index) {
+    const LoadingPatch& patch = shape.patches[index];
+    for (const int node : hold.hardOf(index)) {
+      bond.push_back(node);
+      bond.push_back(hold.held()[at(node)]);
+    }
+    bond.push_back(-1.0);
+    for (const RimSpring& rim : patch.rim) bond.push_back(rim.node);
+    bond.push_back(-1.0);
     for (const ContactSpring& contact : patch.contacts) {
-      bond.springs.push_back(static_cast<double>(contact.carriers.size()));
+      bond.push_back(static_cast<double>(contact.carriers.size()));
       for (const NodeWeight& carrier : contact.carriers) {
-        bond.springs.push_back(carrier.node);
-        bond.springs.push_back(carrier.weight);
+        bond.push_back(carrier.node);
+        bond.push_back(carrier.weight);
       }
     }
   }

@@ -31,10 +31,12 @@ void PatchHold::bind(LoadedShape& shape) {
     const LoadingPatch& patch = shape.patches[index];
     hard_.push_back(hardNodes(patch));
     for (const int node : hard_.back()) {
+      const bool was_held = held_[at(node)] == kAllHeld;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (holds(patch, axis)) held_[at(node)] |= static_cast<std::uint8_t>(1U << axis);
       }
       if (byForce(patch)) carriers_[at(node)] = static_cast<int>(index);
+      if (held_[at(node)] == kAllHeld && !was_held) --free_nodes_;
     }
     for (std::size_t spring = 0; spring < patch.rim.size(); ++spring) {
       rims_.add(patch.rim[spring].node, index, spring, 1.0);
@@ -62,6 +64,8 @@ void PatchHold::letGo(const LatticeState& state) {
         held_by_itself_[node] = kAllHeld;
       }
     }
+    free_by_themselves_ = static_cast<int>(
+        std::count(held_by_itself_.begin(), held_by_itself_.end(), std::uint8_t{0}));
   }
   for (const std::vector<int>& hard : hard_) {
     for (const int node : hard) {
@@ -69,6 +73,7 @@ void PatchHold::letGo(const LatticeState& state) {
     }
   }
   held_ = held_by_itself_;
+  free_nodes_ = free_by_themselves_;
   rims_.clear(nodes);
   contacts_.clear(nodes);
   hard_.clear();

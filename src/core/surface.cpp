@@ -1,6 +1,7 @@
 #include "robot_tissue/core/surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "robot_tissue/core/split_cells.h"
@@ -174,16 +175,22 @@ Surface extractSurface(const Lattice& lattice, const LatticeState& state) {
   return SurfaceBuilder(lattice, state).build();
 }
 
-void deform(const Surface& surface, const std::vector<Vec3>& displacement,
-            std::vector<Vec3>& vertices) {
+Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
+           std::vector<Vec3>& vertices) {
   vertices.resize(surface.rest.size());
+  Box bounds;
+  bounds.min.setConstant(std::numeric_limits<double>::infinity());
+  bounds.max = -bounds.min;
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
     Vec3 position = surface.rest[vertex];
     for (const NodeWeight& carrier : surface.carriers[vertex]) {
       position += carrier.weight * displacement[at(carrier.node)];
     }
     vertices[vertex] = position;
+    bounds.min = bounds.min.cwiseMin(position);
+    bounds.max = bounds.max.cwiseMax(position);
   }
+  return bounds;
 }
 
 std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric) {

@@ -162,9 +162,8 @@ void Tissue::deformSurface() {
     std::swap(state_.displacement[at(of_node.first)], of_node.second);
   };
   std::for_each(own.begin(), own.end(), exchange);
-  deform(surface_, state_.displacement, vertices_);
+  bounds_ = deform(surface_, state_.displacement, vertices_);
   std::for_each(own.rbegin(), own.rend(), exchange);
-  bounds_ = boundsOf(vertices_);
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -181,6 +180,12 @@ void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
 }
 
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
+  SolveReport report = solveInRounds(disturbed);
+  last_report_.volume_ratio = report.volume_ratio = volumeRatio();
+  return report;
+}
+
+SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (!contact_rounds_.renew) return solveOnce(disturbed);
   std::vector<Vec3> before = state_.displacement;
@@ -282,6 +287,7 @@ SolveReport Tissue::solveFromRest() {
     report = climbByItself(ramps, {});
   } else if (!has_gravity_) {
     describeShape(report);
+    report.volume_ratio = volumeRatio();
     last_report_ = report;
   }
   return report;
@@ -297,9 +303,10 @@ bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
          std::all_of(state_.displacement.begin(), state_.displacement.end(), finite);
 }
 
+double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
+
 void Tissue::describeShape(SolveReport& report) {
   deformSurface();
-  report.volume_ratio = enclosedVolume(surface_, vertices_) / rest_volume_;
   const GridBox* visited = method_->visited();
   report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
                                              : countInvertedCells(lattice_, state_, *visited);

@@ -197,12 +197,20 @@ void ToolPatches::letGo(int tool) { seats_[at(tool)].clear(); }
 
 bool ToolPatches::holds(int tool) const { return !seats_[at(tool)].empty(); }
 
-std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) const {
-  const CellSet& cells = *tissue.state().cells;
-  std::vector<std::uint8_t> held(at(cells.nodeCount()), 0);
-  for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(*lattice_, cells, node)) held[at(node)] = 1;
+// Per node, 1 = fixed.
+const std::vector<std::uint8_t>& ToolPatches::fixedNodes(const Tissue& tissue) {
+  const std::shared_ptr<const CellSet>& cells = tissue.state().cells;
+  if (fixed_of_ == cells) return fixed_;
+  fixed_of_ = cells;
+  fixed_.assign(at(cells->nodeCount()), 0);
+  for (int node = 0; node < cells->nodeCount(); ++node) {
+    if (isFixed(*lattice_, *cells, node)) fixed_[at(node)] = 1;
   }
+  return fixed_;
+}
+
+std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) {
+  std::vector<std::uint8_t> held = fixedNodes(tissue);
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
     if (byForce(tissue.patches()[patch])) continue;
     for (const int node : hardNodes(tissue.patches()[patch])) held[at(node)] = 1;
@@ -256,10 +264,7 @@ void ToolPatches::findOutwardNormals(const Tissue& tissue) {
 }
 
 void ToolPatches::holdNamedLoads(const Tissue& tissue) {
-  taken_.assign(displacement_.size(), 0);
-  for (int node = 0; node < cells_->nodeCount(); ++node) {
-    if (isFixed(*lattice_, *cells_, node)) taken_[at(node)] = 1;
-  }
+  taken_ = fixedNodes(tissue);
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
     for (const int node : tissue.patches()[patch].nodes) taken_[at(node)] = 1;
   }

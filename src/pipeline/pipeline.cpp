@@ -15,7 +15,7 @@ constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
 constexpr int kMoreSolves = 2;     // where one ended on its way
 constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
 constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
-constexpr double kMostLeap = 10.0;       // of the spacing, of a node in a load step
+constexpr double kMostLeap = 10.0;       // of the spacing, of a surface's node in a load step
 constexpr double kThrough = 0.25;        // of the spacing: how deep a link is that goes through
 constexpr double kThroughTool = 0.25;    // of the link's thickness, likewise, whichever is less
 
@@ -133,8 +133,8 @@ bool Pipeline::isLate() const {
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
 // with a rigid patch; for the others the solver asks for the contacts itself (contactRound). False:
-// no shape could follow, all is as it was.
-bool Pipeline::advance(const RobotPose& pose) {
+// no shape could follow, all is as it was. `insists`: on a shape that did not converge, too.
+bool Pipeline::advance(const RobotPose& pose, bool insists) {
   ++report_.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   pose_ = pose;
@@ -150,13 +150,7 @@ bool Pipeline::advance(const RobotPose& pose) {
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
     if (!any_rigid_) good.shape = tissue_.shape();
     follow(std::move(patches));  // loading patches -> solve
-    for (int more = 0; !any_rigid_ && more < kMoreSolves && isUnsettled() && !isLost(good);
-         ++more) {
-      unfinished_ = isOutOfTime();
-      if (unfinished_) break;
-      follow(patchesOfTools());
-    }
-    if (!any_rigid_ && isLost(good)) {
+    if (!any_rigid_ && !settlesFrom(good, insists)) {
       goBackTo(good);
       return false;
     }
@@ -171,6 +165,18 @@ bool Pipeline::advance(const RobotPose& pose) {
   return true;
 }
 
+// Goes on where the solve ended on its way. False: no shape followed.
+bool Pipeline::settlesFrom(const Checkpoint& good, bool insists) {
+  for (int more = 0;; ++more) {
+    const bool converged = tissue_.lastReport().status != SolveStatus::kUnconverged;
+    if (isLost(good) || (!converged && !insists)) return false;
+    if (more == kMoreSolves || !isUnsettled()) return true;
+    unfinished_ = isOutOfTime();
+    if (unfinished_) return true;
+    follow(patchesOfTools());
+  }
+}
+
 void Pipeline::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(report_.solve_ms);
   tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
@@ -181,8 +187,11 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
 bool Pipeline::isLost(const Checkpoint& good) const {
   const std::vector<Vec3>& now = tissue_.state().displacement;
   double farthest = 0.0;
-  for (std::size_t node = 0; node < now.size(); ++node) {
-    farthest = std::max(farthest, (now[node] - good.shape.displacement[node]).squaredNorm());
+  for (const auto& carriers : tissue_.surface().carriers) {
+    for (const NodeWeight& carrier : carriers) {
+      const Vec3 way = now[at(carrier.node)] - good.shape.displacement[at(carrier.node)];
+      farthest = std::max(farthest, way.squaredNorm());
+    }
   }
   const double leap = kMostLeap * tissue_.lattice().spacing();
   if (farthest > leap * leap && !tissue_.isUntouched()) return true;

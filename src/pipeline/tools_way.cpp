@@ -85,9 +85,10 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     if (!whole && any_rigid_) break;
     const double there = whole ? gone + stride : steps;
     const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
-    const bool followed = advance(on_the_way);
+    const bool is_short = std::min(longest, there - gone) <= kShortest;
+    const bool followed = advance(on_the_way, is_short);
     if (!followed) {
-      if (std::min(longest, there - gone) <= kShortest) {
+      if (is_short) {
         report_.lost = true;
         return came();
       }

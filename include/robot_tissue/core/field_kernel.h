@@ -39,9 +39,12 @@ void addWhereFree(const double* motion, const double* free, double share, double
 void addShare(const float* other, float share, float* to, int count);
 void addShare(const double* other, double share, double* to, int count);
 
-// difference = a - b.
-void subtract(const float* a, const float* b, float* difference, int count);
-void subtract(const double* a, const double* b, double* difference, int count);
+// difference = share * (a - b).
+void subtract(const float* a, const float* b, float share, float* difference, int count);
+void subtract(const double* a, const double* b, double share, double* difference, int count);
+
+void meanOf(const float* a, const float* b, float* mean, int count);
+void meanOf(const double* a, const double* b, double* mean, int count);
 
 // Of a row of coarse nodes, 1 + (count - 1) / 2 or one more: the nodes between them.
 void spreadRow(const float* coarse, float* fine, int count);

@@ -94,15 +94,8 @@ class LatticeLevels {
     Field<Real> wanted;        // their forces
     std::vector<GroupVector> wanted_of_groups;
   };
-  // What holds the nodes, as numbers that are compared.
-  struct Bond {
-    std::vector<std::uint8_t> held;
-    std::vector<double> springs;
-
-    bool operator==(const Bond& other) const {
-      return held == other.held && springs == other.springs;
-    }
-  };
+  // What patches hold, as numbers that are compared; empty: not known.
+  using Bond = std::vector<double>;
 
   // lattice_levels.cpp
   void openAll(const ElasticModel& model, const CellSet& cells);
@@ -149,8 +142,10 @@ class LatticeLevels {
   Vec3 valueAt(std::size_t level, const std::array<int, 3>& place) const;
   void writeBeyond(std::vector<Vec3>& displacement) const;
   void putOpen(std::size_t level, const LevelGrid& grid, Field<Real>& all) const;
-  void writeRows(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
-                 std::vector<Vec3>& displacement) const;
+  void writePlanes(const LevelTransfer<Real>& transfer, const Field<Real>& coarse,
+                   std::vector<Vec3>& displacement) const;
+  void writePlanes(const LevelTransfer<Real>& transfer, const Field<Real>& coarse, int first,
+                   int end, std::vector<Vec3>& displacement) const;
   void placeRims();
 
   const Lattice& lattice_;

@@ -24,10 +24,11 @@ class LevelTransfer {
   // Of the coarse nodes in the box.
   void restrictDisplacement(const Field<Real>& fine, const GridBox& box, Field<Real>& coarse) const;
   // The coarse motion, now less start.
-  void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine) const;
-  // Where the coarse nodes have all fine ones, or a row of them.
-  void spread(const Field<Real>& coarse, Field<Real>& fine) const;
-  void spreadTo(const std::vector<Real>& coarse, int j, int k, Real* row) const;
+  void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine);
+  // Where the coarse nodes have a plane of fine ones, both in the same unit. `between`: room for
+  // coarse nodes.
+  void spreadPlane(const std::vector<Real>& coarse, int k, std::vector<Real>& between,
+                   Real* plane) const;
   // Puts fine nodes where the coarse nodes have them.
   void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
@@ -38,6 +39,7 @@ class LevelTransfer {
   LevelGrid fine_;
   Coarsening to_;
   std::array<int, 3> at_;
+  std::vector<Real> motion_, between_;  // of coarse nodes
 };
 
 extern template class LevelTransfer<float>;

@@ -42,6 +42,7 @@ class PatchHold {
   // Per node: index of the patch by force in which it is hard, -1 = none.
   const std::vector<int>& carriers() const { return carriers_; }
   const std::vector<int>& hardOf(std::size_t patch) const { return hard_[patch]; }
+  int freeNodes() const { return free_nodes_; }  // of which not all is held
   Vec3 freePart(int node, const Vec3& vector) const;
 
   // Adds what rim springs and contacts do to the node.
@@ -81,6 +82,7 @@ class PatchHold {
   const EnergyModel& model_;
   std::shared_ptr<const CellSet> cells_;  // of the last bind
   std::vector<std::uint8_t> held_by_itself_;
+  int free_by_themselves_ = 0, free_nodes_ = 0;
   std::vector<std::uint8_t> held_;
   std::vector<int> carriers_;
   std::vector<std::vector<int>> hard_;  // per patch

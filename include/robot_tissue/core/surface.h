@@ -26,9 +26,9 @@ struct Surface {
 // and half by the ghost, so as the material between them; without ghosts by the own corners alone.
 Surface extractSurface(const Lattice& lattice, const LatticeState& state);
 
-// Deformed vertices (m, tissue frame) for node displacements (m, from rest).
-void deform(const Surface& surface, const std::vector<Vec3>& displacement,
-            std::vector<Vec3>& vertices);
+// Deformed vertices (m, tissue frame) for node displacements (m, from rest). Returns their bounds.
+Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
+           std::vector<Vec3>& vertices);
 
 // What carries the point of a triangle with these weights of its corners: ascending, weights > 0.
 std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric);

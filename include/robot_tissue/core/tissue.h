@@ -125,6 +125,8 @@ class Tissue {
 
   Vec3 forceOfPatches() const;
   SolveReport solve(const std::vector<int>& disturbed);
+  SolveReport solveInRounds(const std::vector<int>& disturbed);
+  double volumeRatio() const;
   void renewContacts();
   void limitWays();
   bool goBack(const std::vector<Vec3>& before);

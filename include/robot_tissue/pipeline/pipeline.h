@@ -148,7 +148,8 @@ class Pipeline {
 
   // pipeline.cpp
   void takeTools(const std::vector<ToolGeometry>& tools);
-  bool advance(const RobotPose& pose);
+  bool advance(const RobotPose& pose, bool insists = true);
+  bool settlesFrom(const Checkpoint& good, bool insists);
   void follow(std::vector<LoadingPatch> patches);
   bool isLost(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
@@ -168,8 +169,8 @@ class Pipeline {
   std::vector<Surroundings> surroundings() const;
   std::vector<double> longestWays();
   double contactShare(const std::vector<Vec3>& before);
-  double shareOutside(double share) const;
-  std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
+  double shareOutside(double share);
+  std::vector<double> depthsIn(const std::vector<Vec3>& vertices);
   bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
