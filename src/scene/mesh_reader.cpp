@@ -12,6 +12,8 @@ bool startsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }
 
+bool isOfPackage(const std::string& address) { return startsWith(address, "package://"); }
+
 TriangleMesh load(const Entry& resource, const std::string& address, const Vec3& scale) {
   try {
     return loadMeshFile(address, scale);
@@ -26,6 +28,12 @@ bool inReach(const TriangleMesh& mesh) {
     if (!(vertex.cwiseAbs().maxCoeff() <= kLargestNumber)) return false;
   }
   return true;
+}
+
+void requireInReach(const Entry& resource, const TriangleMesh& mesh) {
+  if (inReach(mesh)) return;
+  resource.fail("the mesh, scaled, has a coordinate that is not finite or beyond " +
+                numberText(kLargestNumber) + " m, must have none");
 }
 
 }  // namespace
@@ -65,15 +73,21 @@ TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) 
   const Entry resource = map["resource"];
   const std::string address = readResource(resource, scene_folder);
   TriangleMesh mesh = load(resource, address, readScale(map["scale"]));
-  if (!inReach(mesh)) {
-    resource.fail("the mesh, scaled, has a coordinate that is not finite or beyond " +
-                  numberText(kLargestNumber) + " m, must have none");
-  }
+  requireInReach(resource, mesh);
   mesh = welded(mesh);
   if (const auto fault = meshFault(mesh)) {
     resource.fail("the mesh " + *fault + "; must be closed and not intersect itself");
   }
   return facingOutward(std::move(mesh));
+}
+
+void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale) {
+  if (isOfPackage(address)) return;
+  const TriangleMesh mesh = load(resource, address, scale);
+  requireInReach(resource, mesh);
+  const auto fault = meshFault(welded(mesh));
+  if (!fault || startsWith(*fault, "intersects itself")) return;  // a tool may, it is warned of
+  resource.fail("the mesh " + *fault + "; must be closed and have a volume");
 }
 
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh) {

@@ -43,6 +43,7 @@ ToolShape readToolShape(const Entry& entry, const std::string& scene_folder) {
     shape.type = ToolShape::Type::kMesh;
     shape.resource = readResource(map["resource"], scene_folder);
     shape.scale = readScale(map["scale"]);
+    requireToolMesh(map["resource"], shape.resource, shape.scale);
   } else {
     shape.type = type == "sphere" ? ToolShape::Type::kSphere : ToolShape::Type::kCylinder;
     shape.radius = map["radius"].number(Range::positive("m"));

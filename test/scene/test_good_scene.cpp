@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../core/mesh_fixtures.h"
+#include "mesh_files.h"
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/scene/value_text.h"
 #include "scene_texts.h"
@@ -255,7 +257,7 @@ TEST_F(SceneFolder, EveryModelHasAMethodOfItsOwnUnlessTold) {
 }
 
 TEST_F(SceneFolder, MeshesAreFoundFromTheScenesFolder) {
-  write("tip.stl", "solid");
+  write("tip.stl", stlText(boxMesh(Vec3::Zero(), Vec3::Ones())));
   SceneSource source;
   source.name = "block.yaml";
   source.user = SceneUser::kNode;

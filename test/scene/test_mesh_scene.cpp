@@ -98,5 +98,28 @@ TEST_F(BallScene, PatchesShareOnlyNodesThatThereAre) {
       {"steps[0].load.patches[1] = {name: side", "shares nodes with standing patch punch"});
 }
 
+TEST_F(BallScene, ToolsMeshWithoutAnInsideIsRefusedByItsKey) {
+  const std::string steps = "steps:";
+  const auto tool = [](const std::string& file) {
+    return "tools:\n  - {name: probe, shapes: [{type: mesh, resource: " + file + "}]}\nsteps:";
+  };
+  TriangleMesh open = boxMesh(Vec3::Zero(), Vec3::Ones());
+  TriangleMesh flat = open;
+  open.triangles.pop_back();
+  for (Vec3& vertex : flat.vertices) vertex.z() = 0.0;
+  writeFile("tool.stl", stlText(boxMesh(Vec3::Zero(), Vec3::Ones())));
+  writeFile("open.stl", stlText(open));
+  writeFile("flat.stl", stlText(flat));
+  writeFile("hollow.stl", "solid made\nendsolid made\n");
+  EXPECT_NO_THROW(parsed(replaced(kBallScene, steps, tool("tool.stl"))));
+  expectRefusal(
+      steps, tool("open.stl"),
+      {"tools[0].shapes[0].resource = open.stl: the mesh is not closed", "must be closed"});
+  expectRefusal(
+      steps, tool("flat.stl"),
+      {"tools[0].shapes[0].resource = flat.stl: the mesh has no volume", "must be closed"});
+  expectRefusal(steps, tool("hollow.stl"), {"tools[0].shapes[0].resource = hollow.stl", "must be"});
+}
+
 }  // namespace
 }  // namespace robot_tissue

@@ -87,6 +87,10 @@ Vec3 readScale(const Entry& entry);
 // Shape of type mesh: loaded, joined at its corners, closed, facing outwards.
 TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder);
 
+// Refuses a tool's mesh that is not closed, has no volume or cannot be read. One of a package is
+// left to those who make a tool of it: a scene may be read where the package is not.
+void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale);
+
 // Refuses a spacing larger than the mesh's smallest extent.
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh);
 
