@@ -93,7 +93,10 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = driven(pose);
   report_.changed = touched_;
-  report_.too_fast = report_.was_inside = report_.torn_off = report_.lost = report_.late = false;
+  report_.too_fast = report_.lost = report_.late = false;
+  for (auto* tools : {&report_.behind, &report_.jumped, &report_.were_inside, &report_.torn_off}) {
+    tools->clear();
+  }
   report_.contact_ms = report_.solve_ms = 0.0;
   report_.substeps = 0;
   const bool stands = standsStill(goal) && !touched_;
@@ -124,6 +127,7 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   if (report_.lost) leaveStuck(goal);
   unhook(goal);
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
+  if (report_.too_fast || report_.lost) report_.behind = toolsBehind();
   describeTools();
 }
 
@@ -270,6 +274,7 @@ bool Pipeline::anyToolIn(const std::vector<LoadingPatch>& patches) const {
 void Pipeline::carryOn() {
   if (!tissue_.isUntouched()) {
     if (!advance(*last_pose_)) report_.lost = true;
+    if (report_.lost) report_.behind = toolsBehind();
   } else {
     const Stopwatch watch(report_.solve_ms);
     tissue_.settle();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "tool_list.h"
 
 namespace robot_tissue {
 namespace {
@@ -83,7 +84,8 @@ void Pipeline::tearOff() {
     if (tools_[tool].role != ToolConfig::Role::kGrasper || most <= 0.0) continue;
     if (!patches_.holds(static_cast<int>(tool)) || answerOf(tool).force.norm() <= most) continue;
     patches_.letGo(static_cast<int>(tool));
-    report_.torn_off = torn = true;
+    torn = true;
+    addOnce(tool, report_.torn_off);
   }
   if (!torn) return;
   patches_.ride(pose_, tissue_);

@@ -21,6 +21,7 @@ ToolReport Pipeline::describe(std::size_t tool) const {
   report.offset = drives_[tool].force ? Vec3(drives_[tool].way * drives_[tool].force->normalized())
                                       : Vec3(Vec3::Zero());
   report.jaws_overlap = jawsOverlap(tool);
+  report.max_penetration = deepestPointOf(tool);
   std::set<int> nodes;
   for (const int node : patches_.nodes(index)) {
     report.point += tissue_.nodePosition(node);
@@ -52,12 +53,18 @@ ToolReport Pipeline::describe(std::size_t tool) const {
     report.torque_on_tool *= most / force.norm();
     report.force_on_tool *= most / force.norm();
   }
-  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-    const double depth = finder_.penetration(link, (report_.lost ? asked_ : pose_).links[link],
-                                             tissue_.surface(), tissue_.vertices());
-    report.max_penetration = std::max(report.max_penetration, depth);
-  }
   return report;
+}
+
+// Also of a tool that touches nothing that gives way (m).
+double Pipeline::deepestPointOf(std::size_t tool) const {
+  const RobotPose& pose = report_.lost ? asked_ : pose_;
+  double deepest = 0.0;
+  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    deepest = std::max(deepest, finder_.penetration(link, pose.links[link], tissue_.surface(),
+                                                    tissue_.vertices()));
+  }
+  return deepest;
 }
 
 bool Pipeline::jawsOverlap(std::size_t tool) const {

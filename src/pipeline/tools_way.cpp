@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/pipeline/pipeline.h"
+#include "tool_list.h"
 
 namespace robot_tissue {
 namespace {
@@ -154,6 +154,7 @@ void Pipeline::goBackTo(const RobotPose& pose) {
   }
   if (shortest > kMostLoadSteps) {
     report_.too_fast = true;
+    report_.jumped = farFromLast(pose);
     startAnew(pose);
   }
 }
@@ -203,7 +204,7 @@ void Pipeline::leaveStuck(const RobotPose& pose) {
   bool any = false;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     const RobotPose moved = withTool(tool, pose, from);
-    if (stepsBetween(from, moved) == 0.0 || !wayOut(tool, pose).isZero()) continue;
+    if (stepsBetween(from, moved) == 0.0 || isInTissue(tool, pose)) continue;
     any = true;
     from = moved;
     letGoOf(tool);
@@ -228,6 +229,7 @@ void Pipeline::unhook(const RobotPose& pose) {
     any = true;
     without = withTool(tool, complete({}), without);
     letGoOf(tool);
+    addOnce(tool, report_.were_inside);
   }
   if (!any) return;
   last_pose_ = without;
@@ -237,7 +239,6 @@ void Pipeline::unhook(const RobotPose& pose) {
     startAnew(pose);
   }
   last_pose_ = walk(pose);
-  report_.was_inside = true;
 }
 
 // Away from where the tissue is at rest, and through its surface.
@@ -270,54 +271,28 @@ RobotPose Pipeline::withTool(std::size_t tool, const RobotPose& pose, RobotPose 
   return others;
 }
 
-// Draws the tool back, step by step, until it is out of the tissue.
-void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
-  const Vec3 way = wayOut(tool, pose);
-  if (way.isZero()) return;
-  report_.was_inside = true;
-  for (int step = 0; step < kMostLoadSteps && !wayOut(tool, pose).isZero(); ++step) {
-    for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-      pose.links[link].translation() += tissue_.stepLength() * way;
-    }
-  }
-}
-
-// Unit direction out of the tissue for a tool that is in it; zero for one that is outside. Against
-// the contacts' normals; for a tool wholly beneath the surface, to the nearest side.
-Vec3 Pipeline::wayOut(std::size_t tool, const RobotPose& pose) {
-  RobotPose alone = complete({});
-  bool beneath = false;
-  Vec3 center = Vec3::Zero();
+bool Pipeline::isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const {
+  const double still = kStandsStill * tissue_.lattice().spacing();
   for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-    if (isAway(pose.links[link])) return Vec3::Zero();
-    alone.links[link] = pose.links[link];
-    if (beneath || finder_.reach(link) <= 0.0) continue;
-    center = pose.links[link] * finder_.center(link);
-    beneath = encloses(tissue_.vertices(), tissue_.surface().triangles, center);
+    if (longestWay(here.links[link], there.links[link], finder_.reach(link)) > still) return false;
   }
-  Vec3 way = Vec3::Zero();
-  for (const Contact& contact :
-       finder_.find(alone, tissue_.surface(), tissue_.vertices(), 0.0).contacts) {
-    if (contact.tool == static_cast<int>(tool)) way -= contact.depth_m * contact.normal;
-  }
-  if (way.norm() > 0.0) return way.normalized();
-  if (!beneath) return Vec3::Zero();
-  const Box box = tissue_.lattice().bounds();
-  const Vec3 below = center - box.min, above = box.max - center;
-  Eigen::Index low = 0, high = 0;
-  const bool downwards = below.minCoeff(&low) < above.minCoeff(&high);
-  return downwards ? Vec3(-Vec3::Unit(low)) : Vec3(Vec3::Unit(high));
+  return true;
 }
 
 bool Pipeline::standsStill(const RobotPose& pose) const {
   if (!last_pose_) return false;
-  const double still = kStandsStill * tissue_.lattice().spacing();
-  for (std::size_t link = 0; link < pose.links.size(); ++link) {
-    if (longestWay(asked_.links[link], pose.links[link], finder_.reach(link)) > still) {
-      return false;
-    }
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (!isAt(tool, asked_, pose)) return false;
   }
   return true;
+}
+
+std::vector<std::size_t> Pipeline::toolsBehind() const {
+  std::vector<std::size_t> behind;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (!isAt(tool, pose_, asked_)) behind.push_back(tool);
+  }
+  return behind;
 }
 
 std::optional<StillPose> Pipeline::stillPose() const {
@@ -341,6 +316,19 @@ double Pipeline::stepOf(std::size_t link) const {
 
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return last_pose_ ? stepsBetween(*last_pose_, driven(pose)) : 0.0;
+}
+
+std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
+  return last_pose_ ? farFromLast(driven(pose)) : std::vector<std::size_t>();
+}
+
+std::vector<std::size_t> Pipeline::farFromLast(const RobotPose& goal) const {
+  std::vector<std::size_t> far;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    const RobotPose alone = withTool(tool, goal, *last_pose_);
+    if (stepsBetween(*last_pose_, alone) > kMostLoadSteps) far.push_back(tool);
+  }
+  return far;
 }
 
 double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/pipeline/step_remarks.h"
 
 namespace robot_tissue {
 namespace {
@@ -43,6 +44,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   diagnostics_.setHardwareID("none");
   diagnostics_.add(frequency_);
   diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
+  diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
   timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
                                      [this](const ros::TimerEvent&) { onTimer(); });
@@ -99,6 +101,7 @@ void TissueNode::update(PoseLookUp look_up) {
     return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});
   }
   try {
+    if (waitsAfterJump()) return;
     follow();
   } catch (const InputError& error) {
     last_look_up_.status = PoseLookUp::Status::kNoTransform;
@@ -107,11 +110,30 @@ void TissueNode::update(PoseLookUp look_up) {
   }
 }
 
+// A pose that a tool jumped to may be a wrong one: while tools touch, it has to last before the
+// good shape is given up for it.
+bool TissueNode::waitsAfterJump() {
+  const auto jumped = pipeline_.tissue().isUntouched() ? std::vector<std::size_t>()
+                                                       : pipeline_.jumpsTo(last_look_up_.pose);
+  const ros::Time now = last_look_up_.stamp;
+  if (jumped.empty() || now < jumped_at_) jumped_at_ = ros::Time();
+  if (jumped.empty()) return false;
+  if (jumped_at_.isZero()) jumped_at_ = now;
+  if ((now - jumped_at_).toSec() >= parameters_.tf_timeout_s) return false;
+  last_look_up_.status = PoseLookUp::Status::kStale;
+  last_look_up_.message = namesOf(jumped, pipeline_.tools()) +
+                          " jumped, farther than is followed: the last good shape stays, until "
+                          "the pose has lasted for " +
+                          std::to_string(parameters_.tf_timeout_s) + " s (~tf_timeout)";
+  report({"TOO_FAST", last_look_up_.message});
+  return true;
+}
+
 // At a good pose.
 void TissueNode::follow() {
   const StepReport& step = pipeline_.step(last_look_up_.pose);
   status_ = statusOf(step);
-  if (step.too_fast || step.was_inside || step.torn_off) {
+  if (step.too_fast || !step.were_inside.empty() || !step.torn_off.empty()) {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   }
   publisher_.publish(pipeline_, last_look_up_.stamp, status_);
@@ -157,65 +179,6 @@ void TissueNode::report(const NodeStatus& status) {
   if (status.status != status_.status) ROS_WARN_STREAM(status.status << ": " << status.message);
   status_ = status;
   publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_);
-}
-
-// The first word that applies; the message has all.
-NodeStatus TissueNode::statusOf(const StepReport& report) const {
-  NodeStatus status;
-  const auto say = [&status](const std::string& word, const std::string& message) {
-    if (status.status == "OK") status.status = word;
-    status.message += (status.message.empty() ? "" : "; ") + message;
-  };
-  if (report.was_inside) {
-    say("INSIDE", "a tool appeared inside the tissue and was walked in from outside");
-  }
-  if (report.torn_off) {
-    say("TORN_OFF", "a grasper was pulled harder than it holds (grasp.max_force) and lost it");
-  }
-  if (report.too_fast) {
-    say("TOO_FAST", "a tool moved further than could be followed in time: catching up");
-  }
-  if (report.lost) {
-    say("UNCONVERGED",
-        "no shape follows a tool, as between tools that meet: the last good one stays");
-  }
-  const SolveReport& solve = pipeline_.tissue().lastReport();
-  if (report.late) {
-    say("LATE", "the update ran out of its budget (solver.max_ms) and is carried on");
-  } else if (solve.status == SolveStatus::kUnconverged) {
-    say("UNCONVERGED", "a layer or patch did not come to balance");
-  } else if (solve.status == SolveStatus::kInverted) {
-    say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted");
-  }
-  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
-    if (!report.tools[tool].jaws_overlap) continue;
-    say("OK", "the jaws of '" + pipeline_.tools()[tool].name + "' touch or overlap");
-  }
-  return status;
-}
-
-void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
-  if (!robot_is_known_) {
-    status.summary(DiagnosticStatus::ERROR, "no robot description");
-  } else if (last_look_up_.status == PoseLookUp::Status::kOk) {
-    status.summary(DiagnosticStatus::OK, "fresh");
-  } else {
-    status.summary(DiagnosticStatus::ERROR, last_look_up_.message);
-  }
-  status.add("age of the pose (s)", last_look_up_.age_s);
-}
-
-void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  using diagnostic_msgs::DiagnosticStatus;
-  const SolveReport& solve = pipeline_.tissue().lastReport();
-  const bool good = solve.status == SolveStatus::kOk;
-  status.summary(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN, toString(solve.status));
-  status.add("solve (ms)", pipeline_.report().solve_ms);
-  status.add("contact (ms)", pipeline_.report().contact_ms);
-  status.add("residual", solve.residual);
-  status.add("error estimate", solve.error_estimate);
-  status.add("active nodes", solve.active_nodes);
 }
 
 }  // namespace robot_tissue

@@ -130,7 +130,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
 // Once a step.
 void Runner::remark(const std::string& text) {
   const std::string line = pathOf(scene_, step_) + ": " + text;
-  if (result_.remarks.empty() || result_.remarks.back() != line) result_.remarks.push_back(line);
+  std::vector<std::string>& all = result_.remarks;
+  if (std::find(all.begin(), all.end(), line) == all.end()) all.push_back(line);
 }
 
 void Runner::keepTool(std::size_t tool, int increment) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/scene/value_text.h"
 #include "runner.h"
 
@@ -91,9 +92,6 @@ void Runner::endPush(std::size_t tool) {
 // The tissue follows the tools to where they stand now.
 void Runner::follow() {
   update();
-  if (pipeline_.report().was_inside) {
-    remark("the tool appears inside the tissue, it is walked in from outside");
-  }
   followPushes();
 }
 
@@ -112,11 +110,8 @@ void Runner::update() {
   updates_.solve_ms += report.solve_ms;
   updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
   if (report.too_fast) updates_.worst = std::max(updates_.worst, SolveStatus::kLate);
-  if (report.lost) {
-    updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
-    remark("no shape follows a tool, the last good one stays");
-  }
-  if (report.torn_off) remark("a grasper lost what it held, the pull was beyond grasp.max_force");
+  if (report.lost) updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
+  for (const StepRemark& of_step : remarksOn(pipeline_)) remark(of_step.text);
 }
 
 void Runner::judgePush(std::size_t tool) {

@@ -151,7 +151,7 @@ class RandomVisits {
                  "displaced %.2f mm%s%s\n",
                  motion, report.substeps, took.count(), report.contact_ms, report.solve_ms,
                  solve.iterations, toString(solve.status), solve.inverted_cells, force, 1e3 * depth,
-                 1e3 * displaced(), report.was_inside ? ", was inside" : "",
+                 1e3 * displaced(), !report.were_inside.empty() ? ", was inside" : "",
                  report.lost ? ", lost" : "");
   }
 

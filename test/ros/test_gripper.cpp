@@ -55,8 +55,15 @@ TEST_F(Gripper, JawsInEachOtherAreReported) {
   moveTo(0.05, -0.001);
   EXPECT_TRUE(waitFor([this] { return state_->message.find("forceps") != std::string::npos; }));
   EXPECT_EQ(state_->status, "OK");
+  const auto is_diagnosed = [this] {
+    const auto& tools = diagnostics_["tissue: tools"];
+    return tools.message.find("the jaws of 'forceps'") != std::string::npos &&
+           tools.level == diagnostic_msgs::DiagnosticStatus::WARN;
+  };
+  EXPECT_TRUE(waitFor(is_diagnosed));
   moveTo(0.05, kOpen);
   EXPECT_TRUE(waitFor([this] { return state_->message.empty(); }));
+  EXPECT_TRUE(waitFor([this] { return diagnostics_["tissue: tools"].message == "followed"; }));
 }
 
 TEST_F(Gripper, JawThatVanishesIsNamed) {

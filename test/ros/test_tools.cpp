@@ -196,22 +196,48 @@ TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {
   EXPECT_GT(follow().wrench.force.z, 0.1);
 }
 
-TEST_F(Tools, JumpIsReported) {
+// It may be a wrong pose: the shape stays until it has lasted.
+TEST_F(Tools, JumpIsReportedAndFollowedWhenItLasts) {
   places_["probe"] = pressed(0.004);
   EXPECT_GT(follow().wrench.force.z, 0.1);
+  ASSERT_TRUE(waitForMarkers([this] { return markers_.count("surface") > 0; }));
   said_.clear();
   places_["probe"] = Eigen::Vector3d(5.0, 5.0, 5.0);
+  ASSERT_TRUE(waitFor([this] { return said_.count("TOO_FAST") > 0; }));
+  EXPECT_NE(said_["TOO_FAST"].find("'probe' jumped"), std::string::npos) << said_["TOO_FAST"];
+  EXPECT_LT(state_->force_of_tools.z, -0.1);  // of the shape that stays
   EXPECT_EQ(follow().wrench.force.z, 0.0);
-  EXPECT_TRUE(waitFor([this] { return said_.count("TOO_FAST") > 0 && state_->status == "OK"; }));
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST_F(Tools, JumpThatDoesNotLastLeavesNoTrace) {
+  places_["probe"] = pressed(0.004);
+  const auto pressed_in = follow().wrench;
+  said_.clear();
+  places_["probe"] = Eigen::Vector3d(5.0, 5.0, 5.0);
+  ASSERT_TRUE(waitFor([this] { return said_.count("TOO_FAST") > 0; }));
+  places_["probe"] = pressed(0.004);
+  EXPECT_TRUE(follow().wrench == pressed_in);
+  EXPECT_EQ(said_.count("INSIDE"), 0U);
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
 }
 
 TEST_F(Tools, ToolThatAppearsInsideIsReportedAndWalkedIn) {
   places_["probe"] = pressed(0.004);
   const double force = follow().wrench.force.z;
   said_.clear();
+  diagnostics_.clear();
   ASSERT_TRUE(reset());
   EXPECT_NEAR(follow().wrench.force.z, force, 0.1 * force);
   EXPECT_TRUE(waitFor([this] { return said_.count("INSIDE") > 0 && state_->status == "OK"; }));
+  EXPECT_NE(said_["INSIDE"].find("'probe'"), std::string::npos) << said_["INSIDE"];
+  const auto is_diagnosed = [this] {
+    const auto& tools = diagnostics_["tissue: tools"];
+    return tools.message.find("'probe' appeared inside") != std::string::npos &&
+           tools.level == diagnostic_msgs::DiagnosticStatus::WARN;
+  };
+  EXPECT_TRUE(waitFor(is_diagnosed));
+  EXPECT_TRUE(waitFor([this] { return diagnostics_["tissue: tools"].message == "followed"; }));
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST(ToolSteps, AWayOfTooManyLoadStepsIsRefused) {
 TEST(ToolSteps, AToolThatAppearsInsideIsWalkedInWithARemark) {
   const RunResult inside =
       run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(0.003), sphereAt(0.003), 1));
-  EXPECT_TRUE(hasRemark(inside, "steps[0].move: ", "walked in from outside"));
+  EXPECT_TRUE(hasRemark(inside, "steps[0].move: 'probe' ", "walked in from outside"));
   EXPECT_EQ(inside.remarks.size(), 1U);
   const RunResult outside =
       run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.001), sphereAt(0.003), 1));
@@ -140,6 +140,22 @@ TEST(ToolSteps, AGraspOfNothingIsRefused) {
       " to: {xyz: [0.05, 0.05, 0.19], opening: 0.01}, increments: 1}\n"
       "  - grasp: {tool: forceps}\n");
   EXPECT_EQ(message.rfind("steps[1].grasp: tool 'forceps': ", 0), 0U) << message;
+}
+
+// The spheres' middles are the opening apart.
+TEST(ToolSteps, JawsThatMeetAreNamedOnceAStep) {
+  const std::string forceps =
+      "tools: [{name: forceps, role: grasper, jaws: [{shapes: [{type: sphere, radius: 0.002}]},"
+      " {shapes: [{type: sphere, radius: 0.002}]}]}]\nsteps:\n";
+  const auto closed_to = [&](const std::string& opening) {
+    return run(block() + forceps + "  - move: {tool: forceps, from: {xyz: [0.05, 0.05, 0.2]," +
+               " opening: 0.01}, to: {xyz: [0.05, 0.05, 0.2], opening: " + opening +
+               "}, increments: 4}\n");
+  };
+  EXPECT_TRUE(closed_to("0.0045").remarks.empty());
+  const RunResult in_each_other = closed_to("0.0");
+  EXPECT_TRUE(hasRemark(in_each_other, "steps[0].move: ", "the jaws of 'forceps'"));
+  EXPECT_EQ(in_each_other.remarks.size(), 1U);
 }
 
 TEST(ToolSteps, ToolsThatNoStepPlacesPlayNoPart) {

@@ -43,14 +43,17 @@ struct ToolReport {
   Vec3 offset = Vec3::Zero();  // of a tool that a force drives, from its pose, tissue frame (m)
 };
 
+// Lists of tools are of their numbers, each once.
 struct StepReport {
-  bool changed = false;     // false: the shape is as it was
-  bool too_fast = false;    // the tools moved further than could be followed in time
-  bool was_inside = false;  // a tool appeared inside the tissue and was walked in from outside
-  bool torn_off = false;    // a grasper lost what it held
-  bool lost = false;        // no shape could follow the tools: the last good one stays
-  bool late = false;        // it ran out of its time before the shape was in balance
-  int substeps = 0;         // load steps that the way took
+  bool changed = false;             // false: the shape is as it was
+  bool too_fast = false;            // the tools moved further than could be followed in time
+  bool lost = false;                // no shape could follow the tools: the last good one stays
+  bool late = false;                // it ran out of its time before the shape was in balance
+  std::vector<std::size_t> behind;  // where too_fast or lost: tools not yet at their pose
+  std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
+  std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
+  std::vector<std::size_t> torn_off;     // graspers that lost what they held
+  int substeps = 0;                      // load steps that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
   std::vector<ToolReport> tools;  // in the order of the tools
@@ -93,6 +96,8 @@ class Pipeline {
   // step is a jump, too fast to be followed.
   double stepsTo(const RobotPose& pose) const;
   static constexpr int kMostLoadSteps = 400;
+  // The tools that such a jump to the pose takes.
+  std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
   // Time that a step may take (s), after which it leaves the rest of the way to the next one. With
   // solver.max_ms it begins no further solve then either, and is late: the next step goes on from
   // there, also when the tools stand.
@@ -198,14 +203,25 @@ class Pipeline {
   void startAnew(const RobotPose& pose);
   void lieDown();
   void comeAndGo(const RobotPose& pose);
-  void drawOut(std::size_t tool, RobotPose& pose);
-  Vec3 wayOut(std::size_t tool, const RobotPose& pose);
   bool standsStill(const RobotPose& pose) const;
+  bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
+  std::vector<std::size_t> toolsBehind() const;
+  std::vector<std::size_t> farFromLast(const RobotPose& goal) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& pose) const;
   bool passesBy(const RobotPose& from, const RobotPose& to, double steps) const;
   void passTo(const RobotPose& pose);
   double stepOf(std::size_t link) const;
+
+  // tool_exits.cpp
+  RobotPose moved(std::size_t tool, const Vec3& way, RobotPose pose) const;
+  ContactSet overlapOf(std::size_t tool, const RobotPose& pose) const;
+  std::optional<Vec3> middleBeneath(std::size_t tool, const RobotPose& pose) const;
+  bool isInTissue(std::size_t tool, const RobotPose& pose) const;
+  std::vector<Vec3> waysOut(std::size_t tool, const RobotPose& pose) const;
+  std::optional<int> stepsOut(std::size_t tool, const RobotPose& pose, const Vec3& way,
+                              int most) const;
+  void drawOut(std::size_t tool, RobotPose& pose);
 
   // tool_actions.cpp
   void grasp();
@@ -218,6 +234,7 @@ class Pipeline {
   // tool_reports.cpp
   void describeTools();
   ToolReport describe(std::size_t tool) const;
+  double deepestPointOf(std::size_t tool) const;
   bool jawsOverlap(std::size_t tool) const;
   PatchAnswer answerOf(std::size_t tool) const;
 

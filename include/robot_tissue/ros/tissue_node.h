@@ -16,10 +16,12 @@
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/tissue_publisher.h"
@@ -40,12 +42,15 @@ class TissueNode {
   void tellStill(const ros::Time& stamp);
   bool isStill() const;
   void update(PoseLookUp look_up);
+  bool waitsAfterJump();
   void follow();
   bool robotIsKnown();
   void settleFromRest();
   void report(const NodeStatus& status);
-  NodeStatus statusOf(const StepReport& report) const;
+  // node_status.cpp
+  NodeStatus statusOf(const StepReport& report);
   void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -74,7 +79,10 @@ class TissueNode {
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
   bool ticks_seldom_ = false;
+  ros::Time jumped_at_;  // stamp of the first pose after a jump that is not followed yet
   NodeStatus status_;
+  std::map<StepRemark::Kind, std::string> tools_said_;  // since the diagnostics were last told
+  bool was_late_ = false;                               // likewise
   diagnostic_updater::Updater diagnostics_;
   double lowest_rate_hz_ = 0.0;
   double highest_rate_hz_ = 0.0;

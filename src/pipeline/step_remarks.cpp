@@ -1,0 +1,54 @@
+#include "robot_tissue/pipeline/step_remarks.h"
+
+namespace robot_tissue {
+
+std::string namesOf(const std::vector<std::size_t>& numbers,
+                    const std::vector<ToolGeometry>& tools) {
+  if (numbers.empty()) return "a tool";
+  std::string names;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) names += i + 1 < numbers.size() ? ", " : " and ";
+    names += "'" + tools[numbers[i]].name + "'";
+  }
+  return names;
+}
+
+std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
+  using Kind = StepRemark::Kind;
+  const StepReport& report = pipeline.report();
+  std::vector<StepRemark> remarks;
+  const auto names = [&](const auto& numbers) { return namesOf(numbers, pipeline.tools()); };
+  if (!report.were_inside.empty()) {
+    remarks.push_back({Kind::kInside, names(report.were_inside) +
+                                          " appeared inside the tissue: walked in from outside"});
+  }
+  if (!report.torn_off.empty()) {
+    remarks.push_back({Kind::kTornOff, names(report.torn_off) +
+                                           " lost the tissue: pulled harder than it holds "
+                                           "(grasp.max_force)"});
+  }
+  if (!report.jumped.empty()) {
+    remarks.push_back(
+        {Kind::kTooFast,
+         names(report.jumped) + " jumped, farther than is followed: the tools come in anew"});
+  }
+  if (report.too_fast && (report.jumped.empty() || !report.behind.empty())) {
+    remarks.push_back({Kind::kTooFast, names(report.behind) +
+                                           " moved further than could be followed in time: "
+                                           "catching up"});
+  }
+  if (report.lost) {
+    remarks.push_back({Kind::kLost, "no shape follows " + names(report.behind) +
+                                        ", as between tools that meet: the last good one stays"});
+  }
+  std::vector<std::size_t> jaws_meet;
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    if (report.tools[tool].jaws_overlap) jaws_meet.push_back(tool);
+  }
+  if (!jaws_meet.empty()) {
+    remarks.push_back({Kind::kJawsMeet, "the jaws of " + names(jaws_meet) + " touch or overlap"});
+  }
+  return remarks;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,104 @@
+// TissueNode: how it is, in the words of its state and of the diagnostics.
+#include <string>
+
+#include "robot_tissue/pipeline/step_remarks.h"
+#include "robot_tissue/ros/tissue_node.h"
+
+namespace robot_tissue {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+// Of TissueState.msg. Jaws that meet are no fault by themselves: so do those that close on nothing.
+std::string wordOf(StepRemark::Kind kind) {
+  switch (kind) {
+    case StepRemark::Kind::kInside:
+      return "INSIDE";
+    case StepRemark::Kind::kTornOff:
+      return "TORN_OFF";
+    case StepRemark::Kind::kTooFast:
+      return "TOO_FAST";
+    case StepRemark::Kind::kLost:
+      return "UNCONVERGED";
+    case StepRemark::Kind::kJawsMeet:
+      break;
+  }
+  return "OK";
+}
+
+void say(const std::string& word, const std::string& message, NodeStatus& status) {
+  if (status.status == "OK") status.status = word;
+  status.message += (status.message.empty() ? "" : "; ") + message;
+}
+
+}  // namespace
+
+// The first word that applies; the message has all. What is said of the tools is kept for the
+// diagnostics, which come seldom.
+NodeStatus TissueNode::statusOf(const StepReport& report) {
+  NodeStatus status;
+  for (const StepRemark& remark : remarksOn(pipeline_)) {
+    say(wordOf(remark.kind), remark.text, status);
+    tools_said_[remark.kind] = remark.text;
+  }
+  const SolveReport& solve = pipeline_.tissue().lastReport();
+  if (report.late) {
+    say("LATE", "the update ran out of its budget (solver.max_ms) and is carried on", status);
+  } else if (solve.status == SolveStatus::kUnconverged) {
+    say("UNCONVERGED", "a layer or patch did not come to balance", status);
+  } else if (solve.status == SolveStatus::kInverted) {
+    say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted", status);
+  }
+  was_late_ = was_late_ || report.late;
+  return status;
+}
+
+void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  if (!robot_is_known_) {
+    status.summary(DiagnosticStatus::ERROR, "no robot description");
+  } else if (last_look_up_.status == PoseLookUp::Status::kOk) {
+    status.summary(DiagnosticStatus::OK, "fresh");
+  } else {
+    status.summary(DiagnosticStatus::ERROR, last_look_up_.message);
+  }
+  status.add("age of the pose (s)", last_look_up_.age_s);
+}
+
+// What was said since they were last told, and how the tools are.
+void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const StepReport& report = pipeline_.report();
+  for (const StepRemark& remark : remarksOn(pipeline_)) {
+    if (remark.kind == StepRemark::Kind::kJawsMeet) tools_said_[remark.kind] = remark.text;
+  }
+  status.summary(DiagnosticStatus::OK, tools_said_.empty() ? "followed" : "");
+  for (const auto& [kind, text] : tools_said_) status.mergeSummary(DiagnosticStatus::WARN, text);
+  tools_said_.clear();
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    const ToolReport& met = report.tools[tool];
+    const std::string& name = pipeline_.tools()[tool].name;
+    if (met.saturated) {
+      status.mergeSummary(DiagnosticStatus::WARN,
+                          "the wrench of '" + name + "' is longer than its max_force");
+    }
+    status.add(name + ": points that touch", met.contacts);
+    status.add(name + ": deepest in the surface (m)", met.max_penetration);
+  }
+}
+
+void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const SolveReport& solve = pipeline_.tissue().lastReport();
+  const bool late = was_late_ || pipeline_.report().late;
+  const bool good = solve.status == SolveStatus::kOk && !late;
+  status.summary(
+      good ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
+      toString(late && solve.status == SolveStatus::kOk ? SolveStatus::kLate : solve.status));
+  was_late_ = false;
+  status.add("solve (ms)", pipeline_.report().solve_ms);
+  status.add("contact (ms)", pipeline_.report().contact_ms);
+  status.add("residual", solve.residual);
+  status.add("error estimate", solve.error_estimate);
+  status.add("active nodes", solve.active_nodes);
+  status.add("layers", solve.layers);
+}
+
+}  // namespace robot_tissue

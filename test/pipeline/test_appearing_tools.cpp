@@ -1,0 +1,77 @@
+// Tools that appear inside the tissue: drawn out by the shortest way, and walked in from there.
+#include <gtest/gtest.h>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kHair = 0.05 * kSpacing;  // deep in the surface shown (m)
+
+// Where a tool appears, and the direction of the tissue's force on it when it came the short way.
+struct Appearance {
+  std::string name;
+  ToolShape shape;
+  Vec3 place;
+  Vec3 out;
+};
+
+ToolShape sphereOf(double radius) {
+  ToolShape sphere;
+  sphere.radius = radius;
+  return sphere;
+}
+
+// Its tip at the origin, upright.
+ToolShape needle() {
+  ToolShape shape;
+  shape.type = ToolShape::Type::kCylinder;
+  shape.radius = 0.0005;
+  shape.length = 0.05;
+  shape.pose.translation().z() = 0.025;
+  return shape;
+}
+
+const Appearance kAppearances[] = {
+    {"SphereToItsMiddle", sphereOf(kRadius), Vec3(kMiddle, kMiddle, kTop), Vec3::UnitZ()},
+    {"SphereBeyondItsMiddle", sphereOf(kRadius), Vec3(kMiddle, kMiddle, kTop - 0.003),
+     Vec3::UnitZ()},
+    {"SphereBesideASide", sphereOf(0.006), Vec3(0.004, kMiddle, 0.018), -Vec3::UnitX()},
+    {"SphereNearTheFixedBottom", sphereOf(0.006), Vec3(0.01, kMiddle, 0.008), -Vec3::UnitX()},
+    {"Needle", needle(), Vec3(kMiddle + 0.001, kMiddle + 0.0015, kTop - 0.006), Vec3::UnitZ()},
+    {"LyingBox", boxOf(Vec3(0.03, 0.02, 0.006)), Vec3(kMiddle, kMiddle, kTop - 0.004),
+     Vec3::UnitZ()},
+};
+
+class AppearingTool : public ::testing::TestWithParam<Appearance> {};
+
+TEST_P(AppearingTool, ComesInByTheShortestWay) {
+  Pipeline pipeline(block(), {}, {toolOf(GetParam().shape)});
+  const StepReport& report = pipeline.step(at({GetParam().place}));
+  EXPECT_EQ(report.were_inside, std::vector<std::size_t>{0});
+  EXPECT_FALSE(report.lost);
+  const ToolReport& tool = report.tools.front();
+  EXPECT_LT(tool.max_penetration, kHair);
+  EXPECT_GT(tool.force_on_tool.dot(GetParam().out), 0.5 * tool.force_on_tool.norm());
+  EXPECT_GT(tool.force_on_tool.norm(), 0.0);
+  EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
+  pipeline.step(at({GetParam().place + 0.04 * GetParam().out}));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Where, AppearingTool, ::testing::ValuesIn(kAppearances),
+                         [](const auto& row) { return row.param.name; });
+
+// Nothing there can give way to it.
+TEST(ToolInFixedTissue, IsToldAsDeepAsItIs) {
+  Pipeline pipeline(block(), {}, {probe()});
+  pipeline.step(at({Vec3(kMiddle, kMiddle, -0.02)}));
+  pipeline.step(at({Vec3(kMiddle, kMiddle, 0.003 - kRadius)}));
+  const ToolReport& tool = pipeline.report().tools.front();
+  EXPECT_EQ(tool.contacts, 0);
+  EXPECT_EQ(tool.force_on_tool, Vec3::Zero());
+  EXPECT_NEAR(tool.max_penetration, 0.003, 1e-5);
+}
+
+}  // namespace
+}  // namespace robot_tissue
