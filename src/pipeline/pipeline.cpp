@@ -142,7 +142,7 @@ bool Pipeline::advance(const RobotPose& pose, bool insists) {
   ++report_.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   pose_ = pose;
-  grasp();
+  openJaws();
   contacts_.ride(pose, tissue_);  // patches move with their tools
   for (int round = 0; round < kRigidRounds; ++round) {
     patches_.ride(pose, tissue_);
@@ -164,6 +164,7 @@ bool Pipeline::advance(const RobotPose& pose, bool insists) {
     unfinished_ = round + 1 < kRigidRounds && isOutOfTime();
     if (unfinished_) break;
   }
+  closeJaws();
   contacts_.commit(pose, tissue_);
   tearOff();
   return true;

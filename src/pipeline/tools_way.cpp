@@ -376,7 +376,8 @@ bool Pipeline::passesBy(const RobotPose& from, const RobotPose& to, double steps
 void Pipeline::passTo(const RobotPose& pose) {
   pose_ = pose;
   contacts_.pass(pose);
-  grasp();
+  openJaws();
+  closeJaws();
 }
 
 }  // namespace robot_tissue

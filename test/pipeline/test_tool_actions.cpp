@@ -157,6 +157,35 @@ TEST_P(Grasper, CannotHoldWhatIsNotThere) {
   EXPECT_THROW(pusher.grasp(0), InputError);
 }
 
+// However fast they close, what they hold has been pressed aside, not been left within them.
+TEST_P(Grasper, TissueStaysOutOfJawsThatCloseFastAndOn) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  const auto tool = [&]() -> const ToolReport& { return pipeline.report().tools.front(); };
+  pipeline.step(at(jaws(0.014)));
+  for (const double gap : {0.008, 0.007, 0.006}) {
+    pipeline.step(at(jaws(gap)));
+    ASSERT_TRUE(tool().grasps);
+    EXPECT_LT(tool().max_penetration, 0.05 * kSpacing) << gap;
+  }
+}
+
+TEST_P(Grasper, ThatCannotCloseOnTissueKeepsTheLastGoodShape) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  walk(pipeline, jaws(0.014), jaws(0.006));
+  const std::vector<Vec3> outside = jaws(-0.001);
+  pipeline.step(at(outside));
+  ASSERT_TRUE(pipeline.report().lost);
+  EXPECT_EQ(pipeline.report().behind, std::vector<std::size_t>{0});
+  EXPECT_TRUE(pipeline.report().tools.front().jaws_overlap);
+  EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
+  const auto shape = pipeline.tissue().state().displacement;
+  pipeline.step(at(jaws(-0.0015)));
+  EXPECT_EQ(pipeline.tissue().state().displacement, shape);
+  walk(pipeline, outside, jaws(0.016), 0.001);
+  EXPECT_FALSE(pipeline.report().tools.front().jaws_overlap);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Method, Grasper, ::testing::Values("layered", "newton"),
                          [](const auto& row) { return std::string(row.param); });
 

@@ -224,7 +224,9 @@ class Pipeline {
   void drawOut(std::size_t tool, RobotPose& pose);
 
   // tool_actions.cpp
-  void grasp();
+  std::optional<double> jawGap(std::size_t tool) const;
+  void openJaws();
+  void closeJaws();
   void tearOff();
   std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw) const;
   RobotPose driven(const RobotPose& pose) const;
