@@ -1,4 +1,7 @@
 // The node beside a robot that moves: what a user sees on its topics and services.
+#include <algorithm>
+#include <set>
+
 #include "node_fixture.h"
 
 namespace robot_tissue {
@@ -208,6 +211,35 @@ TEST_F(RunningNode, TransformThatIsNotFiniteIsReportedAndSurvived) {
   ASSERT_TRUE(waitFor([this] { return state_->status == "NO_TRANSFORM"; }));
   depth_ = 0.004;
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }, 30.0));
+}
+
+// All of them for who comes; then only what changed, until the tool stands and all are told again.
+TEST_F(RunningNode, OnlyMarkersThatChangedAreSentWhileTheToolMoves) {
+  press(-0.01);
+  std::vector<std::set<std::string>> arrays;  // their namespaces
+  const auto subscriber = node_.subscribe<visualization_msgs::MarkerArray>(
+      "/tissue/markers", 100, [&](const visualization_msgs::MarkerArrayConstPtr& array) {
+        arrays.emplace_back();
+        for (const auto& marker : array->markers) arrays.back().insert(marker.ns);
+      });
+  ASSERT_TRUE(waitFor([&] { return !arrays.empty() && arrays.back().count("fixed_nodes") > 0; }));
+  EXPECT_EQ(arrays.back().count("surface"), 1U);
+  const auto pressed_alone = [](const std::set<std::string>& names) {
+    return names.count("surface") > 0 && names.count("fixed_nodes") == 0;
+  };
+  int sent = 0;
+  const auto is_sent = [&] {
+    depth_ = 0.003 + 0.002 * std::sin(0.01 * ++sent);
+    return std::count_if(arrays.begin(), arrays.end(), pressed_alone) >= 3;
+  };
+  EXPECT_TRUE(waitFor(is_sent));
+  const std::size_t so_far = arrays.size();
+  const auto whole_again = [&] {
+    return arrays.size() > so_far && arrays.back().count("fixed_nodes") > 0;
+  };
+  EXPECT_TRUE(waitFor(whole_again));
+  const std::size_t at_rest = arrays.size();
+  EXPECT_FALSE(waitFor([&] { return arrays.size() > at_rest; }, 0.3)) << "nothing changed";
 }
 
 TEST_F(RunningNode, DiagnosticsTellRateTransformsAndSolver) {
