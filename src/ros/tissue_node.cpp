@@ -9,6 +9,7 @@
 
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/pipeline/step_remarks.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
@@ -124,7 +125,7 @@ bool TissueNode::waitsAfterJump() {
   last_look_up_.message = namesOf(jumped, pipeline_.tools()) +
                           " jumped, farther than is followed: the last good shape stays, until "
                           "the pose has lasted for " +
-                          std::to_string(parameters_.tf_timeout_s) + " s (~tf_timeout)";
+                          numberText(parameters_.tf_timeout_s) + " s (~tf_timeout)";
   report({"TOO_FAST", last_look_up_.message});
   return true;
 }

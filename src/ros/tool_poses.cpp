@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "robot_tissue/scene/value_text.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -45,10 +47,9 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
     found.age_s = (now - found.stamp).toSec();
     if (std::abs(found.age_s) > timeout_s_) {
       found.status = PoseLookUp::Status::kStale;
-      found.message = "the pose of link '" + oldest + "' is " +
-                      std::to_string(std::abs(found.age_s)) + " s " +
-                      (found.age_s > 0.0 ? "old" : "in the future") +
-                      "; allowed: " + std::to_string(timeout_s_) + " (~tf_timeout)";
+      found.message = "the pose of link '" + oldest + "' is " + numberText(std::abs(found.age_s)) +
+                      " s " + (found.age_s > 0.0 ? "old" : "in the future") +
+                      "; allowed: " + numberText(timeout_s_) + " (~tf_timeout)";
       return found;
     }
     for (std::size_t link = 0; link < links_.size(); ++link) {
