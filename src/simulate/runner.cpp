@@ -85,6 +85,9 @@ void Runner::perform(const ReleaseStep& step) {
   if (!step.patches.empty()) report = pipeline_.release(step.patches);
   for (const std::string& name : step.tools) {
     const std::size_t tool = tools_.indexOf(name);
+    if (!pushes_[tool] && !pipeline_.report().tools[tool].grasps) {
+      remark("tool '" + name + "' holds nothing and no force pushes it");
+    }
     endPush(tool);
     pipeline_.letGo(tool);
   }

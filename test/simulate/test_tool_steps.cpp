@@ -130,6 +130,13 @@ TEST(ToolSteps, APushThatMeetsNothingIsToldAndNotOk) {
   EXPECT_TRUE(hasRemark(result, "steps[1].push: tool 'probe' met 0 N", "not the force of 0.3 N"));
 }
 
+TEST(ToolSteps, AReleaseOfNothingIsTold) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.004), sphereAt(-0.002), 1) +
+          "  - release: {tools: [probe]}\n");
+  EXPECT_TRUE(hasRemark(result, "steps[1].release: tool 'probe' ", "holds nothing"));
+}
+
 TEST(ToolSteps, AGraspOfNothingIsRefused) {
   const std::string message = refusalOf(
       block() +
