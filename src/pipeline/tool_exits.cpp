@@ -20,26 +20,30 @@ void addUnit(const Vec3& way, std::vector<Vec3>& ways) {
 
 }  // namespace
 
-RobotPose Pipeline::moved(std::size_t tool, const Vec3& way, RobotPose pose) const {
-  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+RobotPose Pipeline::moved(const Links& links, const Vec3& way, RobotPose pose) {
+  for (std::size_t link = links.first; link < links.end; ++link) {
     pose.links[link].translation() += way;
   }
   return pose;
 }
 
-// Of the tool alone, without its gaps. Supports always stand in the pose.
-ContactSet Pipeline::overlapOf(std::size_t tool, const RobotPose& pose) const {
-  const RobotPose alone = withTool(tool, pose, complete({}));
+// Of these links alone, without their gaps. Supports always stand in the pose.
+ContactSet Pipeline::overlapOf(const Links& links, const RobotPose& pose) const {
+  RobotPose alone = complete({});
+  const auto is_one = [&](std::size_t link) { return link >= links.first && link < links.end; };
+  for (std::size_t link = links.first; link < links.end; ++link) {
+    alone.links[link] = pose.links[link];
+  }
   ContactSet overlap = finder_.find(alone, tissue_.surface(), tissue_.vertices(), 0.0);
   auto& all = overlap.contacts;
-  const auto is_others = [tool](const Contact& contact) { return at(contact.tool) != tool; };
+  const auto is_others = [&](const Contact& contact) { return !is_one(at(contact.link)); };
   all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
   return overlap;
 }
 
-// Of the tool's first link whose middle is beneath the surface: that middle.
-std::optional<Vec3> Pipeline::middleBeneath(std::size_t tool, const RobotPose& pose) const {
-  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+// Of the first link whose middle is beneath the surface: that middle.
+std::optional<Vec3> Pipeline::middleBeneath(const Links& links, const RobotPose& pose) const {
+  for (std::size_t link = links.first; link < links.end; ++link) {
     if (isAway(pose.links[link]) || finder_.reach(link) <= 0.0) continue;
     const Vec3 middle = pose.links[link] * finder_.center(link);
     if (encloses(tissue_.vertices(), tissue_.surface().triangles, middle)) return middle;
@@ -47,17 +51,21 @@ std::optional<Vec3> Pipeline::middleBeneath(std::size_t tool, const RobotPose& p
   return std::nullopt;
 }
 
-bool Pipeline::isInTissue(std::size_t tool, const RobotPose& pose) const {
-  return deepest(overlapOf(tool, pose)) > 0.0 || middleBeneath(tool, pose).has_value();
+bool Pipeline::isInTissue(const Links& links, const RobotPose& pose) const {
+  return deepest(overlapOf(links, pose)) > 0.0 || middleBeneath(links, pose).has_value();
 }
 
-// Unit directions out of the tissue that may be short: as the surface looks where the tool goes
-// through it, against the contacts' normals, from its middle to the nearest vertex of the surface,
-// and along the axes.
-std::vector<Vec3> Pipeline::waysOut(std::size_t tool, const RobotPose& pose) const {
+bool Pipeline::isInTissue(std::size_t tool, const RobotPose& pose) const {
+  return isInTissue(Links{first_link_[tool], first_link_[tool + 1]}, pose);
+}
+
+// Unit directions out of the tissue that may be short: as the surface looks where the links go
+// through it, against the contacts' normals, from their middle to the nearest vertex of the
+// surface, and along the axes.
+std::vector<Vec3> Pipeline::waysOut(const Links& links, const RobotPose& pose) const {
   const std::vector<Vec3>& vertices = tissue_.vertices();
   Vec3 as_surface = Vec3::Zero(), against_tool = Vec3::Zero();
-  for (const Contact& contact : overlapOf(tool, pose).contacts) {
+  for (const Contact& contact : overlapOf(links, pose).contacts) {
     const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
     as_surface += contact.depth_m * outwardArea(vertices, corners);
     against_tool -= contact.depth_m * contact.normal;
@@ -65,7 +73,7 @@ std::vector<Vec3> Pipeline::waysOut(std::size_t tool, const RobotPose& pose) con
   std::vector<Vec3> ways;
   addUnit(as_surface, ways);
   addUnit(against_tool, ways);
-  if (const auto middle = middleBeneath(tool, pose)) {
+  if (const auto middle = middleBeneath(links, pose)) {
     Vec3 nearest = vertices.front();
     for (const Vec3& vertex : vertices) {
       if ((vertex - *middle).norm() < (nearest - *middle).norm()) nearest = vertex;
@@ -79,44 +87,58 @@ std::vector<Vec3> Pipeline::waysOut(std::size_t tool, const RobotPose& pose) con
   return ways;
 }
 
-// Steps of one spacing along a way until the tool is out; nothing when these are not fewer than
+// Steps of one spacing along a way until the links are out; nothing when these are not fewer than
 // `most`, or the last of the tissue on the way is one that gives no way back in.
-std::optional<int> Pipeline::stepsOut(std::size_t tool, const RobotPose& pose, const Vec3& way,
+std::optional<int> Pipeline::stepsOut(const Links& links, const RobotPose& pose, const Vec3& way,
                                       int most) const {
   const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
   bool gives_way = false;
   for (int steps = 0; steps < most; ++steps) {
-    const RobotPose there = moved(tool, steps * tissue_.lattice().spacing() * way, pose);
-    const ContactSet overlap = overlapOf(tool, there);
-    if (deepest(overlap) <= 0.0 && !middleBeneath(tool, there)) {
+    const RobotPose there = moved(links, steps * tissue_.lattice().spacing() * way, pose);
+    const ContactSet overlap = overlapOf(links, there);
+    if (deepest(overlap) <= 0.0 && !middleBeneath(links, there)) {
       return gives_way ? std::optional<int>(steps) : std::nullopt;
     }
     if (!overlap.contacts.empty()) gives_way = false;
     for (const Contact& contact : overlap.contacts) {
-      gives_way = gives_way ||
-                  ToolContacts::givesWay(
-                      carriersAt(tissue_.surface(), contact.triangle, contact.barycentric), held);
+      const auto carriers = carriersAt(tissue_.surface(), contact.triangle, contact.barycentric);
+      gives_way = gives_way || ToolContacts::givesWay(carriers, held);
     }
   }
   return std::nullopt;
 }
 
-// Draws a tool that is in the tissue back, step by step, until it is out, by the shortest way.
-void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
-  if (!isInTissue(tool, pose)) return;
-  addOnce(tool, report_.were_inside);
-  const std::vector<Vec3> ways = waysOut(tool, pose);
+// Step by step, by the shortest way. True: they were in the tissue.
+bool Pipeline::drawOut(const Links& links, RobotPose& pose) const {
+  if (!isInTissue(links, pose)) return false;
+  const std::vector<Vec3> ways = waysOut(links, pose);
   Vec3 shortest = ways.front();
   int fewest = kMostLoadSteps / 5;
   for (const Vec3& way : ways) {
-    if (const auto steps = stepsOut(tool, pose, way, fewest)) {
+    if (const auto steps = stepsOut(links, pose, way, fewest)) {
       shortest = way;
       fewest = *steps;
     }
   }
-  for (int step = 0; step < kMostLoadSteps && isInTissue(tool, pose); ++step) {
-    pose = moved(tool, tissue_.stepLength() * shortest, std::move(pose));
+  for (int step = 0; step < kMostLoadSteps && isInTissue(links, pose); ++step) {
+    pose = moved(links, tissue_.stepLength() * shortest, std::move(pose));
   }
+  return true;
+}
+
+// A tool that is in the tissue; the jaws of a grasper each for itself, so that they come back
+// around what is between them.
+void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
+  const std::size_t first = first_link_[tool], end = first_link_[tool + 1];
+  bool was_inside = false;
+  if (tools_[tool].role == ToolConfig::Role::kGrasper) {
+    for (std::size_t link = first; link < end; ++link) {
+      was_inside = drawOut(Links{link, link + 1}, pose) || was_inside;
+    }
+  } else {
+    was_inside = drawOut(Links{first, end}, pose);
+  }
+  if (was_inside) addOnce(tool, report_.were_inside);
 }
 
 }  // namespace robot_tissue

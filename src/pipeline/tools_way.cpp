@@ -163,6 +163,7 @@ void Pipeline::goBackTo(const RobotPose& pose) {
 void Pipeline::startAnew(const RobotPose& pose) {
   patches_.clear();
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) contacts_.clear(static_cast<int>(tool));
+  closed_.assign(tools_.size(), false);
   pose_ = complete({});
   lieDown();
   checkpoints_.clear();

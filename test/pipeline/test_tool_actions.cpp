@@ -169,6 +169,20 @@ TEST_P(Grasper, TissueStaysOutOfJawsThatCloseFastAndOn) {
   }
 }
 
+// Its jaws come back around the ridge, not down on it.
+TEST_P(Grasper, ThatAppearsClosedAroundTissueHoldsIt) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  pipeline.step(at(jaws(0.008)));
+  const auto tool = [&]() -> const ToolReport& { return pipeline.report().tools.front(); };
+  EXPECT_EQ(pipeline.report().were_inside, std::vector<std::size_t>{0});
+  EXPECT_TRUE(tool().grasps);
+  Pipeline watched(ridge(), solver(), {gripper()});
+  close(watched);
+  EXPECT_LT(relativeDifference(pipeline.tissue(), watched.tissue()), 0.15);
+  walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
+  EXPECT_LT(tool().force_on_tool.z(), -0.05);
+}
+
 TEST_P(Grasper, ThatCannotCloseOnTissueKeepsTheLastGoodShape) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
   walk(pipeline, jaws(0.014), jaws(0.006));

@@ -145,6 +145,11 @@ class Pipeline {
     Box box;
     double longest = 0.0;
   };
+  // Numbers of links, from `first` up to before `end`.
+  struct Links {
+    std::size_t first = 0;
+    std::size_t end = 0;
+  };
   // A tool that a force drives.
   struct Drive {
     std::optional<Vec3> force;  // N
@@ -214,13 +219,15 @@ class Pipeline {
   double stepOf(std::size_t link) const;
 
   // tool_exits.cpp
-  RobotPose moved(std::size_t tool, const Vec3& way, RobotPose pose) const;
-  ContactSet overlapOf(std::size_t tool, const RobotPose& pose) const;
-  std::optional<Vec3> middleBeneath(std::size_t tool, const RobotPose& pose) const;
+  static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);
+  ContactSet overlapOf(const Links& links, const RobotPose& pose) const;
+  std::optional<Vec3> middleBeneath(const Links& links, const RobotPose& pose) const;
+  bool isInTissue(const Links& links, const RobotPose& pose) const;
   bool isInTissue(std::size_t tool, const RobotPose& pose) const;
-  std::vector<Vec3> waysOut(std::size_t tool, const RobotPose& pose) const;
-  std::optional<int> stepsOut(std::size_t tool, const RobotPose& pose, const Vec3& way,
+  std::vector<Vec3> waysOut(const Links& links, const RobotPose& pose) const;
+  std::optional<int> stepsOut(const Links& links, const RobotPose& pose, const Vec3& way,
                               int most) const;
+  bool drawOut(const Links& links, RobotPose& pose) const;
   void drawOut(std::size_t tool, RobotPose& pose);
 
   // tool_actions.cpp
