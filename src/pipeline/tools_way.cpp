@@ -169,6 +169,7 @@ void Pipeline::startAnew(const RobotPose& pose) {
   checkpoints_.clear();
   last_pose_ = pose;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) drawOut(tool, *last_pose_);
+  contacts_.commit(*last_pose_, tissue_);  // nothing sticks to where they were before
   checkIn(*last_pose_);
 }
 
@@ -195,6 +196,7 @@ void Pipeline::comeAndGo(const RobotPose& pose) {
   }
   if (!any) return;
   last_pose_ = from;
+  contacts_.commit(from, tissue_);
   checkpoints_.clear();
   checkIn(from);
 }

@@ -43,6 +43,25 @@ TEST(Budget, WithoutTimeAStepMakesOneSolveAndSaysSo) {
   EXPECT_GT(late, 40);
 }
 
+// Nothing sticks to where it was before its jump.
+TEST(Budget, ToolThatJumpsInIsMetAsOneThatComes) {
+  Pipeline pipeline = bounded(kTooShort);
+  pipeline.setBudget(1e-3 * kTooShort);
+  pipeline.step(pressed(-0.002));
+  pipeline.step(at({Vec3(5.0, 5.0, 5.0)}));
+  int updates = 0;
+  do {
+    pipeline.step(pressed(0.005));
+    EXPECT_LT(force(pipeline), 1.0);
+    ++updates;
+  } while (pipeline.report().changed && updates < 400);
+  EXPECT_LT(updates, 400);
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+  Pipeline came = bounded(0.0);
+  walk(came, -0.002, 0.005);
+  EXPECT_NEAR(force(pipeline), force(came), 0.06 * force(came));
+}
+
 TEST(Budget, ThatIsLongChangesNothing) {
   Pipeline patient = bounded(1e6), unbounded = bounded(0.0);
   patient.setBudget(1e3);
