@@ -99,7 +99,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
       longest = std::min(1.0, 2.0 * longest);
     }
     if (any_rigid_) checkIn(on_the_way);
-    if (gone < steps && deadline_.isOver()) {
+    if (followed && gone < steps && deadline_.isOver()) {
       report_.too_fast = true;
       return came();
     }
