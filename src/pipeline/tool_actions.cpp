@@ -45,21 +45,25 @@ void Pipeline::closeJaws() {
   }
 }
 
-// What is between the jaws sticks to the nearer one. Returns how many nodes.
+// What is between the jaws sticks to the nearer one, in place of what they have pushed. Returns how
+// many nodes.
 std::size_t Pipeline::hold(std::size_t tool) {
   const std::size_t first = first_link_[tool + 1] - 2;
-  std::size_t held = 0;
+  const std::vector<int> of_first = nodesBetweenJaws(tool, first);
+  const std::vector<int> of_second = nodesBetweenJaws(tool, first + 1);
+  if (of_first.empty() && of_second.empty()) return 0;
+  patches_.letGo(static_cast<int>(tool));
+  contacts_.clear(static_cast<int>(tool));
   for (std::size_t jaw = first; jaw < first + 2; ++jaw) {
-    const std::vector<int> nodes = nodesBetweenJaws(tool, jaw);
-    patches_.hold(static_cast<int>(tool), static_cast<int>(jaw), pose_.links[jaw], nodes, tissue_);
-    held += nodes.size();
+    patches_.hold(static_cast<int>(tool), static_cast<int>(jaw), pose_.links[jaw],
+                  jaw == first ? of_first : of_second, tissue_);
   }
-  if (held > 0) contacts_.clear(static_cast<int>(tool));
-  return held;
+  return of_first.size() + of_second.size();
 }
 
 // Nodes that the ways out of the two jaws lead to from opposite sides, with no more tissue on
-// either side than the jaws are apart; and nodes under touches. Those nearest to this jaw.
+// either side than the jaws are apart; and nodes under touches, or pushed. Those nearest to this
+// jaw.
 std::vector<int> Pipeline::nodesBetweenJaws(std::size_t tool, std::size_t jaw) const {
   const std::size_t first = first_link_[tool + 1] - 2;
   const std::size_t other = jaw == first ? first + 1 : first;
@@ -81,6 +85,9 @@ std::vector<int> Pipeline::nodesBetweenJaws(std::size_t tool, std::size_t jaw) c
     if (touch.link != static_cast<int>(jaw)) continue;
     if (touch.spring.multiplier <= 0.0) continue;
     for (const NodeWeight& carrier : touch.spring.carriers) nodes.push_back(carrier.node);
+  }
+  for (const auto& [node, seat] : patches_.seats()[tool]) {
+    if (seat.link == static_cast<int>(jaw)) nodes.push_back(node);
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
