@@ -6,6 +6,13 @@
 #include "stopwatch.h"
 
 namespace robot_tissue {
+namespace {
+
+bool boxesMeet(const Box& a, const Box& b) {
+  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+}
+
+}  // namespace
 
 void Pipeline::describeTools() {
   const Stopwatch watch(report_.contact_ms);
@@ -61,6 +68,7 @@ double Pipeline::deepestPointOf(std::size_t tool) const {
   const RobotPose& pose = report_.lost ? asked_ : pose_;
   double deepest = 0.0;
   for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    if (!boxesMeet(finder_.bounds(link, pose.links[link]), tissue_.bounds())) continue;
     deepest = std::max(deepest, finder_.penetration(link, pose.links[link], tissue_.surface(),
                                                     tissue_.vertices()));
   }
