@@ -25,6 +25,7 @@ constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at 
 constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
 constexpr double kMostSlip = 0.1;      // likewise, at most
 constexpr double kNoShare = 1e-9;      // of a corner in a touch's point
+constexpr int kWavers = 12;  // rounds cut short in a row: planes that turn to and fro stay then
 constexpr double kMostForce =
     45.0;  // of a node's stiffness times the spacing: no tissue pushes so hard
 constexpr double kLeastFree = 0.1;  // of a point's weight on nodes that give way
@@ -119,9 +120,12 @@ void ToolContacts::stickFirst(const Tissue& tissue) {
 bool ToolContacts::update(const std::vector<std::optional<Contact>>& tracked,
                           const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, bool whole) {
+  cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
+  const bool wavers = cut_rounds_ > kWavers;
   bool settled = whole && takeForces(tissue);
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (wavers && touches_[i].found && tracked[i]) continue;
     if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
   }
   for (const Contact& contact : found.contacts) {
@@ -316,6 +320,7 @@ void ToolContacts::carry(const Tissue& tissue, const Held& held, Touch& touch) {
 void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   since_links_ = pose.links;
   since_displacement_ = tissue.state().displacement;
+  cut_rounds_ = 0;
   for (Touch& touch : touches_) {
     const ContactSpring& spring = touch.spring;
     const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.link)].linear().transpose();

@@ -198,7 +198,7 @@ void ToolPatches::letGo(int tool) { seats_[at(tool)].clear(); }
 bool ToolPatches::holds(int tool) const { return !seats_[at(tool)].empty(); }
 
 // Per node, 1 = fixed.
-const std::vector<std::uint8_t>& ToolPatches::fixedNodes(const Tissue& tissue) {
+const std::vector<std::uint8_t>& ToolPatches::fixedNodes(const Tissue& tissue) const {
   const std::shared_ptr<const CellSet>& cells = tissue.state().cells;
   if (fixed_of_ == cells) return fixed_;
   fixed_of_ = cells;
@@ -209,7 +209,7 @@ const std::vector<std::uint8_t>& ToolPatches::fixedNodes(const Tissue& tissue) {
   return fixed_;
 }
 
-std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) {
+std::vector<std::uint8_t> ToolPatches::heldNodes(const Tissue& tissue) const {
   std::vector<std::uint8_t> held = fixedNodes(tissue);
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
     if (byForce(tissue.patches()[patch])) continue;

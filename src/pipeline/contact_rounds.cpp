@@ -75,7 +75,7 @@ double Pipeline::contactShare(const std::vector<Vec3>& before) {
 
 // Of that share of the way from `vertices_` to the shape, as much as takes no point deep into a
 // link: from its middle on, nothing tells on which side it came in.
-double Pipeline::shareOutside(double share) {
+double Pipeline::shareOutside(double share) const {
   const std::vector<Vec3>& now = tissue_.vertices();
   std::vector<Vec3> there(now.size());
   std::vector<double> before;
@@ -98,7 +98,7 @@ double Pipeline::shareOutside(double share) {
 }
 
 // Of the deepest point that gives way in each of the tools' links (m).
-std::vector<double> Pipeline::depthsIn(const std::vector<Vec3>& vertices) {
+std::vector<double> Pipeline::depthsIn(const std::vector<Vec3>& vertices) const {
   const std::vector<std::uint8_t> held = patches_.heldNodes(tissue_);
   std::vector<double> depths(first_link_[tools_.size()], 0.0);
   for (const Contact& contact : finder_.find(pose_, tissue_.surface(), vertices, 0.0).contacts) {

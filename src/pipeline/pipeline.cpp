@@ -10,7 +10,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
-constexpr int kRigidRounds = 3;    // nodes that the solve moved into a rigid tool go out again
+constexpr int kRigidRounds = 6;    // nodes that the solve moved into a rigid tool go out again
 constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
 constexpr int kMoreSolves = 2;     // where one ended on its way
 constexpr double kTooDeep = 0.04;  // of the spacing, in a tool

@@ -68,7 +68,7 @@ class ToolPatches {
   // Per node, not 0 = it does not give way: fixed, hard in a named load by displacement, or in one
   // of these patches; kGrasped: it moves with a grasper.
   static constexpr std::uint8_t kGrasped = ToolContacts::kGrasped;
-  std::vector<std::uint8_t> heldNodes(const Tissue& tissue);
+  std::vector<std::uint8_t> heldNodes(const Tissue& tissue) const;
 
  private:
   // A free node that carries a contact's point.
@@ -89,7 +89,7 @@ class ToolPatches {
   double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
   static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
   void seat(int node, std::size_t tool, int link, const Vec3& moved, const RobotPose& pose);
-  const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue);
+  const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue) const;
   void holdNamedLoads(const Tissue& tissue);
   void findOutwardNormals(const Tissue& tissue);
   bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue) const;
@@ -100,8 +100,9 @@ class ToolPatches {
   std::vector<Vec3> displacement_;
   std::shared_ptr<const CellSet> cells_;     // of the tissue in the last ride
   std::vector<std::uint8_t> taken_;          // per node: fixed, or in a named load
-  std::shared_ptr<const CellSet> fixed_of_;  // cells whose nodes these are
-  std::vector<std::uint8_t> fixed_;
+  // Looked up once for each set of cells.
+  mutable std::shared_ptr<const CellSet> fixed_of_;
+  mutable std::vector<std::uint8_t> fixed_;
   std::vector<int> left_;
   std::vector<Vec3> outward_;  // per node: normal of the surface it carries, at rest; zero inside
   unsigned surface_version_ = 0;

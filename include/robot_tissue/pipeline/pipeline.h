@@ -179,8 +179,8 @@ class Pipeline {
   std::vector<Surroundings> surroundings() const;
   std::vector<double> longestWays();
   double contactShare(const std::vector<Vec3>& before);
-  double shareOutside(double share);
-  std::vector<double> depthsIn(const std::vector<Vec3>& vertices);
+  double shareOutside(double share) const;
+  std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
   bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
