@@ -1,7 +1,7 @@
 // Tools of every shape pressed into a block and dragged along it: how deep they are in the surface
 // that is shown, how smooth the force is, how long a millimeter takes.
 //   contact_press [TOOL|all] [SPEED in m/s at 100 updates a second, 0 = increments of 0.25 mm]
-//                 [SPACING in mm] [FRICTION] [METHOD]
+//                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE]
 // Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update, ms of
 // processor.
 #include <cmath>
@@ -114,7 +114,7 @@ struct Worst {
 class Trial {
  public:
   Trial(const std::string& name, const ToolShape& shape, double spacing, double friction,
-        const std::string& method)
+        const std::string& method, double tolerance)
       : name_(name) {
     ToolGeometry tool;
     tool.name = name;
@@ -122,6 +122,7 @@ class Trial {
     tool.links.push_back({"", {shape}});
     SolverConfig solver;
     solver.method = method;
+    solver.tolerance = tolerance;
     pipeline_ = std::make_unique<Pipeline>(block(spacing), solver, std::vector<ToolGeometry>{tool});
   }
 
@@ -172,11 +173,12 @@ int main(int argc, char** argv) {
   const double spacing = 1e-3 * (argc > 3 ? std::atof(argv[3]) : 5.0);
   const double friction = argc > 4 ? std::atof(argv[4]) : 0.3;
   const std::string method = argc > 5 ? argv[5] : "layered";
+  const double tolerance = argc > 6 ? std::atof(argv[6]) : 0.01;
   const double increment = speed > 0.0 ? 0.01 * speed : 0.00025;
   std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status\n");
   for (const auto& [name, shape] : toolShapes()) {
     if (wanted != "all" && wanted != name) continue;
-    Trial trial(name, shape, spacing, friction, method);
+    Trial trial(name, shape, spacing, friction, method, tolerance);
     // Off the nodes, and off the middle between them.
     const Vec3 above(0.0363, 0.0511, kTop + kClear), pressed = above - Vec3(0, 0, kPress + kClear);
     trial.go("appear", above, above, 1.0);
