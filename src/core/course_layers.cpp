@@ -15,10 +15,7 @@ constexpr double kLeastOfPart = 5e-3;  // tolerance: below it, all is visited
 template <typename Real>
 void CourseIn<Real>::addSeed(int node) {
   const std::array<int, 3>& place = lattice_.gridIndex(cells_->original(node));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    seeds_.low[axis] = std::min(seeds_.low[axis], place[axis]);
-    seeds_.high[axis] = std::max(seeds_.high[axis], place[axis]);
-  }
+  seeds_ = joined(seeds_, {place, place});
 }
 
 // The box around nodes in patches and contacts, now and in the last solve, and disturbed ones.

@@ -9,14 +9,6 @@ constexpr int kThick = 8;        // cells along the shortest side
 constexpr int kMostSlender = 4;  // times the shortest side is the longest
 constexpr GridBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
 
-void include(const std::array<int, 3>& low, const std::array<int, 3>& high, GridBox& box) {
-  if (box.isEmpty()) box = {low, high};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min(box.low[axis], low[axis]);
-    box.high[axis] = std::max(box.high[axis], high[axis]);
-  }
-}
-
 template <typename Visit>
 void forAll(const std::array<int, 3>& count, Visit visit) {
   for (int k = 0; k < count[2]; ++k) {
@@ -63,7 +55,9 @@ LevelSource coarser(LevelSource& fine) {
     }
     coarse.shear[coarse.cellAt(i, j, k)] = shear / kCorners;
     coarse.bulk[coarse.cellAt(i, j, k)] = bulk / kCorners;
-    if (differ) include({2 * i, 2 * j, 2 * k}, {2 * i + 2, 2 * j + 2, 2 * k + 2}, fine.rough);
+    if (differ) {
+      fine.rough = joined(fine.rough, {{2 * i, 2 * j, 2 * k}, {2 * i + 2, 2 * j + 2, 2 * k + 2}});
+    }
   });
   return coarse;
 }
@@ -92,7 +86,9 @@ Held heldOn(const LevelSource& coarse, LevelSource& fine, const Held& held) {
         }
       }
     }
-    if (all != (held[pointAt(fine, i, j, k)] != 0)) include({i, j, k}, {i, j, k}, fine.rough);
+    if (all != (held[pointAt(fine, i, j, k)] != 0)) {
+      fine.rough = joined(fine.rough, {{i, j, k}, {i, j, k}});
+    }
   });
   return on_coarse;
 }

@@ -37,16 +37,6 @@ GridBox around(const GridBox& box, int layers) {
   return wider;
 }
 
-GridBox joined(const GridBox& a, const GridBox& b) {
-  if (b.isEmpty()) return a;
-  GridBox both = a;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    both.low[axis] = std::min(a.low[axis], b.low[axis]);
-    both.high[axis] = std::max(a.high[axis], b.high[axis]);
-  }
-  return both;
-}
-
 // So that the points just beyond are points of the next coarser level, or the block ends there.
 GridBox fitted(const GridBox& box, const GridBox& whole) {
   GridBox fit = box;
@@ -96,8 +86,7 @@ GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
 
 template <typename Real>
 GridBox LatticeLevels<Real>::whole() const {
-  const auto& size = lattice_.size();
-  return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
+  return wholeOf(lattice_.size());
 }
 
 // Of lattices of equal cells, by a block of them that all stand for finer ones, the stiffest there

@@ -1,6 +1,7 @@
 // A box of grid points.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -21,5 +22,21 @@ struct GridBox {
   bool operator==(const GridBox& other) const { return low == other.low && high == other.high; }
   bool operator!=(const GridBox& other) const { return !(*this == other); }
 };
+
+// All points of a grid of that size.
+inline GridBox wholeOf(const std::array<int, 3>& size) {
+  return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}};
+}
+
+// The least box that holds both.
+inline GridBox joined(const GridBox& a, const GridBox& b) {
+  if (a.isEmpty() || b.isEmpty()) return a.isEmpty() ? b : a;
+  GridBox both;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    both.low[axis] = std::min(a.low[axis], b.low[axis]);
+    both.high[axis] = std::max(a.high[axis], b.high[axis]);
+  }
+  return both;
+}
 
 }  // namespace robot_tissue

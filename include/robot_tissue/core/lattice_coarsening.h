@@ -33,7 +33,7 @@ struct LevelGrid {
   LevelGrid() = default;
   explicit LevelGrid(const std::array<int, 3>& points);
   int index(int i, int j, int k) const { return i + row * j + plane * k; }
-  GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
+  GridBox whole() const { return wholeOf(size); }
   std::array<int, 3> placeOf(int entry) const {
     return {entry % plane % row, entry % plane / row, entry / plane};
   }

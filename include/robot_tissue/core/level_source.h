@@ -24,7 +24,7 @@ struct LevelSource {
   // Whether the block is so thick, in its cells and beside its length, that these bend as finer ones
   // do, and cycles see it.
   bool isThick() const;
-  GridBox whole() const { return {{0, 0, 0}, {size[0] - 1, size[1] - 1, size[2] - 1}}; }
+  GridBox whole() const { return wholeOf(size); }
   // Of the cells between these points, placed from its low corner.
   std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
   bool isUniform() const { return shear.size() == 1; }
