@@ -1,8 +1,9 @@
 // What an update of the pipeline takes while tools press a block and go round on it, and what of it
-// is contact. 100 x 100 x 50 mm, 5 mm spacing (4,851 nodes), E 10 kPa, nu 0.45.
-//   tool_speed [sphere|mesh|both] [SPEED in m/s] [RATE in Hz] [UPDATES]
+// is contact. 100 x 100 x 50 mm, E 10 kPa, nu 0.45; 5 mm spacing (4,851 nodes) unless told.
+//   tool_speed [sphere|mesh|both] [SPEED in m/s] [RATE in Hz] [UPDATES] [SPACING in mm]
 // Writes one line an update: contact_ms (wall), solve_ms (wall), update_ms (of the processor),
-// substeps, force along z on the tools (N), penetration_mm, status. Sums up on stderr.
+// substeps, force along z on the tools (N), penetration_mm, status. Sums up on stderr. What the
+// stages of an update take of it: scripts/profile_stages.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -55,6 +56,7 @@ int run(int argc, char** argv) {
   const std::string which = argc > 1 ? argv[1] : "both";
   const double speed = argument(argc, argv, 2, 0.05), rate = argument(argc, argv, 3, 200.0);
   const int updates = static_cast<int>(argument(argc, argv, 4, 1000.0));
+  const double spacing = 1e-3 * argument(argc, argv, 5, 5.0);
   std::vector<ToolGeometry> tools;
   std::vector<Way> ways;
   if (which != "mesh") {
@@ -68,7 +70,7 @@ int run(int argc, char** argv) {
     tools.push_back(toolOf("mesh", mesh, 0.3));
     ways.push_back({{0.07, 0.05, 0.0}, 0.012});
   }
-  Pipeline pipeline(blockOf({0.1, 0.1, kTop}, 0.005), solverOf("layered", 0.01), tools);
+  Pipeline pipeline(blockOf({0.1, 0.1, kTop}, spacing), solverOf("layered", 0.01), tools);
   std::vector<double> contact, solve, total;
   std::printf("contact_ms,solve_ms,update_ms,substeps,fz,penetration_mm,status\n");
   for (int update = 0; update < updates; ++update) {
