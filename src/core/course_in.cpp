@@ -20,7 +20,7 @@ constexpr double kTurned = 1e-4;           // rad
 template <typename Real>
 void CourseIn<Real>::forget() {
   factor_ = least_factor_;
-  layers_ = kFirstLayers;
+  layers_ = firstLayers();
   has_start_ = has_way_ = false;
   loaded_.clear();
   held_ = 0.0;

@@ -28,8 +28,7 @@ class CourseIn : public LayeredCourse {
   void forget() override;
 
  private:
-  static constexpr double kFirstLayers = 4;  // around patches and contacts
-  static constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
+  static constexpr double kStill = 1e-6;  // of the spacing: off rest by less, a node is at rest
 
   static constexpr double kMostMissed = 0.7;  // of the tolerance, by coarse lattices alone
 
@@ -55,6 +54,7 @@ class CourseIn : public LayeredCourse {
   // course_layers.cpp: which nodes are visited.
   void findSeeds(const LoadedShape& shape, const PatchHold& hold,
                  const std::vector<int>& disturbed);
+  double firstLayers() const;
   void addSeed(int node);
   GridBox aroundSeeds() const;
   bool raiseLayers();
@@ -110,8 +110,8 @@ class CourseIn : public LayeredCourse {
   std::shared_ptr<const CellSet> cells_;
   std::vector<int> loaded_;  // nodes in patches and contacts
   double free_nodes_ = 0.0;
-  GridBox seeds_;                 // what the layers grow around
-  double layers_ = kFirstLayers;  // around them
+  GridBox seeds_;                  // what the layers grow around
+  double layers_ = firstLayers();  // around them
   std::vector<NodeLimit> limits_;
   std::vector<Vec3> limited_from_;  // where these nodes were when the solve began (m)
   int steps_ = 3;                   // of the smoother in a cycle without contacts

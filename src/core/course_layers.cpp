@@ -7,10 +7,18 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kMoreLayers = 1.5;    // times those there are
-constexpr double kLeastOfPart = 5e-3;  // tolerance: below it, all is visited
+constexpr double kFewestLayers = 4.0, kEnoughLayers = 6.0;  // for a start
+constexpr double kLayersOfError = 0.06;                     // layers times the tolerance
+constexpr double kMoreLayers = 1.5;                         // times those there are
+constexpr double kLeastOfPart = 5e-3;                       // tolerance: below it, all is visited
 
 }  // namespace
+
+// What coarse lattices miss falls about as layers grow.
+template <typename Real>
+double CourseIn<Real>::firstLayers() const {
+  return std::clamp(kLayersOfError / options_.tolerance, kFewestLayers, kEnoughLayers);
+}
 
 template <typename Real>
 void CourseIn<Real>::addSeed(int node) {
