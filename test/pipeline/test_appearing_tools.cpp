@@ -1,6 +1,8 @@
 // Tools that appear inside the tissue: drawn out by the shortest way, and walked in from there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue {
@@ -71,6 +73,24 @@ TEST(ToolInFixedTissue, IsToldAsDeepAsItIs) {
   EXPECT_EQ(tool.contacts, 0);
   EXPECT_EQ(tool.force_on_tool, Vec3::Zero());
   EXPECT_NEAR(tool.max_penetration, 0.003, 1e-5);
+}
+
+// From beneath, through the fixed bottom, it is in the tissue without a touch; out through the side
+// it takes the surface along that it stands through.
+TEST(ToolInFixedTissue, LetsGoOfWhatItIsHookedOnOnceItIsOutside) {
+  Pipeline pipeline(block(), {}, {toolOf(sphereOf(0.006))});
+  const Vec3 beneath(kMiddle, kMiddle, -0.05), within(kMiddle, kMiddle, 0.5 * kTop);
+  walk(pipeline, {beneath}, {within}, 0.002);
+  double drawn_out = 0.0;
+  bool was_inside = false;
+  for (double way = 0.0; way < 2.0 * kMiddle; way += 0.002) {
+    const StepReport& report = pipeline.step(at({within + way * Vec3::UnitX()}));
+    drawn_out = std::max(drawn_out, greatestDisplacement(pipeline.tissue()));
+    was_inside = was_inside || !report.were_inside.empty();
+  }
+  EXPECT_GT(drawn_out, 0.005);
+  EXPECT_TRUE(was_inside);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
 }  // namespace
