@@ -252,8 +252,7 @@ void ToolPatches::findOutwardNormals(const Tissue& tissue) {
   const Surface& surface = tissue.surface();
   outward_.assign(displacement_.size(), Vec3::Zero());
   for (const auto& triangle : surface.triangles) {
-    const Vec3& a = surface.rest[at(triangle[0])];
-    const Vec3 area = (surface.rest[at(triangle[1])] - a).cross(surface.rest[at(triangle[2])] - a);
+    const Vec3 area = doubleArea(surface.rest, triangle);
     for (const int vertex : triangle) {
       for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
         outward_[at(carrier.node)] += carrier.weight * area;

@@ -52,6 +52,11 @@ Box boundsOf(const std::vector<Vec3>& vertices) {
   return box;
 }
 
+Vec3 doubleArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners) {
+  const Vec3& a = vertices[at(corners[0])];
+  return (vertices[at(corners[1])] - a).cross(vertices[at(corners[2])] - a);
+}
+
 double enclosedVolume(const std::vector<Vec3>& vertices,
                       const std::vector<MeshTriangle>& triangles) {
   if (triangles.empty()) return 0.0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/pipeline/pipeline.h"
 #include "stopwatch.h"
 
@@ -150,9 +151,7 @@ std::vector<std::optional<Contact>> Pipeline::trackTouches(const RobotPose& pose
 Vec3 Pipeline::inwardsAt(const Contact& contact) const {
   const int vertex = vertexAt(tissue_.surface(), contact.triangle, contact.barycentric);
   if (vertex >= 0) return -outwards_[at(vertex)].normalized();
-  const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
-  const Vec3& a = vertices_[at(corners[0])];
-  return -(vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a).normalized();
+  return -doubleArea(vertices_, tissue_.surface().triangles[at(contact.triangle)]).normalized();
 }
 
 // A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
@@ -205,8 +204,7 @@ ContactSet Pipeline::touchesAt(const RobotPose& pose, const std::vector<std::uin
   }
   outwards_.assign(vertices_.size(), Vec3::Zero());
   for (const MeshTriangle& corners : tissue_.surface().triangles) {
-    const Vec3& a = vertices_[at(corners[0])];
-    const Vec3 area = (vertices_[at(corners[1])] - a).cross(vertices_[at(corners[2])] - a);
+    const Vec3 area = doubleArea(vertices_, corners);
     for (const int corner : corners) outwards_[at(corner)] += area;
   }
   for (Contact& contact : contacts.contacts) turnOut(pose, contact);

@@ -17,18 +17,18 @@ constexpr double kFarthest = 200.0;  // load steps: a driven tool that finds not
 }  // namespace
 
 // Between the jaws of a grasper (m); nothing where it stands nowhere, or a jaw has no shapes.
-std::optional<double> Pipeline::jawGap(std::size_t tool) const {
+std::optional<double> Pipeline::jawGap(std::size_t tool, const RobotPose& pose) const {
   if (tools_[tool].role != ToolConfig::Role::kGrasper) return std::nullopt;
   const std::size_t jaw = first_link_[tool + 1] - 2;
   const bool bare = finder_.reach(jaw) <= 0.0 || finder_.reach(jaw + 1) <= 0.0;
-  if (bare || isAway(pose_.links[jaw])) return std::nullopt;
-  return finder_.gap(jaw, jaw + 1, pose_);
+  if (bare || isAway(pose.links[jaw])) return std::nullopt;
+  return finder_.gap(jaw, jaw + 1, pose);
 }
 
 // Before a load step: jaws that opened let go.
 void Pipeline::openJaws() {
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    const auto gap = jawGap(tool);
+    const auto gap = jawGap(tool, pose_);
     if (!gap || !closed_[tool] || *gap <= tools_[tool].grasp.open_gap) continue;
     closed_[tool] = false;
     letGo(tool);
@@ -38,7 +38,7 @@ void Pipeline::openJaws() {
 // After it: jaws that closed hold what they have pressed aside as it is now, not within them.
 void Pipeline::closeJaws() {
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    const auto gap = jawGap(tool);
+    const auto gap = jawGap(tool, pose_);
     if (!gap || closed_[tool] || *gap >= tools_[tool].grasp.close_gap) continue;
     closed_[tool] = true;
     hold(tool);

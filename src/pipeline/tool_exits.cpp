@@ -9,11 +9,6 @@
 namespace robot_tissue {
 namespace {
 
-Vec3 outwardArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners) {
-  const Vec3& a = vertices[at(corners[0])];
-  return (vertices[at(corners[1])] - a).cross(vertices[at(corners[2])] - a);
-}
-
 void addUnit(const Vec3& way, std::vector<Vec3>& ways) {
   if (way.norm() > 0.0) ways.push_back(way.normalized());
 }
@@ -67,7 +62,7 @@ std::vector<Vec3> Pipeline::waysOut(const Links& links, const RobotPose& pose) c
   Vec3 as_surface = Vec3::Zero(), against_tool = Vec3::Zero();
   for (const Contact& contact : overlapOf(links, pose).contacts) {
     const MeshTriangle& corners = tissue_.surface().triangles[at(contact.triangle)];
-    as_surface += contact.depth_m * outwardArea(vertices, corners);
+    as_surface += contact.depth_m * doubleArea(vertices, corners);
     against_tool -= contact.depth_m * contact.normal;
   }
   std::vector<Vec3> ways;

@@ -76,10 +76,9 @@ double Pipeline::deepestPointOf(std::size_t tool) const {
 }
 
 bool Pipeline::jawsOverlap(std::size_t tool) const {
-  if (tools_[tool].role != ToolConfig::Role::kGrasper || !last_pose_) return false;
-  const std::size_t jaw = first_link_[tool + 1] - 2;
-  const bool bare = finder_.reach(jaw) <= 0.0 || finder_.reach(jaw + 1) <= 0.0;
-  return !bare && finder_.gap(jaw, jaw + 1, report_.lost ? asked_ : pose_) <= 0.0;
+  if (!last_pose_) return false;
+  const auto gap = jawGap(tool, report_.lost ? asked_ : pose_);
+  return gap && *gap <= 0.0;
 }
 
 // What the tool's, or support's, patch exerts on the tissue; zero when it has none.

@@ -18,6 +18,9 @@ struct TriangleMesh {
 // Smallest box that holds the vertices, of which there must be one at least.
 Box boundsOf(const std::vector<Vec3>& vertices);
 
+// Twice the triangle's area, along its normal outwards (m^2).
+Vec3 doubleArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners);
+
 // Volume inside closed triangles (m^3), by the divergence theorem; negative when they face inwards.
 double enclosedVolume(const std::vector<Vec3>& vertices,
                       const std::vector<MeshTriangle>& triangles);

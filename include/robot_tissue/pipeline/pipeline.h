@@ -231,7 +231,7 @@ class Pipeline {
   void drawOut(std::size_t tool, RobotPose& pose);
 
   // tool_actions.cpp
-  std::optional<double> jawGap(std::size_t tool) const;
+  std::optional<double> jawGap(std::size_t tool, const RobotPose& pose) const;
   void openJaws();
   void closeJaws();
   void tearOff();
