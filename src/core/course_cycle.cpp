@@ -16,7 +16,7 @@ constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no ne
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
 constexpr int kTrials = 8;              // of the length along a direction
 constexpr double kForceShare = 2.0;     // of the tolerance: what forces may disagree by
-constexpr double kMoreInContact = 1.6;  // steps of the smoother in a later cycle, over the first's
+constexpr double kMoreInContact = 1.3;  // steps of the smoother in a later cycle, over the first's
 constexpr int kMostSettling = 3;        // rounds of the smoother, for the forces' sake
 constexpr int kPlainSteps = 8;          // of the smoother, where a cycle led nowhere
 
@@ -193,7 +193,10 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
 // would tell forces that nothing answers. What went astray is not told.
 template <typename Real>
 void CourseIn<Real>::endLate() {
-  if (left_ <= kAstray * first_left_) return finest().smooth(steps_, true);
+  if (left_ <= kAstray * first_left_) {
+    finest().smooth(steps_, true);
+    return settleForces();
+  }
   goPlainly(best_);
   error_ = best_error_;
 }

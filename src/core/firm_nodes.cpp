@@ -18,6 +18,12 @@ Jacobian jacobianAt(const Vec3& arm, bool turns) {
   return jacobian;
 }
 
+// Of a spring in contact, along its normal.
+double stiffnessAlong(const LevelSpring& spring) {
+  const Vec3& normal = spring.contact->normal;
+  return normal.dot(spring.stiffness * normal);
+}
+
 // To no more than `longest` in any component.
 template <typename Vector>
 void cut(Vector& vector, double longest) {
@@ -103,8 +109,6 @@ Vec3 FirmNodes<Real>::meanOf(const LevelSpring& spring, const Field<Real>& displ
   return mean;
 }
 
-// A spring's stiffness counts by its weights' sum, so that no motion is stiffer than the step
-// allows (l1-Jacobi: Baker, Falgout, Kolev, Yang 2011).
 template <typename Real>
 void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displacement,
                                 bool with_steps) {
@@ -120,18 +124,54 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
     }
   }
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    all_[at(carrier.firm)].force += carrier.weight * on_nodes;
+  }
+  if (with_steps) addStiffness(spring);
+  if (spring.group < 0) return;
+  const std::size_t group = at(spring.group);
+  force[group] -= jacobianAt(spring.arm, groups[group].turns).transpose() * on_nodes;
+}
+
+// By its weights' sum, so that no motion is stiffer than the step allows (l1-Jacobi: Baker,
+// Falgout, Kolev, Yang 2011); what joins nodes does so beside.
+template <typename Real>
+void FirmNodes<Real>::addStiffness(const LevelSpring& spring) {
+  Eigen::Matrix3d stiffness = spring.stiffness;
+  if (isJoining(spring)) {
+    const Vec3& normal = spring.contact->normal;
+    stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
+    join(spring);
+  }
   const double ends = spring.group >= 0 ? kBothEnds : 1.0;
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
-    Firm& firm = all_[at(carrier.firm)];
-    firm.force += carrier.weight * on_nodes;
-    if (with_steps) firm.stiffness += ends * carrier.weight * spring.stiffness;
+    all_[at(carrier.firm)].stiffness += ends * carrier.weight * stiffness;
   }
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
   const Jacobian jacobian = jacobianAt(spring.arm, groups[group].turns);
-  force[group] -= jacobian.transpose() * on_nodes;
-  if (!with_steps) return;
-  group_stiffness_[group] += ends * jacobian.transpose() * spring.stiffness * jacobian;
+  group_stiffness_[group] += ends * jacobian.transpose() * stiffness * jacobian;
+}
+
+// A spring in contact that pushes.
+template <typename Real>
+bool FirmNodes<Real>::isJoining(const LevelSpring& spring) const {
+  if (spring.contact == nullptr || stiffnessAlong(spring) <= 0.0) return false;
+  return std::none_of(spring.carriers.begin(), spring.carriers.end(),
+                      [this](const auto& carrier) { return all_[at(carrier.firm)].group >= 0; });
+}
+
+template <typename Real>
+void FirmNodes<Real>::join(const LevelSpring& spring) {
+  joining_.emplace_back();
+  joining_.back().stiffness = stiffnessAlong(spring);
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    Vec3 along = carrier.weight * spring.contact->normal;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((all_[at(carrier.firm)].held >> axis & 1U) != 0) along[axis] = 0.0;
+    }
+    joining_.back().parts.push_back({carrier.firm, along});
+  }
 }
 
 template <typename Real>
@@ -145,7 +185,10 @@ void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real
   }
   force = load;
   contact_force_.setZero();
-  if (with_steps) group_stiffness_.assign(groups.size(), Matrix6::Zero());
+  if (with_steps) {
+    group_stiffness_.assign(groups.size(), Matrix6::Zero());
+    joining_.clear();
+  }
   for (LevelSpring& spring : springs) addSpring(spring, displacement, with_steps);
   for (Firm& firm : all_) {
     if (firm.group >= 0) {
@@ -160,7 +203,11 @@ void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real
     }
     if (with_steps) invert(firm);
   }
-  if (with_steps) invertGroups();
+  if (!with_steps) return;
+  invertGroups();
+  std::vector<Eigen::Matrix3d> inverses;
+  for (const Firm& firm : all_) inverses.push_back(firm.inverse);
+  joined_.join(joining_, inverses);
 }
 
 template <typename Real>
@@ -193,6 +240,21 @@ void FirmNodes<Real>::invertGroups() {
   }
 }
 
+// Motions of the nodes that are in no group, per entry of all_.
+template <typename Real>
+std::vector<Vec3> FirmNodes<Real>::balancing() const {
+  std::vector<Vec3> motions;
+  for (const Firm& firm : all_) {
+    Vec3 free = firm.force;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
+    }
+    motions.push_back(firm.inverse * free);
+  }
+  joined_.apply(motions);
+  return motions;
+}
+
 template <typename Real>
 void FirmNodes<Real>::calm() {
   for (Firm& firm : all_) firm.way.setZero();
@@ -207,16 +269,14 @@ void FirmNodes<Real>::step(double keep, double share, double longest, Field<Real
     cut(way, longest);
     motion[group] += way;
   }
-  for (Firm& firm : all_) {
+  const std::vector<Vec3> motions = balancing();
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    Firm& firm = all_[i];
     if (firm.group >= 0) {
       const std::size_t group = at(firm.group);
       firm.way = motionAt(firm.arm, groups[group].turns, group_way_[group]);
     } else {
-      Vec3 free = firm.force;
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
-      }
-      firm.way = keep * firm.way + share * (firm.inverse * free);
+      firm.way = keep * firm.way + share * motions[i];
       cut(firm.way, longest);
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -247,13 +307,9 @@ void FirmNodes<Real>::moveBy(const Field<Real>& way, const std::vector<GroupVect
 template <typename Real>
 double FirmNodes<Real>::squaredLocalMotion() const {
   double squared = 0.0;
-  for (const Firm& firm : all_) {
-    if (firm.group >= 0) continue;
-    Vec3 free = firm.force;
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
-    }
-    squared += (firm.inverse * free).squaredNorm();
+  const std::vector<Vec3> motions = balancing();
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    if (all_[i].group < 0) squared += motions[i].squaredNorm();
   }
   std::vector<GroupVector> of_groups;
   for (std::size_t group = 0; group < groups.size(); ++group) {

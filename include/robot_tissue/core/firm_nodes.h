@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robot_tissue/core/contact_spring.h"
+#include "robot_tissue/core/joined_nodes.h"
 #include "robot_tissue/core/level_cells.h"
 #include "robot_tissue/core/types.h"
 
@@ -96,12 +97,18 @@ class FirmNodes {
 
   int indexOf(int node) const;
   void addSpring(LevelSpring& spring, const Field<Real>& displacement, bool with_steps);
+  void addStiffness(const LevelSpring& spring);
+  bool isJoining(const LevelSpring& spring) const;
+  void join(const LevelSpring& spring);
+  std::vector<Vec3> balancing() const;
   void invert(Firm& firm);
   void invertGroups();
 
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
   std::vector<Firm> all_;
+  std::vector<JoinedNodes::Spring> joining_;  // springs in contact, along their normals
+  JoinedNodes joined_;
   std::vector<Matrix6> group_stiffness_, group_inverse_;
   std::vector<GroupVector> group_way_;
 };
