@@ -9,6 +9,8 @@
 namespace robot_tissue {
 namespace {
 
+constexpr int kAxes = 4;  // numbers of axes that an end leaves room for
+
 // What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any
 // cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
 class SpringStiffness {
@@ -94,14 +96,14 @@ void Lattice::placeSprings() {
   std::array<int, kNeighbors> none{};
   none.fill(-1);
   springs_of_node_.assign(index_of_.size(), none);
-  springs_.reserve(3 * index_of_.size());
+  lower_ends_.reserve(3 * index_of_.size());
   for (int node = 0; node < nodeCount(); ++node) {
     for (int axis = 0; axis < 3; ++axis) {
       for (auto cell = cells_->first(node); cell != cells_->last(node); ++cell) {
         if (cell->corner >> axis & 1) continue;
         const int upper = cells()[at(cell->cell)].nodes[at(cell->corner | 1 << axis)];
-        const int spring = static_cast<int>(springs_.size());
-        springs_.push_back({node, upper, axis, 0.0});
+        const int spring = static_cast<int>(lower_ends_.size());
+        lower_ends_.push_back(kAxes * node + axis);
         springs_of_node_[at(node)][at(2 * axis + 1)] = spring;
         springs_of_node_[at(upper)][at(2 * axis)] = spring;
         break;
@@ -113,7 +115,7 @@ void Lattice::placeSprings() {
 // Masses of the nodes and stiffnesses of the springs, from the cells around them.
 void Lattice::weigh(const TissueConfig& config) {
   mass_.assign(index_of_.size(), 0.0);
-  std::vector<SpringStiffness> stiffness(springs_.size());
+  std::vector<SpringStiffness> stiffness(lower_ends_.size());
   const double corner_volume = std::pow(spacing(), 3) / kCorners;
   for (const Cell& cell : cells()) {
     const Material& material = materialAt(config, cellCenter(cell));
@@ -126,9 +128,8 @@ void Lattice::weigh(const TissueConfig& config) {
       }
     }
   }
-  for (std::size_t spring = 0; spring < springs_.size(); ++spring) {
-    springs_[spring].stiffness = stiffness[spring].value();
-  }
+  spring_stiffness_.reserve(stiffness.size());
+  for (const SpringStiffness& each : stiffness) spring_stiffness_.push_back(each.value());
 }
 
 void Lattice::fix(const std::vector<Box>& boxes) {
@@ -161,10 +162,18 @@ Vec3 Lattice::cellCenter(const Cell& cell) const {
 }
 
 int Lattice::neighbor(int node, int direction) const {
-  const int spring = springOf(node, direction);
-  if (spring < 0) return -1;
-  const Spring& joined = springs_[at(spring)];
-  return direction % 2 == 1 ? joined.b : joined.a;
+  if (springOf(node, direction) < 0) return -1;
+  std::array<int, 3> index = gridIndex(node);
+  index[at(direction / 2)] += direction % 2 == 1 ? 1 : -1;
+  return this->node(index[0], index[1], index[2]);
+}
+
+std::size_t SpringList::size() const { return lattice_.lower_ends_.size(); }
+
+Spring SpringList::operator[](std::size_t index) const {
+  const int end = lattice_.lower_ends_[index];
+  const int node = end / kAxes, axis = end % kAxes;
+  return {node, lattice_.neighbor(node, 2 * axis + 1), axis, lattice_.spring_stiffness_[index]};
 }
 
 std::vector<int> Lattice::nodesIn(const Box& box) const {
@@ -184,7 +193,7 @@ LatticeState Lattice::restState() const {
   LatticeState state;
   state.displacement.assign(index_of_.size(), Vec3::Zero());
   state.cells = cells_;
-  state.severed.assign(springs_.size(), 0);
+  state.severed.assign(lower_ends_.size(), 0);
   state.pieces = countPieces(*this, state);
   return state;
 }

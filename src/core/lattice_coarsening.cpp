@@ -270,8 +270,9 @@ Coarsening coarsened(const LevelGrid& fine, const std::vector<LevelCell>& cells,
 }
 
 NodeShares sharesAround(const LevelGrid& coarse, const std::array<int, 3>& fine_place) {
-  NodeShares shares = {
-      {coarse.index(fine_place[0] / 2, fine_place[1] / 2, fine_place[2] / 2), 1.0}};
+  NodeShares shares;
+  shares.reserve(kCorners);
+  shares.push_back({coarse.index(fine_place[0] / 2, fine_place[1] / 2, fine_place[2] / 2), 1.0});
   const std::array<int, 3> strides = {1, coarse.row, coarse.plane};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (fine_place[axis] % 2 == 0) continue;

@@ -80,7 +80,7 @@ void LatticeLevels<Real>::addLevel(const LevelGrid& grid, int beside,
 
 template <typename Real>
 void LatticeLevels<Real>::addStep(LevelTransfer<Real> transfer) {
-  steps_.push_back({std::move(transfer), {}, {}, {}, {}});
+  steps_.push_back({std::move(transfer), {}, {}, {}, {}, {}});
 }
 
 template <typename Real>

@@ -4,36 +4,46 @@
 #include "robot_tissue/core/lattice_levels.h"
 
 namespace robot_tissue {
+namespace {
+
+constexpr double kNext = -1.0;  // between the parts of a bond
+
+}  // namespace
 
 template <typename Real>
 void LatticeLevels<Real>::bind(const LoadedShape& shape, const PatchHold& hold) {
   Bond bond = bondOf(shape, hold);
   const bool by_force = std::any_of(shape.patches.begin(), shape.patches.end(), byForce);
-  if (!by_force && bond == bond_) return renewSprings(shape, hold);
+  const bool held_alike = !by_force && bond.held == bond_.held;
+  if (held_alike && bond.springs == bond_.springs) return renewSprings(shape, hold);
   bond_ = by_force ? Bond() : std::move(bond);
-  bindFinest(shape, hold);
-  for (std::size_t level = 0; level + 1 < levels_.size(); ++level) bindCoarse(level);
-  placeRims();
+  if (!held_alike) {
+    holdFinest(shape, hold);
+    for (std::size_t level = 0; level + 1 < levels_.size(); ++level) holdCoarse(level);
+  }
+  hangFinest(shape, hold);
+  for (std::size_t level = 0; level + 1 < levels_.size(); ++level) hangCoarse(level);
+  if (!held_alike) placeRims();
 }
 
 template <typename Real>
 typename LatticeLevels<Real>::Bond LatticeLevels<Real>::bondOf(const LoadedShape& shape,
                                                                const PatchHold& hold) {
-  Bond bond = {-1.0};
+  Bond bond = {{kNext}, {kNext}};
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
     for (const int node : hold.hardOf(index)) {
-      bond.push_back(node);
-      bond.push_back(hold.held()[at(node)]);
+      bond.held.push_back(node);
+      bond.held.push_back(hold.held()[at(node)]);
     }
-    bond.push_back(-1.0);
-    for (const RimSpring& rim : patch.rim) bond.push_back(rim.node);
-    bond.push_back(-1.0);
+    bond.held.push_back(kNext);
+    for (const RimSpring& rim : patch.rim) bond.springs.push_back(rim.node);
+    bond.springs.push_back(kNext);
     for (const ContactSpring& contact : patch.contacts) {
-      bond.push_back(static_cast<double>(contact.carriers.size()));
+      bond.springs.push_back(static_cast<double>(contact.carriers.size()));
       for (const NodeWeight& carrier : contact.carriers) {
-        bond.push_back(carrier.node);
-        bond.push_back(carrier.weight);
+        bond.springs.push_back(carrier.node);
+        bond.springs.push_back(carrier.weight);
       }
     }
   }
@@ -41,43 +51,49 @@ typename LatticeLevels<Real>::Bond LatticeLevels<Real>::bondOf(const LoadedShape
 }
 
 template <typename Real>
-void LatticeLevels<Real>::bindFinest(const LoadedShape& shape, const PatchHold& hold) {
+void LatticeLevels<Real>::holdFinest(const LoadedShape& shape, const PatchHold& hold) {
   LatticeLevel<Real>& level = levels_.front();
   level.freeAll();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
-    const LoadingPatch& patch = shape.patches[index];
     level.firm.groups.emplace_back();
     LevelGroup& group = level.firm.groups.back();
-    group.turns = patch.turns;
-    if (byForce(patch)) {
-      for (const int node : hold.hardOf(index)) {
-        group.nodes.push_back(entryOf(node));
-        group.arms.push_back(hold.armOf(shape, index, node) / spacing_);
-      }
-    }
-    for (const RimSpring& rim : patch.rim) {
-      level.firm.springs.emplace_back();
-      level.firm.springs.back().carriers.push_back({entryOf(rim.node), 1.0});
-    }
-    for (const ContactSpring& contact : patch.contacts) {
-      level.firm.springs.emplace_back();
-      for (const NodeWeight& carrier : contact.carriers) {
-        level.firm.springs.back().carriers.push_back({entryOf(carrier.node), carrier.weight});
-      }
+    group.turns = shape.patches[index].turns;
+    if (!byForce(shape.patches[index])) continue;
+    for (const int node : hold.hardOf(index)) {
+      group.nodes.push_back(entryOf(node));
+      group.arms.push_back(hold.armOf(shape, index, node) / spacing_);
     }
   }
-  renewSprings(shape, hold);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const std::size_t node = at(nodes_[i]);
     level.hold(entries_[i], hold.carriers()[node] >= 0 ? 0U : hold.held()[node]);
   }
-  level.bind();
   if (!weight_.front().empty()) level.load = weight_;
+}
+
+template <typename Real>
+void LatticeLevels<Real>::hangFinest(const LoadedShape& shape, const PatchHold& hold) {
+  LatticeLevel<Real>& level = levels_.front();
+  std::vector<LevelSpring>& springs = level.firm.springs;
+  springs.clear();
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& rim : patch.rim) {
+      springs.emplace_back();
+      springs.back().carriers.push_back({entryOf(rim.node), 1.0});
+    }
+    for (const ContactSpring& contact : patch.contacts) {
+      springs.emplace_back();
+      for (const NodeWeight& carrier : contact.carriers) {
+        springs.back().carriers.push_back({entryOf(carrier.node), carrier.weight});
+      }
+    }
+  }
+  renewSprings(shape, hold);
+  level.bind();
   const double unit = modulus_ * spacing_ * spacing_;
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
-    if (byForce(shape.patches[index])) {
-      level.firm.load[index].template head<3>() = shape.patches[index].force / unit;
-    }
+    if (!byForce(shape.patches[index])) continue;
+    level.firm.load[index].template head<3>() = shape.patches[index].force / unit;
   }
 }
 
@@ -118,7 +134,7 @@ void LatticeLevels<Real>::renewGroups(const LoadedShape& shape, const PatchHold&
 }
 
 template <typename Real>
-void LatticeLevels<Real>::bindCoarse(std::size_t index) {
+void LatticeLevels<Real>::holdCoarse(std::size_t index) {
   const LatticeLevel<Real>& fine = levels_[index];
   LatticeLevel<Real>& coarse = levels_[index + 1];
   coarse.freeAll();
@@ -140,17 +156,28 @@ void LatticeLevels<Real>::bindCoarse(std::size_t index) {
     const NodeShares carriers = steps_[index].transfer.carriersOf(node);
     if (carriers.size() == 1) coarse.hold(carriers.front().node, fine.heldAxes(node));
   }
-  steps_[index].sources.clear();
-  for (std::size_t i = 0; i < fine.firm.springs.size(); ++i) {
-    LevelSpring spring = fine.firm.springs[i];
+  steps_[index].ties.clear();
+  addTies(index);
+}
+
+template <typename Real>
+void LatticeLevels<Real>::hangCoarse(std::size_t index) {
+  const std::vector<LevelSpring>& fine = levels_[index].firm.springs;
+  LatticeLevel<Real>& coarse = levels_[index + 1];
+  std::vector<int>& sources = steps_[index].sources;
+  coarse.firm.springs.clear();
+  sources.clear();
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    LevelSpring spring = fine[i];
     spring.contact = nullptr;
     spring.arm /= LevelTransfer<Real>::kTwice;
-    spring.carriers = freeCarriers(index, spring.carriers);
+    spring.carriers = freeCarriers(index, fine[i].carriers);
     if (spring.carriers.empty() && spring.group < 0) continue;
-    coarse.firm.springs.push_back(spring);
-    steps_[index].sources.push_back(static_cast<int>(i));
+    coarse.firm.springs.push_back(std::move(spring));
+    sources.push_back(static_cast<int>(i));
   }
-  addTies(index);
+  const std::vector<LevelSpring>& ties = steps_[index].ties;
+  coarse.firm.springs.insert(coarse.firm.springs.end(), ties.begin(), ties.end());
   coarse.bind();
 }
 
@@ -199,7 +226,7 @@ void LatticeLevels<Real>::addTie(std::size_t index, int node, unsigned axes, int
                                  const Vec3& arm) {
   const NodeShares carriers = steps_[index].transfer.carriersOf(node);
   if (carriers.size() == 1) return;
-  LatticeLevel<Real>& coarse = levels_[index + 1];
+  const LatticeLevel<Real>& coarse = levels_[index + 1];
   LevelSpring spring;
   double weight = 0.0;
   for (const NodeShare& carrier : carriers) {
@@ -220,7 +247,7 @@ void LatticeLevels<Real>::addTie(std::size_t index, int node, unsigned axes, int
   }
   spring.group = group;
   spring.arm = arm / LevelTransfer<Real>::kTwice;
-  coarse.firm.springs.push_back(spring);
+  steps_[index].ties.push_back(std::move(spring));
 }
 
 template class LatticeLevels<float>;

@@ -46,6 +46,11 @@ double Tissue::stepLength() const {
   return std::min(method_->patchStep(), kToolStep * lattice_.spacing());
 }
 
+Tissue::Displacements Tissue::displacements() const {
+  if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
+  return kept_;
+}
+
 SolveReport Tissue::settle() { return solve(freeNodes()); }
 
 Vec3 Tissue::weight() const { return weight_; }
@@ -96,7 +101,8 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
 }
 
 void Tissue::restore(const Shape& shape) {
-  state_.displacement = carriedOver(*shape.cells, shape.displacement, *state_.cells);
+  kept_.reset();
+  state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
@@ -115,6 +121,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
     disturbed.push_back(lattice_.springs()[at(spring)].a);
     disturbed.push_back(lattice_.springs()[at(spring)].b);
   }
+  kept_.reset();
   sever(lattice_, crossing, state_, model_->splitCells());
   rebuildSurface();
   deformSurface();
@@ -127,6 +134,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
 void Tissue::reset() {
   const bool was_cut = state_.springs_cut > 0;
   method_->forget();
+  kept_.reset();
   state_ = lattice_.restState();
   patches_.clear();
   named_patches_ = 0;
@@ -188,24 +196,25 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
 SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (!contact_rounds_.renew) return solveOnce(disturbed);
-  std::vector<Vec3> before = state_.displacement;
+  Displacements before = displacements();
   SolveReport report = solveOnce(disturbed);
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
     const bool late = deadline_ && deadline_->isOver();
     const bool hurried = deadline_ && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-    const bool whole = !goBack(before) && solved;
+    const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
     const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
                       report.iterations > kMostIterations ||
-                      (!solved && !hurried && rounds > 1 && state_.displacement == before);
+                      (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_rounds_.renew(of_tools, whole, last);
     if (!renewed && (last || !hurried)) break;
     if (late) last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
-    before = state_.displacement;
+    before.reset();  // before the next copy
+    before = displacements();
     const SolveReport earlier = report;
     report = solveOnce({});
     report.wall_ms += earlier.wall_ms;
@@ -236,6 +245,7 @@ void Tissue::limitWays() {
 bool Tissue::goBack(const std::vector<Vec3>& before) {
   const double share = contact_rounds_.share(before);
   if (share >= 1.0) return false;
+  kept_.reset();
   for (std::size_t node = 0; node < before.size(); ++node) {
     state_.displacement[node] = before[node] + share * (state_.displacement[node] - before[node]);
   }
@@ -247,6 +257,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const bool may_fail = !method_->staysFinite();
   const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
   const std::vector<LoadingPatch> last_good_patches = patches_;
+  kept_.reset();
   limitWays();
   method_->limitTime(deadline_ ? std::max(kLeastMs, kShareOfTime * deadline_->leftMs()) : max_ms_);
   SolveReport report = method_->solve(patches_, disturbed, state_);
@@ -267,6 +278,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
 SolveReport Tissue::solveFromRest() {
   const std::vector<LoadingPatch> standing = patches_;
   method_->forget();
+  kept_.reset();
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   SolveReport report;
   if (has_gravity_) {

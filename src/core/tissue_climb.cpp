@@ -69,7 +69,7 @@ SolveReport Tissue::climbByItself(const std::vector<Ramp>& ramps, const OnIncrem
     const double part = (1.0 - share) / wholeParts((1.0 - share) / stride);
     const double to = part < 1.0 - share ? share + part : 1.0;
     report = goTo(ramps, to);
-    const double went = stepsGone(ramps, good.displacement);
+    const double went = stepsGone(ramps, *good.displacement);
     stride = std::max(least, part / std::max(went, 1.0 / kMostGrowth));
     if (went > kTooFar && stride < part) {
       restore(good);

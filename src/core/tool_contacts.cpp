@@ -66,8 +66,8 @@ double ToolContacts::fineness(int link, double spacing) const {
 }
 
 void ToolContacts::ride(const RobotPose& pose, const Tissue& tissue) {
-  if (since_links_.size() != pose.links.size() ||
-      since_displacement_.size() != tissue.state().displacement.size()) {
+  if (since_links_.size() != pose.links.size() || !since_displacement_ ||
+      since_displacement_->size() != tissue.state().displacement.size()) {
     commit(pose, tissue);
   }
   for (Touch& touch : touches_) {
@@ -83,7 +83,7 @@ void ToolContacts::ride(const RobotPose& pose, const Tissue& tissue) {
 void ToolContacts::anchor(const RobotPose& pose, Touch& touch) const {
   const Pose& link = pose.links[at(touch.link)];
   const Pose moved = link * since_links_[at(touch.link)].inverse();
-  touch.spring.anchor = moved * pointOf(touch.spring, since_displacement_);
+  touch.spring.anchor = moved * pointOf(touch.spring, *since_displacement_);
   const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.drag_ratio);
   touch.spring.drag = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
 }
@@ -319,15 +319,15 @@ void ToolContacts::carry(const Tissue& tissue, const Held& held, Touch& touch) {
 
 void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   since_links_ = pose.links;
-  since_displacement_ = tissue.state().displacement;
+  since_displacement_ = tissue.displacements();
   cut_rounds_ = 0;
   for (Touch& touch : touches_) {
     const ContactSpring& spring = touch.spring;
     const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.link)].linear().transpose();
     touch.since_normal = link_R_tissue * spring.normal;
     if (spring.multiplier <= 0.0) continue;
-    const double force = normalForceOf(spring, since_displacement_);
-    const Vec3 drag = forceOf(spring, since_displacement_) - force * spring.normal;
+    const double force = normalForceOf(spring, *since_displacement_);
+    const Vec3 drag = forceOf(spring, *since_displacement_) - force * spring.normal;
     touch.drag_ratio = link_R_tissue * drag / spring.multiplier;
   }
   for (Touch& touch : touches_) {
@@ -336,7 +336,7 @@ void ToolContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   const auto left = [&](const Touch& touch) {
     if (touch.spring.multiplier > 0.0) return false;
     const double far = touch.vertex >= 0 ? kFarOff * tissue.lattice().spacing() : 0.0;
-    return gapOf(touch.spring, since_displacement_) > far;
+    return gapOf(touch.spring, *since_displacement_) > far;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
 }

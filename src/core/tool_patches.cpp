@@ -17,10 +17,9 @@ ToolPatches::ToolPatches(const Lattice& lattice, std::vector<std::string> tool_n
     : lattice_(&lattice), names_(std::move(tool_names)), seats_(names_.size()) {}
 
 void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
-  displacement_ = tissue.state().displacement;
+  places_.clear();
   cells_ = tissue.state().cells;
   holdNamedLoads(tissue);
-  if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
   left_.clear();
   for (std::size_t tool = 0; tool < seats_.size(); ++tool) {
     for (auto seat = seats_[tool].begin(); seat != seats_[tool].end();) {
@@ -34,7 +33,7 @@ void ToolPatches::ride(const RobotPose& pose, const Tissue& tissue) {
         left_.push_back(node);
         seat = seats_[tool].erase(seat);
       } else {
-        displacement_[at(node)] = moved;
+        places_[node] = moved;
         ++seat;
       }
     }
@@ -55,7 +54,7 @@ void ToolPatches::keepTouching(const ContactSet& contacts, const Tissue& tissue)
         ++seat;
         continue;
       }
-      displacement_[at(node)] = tissue.state().displacement[at(node)];
+      places_.erase(node);
       left_.push_back(node);
       seat = seats_[tool].erase(seat);
     }
@@ -66,11 +65,10 @@ void ToolPatches::keepTouching(const ContactSet& contacts, const Tissue& tissue)
 //   minimize sum |du_n|^2 / mobility_n   subject to   normal_c . sum w_cn du_n >= depth_c,
 // by sweeps over the contacts' multipliers. All of a sweep look at the same shape, so that the
 // order of the contacts, and with it the side a symmetric press would start on, does not matter.
-void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
-                          const RobotPose& pose) {
+void ToolPatches::pushOut(const ContactSet& contacts, const Tissue& tissue, const RobotPose& pose) {
   std::vector<Push> pushes;
   for (const Contact& contact : contacts.contacts) {
-    pushes.push_back({&contact, supportOf(contact, surface), 0.0, 0.0});
+    pushes.push_back({&contact, supportOf(contact, tissue.surface()), 0.0, 0.0});
   }
   scale(pushes);
   std::map<int, Vec3> motion;
@@ -87,7 +85,7 @@ void ToolPatches::pushOut(const ContactSet& contacts, const Surface& surface,
     }
   }
   for (const auto& [node, contact] : pushed_by) {
-    seat(node, at(contact->tool), contact->link, motion.at(node), pose);
+    seat(node, at(contact->tool), contact->link, motion.at(node), tissue, pose);
   }
 }
 
@@ -143,9 +141,24 @@ std::map<int, Vec3> ToolPatches::motionOf(const std::vector<Push>& pushes) {
 }
 
 bool ToolPatches::letsGo(int node, const Vec3& displacement, const Vec3& way_out,
-                         const Tissue& tissue) const {
+                         const Tissue& tissue) {
+  if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
   if (outward_[at(node)].dot(displacement) > 0.0) return true;
   return way_out.dot(displacement) < 0.0 && way_out.dot(tissue.nodeForce(node)) >= 0.0;
+}
+
+void ToolPatches::restore(const Seats& seats, const Tissue& tissue) {
+  seats_ = seats;
+  places_.clear();
+  for (const auto& of_tool : seats_) {
+    for (const auto& [node, seat] : of_tool) places_[node] = tissue.state().displacement[at(node)];
+  }
+}
+
+std::vector<Vec3> ToolPatches::displacement(const Tissue& tissue) const {
+  std::vector<Vec3> displacement = tissue.state().displacement;
+  for (const auto& [node, place] : places_) displacement[at(node)] = place;
+  return displacement;
 }
 
 void ToolPatches::clear() {
@@ -161,7 +174,7 @@ LoadingPatch ToolPatches::loadingPatch(int tool) const {
   patch.name = names_[at(tool)];
   for (const auto& [node, seat] : seats_[at(tool)]) {
     patch.nodes.push_back(node);
-    patch.displacement.push_back(displacement_[at(node)]);
+    patch.displacement.push_back(places_.at(node));
   }
   return patch;
 }
@@ -190,6 +203,7 @@ void ToolPatches::hold(int tool, int link, const Pose& tissue_T_link, const std:
     seat.link = link;
     seat.grasped = true;
     seat.point = link_T_tissue * tissue.nodePosition(node);
+    places_[node] = tissue.state().displacement[at(node)];
   }
 }
 
@@ -232,8 +246,9 @@ std::vector<ToolPatches::Carrier> ToolPatches::supportOf(const Contact& contact,
 
 // A node that another tool holds keeps that seat, at its new place.
 void ToolPatches::seat(int node, std::size_t tool, int link, const Vec3& moved,
-                       const RobotPose& pose) {
-  displacement_[at(node)] += moved;
+                       const Tissue& tissue, const RobotPose& pose) {
+  Vec3& place = places_.try_emplace(node, tissue.state().displacement[at(node)]).first->second;
+  place += moved;
   for (std::size_t other = 0; other < seats_.size(); ++other) {
     const auto earlier = seats_[other].find(node);
     if (earlier == seats_[other].end()) continue;
@@ -243,14 +258,13 @@ void ToolPatches::seat(int node, std::size_t tool, int link, const Vec3& moved,
   const Pose tool_T_tissue = pose.links[at(link)].inverse();
   Seat& seat = seats_[tool][node];
   seat.link = link;
-  seat.point =
-      tool_T_tissue * Vec3(restPosition(*lattice_, *cells_, node) + displacement_[at(node)]);
+  seat.point = tool_T_tissue * Vec3(restPosition(*lattice_, *cells_, node) + place);
   seat.pushed += tool_T_tissue.linear() * moved;
 }
 
 void ToolPatches::findOutwardNormals(const Tissue& tissue) {
   const Surface& surface = tissue.surface();
-  outward_.assign(displacement_.size(), Vec3::Zero());
+  outward_.assign(tissue.state().displacement.size(), Vec3::Zero());
   for (const auto& triangle : surface.triangles) {
     const Vec3 area = doubleArea(surface.rest, triangle);
     for (const int vertex : triangle) {

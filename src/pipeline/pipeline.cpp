@@ -191,10 +191,11 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
 // No tissue gets into this shape from the last good one, as where tools squeeze it flat.
 bool Pipeline::isLost(const Checkpoint& good) const {
   const std::vector<Vec3>& now = tissue_.state().displacement;
+  const std::vector<Vec3>& before = *good.shape.displacement;
   double farthest = 0.0;
   for (const auto& carriers : tissue_.surface().carriers) {
     for (const NodeWeight& carrier : carriers) {
-      const Vec3 way = now[at(carrier.node)] - good.shape.displacement[at(carrier.node)];
+      const Vec3 way = now[at(carrier.node)] - before[at(carrier.node)];
       farthest = std::max(farthest, way.squaredNorm());
     }
   }
@@ -234,7 +235,7 @@ bool Pipeline::isRigid(int tool) const {
 void Pipeline::pushRigid(const RobotPose& pose) {
   if (!any_rigid_) return;
   for (int pass = 0; pass < kPushPasses; ++pass) {
-    ContactSet contacts = contactsAt(pose, patches_.displacement());
+    ContactSet contacts = contactsAt(pose, patches_.displacement(tissue_));
     auto& all = contacts.contacts;
     const double touches = kTouches * tissue_.lattice().spacing();
     const auto is_others = [&](const Contact& contact) {
@@ -243,7 +244,7 @@ void Pipeline::pushRigid(const RobotPose& pose) {
     all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
     if (pass == 0) patches_.keepTouching(contacts, tissue_);
     if (deepest(contacts) <= 0.0) return;
-    patches_.pushOut(contacts, tissue_.surface(), pose);
+    patches_.pushOut(contacts, tissue_, pose);
   }
 }
 

@@ -122,7 +122,7 @@ Pipeline::Checkpoint Pipeline::checkpoint() const {
 void Pipeline::goBackTo(const Checkpoint& good) {
   pose_ = good.pose;
   tissue_.restore(good.shape);
-  patches_.restore(good.seats);
+  patches_.restore(good.seats, tissue_);
   contacts_ = good.contacts;
   closed_ = good.closed;
   depths_ = good.depths;
@@ -131,7 +131,7 @@ void Pipeline::goBackTo(const Checkpoint& good) {
 void Pipeline::checkIn(const RobotPose& pose) {
   if (!any_rigid_ || tissue_.isUntouched()) checkpoints_.clear();
   if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
-  checkpoints_.push_back(any_rigid_ ? checkpoint() : toolsCheckpoint());
+  checkpoints_.push_back(any_rigid_ ? checkpoint() : Checkpoint());
   checkpoints_.back().pose = pose;
 }
 

@@ -84,7 +84,8 @@ TEST_F(CutTissue, TakesUpAShapeFromBeforeTheCut) {
   const LatticeState& state = tissue_.state();
   ASSERT_EQ(at(state.cells->nodeCount()), state.displacement.size());
   for (int node = 0; node < state.cells->nodeCount(); ++node) {
-    EXPECT_EQ(state.displacement[at(node)], before.displacement[at(state.cells->original(node))]);
+    EXPECT_EQ(state.displacement[at(node)],
+              (*before.displacement)[at(state.cells->original(node))]);
   }
 }
 
@@ -137,7 +138,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   ContactSet contacts;
   contacts.contacts = {contact};
   patches.ride(pose, tissue_);
-  patches.pushOut(contacts, surface, pose);
+  patches.pushOut(contacts, tissue_, pose);
   const std::vector<int> held = patches.nodes(0);
   ASSERT_EQ(held.size(), 2u);
   EXPECT_EQ(held[0], beside);

@@ -68,7 +68,7 @@ class ToolPatchesTest : public ::testing::Test {
   // How far the contact's point went with the patches.
   Vec3 wayOf(const Contact& contact) const {
     std::vector<Vec3> vertices;
-    deform(tissue_.surface(), patches_.displacement(), vertices);
+    deform(tissue_.surface(), patches_.displacement(tissue_), vertices);
     return pointOf(contact, vertices) - contact.point;
   }
 
@@ -90,7 +90,7 @@ class ToolPatchesTest : public ::testing::Test {
     patches_.ride(pose_, tissue_);
     ContactSet set;
     set.contacts = contacts;
-    patches_.pushOut(set, tissue_.surface(), pose_);
+    patches_.pushOut(set, tissue_, pose_);
   }
 
   std::vector<LoadingPatch> loadingPatches() const {
@@ -118,7 +118,7 @@ TEST_F(ToolPatchesTest, WithoutContactThereIsNoPatch) {
   EXPECT_TRUE(patches_.loadingPatch(0).nodes.empty());
   EXPECT_TRUE(patches_.nodes(0).empty());
   EXPECT_TRUE(patches_.pushed(0, pose_).isZero());
-  EXPECT_EQ(patches_.displacement(), tissue_.state().displacement);
+  EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
 }
 
 TEST_F(ToolPatchesTest, ContactAtAVertexIsPushedOutByItsDepth) {
@@ -127,14 +127,14 @@ TEST_F(ToolPatchesTest, ContactAtAVertexIsPushedOutByItsDepth) {
   push({atNode(middle, 1e-3, normal)});
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{middle}));
   EXPECT_TRUE(patches_.nodes(1).empty());
-  EXPECT_LT((patches_.displacement()[at(middle)] - 1e-3 * normal).norm(), 1e-15);
+  EXPECT_LT((patches_.displacement(tissue_)[at(middle)] - 1e-3 * normal).norm(), 1e-15);
   EXPECT_LT((patches_.pushed(0, pose_) - 1e-3 * normal).norm(), 1e-15);
   const LoadingPatch load = patches_.loadingPatch(0);
   EXPECT_EQ(load.name, "probe");
   EXPECT_EQ(load.drive, LoadingPatch::Drive::kDisplacement);
   EXPECT_EQ(load.nodes, (std::vector<int>{middle}));
   ASSERT_EQ(load.displacement.size(), 1u);
-  EXPECT_EQ(load.displacement[0], patches_.displacement()[at(middle)]);
+  EXPECT_EQ(load.displacement[0], patches_.displacement(tissue_)[at(middle)]);
   EXPECT_FALSE(patches_.holds(1));
 }
 
@@ -189,7 +189,7 @@ TEST_F(ToolPatchesTest, NodesOfNamedLoadsAreNeverTaken) {
   tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
   push({atNode(node(3, 3, 3), 1e-3)});
   EXPECT_TRUE(patches_.empty());
-  EXPECT_EQ(patches_.displacement(), tissue_.state().displacement);
+  EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
   push({atNode(node(4, 4, 3), 1e-3)});
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(4, 4, 3)}));
 }
@@ -218,7 +218,7 @@ TEST_F(ToolPatchesTest, NodesRideRigidlyWithTheirTool) {
   for (const int each : held) {
     const Vec3 rest = tissue_.lattice().restPosition(each);
     const Vec3 moved = motion * Vec3(rest + 1e-3 * kInto);
-    EXPECT_LT((rest + patches_.displacement()[at(each)] - moved).norm(), 1e-14);
+    EXPECT_LT((rest + patches_.displacement(tissue_)[at(each)] - moved).norm(), 1e-14);
   }
   const Vec3 way_out = motion.linear() * (3e-3 * kInto);  // the sum over its nodes
   EXPECT_LT((patches_.pushed(0, pose_) - way_out).norm(), 1e-15);
@@ -231,8 +231,8 @@ TEST_F(ToolPatchesTest, RidingOfOneToolLeavesTheOther) {
   follow();
   pose_.links[0].translation() += Vec3(0.0, 0.0, -1e-3);
   patches_.ride(pose_, tissue_);
-  EXPECT_NEAR(patches_.displacement()[at(node(2, 2, 3))].z(), -2e-3, 1e-14);
-  EXPECT_NEAR(patches_.displacement()[at(node(5, 5, 3))].z(), -5e-4, 1e-14);
+  EXPECT_NEAR(patches_.displacement(tissue_)[at(node(2, 2, 3))].z(), -2e-3, 1e-14);
+  EXPECT_NEAR(patches_.displacement(tissue_)[at(node(5, 5, 3))].z(), -5e-4, 1e-14);
   EXPECT_EQ(patches_.loadingPatch(0).name, "probe");
   EXPECT_EQ(patches_.loadingPatch(1).name, "jaw");
 }
@@ -310,7 +310,7 @@ TEST_F(ToolPatchesTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
   ASSERT_EQ(jaw.nodes.size(), grasped.size());
   for (std::size_t i = 0; i < grasped.size(); ++i) {
     const Vec3 now =
-        tissue_.lattice().restPosition(grasped[i]) + patches_.displacement()[at(grasped[i])];
+        tissue_.lattice().restPosition(grasped[i]) + patches_.displacement(tissue_)[at(grasped[i])];
     EXPECT_LT((now - motion * places[i]).norm(), 1e-14);
   }
   EXPECT_TRUE(patches_.pushed(1, pose_).isZero());  // it was not pushed out of the jaw
@@ -391,8 +391,8 @@ TEST_F(ToolPatchesTest, NodesOfOneToolRideOnDifferentLinks) {
   pose_.links[1].translation() += Vec3(-1e-3, 0.0, 0.0);
   gripper.ride(pose_, tissue_);
   EXPECT_EQ(gripper.nodes(0).size(), 2u);
-  EXPECT_NEAR(gripper.displacement()[at(node(2, 3, 3))].x(), 1e-3, 1e-14);
-  EXPECT_NEAR(gripper.displacement()[at(node(4, 3, 3))].x(), -1e-3, 1e-14);
+  EXPECT_NEAR(gripper.displacement(tissue_)[at(node(2, 3, 3))].x(), 1e-3, 1e-14);
+  EXPECT_NEAR(gripper.displacement(tissue_)[at(node(4, 3, 3))].x(), -1e-3, 1e-14);
 }
 
 }  // namespace

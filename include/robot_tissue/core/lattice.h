@@ -26,6 +26,37 @@ struct Spring {
   double stiffness = 0.0;  // N/m
 };
 
+class Lattice;
+
+// The springs of a lattice, in ascending order of their lower ends; each is put together when it is
+// asked for, as there are three for every node. Must not outlive the lattice.
+class SpringList {
+ public:
+  class Iterator {
+   public:
+    Iterator(const SpringList& list, std::size_t index) : list_(&list), index_(index) {}
+    Spring operator*() const { return (*list_)[index_]; }
+    Iterator& operator++() {
+      ++index_;
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return index_ != other.index_; }
+
+   private:
+    const SpringList* list_;
+    std::size_t index_;
+  };
+
+  explicit SpringList(const Lattice& lattice) : lattice_(lattice) {}
+  std::size_t size() const;
+  Spring operator[](std::size_t index) const;
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size()}; }
+
+ private:
+  const Lattice& lattice_;
+};
+
 // Directions of a node's six neighbors: 2 * axis + (1 when upwards).
 constexpr int kNeighbors = 6;
 
@@ -57,7 +88,7 @@ class Lattice {
   int cellAt(const std::array<int, 3>& index) const;
   Vec3 cellCenter(const Cell& cell) const;  // at rest (m)
 
-  const std::vector<Spring>& springs() const { return springs_; }
+  SpringList springs() const { return SpringList(*this); }
   // Index of the spring in `direction`, -1 at the border.
   int springOf(int node, int direction) const { return springs_of_node_[at(node)][at(direction)]; }
   // Node in `direction`, -1 at the border.
@@ -69,6 +100,8 @@ class Lattice {
   LatticeState restState() const;
 
  private:
+  friend class SpringList;
+
   Lattice(const TissueConfig& config, const FilledGrid& tissue);
   void placeNodes(const std::vector<double>& filled);
   void placeCells(const std::vector<double>& filled);
@@ -82,7 +115,8 @@ class Lattice {
   std::shared_ptr<const CellSet> cells_;
   std::vector<std::uint8_t> fixed_;
   std::vector<double> mass_;
-  std::vector<Spring> springs_;
+  std::vector<int> lower_ends_;           // per spring: 4 times the node, and the axis
+  std::vector<double> spring_stiffness_;  // per spring (N/m)
   std::vector<std::array<int, kNeighbors>> springs_of_node_;
 };
 

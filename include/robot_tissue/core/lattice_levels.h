@@ -89,13 +89,16 @@ class LatticeLevels {
   // From a level to the next coarser one.
   struct Step {
     LevelTransfer<Real> transfer;
-    std::vector<int> sources;  // per coarse spring that stands for a fine one: that one
-    Field<Real> start;         // displacement of the coarse nodes
-    Field<Real> wanted;        // their forces
+    std::vector<LevelSpring> ties;  // coarse springs for fine nodes that are held
+    std::vector<int> sources;       // per coarse spring that stands for a fine one: that one
+    Field<Real> start;              // displacement of the coarse nodes
+    Field<Real> wanted;             // their forces
     std::vector<GroupVector> wanted_of_groups;
   };
   // What patches hold, as numbers that are compared; empty: not known.
-  using Bond = std::vector<double>;
+  struct Bond {
+    std::vector<double> held, springs;
+  };
 
   // lattice_levels.cpp
   void openAll(const ElasticModel& model, const CellSet& cells);
@@ -113,9 +116,11 @@ class LatticeLevels {
 
   // levels_binding.cpp
   static Bond bondOf(const LoadedShape& shape, const PatchHold& hold);
-  void bindFinest(const LoadedShape& shape, const PatchHold& hold);
+  void holdFinest(const LoadedShape& shape, const PatchHold& hold);
+  void holdCoarse(std::size_t level);
+  void hangFinest(const LoadedShape& shape, const PatchHold& hold);
+  void hangCoarse(std::size_t level);
   void renewSprings(const LoadedShape& shape, const PatchHold& hold);
-  void bindCoarse(std::size_t level);
   void addTies(std::size_t level);
   void addTie(std::size_t level, int node, unsigned axes, int group, const Vec3& arm);
   std::vector<LevelSpring::Carrier> freeCarriers(

@@ -53,6 +53,10 @@ class Tissue {
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
   std::size_t namedPatches() const { return named_patches_; }
 
+  // The nodes' displacements (m) as they are now, to be kept; one copy while the shape stays.
+  using Displacements = std::shared_ptr<const std::vector<Vec3>>;
+  Displacements displacements() const;
+
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
   // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.
@@ -100,14 +104,14 @@ class Tissue {
                      bool lies = false);
   // The shape and its loads, to come back to; cuts are not part of it: those made since stay.
   struct Shape {
-    std::vector<Vec3> displacement;
+    Displacements displacement;
     std::shared_ptr<const CellSet> cells;  // whose nodes they are of
     std::vector<LoadingPatch> patches;
     std::size_t named_patches = 0;
     SolveReport report;
   };
   Shape shape() const {
-    return {state_.displacement, state_.cells, patches_, named_patches_, last_report_};
+    return {displacements(), state_.cells, patches_, named_patches_, last_report_};
   }
   void restore(const Shape& shape);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
@@ -156,6 +160,7 @@ class Tissue {
 
   Lattice lattice_;
   LatticeState state_;
+  mutable Displacements kept_;  // of state_; null: nobody asked since it changed
   std::unique_ptr<TissueModel> model_;
   std::unique_ptr<SolverMethod> method_;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box

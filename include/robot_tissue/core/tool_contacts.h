@@ -38,6 +38,7 @@ class ToolContacts {
     bool found = false;                // in the last update
   };
 
+  ToolContacts() = default;  // of no tools
   // Coulomb's friction of each tool (a negative one: the tool is not this class's), thickness of
   // each link (m).
   ToolContacts(std::vector<double> friction, std::vector<double> thickness);
@@ -102,7 +103,7 @@ class ToolContacts {
   int cut_rounds_ = 0;  // in a row, that ended on the way to balance
   std::vector<Touch> touches_;            // in the order in which they were found
   std::vector<Pose> since_links_;         // at the last commit
-  std::vector<Vec3> since_displacement_;  // likewise (m)
+  Tissue::Displacements since_displacement_;  // likewise (m)
 };
 
 }  // namespace robot_tissue

@@ -33,7 +33,7 @@ class ToolPatches {
   // Lets go of the nodes that carry no contact.
   void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.
-  void pushOut(const ContactSet& contacts, const Surface& surface, const RobotPose& pose);
+  void pushOut(const ContactSet& contacts, const Tissue& tissue, const RobotPose& pose);
   // Grasped: the nodes ride on the link from where they are.
   void hold(int tool, int link, const Pose& tissue_T_link, const std::vector<int>& nodes,
             const Tissue& tissue);
@@ -53,7 +53,8 @@ class ToolPatches {
   void clear();
   // All that is to be kept of the patches to come back to them.
   const Seats& seats() const { return seats_; }
-  void restore(const Seats& seats) { seats_ = seats; }
+  // With the tissue in the shape that it had.
+  void restore(const Seats& seats, const Tissue& tissue);
 
   bool empty() const;
   // The tool's patch; without nodes when it holds none.
@@ -61,7 +62,7 @@ class ToolPatches {
   // Nodes that left a patch in the last ride.
   const std::vector<int>& left() const { return left_; }
   // The tissue's displacements (m), with the patches where they are now.
-  const std::vector<Vec3>& displacement() const { return displacement_; }
+  std::vector<Vec3> displacement(const Tissue& tissue) const;
   std::vector<int> nodes(int tool) const;
   // Sum of the ways out of the tool over its nodes (m, tissue frame).
   Vec3 pushed(int tool, const RobotPose& pose) const;
@@ -88,23 +89,25 @@ class ToolPatches {
   void scale(std::vector<Push>& pushes) const;
   double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
   static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
-  void seat(int node, std::size_t tool, int link, const Vec3& moved, const RobotPose& pose);
+  void seat(int node, std::size_t tool, int link, const Vec3& moved, const Tissue& tissue,
+            const RobotPose& pose);
   const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue) const;
   void holdNamedLoads(const Tissue& tissue);
   void findOutwardNormals(const Tissue& tissue);
-  bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue) const;
+  bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue);
 
   const Lattice* lattice_;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;
   Seats seats_;
-  std::vector<Vec3> displacement_;
-  std::shared_ptr<const CellSet> cells_;     // of the tissue in the last ride
-  std::vector<std::uint8_t> taken_;          // per node: fixed, or in a named load
+  std::map<int, Vec3> places_;            // displacement of nodes with a seat (m)
+  std::shared_ptr<const CellSet> cells_;  // of the tissue in the last ride
+  std::vector<std::uint8_t> taken_;       // per node: fixed, or in a named load
   // Looked up once for each set of cells.
   mutable std::shared_ptr<const CellSet> fixed_of_;
   mutable std::vector<std::uint8_t> fixed_;
   std::vector<int> left_;
-  std::vector<Vec3> outward_;  // per node: normal of the surface it carries, at rest; zero inside
+  // Per node: normal of the surface it carries, at rest; zero inside. Found when it is asked for.
+  std::vector<Vec3> outward_;
   unsigned surface_version_ = 0;
 };
 
