@@ -21,8 +21,8 @@ struct LevelSource {
   GridBox rough;
   double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
 
-  // Whether the block is so thick, in its cells and beside its length, that these bend as finer ones
-  // do, and cycles see it.
+  // Whether the block is so thick, in its cells and beside its length, that these bend as finer
+  // ones do, and cycles see it.
   bool isThick() const;
   GridBox whole() const { return wholeOf(size); }
   // Of the cells between these points, placed from its low corner.

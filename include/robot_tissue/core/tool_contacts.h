@@ -99,10 +99,10 @@ class ToolContacts {
 
   std::vector<double> friction_;
   std::vector<double> thickness_;
-  std::vector<double> pressed_;           // per tool: its normal forces in the last update (N)
-  int cut_rounds_ = 0;  // in a row, that ended on the way to balance
-  std::vector<Touch> touches_;            // in the order in which they were found
-  std::vector<Pose> since_links_;         // at the last commit
+  std::vector<double> pressed_;               // per tool: its normal forces in the last update (N)
+  int cut_rounds_ = 0;                        // in a row, that ended on the way to balance
+  std::vector<Touch> touches_;                // in the order in which they were found
+  std::vector<Pose> since_links_;             // at the last commit
   Tissue::Displacements since_displacement_;  // likewise (m)
 };
 

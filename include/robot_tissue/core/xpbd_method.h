@@ -38,8 +38,8 @@ class XpbdMethod : public RelaxationMethod {
 
   double stretch_ = 1.0;      // square of the time step, in node stiffnesses over masses
   double keep_ = 0.0;         // of the velocity
-  int sweeps_ = 0;         // since the step was shortened
-  bool offered_ = false;   // the shape, since then
+  int sweeps_ = 0;            // since the step was shortened
+  bool offered_ = false;      // the shape, since then
   int refinements_ = 0;       // of the step, since begin()
   std::vector<Vec3> weight_;  // per node, gravity (N)
 };
