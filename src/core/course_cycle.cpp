@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kBlownUp = 100.0;      // times the length left when a solve begins
 constexpr double kAstray = 3.0;         // likewise, where a solve ends late
+constexpr double kSoonTouches = 0.1;    // spacings: then a late solve's last steps are careful
 constexpr double kSlow = 0.3;           // of the length left before a cycle: then gradients help
 constexpr double kFlatEnough = 0.3;     // of the slope along a direction: no need to look further
 constexpr double kWorthKeeping = 0.05;  // of the last direction, beside a new one
@@ -193,12 +194,16 @@ SolveStatus CourseIn<Real>::iterate(bool changed, bool carried_on, const Budget&
 // would tell forces that nothing answers. What went astray is not told.
 template <typename Real>
 void CourseIn<Real>::endLate() {
+  finest().firm.soon_touches = kSoonTouches;
   if (left_ <= kAstray * first_left_) {
+    finest().findForces(true);
     finest().smooth(steps_, true);
-    return settleForces();
+    settleForces();
+  } else {
+    goPlainly(best_);
+    error_ = best_error_;
   }
-  goPlainly(best_);
-  error_ = best_error_;
+  finest().firm.soon_touches = 0.0;
 }
 
 // The last motion that the coarse lattices found.

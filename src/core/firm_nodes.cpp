@@ -114,6 +114,7 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
                                 bool with_steps) {
   const Vec3 mean = meanOf(spring, displacement);
   Vec3 on_nodes = Vec3::Zero();
+  bool joins = false;
   if (spring.contact == nullptr) {
     on_nodes = spring.stiffness * (spring.anchor - mean);
   } else {
@@ -122,12 +123,13 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
     contact_force_ += on_nodes;
     if (with_steps) {
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
+      joins = isJoining(spring, point);
     }
   }
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
     all_[at(carrier.firm)].force += carrier.weight * on_nodes;
   }
-  if (with_steps) addStiffness(spring);
+  if (with_steps) addStiffness(spring, joins);
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
   force[group] -= jacobianAt(spring.arm, groups[group].turns).transpose() * on_nodes;
@@ -136,9 +138,9 @@ void FirmNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displace
 // By its weights' sum, so that no motion is stiffer than the step allows (l1-Jacobi: Baker,
 // Falgout, Kolev, Yang 2011); what joins nodes does so beside.
 template <typename Real>
-void FirmNodes<Real>::addStiffness(const LevelSpring& spring) {
+void FirmNodes<Real>::addStiffness(const LevelSpring& spring, bool joins) {
   Eigen::Matrix3d stiffness = spring.stiffness;
-  if (isJoining(spring)) {
+  if (joins) {
     const Vec3& normal = spring.contact->normal;
     stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
     join(spring);
@@ -153,10 +155,12 @@ void FirmNodes<Real>::addStiffness(const LevelSpring& spring) {
   group_stiffness_[group] += ends * jacobian.transpose() * stiffness * jacobian;
 }
 
-// A spring in contact that pushes.
+// A spring in contact that pushes, or would with its gap less by `soon_touches`.
 template <typename Real>
-bool FirmNodes<Real>::isJoining(const LevelSpring& spring) const {
-  if (spring.contact == nullptr || stiffnessAlong(spring) <= 0.0) return false;
+bool FirmNodes<Real>::isJoining(const LevelSpring& spring, const Vec3& point) const {
+  const ContactSpring& contact = *spring.contact;
+  const double gap = contact.normal.dot(point - contact.foot) - soon_touches * spacing_;
+  if (contact.multiplier - contact.stiffness * gap <= 0.0) return false;
   return std::none_of(spring.carriers.begin(), spring.carriers.end(),
                       [this](const auto& carrier) { return all_[at(carrier.firm)].group >= 0; });
 }
@@ -164,7 +168,7 @@ bool FirmNodes<Real>::isJoining(const LevelSpring& spring) const {
 template <typename Real>
 void FirmNodes<Real>::join(const LevelSpring& spring) {
   joining_.emplace_back();
-  joining_.back().stiffness = stiffnessAlong(spring);
+  joining_.back().stiffness = spring.contact->stiffness / (modulus_ * spacing_);
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
     Vec3 along = carrier.weight * spring.contact->normal;
     for (int axis = 0; axis < 3; ++axis) {

@@ -54,6 +54,10 @@ class FirmNodes {
   std::vector<GroupVector> force;    // on groups, unbalanced
   std::vector<GroupVector> motion;   // of groups, since it was last set to zero
 
+  // A gap (spacings) at which springs in contact already count as stiff: 0 is quick, more keeps
+  // what is thrown into a tool out of it.
+  double soon_touches = 0.0;
+
   // `held`: bits of axes, per node.
   void bind(const std::vector<std::uint8_t>& held);
   // Of the laws of contacts: the spacing (m) and E0 (Pa).
@@ -97,8 +101,8 @@ class FirmNodes {
 
   int indexOf(int node) const;
   void addSpring(LevelSpring& spring, const Field<Real>& displacement, bool with_steps);
-  void addStiffness(const LevelSpring& spring);
-  bool isJoining(const LevelSpring& spring) const;
+  void addStiffness(const LevelSpring& spring, bool joins);
+  bool isJoining(const LevelSpring& spring, const Vec3& point) const;
   void join(const LevelSpring& spring);
   std::vector<Vec3> balancing() const;
   void invert(Firm& firm);
