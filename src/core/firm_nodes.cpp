@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
@@ -211,7 +212,7 @@ void FirmNodes<Real>::findForces(const LevelCells<Real>& cells, const Field<Real
   invertGroups();
   std::vector<Eigen::Matrix3d> inverses;
   for (const Firm& firm : all_) inverses.push_back(firm.inverse);
-  joined_.join(joining_, inverses);
+  joined_.join(std::move(joining_), inverses);
 }
 
 template <typename Real>
@@ -244,19 +245,18 @@ void FirmNodes<Real>::invertGroups() {
   }
 }
 
-// Motions of the nodes that are in no group, per entry of all_.
 template <typename Real>
-std::vector<Vec3> FirmNodes<Real>::balancing() const {
-  std::vector<Vec3> motions;
+const std::vector<Vec3>& FirmNodes<Real>::balancing() const {
+  balancing_.clear();
   for (const Firm& firm : all_) {
     Vec3 free = firm.force;
     for (int axis = 0; axis < 3; ++axis) {
       if ((firm.held >> axis & 1U) != 0) free[axis] = 0.0;
     }
-    motions.push_back(firm.inverse * free);
+    balancing_.push_back(firm.inverse * free);
   }
-  joined_.apply(motions);
-  return motions;
+  joined_.apply(balancing_);
+  return balancing_;
 }
 
 template <typename Real>
@@ -273,7 +273,7 @@ void FirmNodes<Real>::step(double keep, double share, double longest, Field<Real
     cut(way, longest);
     motion[group] += way;
   }
-  const std::vector<Vec3> motions = balancing();
+  const std::vector<Vec3>& motions = balancing();
   for (std::size_t i = 0; i < all_.size(); ++i) {
     Firm& firm = all_[i];
     if (firm.group >= 0) {
@@ -311,7 +311,7 @@ void FirmNodes<Real>::moveBy(const Field<Real>& way, const std::vector<GroupVect
 template <typename Real>
 double FirmNodes<Real>::squaredLocalMotion() const {
   double squared = 0.0;
-  const std::vector<Vec3> motions = balancing();
+  const std::vector<Vec3>& motions = balancing();
   for (std::size_t i = 0; i < all_.size(); ++i) {
     if (all_[i].group < 0) squared += motions[i].squaredNorm();
   }

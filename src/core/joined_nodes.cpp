@@ -61,17 +61,17 @@ void JoinedNodes::fillMatrix() {
 }
 
 void JoinedNodes::apply(std::vector<Vec3>& motions) const {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(matrix_.rows());
+  forces_.setZero(matrix_.rows());
   for (std::size_t spring = 0; spring < springs_.size(); ++spring) {
     for (const Part& part : springs_[spring].parts) {
-      forces[static_cast<int>(spring)] += part.along.dot(motions[at(part.node)]);
+      forces_[static_cast<int>(spring)] += part.along.dot(motions[at(part.node)]);
     }
   }
-  matrix_.solve(forces);
+  matrix_.solve(forces_);
   for (std::size_t spring = 0; spring < springs_.size(); ++spring) {
     for (std::size_t i = 0; i < springs_[spring].parts.size(); ++i) {
       motions[at(springs_[spring].parts[i].node)] -=
-          forces[static_cast<int>(spring)] * answers_[spring][i];
+          forces_[static_cast<int>(spring)] * answers_[spring][i];
     }
   }
 }

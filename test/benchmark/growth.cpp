@@ -7,57 +7,28 @@
 //
 // With `error` the greatest one against the same lattice at a tolerance of 1e-5 is told (L2 over
 // all nodes), and times and memory are not.
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
 
-#include "robot_tissue/core/tissue.h"
+#include "patch_trial.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kExact = 1e-5;
 constexpr double kStep = 0.001;  // m, an increment
 constexpr int kSteps = 5;
 
-struct Job {
-  double spacing, scale, poisson_ratio, tolerance;
-  int threads, repeats;
+struct Job : PatchJob {
+  int repeats;
   bool with_error;
 };
 
 Tissue makeTissue(const Job& job, double tolerance) {
-  TissueConfig config;
-  config.model = "elastic";
-  config.shape.max = job.scale * Vec3(0.1, 0.1, 0.05);
-  config.spacing = job.spacing;
-  config.material.young_modulus = 1e4;
-  config.material.poisson_ratio = job.poisson_ratio;
-  Box bottom = config.shape;
-  bottom.max.z() = 0.0;
-  config.fixed.push_back(bottom);
-  SolverConfig solver;
-  solver.tolerance = tolerance;
-  solver.threads = job.threads;
-  return Tissue(config, solver);
-}
-
-LoadStep stepTo(const Job& job, const Vec3& place) {
-  const Vec3 middle = job.scale * Vec3(0.05, 0.05, 0.05), reach(0.01, 0.01, 0.0);
-  PatchConfig patch;
-  patch.name = "punch";
-  patch.box = {middle - reach, middle + reach};
-  patch.displacement = {place.x(), place.y(), place.z()};
-  LoadStep step;
-  step.increments = 1;
-  step.patches.push_back(patch);
-  return step;
+  return Tissue(blockOf(job), solverOf(job, tolerance));
 }
 
 std::vector<Vec3> wayOf() {
@@ -67,29 +38,6 @@ std::vector<Vec3> wayOf() {
   for (int i = kSteps - 1; i >= 0; --i) way.emplace_back(kStep * i, 0.0, -kStep * kSteps);
   for (int i = kSteps - 1; i >= 1; --i) way.emplace_back(0.0, 0.0, -kStep * i);
   return way;
-}
-
-// Of the calling thread: the linear algebra library has one of its own that waits busily at first.
-double processorMs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-double errorOf(const Tissue& tissue, const Tissue& exact) {
-  double missed = 0.0, moved = 0.0;
-  for (std::size_t node = 0; node < exact.state().displacement.size(); ++node) {
-    const Vec3& right = exact.state().displacement[node];
-    missed += (tissue.state().displacement[node] - right).squaredNorm();
-    moved += right.squaredNorm();
-  }
-  return std::sqrt(missed / moved);
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
 // Of the process, at most (bytes).
@@ -144,11 +92,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: growth SPACING SCALE NU TOLERANCE THREADS REPEATS [error]\n");
     return 2;
   }
-  const robot_tissue::Job job = {std::atof(argv[1]),
-                                 std::atof(argv[2]),
-                                 std::atof(argv[3]),
-                                 std::atof(argv[4]),
-                                 std::atoi(argv[5]),
+  const robot_tissue::Job job = {{std::atof(argv[1]), std::atof(argv[2]), std::atof(argv[3]),
+                                  std::atof(argv[4]), std::atoi(argv[5])},
                                  std::atoi(argv[6]),
                                  argc > 7};
   if (job.with_error) {

@@ -104,7 +104,8 @@ class FirmNodes {
   void addStiffness(const LevelSpring& spring, bool joins);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
   void join(const LevelSpring& spring);
-  std::vector<Vec3> balancing() const;
+  // Motions of the nodes that are in no group, per entry of all_; until it is called again.
+  const std::vector<Vec3>& balancing() const;
   void invert(Firm& firm);
   void invertGroups();
 
@@ -113,6 +114,7 @@ class FirmNodes {
   std::vector<Firm> all_;
   std::vector<JoinedNodes::Spring> joining_;  // springs in contact, along their normals
   JoinedNodes joined_;
+  mutable std::vector<Vec3> balancing_;
   std::vector<Matrix6> group_stiffness_, group_inverse_;
   std::vector<GroupVector> group_way_;
 };

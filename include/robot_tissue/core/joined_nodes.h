@@ -39,6 +39,7 @@ class JoinedNodes {
   std::vector<std::vector<Vec3>> answers_;    // D^-1 times `along`, per part
   std::vector<std::vector<int>> springs_at_;  // per node
   EnvelopeMatrix matrix_;                     // K^-1 + W^T D^-1 W
+  mutable Eigen::VectorXd forces_;            // of the springs; room that `apply` needs
 };
 
 }  // namespace robot_tissue
