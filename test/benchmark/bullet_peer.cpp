@@ -1,6 +1,6 @@
-// A scene of one load on a box, solved by Bullet instead of the package, for scripts/study: reads
-// what `simulate` reads and writes the files that it writes. doc/baselines.md says what Bullet is
-// given and what came of it.
+// A scene of one load on a box, solved by Bullet instead of the package, for the study
+// speed_accuracy: reads what `simulate` reads and writes the files that it writes. doc/baselines.md
+// says what Bullet is given and what came of it.
 //
 //   bullet_peer SCENE.yaml --out DIR --method METHOD [--tolerance T] [--steps N] [--quiet]
 //     [--time-step S] [--iterations N] [--ramp N] [--damping D] [--stiffness K]

@@ -1,5 +1,5 @@
 // The least that a node costs which listens to TF and tells wrenches: it looks nothing up and
-// solves nothing. For scripts/measure_still, beside the tissue node.
+// solves nothing. For scripts/study still_node, beside the tissue node.
 //
 // usage: empty_node LISTENER WRENCHES
 //   LISTENER  none | own_thread (of tf2) | node_queue (the node's one thread) | at_once (the thread

@@ -1,6 +1,6 @@
 // What an increment of method `layered` takes as the lattice grows: a patch of 20 x 20 mm pressed
 // 5 mm into a block of SCALE times 100 x 100 x 50 mm, 5 mm aside, back and up again, 1 mm an
-// increment. Prints a row of CSV; scripts/growth reads it. Not a test: nothing here passes or
+// increment. Prints a row of CSV; scripts/study growth reads it. Not a test: nothing here passes or
 // fails.
 //
 //   growth SPACING SCALE NU TOLERANCE THREADS REPEATS [error]

@@ -3,7 +3,7 @@
 //   tool_speed [sphere|mesh|both] [SPEED in m/s] [RATE in Hz] [UPDATES] [SPACING in mm]
 // Writes one line an update: contact_ms (wall), solve_ms (wall), update_ms (of the processor),
 // substeps, force along z on the tools (N), penetration_mm, status. Sums up on stderr. What the
-// stages of an update take of it: scripts/profile_stages.
+// stages of an update take of it: scripts/study stages.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

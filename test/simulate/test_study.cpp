@@ -1,4 +1,4 @@
-// scripts/study goes on after a kill at any point: no finished run is lost or done again.
+// The study speed_accuracy goes on after a kill at any point: no finished run is lost or done again.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -54,8 +54,9 @@ class StudyTest : public ::testing::Test {
         "cd '" + root_.string() +
         "' && REAL_SIMULATE='" SIMULATE_PATH
         "' sh -c 'echo $$ >study_pid; exec /usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR
-        "/scripts/study --simulate ./simulate --folder study --table table.csv --quiet --repeats 1 "
-        "--methods layered,newton --only ^press_d1_elastic_nu25_h10000um' >>log 2>&1";
+        "/scripts/study speed_accuracy --simulate ./simulate --folder study --table table.csv "
+        "--quiet --repeats 1 --methods layered,newton "
+        "--only ^press_d1_elastic_nu25_h10000um' >>log 2>&1";
     return std::system(command.c_str());
   }
 

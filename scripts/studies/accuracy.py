@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Measures model against finite elements: force and displacement of the cases in test/data/reference.
+"""Measures model against finite elements: force and displacement of test/data/reference.
 
 Every case is a scene that the offline runner solves. Writes doc/data/accuracy.csv, a row a case and
 run, and draws doc/images/accuracy.png from it. --plot draws only. Rows that the file has already
@@ -7,7 +6,6 @@ are kept unless --again is given. --placements writes doc/data/placements.csv in
 the patch at random places (fixed seed), its edges between nodes.
 """
 
-import argparse
 import csv
 import math
 import subprocess
@@ -15,18 +13,16 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
-import numpy as np  # noqa: E402
-import yaml  # noqa: E402
+import numpy as np
+import yaml
 
-PACKAGE = Path(__file__).resolve().parent.parent
-BUILDS = ["build/devel/lib/robot_tissue/simulate", "../../devel/lib/robot_tissue/simulate"]
+from studies.common import (DATA, IMAGES, PACKAGE, add_programs, program, progress, pyplot,
+                            rows_of, worst, write_rows)
+
 REFERENCE = PACKAGE / "test/data/reference"
-TABLE = PACKAGE / "doc/data/accuracy.csv"
-PLACEMENTS = PACKAGE / "doc/data/placements.csv"
-PLOT = PACKAGE / "doc/images/accuracy.png"
+TABLE = DATA / "accuracy.csv"
+PLACEMENTS = DATA / "placements.csv"
+PLOT = IMAGES / "accuracy.png"
 
 EXTENT = (0.10, 0.10, 0.05)  # m
 REFERENCE_SPACING = 0.005    # m
@@ -40,11 +36,6 @@ COLUMNS = ["case", "poisson_ratio", "model", "method", "tolerance", "spacing_m",
            "increments", "iterations", "wall_ms", "force_n", "reference_n", "force_error_percent",
            "field_error_percent", "error_estimate", "volume_ratio"]
 KEY = COLUMNS[:6]
-
-
-def rows_of(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def patch_box(case):
@@ -112,12 +103,7 @@ def solve(simulate, scene, tolerance, folder):
     return rows_of(folder / "increments.csv"), force
 
 
-def worst(increments):
-    order = ["OK", "LATE", "UNCONVERGED", "INVERTED"]
-    return max((row["status"] for row in increments), key=order.index)
-
-
-def run(simulate, reference, model, method, tolerance, spacing, folder):
+def solve_case(simulate, reference, model, method, tolerance, spacing, folder):
     scene = scene_of(reference, model, method, spacing)
     increments, force = solve(simulate, scene, tolerance, folder)
     expected = float(reference["force_n"])
@@ -163,9 +149,8 @@ def key_of(row):
     return tuple(str(row[column]) for column in KEY)
 
 
-def measure(simulate, only, again):
-    done = {key_of(row): row for row in rows_of(TABLE)} if TABLE.exists() else {}
-    old = set(done) if again else set()
+def jobs():
+    """A reference, how it is solved, and the row that it becomes."""
     for model, method, tolerance, spacings in RUNS:
         for spacing in spacings:
             for reference in rows_of(REFERENCE / "cases.csv"):
@@ -174,27 +159,24 @@ def measure(simulate, only, again):
                 row = {"case": reference["case"], "poisson_ratio": reference["poisson_ratio"],
                        "model": model, "method": method, "tolerance": tolerance or "",
                        "spacing_m": spacing}
-                known = key_of(row) in done and key_of(row) not in old
-                if known or (only and only not in "/".join(key_of(row))):
-                    continue
-                with tempfile.TemporaryDirectory() as folder:
-                    row.update(run(simulate, reference, model, method, tolerance, spacing,
-                                   Path(folder)))
-                done[key_of(row)] = row
-                print(*key_of(row), row["status"], row["wall_ms"], "ms, force",
-                      row["force_error_percent"], "%, field", row["field_error_percent"], "%",
-                      flush=True)
-                write(done)
+                yield reference, (model, method, tolerance, spacing), row
 
 
-def write(done):
-    with open(TABLE, "w", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        table.writeheader()
-        table.writerows(done[key] for key in sorted(done))
+def measure(simulate, only, again):
+    done = {key_of(row): row for row in rows_of(TABLE)}
+    todo = [job for job in jobs() if (again or key_of(job[2]) not in done)
+            and (not only or only in "/".join(key_of(job[2])))]
+    for reference, how, row in progress(todo, lambda job: "/".join(key_of(job[2]))):
+        with tempfile.TemporaryDirectory() as folder:
+            row.update(solve_case(simulate, reference, *how, Path(folder)))
+        done[key_of(row)] = row
+        print(*key_of(row), row["status"], row["wall_ms"], "ms, force",
+              row["force_error_percent"], "%, field", row["field_error_percent"], "%", flush=True)
+        write_rows(TABLE, COLUMNS, (done[key] for key in sorted(done)))
 
 
 def draw():
+    plt = pyplot()
     rows = rows_of(TABLE)
     references = rows_of(REFERENCE / "cases.csv")
     cases = list(dict.fromkeys(row["case"] for row in references))
@@ -243,30 +225,18 @@ def draw():
     plate.savefig(PLOT, dpi=110)
 
 
-def find_simulate(given):
-    candidates = [Path(given)] if given else [PACKAGE / build for build in BUILDS]
-    for candidate in candidates:
-        if candidate.is_file():
-            return candidate
-    sys.exit("accuracy: no program simulate at " + ", ".join(map(str, candidates)) +
-             "; build the package first, or give --simulate PATH")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--simulate", help="the offline runner; default: the checkout's build")
+def add_arguments(parser):
+    add_programs(parser)
     parser.add_argument("--only", help="only runs whose key, joined by /, holds this text")
     parser.add_argument("--again", action="store_true", help="also runs that are in the table")
     parser.add_argument("--placements", action="store_true", help="patches at random places")
     parser.add_argument("--plot", action="store_true", help="draw only")
-    options = parser.parse_args()
+
+
+def run(options):
     if options.placements:
-        measure_placements(find_simulate(options.simulate))
+        measure_placements(program("simulate", options.programs))
         return
     if not options.plot:
-        measure(find_simulate(options.simulate), options.only, options.again)
+        measure(program("simulate", options.programs), options.only, options.again)
     draw()
-
-
-if __name__ == "__main__":
-    main()

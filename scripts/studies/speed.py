@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Measures how long an increment takes for how small an error, with every method on `elastic`.
 
 Runs the benchmark `speed` (make speed), press of 5 x 1 mm, and keeps its medians in
@@ -8,21 +7,17 @@ method takes how many times as long as `layered` for 5, 1 and 0.1 %. --plot draw
 The exact shapes, which take longest, are kept in --cache.
 """
 
-import argparse
 import csv
 import io
 import statistics
 import subprocess
-import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
+from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
+                            write_rows)
 
-PACKAGE = Path(__file__).resolve().parent.parent
-TABLE = PACKAGE / "doc/data/speed.csv"
-PLOT = PACKAGE / "doc/images/speed.png"
+TABLE = DATA / "speed.csv"
+PLOT = IMAGES / "speed.png"
 COLUMNS = ["nodes", "poisson_ratio", "method", "tolerance", "median_ms", "least_ms", "greatest_error",
            "mean_iterations", "increments"]
 TOLERANCES = {"layered": (0.1, 0.04, 0.01, 0.004, 0.001, 0.0002), "vbd": (0.1, 0.04, 0.01, 0.002),
@@ -31,9 +26,9 @@ TOLERANCES = {"layered": (0.1, 0.04, 0.01, 0.004, 0.001, 0.0002), "vbd": (0.1, 0
 BOUNDS = (0.05, 0.01, 0.001)
 
 
-def measure(program, spacing, ratio, cache, repeats):
+def measure(built, spacing, ratio, cache, repeats):
     jobs = [f"{method}:{','.join(map(str, each))}" for method, each in TOLERANCES.items()]
-    command = [str(program), "press", str(spacing), str(ratio), str(cache), str(repeats)] + jobs
+    command = [str(built), "press", str(spacing), str(ratio), str(cache), str(repeats)] + jobs
     done = subprocess.run(command, stdout=subprocess.PIPE, universal_newlines=True, check=True)
     runs = {}
     for row in csv.DictReader(io.StringIO(done.stdout)):
@@ -56,6 +51,7 @@ def groups(rows):
 
 
 def draw(rows):
+    plt = pyplot()
     shown = groups(rows)
     figure, panels = plt.subplots(1, len(shown), figsize=(4.2 * len(shown), 4), squeeze=False)
     for panel, (nodes, ratio) in zip(panels[0], shown):
@@ -89,34 +85,23 @@ def tell(rows):
             print(f"{nodes}, {ratio:g}, {100 * bound:g} %: {times['layered']:.3g}; {others}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--plot", action="store_true")
-    parser.add_argument("--program", type=Path, default=PACKAGE / "build/devel/lib/robot_tissue/speed")
+def add_arguments(parser):
+    add_programs(parser)
+    parser.add_argument("--plot", action="store_true", help="draw and print only")
     parser.add_argument("--cache", type=Path, default=Path("/tmp/robot_tissue_speed"))
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--spacings", type=float, nargs="+", default=[0.01, 0.005, 0.0025])
-    arguments = parser.parse_args()
-    if not arguments.plot:
-        if not arguments.program.exists():
-            sys.exit(f"speed: {arguments.program} is not there; allowed: the benchmark, made by "
-                     "`make speed`")
-        arguments.cache.mkdir(parents=True, exist_ok=True)
-        with open(TABLE, "w", newline="") as file:
-            table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            table.writeheader()
-            for spacing in arguments.spacings:
-                for ratio in (0.25, 0.45):
-                    print(f"{spacing:g} m, Poisson's ratio {ratio:g}", file=sys.stderr)
-                    for row in measure(arguments.program, spacing, ratio, arguments.cache,
-                                       arguments.repeats):
-                        table.writerow(row)
-                    file.flush()
-    with open(TABLE, newline="") as file:
-        rows = list(csv.DictReader(file))
+
+
+def run(options):
+    if not options.plot:
+        built = program("speed", options.programs)
+        options.cache.mkdir(parents=True, exist_ok=True)
+        jobs = [(spacing, ratio) for spacing in options.spacings for ratio in (0.25, 0.45)]
+        rows = []
+        for spacing, ratio in progress(jobs):
+            rows += measure(built, spacing, ratio, options.cache, options.repeats)
+            write_rows(TABLE, COLUMNS, rows)
+    rows = rows_of(TABLE)
     draw(rows)
     tell(rows)
-
-
-if __name__ == "__main__":
-    main()

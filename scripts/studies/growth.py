@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Measures what an increment of `layered` takes, and needs of memory, as the lattice grows.
 
 Runs the benchmark `growth` (make growth): one block at finer and finer spacings, and larger and
@@ -8,20 +7,16 @@ ratios. Writes doc/data/growth.csv, draws doc/images/growth.png, prints a table.
 and prints only.
 """
 
-import argparse
 import csv
 import io
 import statistics
 import subprocess
-from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
+from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
+                            write_rows)
 
-PACKAGE = Path(__file__).resolve().parent.parent
-TABLE = PACKAGE / "doc/data/growth.csv"
-PLOT = PACKAGE / "doc/images/growth.png"
+TABLE = DATA / "growth.csv"
+PLOT = IMAGES / "growth.png"
 # Spacing (m), times the sides of 100 x 100 x 50 mm, tolerance, threads.
 FINER = [(0.01, 1, 0.01, 1), (0.005, 1, 0.01, 1), (0.0025, 1, 0.01, 1), (0.00125, 1, 0.01, 1)]
 LARGER = [(0.005, 1, 0.01, 1), (0.005, 2, 0.01, 1), (0.005, 4, 0.01, 1)]
@@ -31,48 +26,44 @@ RATIOS = (0.25, 0.45)
 TIMES = ("processor_ms", "processor_90_ms", "wall_ms")
 
 
-def run(program, job, ratio, repeats, *more):
+def run_once(built, job, ratio, repeats, *more):
     spacing, scale, tolerance, threads = job
-    command = [str(program)] + [str(x) for x in (spacing, scale, ratio, tolerance, threads, repeats)]
+    command = [str(built)] + [str(x) for x in (spacing, scale, ratio, tolerance, threads, repeats)]
     done = subprocess.run(command + list(more), stdout=subprocess.PIPE, universal_newlines=True,
                           check=True)
     return next(csv.DictReader(io.StringIO(done.stdout)))
 
 
-def times_of_least(program, jobs, job, ratio, repeats):
+def times_of_least(built, jobs, job, ratio, repeats):
     """The job's time over that of the first one, measured just before it and after."""
-    before, here, after = (float(run(program, each, ratio, repeats)["processor_ms"])
+    before, here, after = (float(run_once(built, each, ratio, repeats)["processor_ms"])
                            for each in (jobs[0], job, jobs[0]))
     return here / (0.5 * (before + after))
 
 
-def measure(program, rounds, repeats):
+def measure(built, rounds, repeats):
     jobs = list(dict.fromkeys(FINER + LARGER + ROUGHER + THREADS))
     runs = {}
-    for _ in range(rounds):
+    for _ in progress(range(rounds), lambda round: f"round {round + 1}"):
         for ratio in RATIOS:
             for job in jobs:
-                runs.setdefault((job, ratio), []).append(run(program, job, ratio, repeats))
+                runs.setdefault((job, ratio), []).append(run_once(built, job, ratio, repeats))
     rows = []
-    for (job, ratio), each in runs.items():
+    for (job, ratio), each in progress(runs.items(), lambda one: f"ratios of {one[0]}"):
         row = dict(zip(("spacing_m", "scale", "tolerance", "threads"), job), poisson_ratio=ratio)
         row.update(each[0])
         row.update({key: f"{statistics.median(float(one[key]) for one in each):.4g}"
                     for key in TIMES})
         jobs = ROUGHER if job in ROUGHER else LARGER
         row["times_of_4851"] = "" if job not in jobs else format(statistics.median(
-            times_of_least(program, jobs, job, ratio, repeats) for _ in range(rounds)), ".3g")
-        row["greatest_error"] = run(program, job, ratio, 1, "error")["greatest_error"]
+            times_of_least(built, jobs, job, ratio, repeats) for _ in range(rounds)), ".3g")
+        row["greatest_error"] = run_once(built, job, ratio, 1, "error")["greatest_error"]
         rows.append(row)
-    with open(TABLE, "w", newline="") as table:
-        writer = csv.DictWriter(table, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(TABLE, rows[0].keys(), rows)
 
 
-def rows_of(jobs, ratio):
-    with open(TABLE, newline="") as table:
-        rows = list(csv.DictReader(table))
+def rows_of_jobs(jobs, ratio):
+    rows = rows_of(TABLE)
     keys = ("spacing_m", "scale", "tolerance", "threads")
     return [row for job in jobs for row in rows
             if tuple(float(row[key]) for key in keys) == tuple(map(float, job))
@@ -80,11 +71,12 @@ def rows_of(jobs, ratio):
 
 
 def draw():
+    plt = pyplot()
     figure, axes = plt.subplots(figsize=(7, 4.5))
     for jobs, name, style in ((FINER, "finer, 1 %", "o-"), (LARGER, "larger, 1 %", "s--"),
                               (ROUGHER, "larger, 2 %", "^:")):
         for ratio, color in zip(RATIOS, ("tab:red", "tab:blue")):
-            rows = rows_of(jobs, ratio)
+            rows = rows_of_jobs(jobs, ratio)
             axes.loglog([int(row["nodes"]) for row in rows],
                         [float(row["processor_ms"]) for row in rows], style, color=color,
                         label=f"{name}, nu {ratio}")
@@ -102,7 +94,7 @@ def tell():
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     for job in dict.fromkeys(FINER + LARGER + ROUGHER + THREADS):
         for ratio in RATIOS:
-            for row in rows_of([job], ratio):
+            for row in rows_of_jobs([job], ratio):
                 print(f"| {int(row['nodes']):,} | {1e3 * float(row['spacing_m']):g} mm "
                       f"| x {row['scale']} | {float(row['tolerance']):g} | {row['threads']} | {ratio} "
                       f"| {float(row['processor_ms']):.3g}, {float(row['processor_90_ms']):.3g} "
@@ -110,24 +102,20 @@ def tell():
                       f"| {int(row['active_nodes']):,} | {row['bytes_a_node']} |")
     for jobs, name in ((LARGER, "1 %"), (ROUGHER, "2 %")):
         for ratio in RATIOS:
-            rows = rows_of(jobs, ratio)
+            rows = rows_of_jobs(jobs, ratio)
             print(f"growth at {name}, nu {ratio}: {rows[-1]['times_of_4851']} times the time for "
                   f"{int(rows[-1]['nodes']) / int(rows[0]['nodes']):.0f} times the nodes")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--plot", action="store_true")
-    parser.add_argument("--program", type=Path,
-                        default=PACKAGE / "build/devel/lib/robot_tissue/growth")
+def add_arguments(parser):
+    add_programs(parser)
+    parser.add_argument("--plot", action="store_true", help="draw and print only")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--repeats", type=int, default=5)
-    options = parser.parse_args()
+    parser.add_argument("--repeats", type=int, default=5, help="of a job in a round (5)")
+
+
+def run(options):
     if not options.plot:
-        measure(options.program, options.rounds, options.repeats)
+        measure(program("growth", options.programs), options.rounds, options.repeats)
     draw()
     tell()
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Runs every method through the stability ladder and draws its map.
 
 Runs the program of test/benchmark once a rung and method, each up to the rung's limit of processor
@@ -10,21 +9,17 @@ what was measured is within the rung's bound of the reference, and all is back a
 release. doc/stability.md says what the rungs are.
 """
 
-import argparse
-import csv
 import math
 import resource
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from study_cases import PACKAGE, load_script  # noqa: E402, beside this file
+from studies.common import (DATA, IMAGES, add_programs, commit, program, progress, pyplot, rows_of,
+                            write_rows)
 
-BUILDS = ["build/devel/lib/robot_tissue", "../../devel/lib/robot_tissue"]
-TABLE = PACKAGE / "doc/data/stability.csv"
-IMAGE = PACKAGE / "doc/images/stability.png"
+TABLE = DATA / "stability.csv"
+IMAGE = IMAGES / "stability.png"
 OF_PROGRAM = ["finite", "status", "unconverged", "inverted", "error_estimate", "residual",
               "measured", "status_released", "inverted_released", "left", "iterations", "seconds"]
 OF_RUNG = ["group", "unit", "bound", "has_no_shape"]
@@ -33,13 +28,6 @@ COLUMNS = ["rung", "group", "method", "verdict", "failed", "reference", "off", "
 REFERENCE = "reference"  # stands for a method; its `measured` is what the others are held against
 LIMIT, RANDOM_LIMIT, REFERENCE_LIMIT = 60, 1800, 900  # s of the processor
 MOST_LEFT = 0.001  # of the spacing
-
-
-def rows_of(path):
-    if not path.exists():
-        return []
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def number(text):
@@ -52,14 +40,14 @@ def number(text):
 class Ladder:
     """The table, and what fills it."""
 
-    def __init__(self, program):
-        self.program = program
+    def __init__(self, built):
+        self.program = built
         self.rungs = {}
         for line in self.ask("--list").splitlines():
             name, *rest = line.split(",")
             self.rungs[name] = dict(zip(OF_RUNG, rest))
         self.rows = {(row["rung"], row["method"]): row for row in rows_of(TABLE)}
-        self.commit = load_script("paper_figures").commit()
+        self.commit = commit()
 
     def ask(self, *arguments):
         return subprocess.run([str(self.program), *arguments], stdout=subprocess.PIPE, check=True,
@@ -108,10 +96,7 @@ class Ladder:
         order = {rung: place for place, rung in enumerate(self.rungs)}
         rows = sorted(self.rows.values(), key=lambda row: (
             order.get(row["rung"], len(order)), row["method"] != REFERENCE, row["method"]))
-        with open(TABLE, "w", newline="") as file:
-            table = csv.DictWriter(file, COLUMNS, lineterminator="\n", restval="")
-            table.writeheader()
-            table.writerows(rows)
+        write_rows(TABLE, COLUMNS, rows)
 
 
 def judge(row, rows):
@@ -161,10 +146,7 @@ def faults_of(row):
 
 
 def draw(rows, rungs):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
+    plt = pyplot()
     methods = sorted({row["method"] for row in rows} - {REFERENCE},
                      key=lambda name: (name != "layered", name))
     names = [name for name in rungs if any(row["rung"] == name for row in rows)]
@@ -213,29 +195,21 @@ def tell(rows):
         print(f"{method}: {sum(row['verdict'] == 'green' for row in own)} of {len(own)} green")
 
 
-def find_programs(given):
-    candidates = [Path(given)] if given else [PACKAGE / build for build in BUILDS]
-    for candidate in candidates:
-        if (candidate / "stability").is_file():
-            return candidate
-    sys.exit("stability: no program stability in " + ", ".join(map(str, candidates)) +
-             "; make stability simulate first, or give --programs FOLDER")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--programs", help="folder of the programs; default: the checkout's build")
+def add_arguments(parser):
+    add_programs(parser)
     parser.add_argument("--methods", help="with commas between; default: simulate --list-methods")
     parser.add_argument("--only", metavar="TEXT", help="only rungs whose name holds this text")
     parser.add_argument("--again", action="store_true", help="also what is in the table")
     parser.add_argument("--updates", type=int, default=10000, help="of the random rungs")
     parser.add_argument("--plot", action="store_true", help="draw and print only")
-    options = parser.parse_args()
+
+
+def run(options):
     if not options.plot:
-        programs = find_programs(options.programs)
-        ladder = Ladder(programs / "stability")
-        listed = subprocess.run([str(programs / "simulate"), "--list-methods"], check=True,
-                                stdout=subprocess.PIPE, universal_newlines=True).stdout.split()
+        ladder = Ladder(program("stability", options.programs))
+        listed = subprocess.run([str(program("simulate", options.programs)), "--list-methods"],
+                                check=True, stdout=subprocess.PIPE,
+                                universal_newlines=True).stdout.split()
         methods = options.methods.split(",") if options.methods else listed
         unknown = sorted(set(methods) - set(listed))
         if unknown:
@@ -259,9 +233,7 @@ def climb(ladder, rungs, methods, options):
             if not (method == REFERENCE and ladder.rungs[rung]["group"] == "random")]
     jobs = [job for job in jobs
             if job not in ladder.rows or options.again and job[1] != REFERENCE]
-    for done, (rung, method) in enumerate(jobs, start=1):
-        if sys.stderr.isatty():
-            print(f"\r{done}/{len(jobs)} {rung} {method:24}", end="", file=sys.stderr, flush=True)
+    for rung, method in progress(jobs, " ".join):
         if method == REFERENCE:
             ladder.refer(rung)
         else:
@@ -269,7 +241,3 @@ def climb(ladder, rungs, methods, options):
     for row in ladder.rows.values():
         judge(row, ladder.rows)
     ladder.write()
-
-
-if __name__ == "__main__":
-    main()

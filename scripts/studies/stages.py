@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Measures what share of an update in contact each stage of the line takes, by samples of `perf`.
 
 Runs the benchmark `tool_speed` (a sphere, or an ellipsoid of 2,000 triangles, pressed 5 mm into a
@@ -10,7 +9,6 @@ Writes doc/data/stages.csv, draws doc/images/stages.png, prints a table. --plot 
 only.
 """
 
-import argparse
 import collections
 import csv
 import io
@@ -19,15 +17,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
+from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
+                            write_rows)
 
-PACKAGE = Path(__file__).resolve().parent.parent
-TABLE = PACKAGE / "doc/data/stages.csv"
-PLOT = PACKAGE / "doc/images/stages.png"
+TABLE = DATA / "stages.csv"
+PLOT = IMAGES / "stages.png"
 # Tool, spacing (mm) of 100 x 100 x 50 mm, nodes, updates.
 JOBS = [("sphere", 5.0, 4851, 600), ("sphere", 2.5, 35301, 300), ("mesh", 5.0, 4851, 400)]
 SPEED, RATE = 0.05, 200.0  # m/s, updates a second
@@ -55,13 +50,13 @@ STAGES = [
 ]
 
 
-def run(command):
+def output_of(command):
     try:
         return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=True,
                               universal_newlines=True).stdout
     except subprocess.CalledProcessError as error:
         said = error.stderr.strip().splitlines() or ["no word why"]
-        sys.exit(f"profile_stages: `{' '.join(command[:2])}` failed: {said[-1]}")
+        sys.exit(f"stages: `{' '.join(command[:2])}` failed: {said[-1]}")
 
 
 def stage_of(stack):
@@ -72,29 +67,29 @@ def stage_of(stack):
     return next(stage for stage, names in reversed(STAGES[:-1]) if re.search(names, stack + "\n"))
 
 
-def profile(program, job, rate):
+def profile(built, job, rate):
     """Samples of each stage; processor ms of an update in the mean, of a run without perf."""
     tool, spacing, _, updates = job
-    command = [str(word) for word in (program, tool, SPEED, RATE, updates, spacing)]
-    table = run(command)
+    command = [str(word) for word in (built, tool, SPEED, RATE, updates, spacing)]
+    table = output_of(command)
     with tempfile.TemporaryDirectory() as folder:
         data = f"{folder}/perf.data"
-        run(["perf", "record", "-F", str(rate), "-e", "cpu-clock", "--call-graph", "fp", "-o", data,
+        output_of(["perf", "record", "-F", str(rate), "-e", "cpu-clock", "--call-graph", "fp", "-o", data,
              "--", *command])
-        stacks = run(["perf", "script", "-i", data, "--no-inline", "-F", "ip,sym"]).split("\n\n")
+        stacks = output_of(["perf", "script", "-i", data, "--no-inline", "-F", "ip,sym"]).split("\n\n")
     times = [float(row["update_ms"]) for row in csv.DictReader(io.StringIO(table))]
     samples = collections.Counter(stage_of(stack.strip()) for stack in stacks if stack.strip())
     if samples[STAGES[0][0]] == 0:
-        sys.exit("profile_stages: no stack has Pipeline::step on it; the build needs "
+        sys.exit("stages: no stack has Pipeline::step on it; the build needs "
                  "-DCMAKE_CXX_FLAGS=-fno-omit-frame-pointer")
     return samples, sum(times) / len(times)
 
 
-def measure(program, rounds, rate):
+def measure(built, rounds, rate):
     runs = collections.defaultdict(list)
-    for _ in range(rounds):
+    for _ in progress(range(rounds), lambda round: f"round {round + 1}"):
         for job in JOBS:
-            runs[job].append(profile(program, job, rate))
+            runs[job].append(profile(built, job, rate))
     rows = []
     for (tool, spacing, nodes, _), each in runs.items():
         ms = sorted(ms for _, ms in each)[len(each) // 2]
@@ -107,21 +102,18 @@ def measure(program, rounds, rate):
                          "share": f"{share:.4f}", "share_least": f"{min(shares):.4f}",
                          "share_most": f"{max(shares):.4f}", "ms": f"{share * ms:.4f}",
                          "samples": sum(totals), "samples_left_out": left_out})
-    with open(TABLE, "w", newline="") as table:
-        writer = csv.DictWriter(table, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(TABLE, rows[0].keys(), rows)
 
 
 def jobs_of_table():
-    with open(TABLE, newline="") as table:
-        rows = list(csv.DictReader(table))
+    rows = rows_of(TABLE)
     for tool, spacing, nodes, _ in JOBS:
         yield (f"{tool}, {nodes:,} nodes",
                [row for row in rows if (row["tool"], float(row["spacing_mm"])) == (tool, spacing)])
 
 
 def draw():
+    plt = pyplot()
     jobs = list(jobs_of_table())
     figure, axes = plt.subplots(figsize=(8, 3.8))
     colors = plt.get_cmap("tab20").colors[1:]
@@ -160,23 +152,17 @@ def tell():
               f"of no update; shares of the runs at most {100 * widest:.1f} % apart")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--plot", action="store_true")
-    parser.add_argument("--program", type=Path,
-                        default=PACKAGE / "build/devel/lib/robot_tissue/tool_speed")
+def add_arguments(parser):
+    add_programs(parser)
+    parser.add_argument("--plot", action="store_true", help="draw and print only")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--samples", type=int, default=5000, help="a second (5000)")
-    options = parser.parse_args()
+
+
+def run(options):
     if not options.plot:
         if shutil.which("perf") is None:
-            sys.exit("profile_stages: `perf` is not there; it is in Debian's package linux-perf")
-        if not options.program.is_file():
-            sys.exit(f"profile_stages: {options.program} is not built: make tool_speed")
-        measure(options.program, options.rounds, options.samples)
+            sys.exit("stages: `perf` is not there; it is in Debian's package linux-perf")
+        measure(program("tool_speed", options.programs), options.rounds, options.samples)
     draw()
     tell()
-
-
-if __name__ == "__main__":
-    main()

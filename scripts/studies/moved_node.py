@@ -1,4 +1,4 @@
-"""A node under a master of its own, beside a robot of one sphere; for scripts/measure_*."""
+"""A node under a master of its own, beside a robot of one sphere; for the studies of the node."""
 
 import contextlib
 import math
@@ -14,7 +14,7 @@ import rospy
 from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
-LAUNCH_FILE = Path(__file__).resolve().parent.parent / "test/benchmark/node.launch"
+LAUNCH_FILE = Path(__file__).resolve().parent.parent.parent / "test/benchmark/node.launch"
 TOP, RADIUS = 0.05, 0.01        # m, of the block and of the sphere
 PRESS, ROUND = 0.005, 0.010     # m: depth, and radius of its way
 

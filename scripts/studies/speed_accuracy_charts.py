@@ -1,30 +1,22 @@
-#!/usr/bin/python3
 """Draws doc/data/study.csv.gz: speed against accuracy, cost against nodes, and the tables of
-doc/speed_accuracy.md. `scripts/study --plot` calls it.
+doc/speed_accuracy.md. `scripts/study speed_accuracy --plot` calls it.
 
 A point is a method at a tolerance on lattices of one size: geometric means over the cases, whiskers
 from the fastest to the slowest repeat. A point counts only if all its cases are OK.
 """
 
-import csv
-import gzip
 import math
 import sys
 from collections import defaultdict
-from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
+from studies.common import IMAGES, PACKAGE, pyplot, rows_of
+from studies.speed_accuracy_cases import CHARTED as CASES
 
-PACKAGE = Path(__file__).resolve().parent.parent
-SPEED = PACKAGE / "doc/images/speed_accuracy.png"
-COST = PACKAGE / "doc/images/cost_nodes.png"
+
+SPEED = IMAGES / "speed_accuracy.png"
+COST = IMAGES / "cost_nodes.png"
 PAGE = PACKAGE / "doc/speed_accuracy.md"
-BEGIN, END = "<!-- tables of scripts/study --plot -->\n", "<!-- end of tables -->\n"
-
-sys.path.insert(0, str(PACKAGE / "scripts"))
-from study_cases import CHARTED as CASES  # noqa: E402, beside this file
+BEGIN, END = "<!-- tables of scripts/study speed_accuracy --plot -->\n", "<!-- end of tables -->\n"
 
 RATIOS = {"elastic": ("0.25", "0.45"), "six_spring": ("",), "tetrahedra": ("0.25", "0.45"),
           "links": ("",)}
@@ -34,12 +26,6 @@ COST_TOLERANCE = "0.01"
 COLORS = {"layered": "tab:red", "newton": "tab:blue", "paper": "0.4", "vbd": "tab:green",
           "xpbd": "tab:orange", "explicit": "tab:purple", "bullet_soft": "tab:brown",
           "bullet_deformable": "tab:pink"}
-
-
-def rows_of(path):
-    opener = gzip.open if path.suffix == ".gz" else open
-    with opener(path, "rt", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def mean(values):
@@ -147,6 +133,7 @@ def whole_error(point):
 
 
 def draw_speed(points):
+    plt = pyplot()
     elastic = [point for point in points if point.model in WITH_SOLVER_ERROR]
     sizes = sorted({point.nodes for point in elastic})[:3]
     plate, panels = plt.subplots(2, 2, figsize=(11.0, 9.0))
@@ -164,6 +151,7 @@ def draw_speed(points):
 
 
 def draw_cost(points):
+    plt = pyplot()
     plate, axes = plt.subplots(figsize=(6.0, 4.5))
     lines = defaultdict(list)
     for point in points:
@@ -227,7 +215,7 @@ def tables(rows, points):
 
 def draw(table):
     if not table.is_file():
-        sys.exit(f"study: no table at {table}; run scripts/study first")
+        sys.exit(f"study: no table at {table}; run scripts/study speed_accuracy first")
     rows = rows_of(table)
     points = points_of(rows)
     if not points:

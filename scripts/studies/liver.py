@@ -1,25 +1,20 @@
-#!/usr/bin/python3
 """Draws the liver of config/liver.yaml at rest, pressed, and cut and pulled open.
 
 Each is a run of the scene up to that step; what is drawn is its surface.stl.
 Out: doc/images/liver.png.
 """
 
-import argparse
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
-import numpy as np  # noqa: E402
-import yaml  # noqa: E402
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
+import numpy as np
+import yaml
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-PACKAGE = Path(__file__).resolve().parent.parent
-BUILDS = ["build/devel/lib/robot_tissue/simulate", "../../devel/lib/robot_tissue/simulate"]
+from studies.common import IMAGES, PACKAGE, add_programs, program, pyplot
+
 PANELS = [("at rest", 0), ("pressed by 10 mm", 1), ("cut, one side pulled by 15 mm", 4)]  # steps
 LIGHT = np.array([0.35, -0.55, 0.76])
 COLOR = np.array([0.72, 0.30, 0.24])
@@ -33,7 +28,7 @@ def triangles_of(path):
     return table["corners"].reshape(-1, 3, 3).astype(float)
 
 
-def run(simulate, steps):
+def surface_after(simulate, steps):
     path = PACKAGE / "config/liver.yaml"
     scene = yaml.safe_load(path.read_text())
     scene["tissue"]["shape"]["resource"] = str(PACKAGE / "config/meshes/liver.stl")
@@ -44,7 +39,7 @@ def run(simulate, steps):
         done = subprocess.run([simulate, file, "--out", folder, "--quiet"], capture_output=True,
                               text=True)
         if done.returncode != 0:
-            sys.exit("liver_figure: " + done.stderr.strip())
+            sys.exit("liver: " + done.stderr.strip())
         return triangles_of(Path(folder) / "surface.stl")
 
 
@@ -66,20 +61,15 @@ def draw(axes, triangles, title):
     axes.set_title(title, fontsize=10, y=0.95)
 
 
-def main():
-    parser = argparse.ArgumentParser(description="Draws the liver of config/liver.yaml.")
-    built = next((str(PACKAGE / path) for path in BUILDS if (PACKAGE / path).exists()), None)
-    parser.add_argument("--simulate", default=built, help="the program simulate")
-    arguments = parser.parse_args()
-    if arguments.simulate is None:
-        parser.error("simulate is not built: give --simulate PATH")
-    figure = plt.figure(figsize=(12, 3.2))
+def add_arguments(parser):
+    add_programs(parser)
+
+
+def run(options):
+    simulate = program("simulate", options.programs)
+    figure = pyplot().figure(figsize=(12, 3.2))
     for index, (title, steps) in enumerate(PANELS):
         axes = figure.add_subplot(1, len(PANELS), index + 1, projection="3d")
-        draw(axes, run(arguments.simulate, steps), title)
+        draw(axes, surface_after(simulate, steps), title)
     figure.subplots_adjust(0, 0, 1, 0.96, 0, 0)
-    figure.savefig(PACKAGE / "doc/images/liver.png", dpi=80)
-
-
-if __name__ == "__main__":
-    main()
+    figure.savefig(IMAGES / "liver.png", dpi=80)

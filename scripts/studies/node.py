@@ -1,33 +1,27 @@
-#!/usr/bin/python3
 """Tells the rate, delay and processor time of a tissue node while a tool presses.
 
-usage: measure_node [SECONDS] [NODE]           listens to a running node (30 s of /robot_tissue)
-       measure_node --run [--seconds S] [--rate HZ] [--marker-rate HZ] [--speed M/S]
-                    [--max-ms MS] [--csv FILE]
-                                               starts a master and a node on a block of 4,851
-                                               nodes, moves a sphere in it at HZ
+Starts a master and a node on a block of 4,851 nodes and moves a sphere in it; with --listen, listens
+to a node that runs already. Needs the build's devel/setup.bash.
 
 Delay: the age of the pose's TF stamp when the update's wrenches and markers had gone out, by the
-node's own clock, of the updates that solved something. --run also counts the wrenches that a
-listener gets (~wrench_rate 1000). What a tool that stands costs, scripts/measure_still tells.
+node's own clock, of the updates that solved something. Where it moves
+the sphere, it also counts the wrenches that a listener gets (~wrench_rate 1000). What a tool that
+stands costs, the study still_node tells.
 """
-import argparse
-import csv
 import os
 import sys
 import time
+from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import WrenchStamped
 from robot_tissue.msg import TissueState
 
-import moved_node
+from studies import moved_node
+from studies.common import DATA, percentile, write_rows
 
+TABLE = DATA / "node_speed.csv"
 STAGES = ("pose_age_ms", "contact_ms", "solve_ms", "publish_ms")
-
-
-def quantile(values, share):
-    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
 def longest_run_rate(stamps):
@@ -51,9 +45,9 @@ def tell(states, marker_arrays, seconds):
     told = [("updates_per_s", rate)]
     for name in STAGES:
         values = [getattr(s, name) for s in pressing]
-        print(f"{name}: median {quantile(values, 0.5):.2f}, 99th percentile "
-              f"{quantile(values, 0.99):.2f}")
-        told += [(name + "_median", quantile(values, 0.5)), (name + "_99", quantile(values, 0.99))]
+        print(f"{name}: median {percentile(values, 50):.2f}, 99th percentile "
+              f"{percentile(values, 99):.2f}")
+        told += [(name + "_median", percentile(values, 50)), (name + "_99", percentile(values, 99))]
     bad = [s.status for s in pressing if s.status != "OK"]
     print(f"not OK: {len(bad)} of {len(pressing)}, {bad.count('LATE')} of them LATE; "
           "deepest in the surface "
@@ -71,7 +65,7 @@ def listen(node):
     return states, marker_arrays
 
 
-def run(options):
+def run_node(options):
     with moved_node.own_master("measure_node"), moved_node.tissue_node(
             rate=options.rate, marker_rate=options.marker_rate, wrench_rate=1000,
             max_ms=options.max_ms):
@@ -99,30 +93,22 @@ def measure(options):
     return [("load_average", load)] + told + [("wrenches_per_s", wrench_rate)]
 
 
-def main():
-    if "--run" not in sys.argv:
-        seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 30.0
+def add_arguments(parser):
+    parser.add_argument("--listen", metavar="NODE", help="to a running node, e.g. /robot_tissue")
+    parser.add_argument("--seconds", type=float, default=20.0, help="that are measured (20)")
+    parser.add_argument("--rate", type=float, default=200.0, metavar="HZ", help="of the poses (200)")
+    parser.add_argument("--marker-rate", type=float, default=30.0, metavar="HZ")
+    parser.add_argument("--speed", type=float, default=0.02, metavar="M/S")
+    parser.add_argument("--max-ms", type=float, default=0.0, metavar="MS")
+    parser.add_argument("--table", type=Path, default=TABLE, help="where it is written")
+
+
+def run(options):
+    if options.listen:
         rospy.init_node("measure_node", anonymous=True)
-        states, marker_arrays = listen(sys.argv[2] if len(sys.argv) > 2 else "/robot_tissue")
-        rospy.sleep(seconds)
-        tell(states, marker_arrays, seconds)
+        states, marker_arrays = listen(options.listen)
+        rospy.sleep(options.seconds)
+        tell(states, marker_arrays, options.seconds)
         return
-    parser = argparse.ArgumentParser(usage=__doc__.split("usage: ")[1])
-    parser.add_argument("--run", action="store_true")
-    parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--rate", type=float, default=200.0)
-    parser.add_argument("--marker-rate", type=float, default=30.0)
-    parser.add_argument("--speed", type=float, default=0.02)
-    parser.add_argument("--max-ms", type=float, default=0.0)
-    parser.add_argument("--csv")
-    options = parser.parse_args()
-    told = run(options)
-    if options.csv:
-        with open(options.csv, "w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(["measure", "value"])
-            writer.writerows((name, f"{value:.4g}") for name, value in told)
-
-
-if __name__ == "__main__":
-    main()
+    rows = [{"measure": name, "value": f"{value:.4g}"} for name, value in run_node(options)]
+    write_rows(options.table, ["measure", "value"], rows)

@@ -1,22 +1,21 @@
-#!/usr/bin/python3
 """Tells what a tissue node costs while nothing moves, beside a node that does nothing.
 
-usage: measure_still [--seconds S] [--repeats N] [--rate HZ] [--only TEXT] [--threads] [--csv FILE]
-
 The processor's time of the whole process as a share of one core: median, least and greatest of
-N runs (3) of S seconds (20) with TF at HZ (200). --only: cases with TEXT in their names; --threads:
-also each thread's share.
+N runs (3) of S seconds (20) with TF at HZ (200). Needs the build's devel/setup.bash.
 """
-import argparse
-import csv
 import statistics
 import time
+from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import WrenchStamped
 from tf2_msgs.msg import TFMessage
 
-import moved_node
+from studies import moved_node
+from studies.common import DATA, progress, write_rows
+
+TABLE = DATA / "still_node.csv"
+COLUMNS = ["case", "percent_median", "least", "greatest", "wrenches_per_s"]
 
 PRESSED = 2 * moved_node.PRESS      # gone (m): in contact, at depth
 SETTLING = 3.0                      # s, before it is measured
@@ -119,33 +118,24 @@ def measure(case, options):
     return shares, threads, len(wrenches) / (options.repeats * options.seconds)
 
 
-def main():
-    parser = argparse.ArgumentParser(usage=__doc__.split("usage: ")[1])
-    parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--rate", type=float, default=200.0)
-    parser.add_argument("--only", default="")
-    parser.add_argument("--threads", action="store_true")
-    parser.add_argument("--csv")
-    options = parser.parse_args()
+def add_arguments(parser):
+    parser.add_argument("--seconds", type=float, default=20.0, help="of a run (20)")
+    parser.add_argument("--repeats", type=int, default=3, help="runs of a case (3)")
+    parser.add_argument("--rate", type=float, default=200.0, metavar="HZ", help="of TF (200)")
+    parser.add_argument("--only", default="", metavar="TEXT", help="cases with it in their names")
+    parser.add_argument("--threads", action="store_true", help="also each thread's share")
+    parser.add_argument("--table", type=Path, default=TABLE, help="where it is written")
+
+
+def run(options):
     rows = []
     with moved_node.own_master("measure_still"):
-        for case in CASES:
-            if options.only not in case[0]:
-                continue
+        for case in progress([case for case in CASES if options.only in case[0]], lambda c: c[0]):
             shares, threads, wrench_rate = measure(case, options)
-            rows.append((case[0], statistics.median(shares), min(shares), max(shares),
-                         wrench_rate))
-            print("{}: {:.2f} % of a core ({:.2f} to {:.2f}), {:.1f} wrenches/s".format(*rows[-1]),
-                  flush=True)
+            values = (statistics.median(shares), min(shares), max(shares), wrench_rate)
+            rows.append(dict(zip(COLUMNS, (case[0], *(f"{value:.3g}" for value in values)))))
+            print("{}: {:.2f} % of a core ({:.2f} to {:.2f}), {:.1f} wrenches/s".format(
+                case[0], *values), flush=True)
             if options.threads:
                 print("   " + ", ".join(f"{share:.2f}" for share in threads[-1].values()))
-    if options.csv:
-        with open(options.csv, "w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(["case", "percent_median", "least", "greatest", "wrenches_per_s"])
-            writer.writerows((row[0], *(f"{value:.3g}" for value in row[1:])) for row in rows)
-
-
-if __name__ == "__main__":
-    main()
+    write_rows(options.table, COLUMNS, rows)

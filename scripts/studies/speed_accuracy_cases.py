@@ -1,25 +1,12 @@
-"""The cases of scripts/study: scenes by name, and the runs that are made of them."""
+"""The cases of the study speed_accuracy: scenes by name, and the runs that are made of them."""
 
 import itertools
 import math
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
-from pathlib import Path
 
 import yaml
 
-PACKAGE = Path(__file__).resolve().parent.parent
-
-
-def load_script(name):
-    """Another of the scripts as a module; they have no extension."""
-    loader = SourceFileLoader(name, str(PACKAGE / "scripts" / name))
-    module = module_from_spec(spec_from_loader(name, loader))
-    loader.exec_module(module)
-    return module
-
-
-accuracy = load_script("accuracy")
+from studies import accuracy
+from studies.common import PACKAGE, rows_of
 
 INCREMENT = 0.001  # m that a patch or tool goes in one
 SPACINGS = (0.01, 0.005, 0.0025)
@@ -89,7 +76,7 @@ def figure_scene(figure):
 
 def scenes():
     """(case, model, nu, spacing, scene), nu None where the model has none."""
-    for reference, spacing in itertools.product(accuracy.rows_of(accuracy.REFERENCE / "cases.csv"),
+    for reference, spacing in itertools.product(rows_of(accuracy.REFERENCE / "cases.csv"),
                                                 SPACINGS):
         case, nu = reference["case"], float(reference["poisson_ratio"])
         yield case, "elastic", nu, spacing, reference_scene(reference, "elastic", spacing)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Measures how long an increment of `layered` takes in several threads, against one.
 
 Runs the benchmark `growth` (make growth) at three spacings of one block, where only the part that
@@ -11,24 +10,18 @@ doc/images/threads.png, prints a table. What the table has of quiet rounds stays
 --plot draws and prints only.
 """
 
-import argparse
-import csv
 import os
 import resource
 import statistics
-import sys
 import time
-from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from study_cases import PACKAGE, load_script  # noqa: E402, beside this file
+from studies import growth
+from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
+                            write_rows)
 
-TABLE = PACKAGE / "doc/data/threads.csv"
-PLOT = PACKAGE / "doc/images/threads.png"
+TABLE = DATA / "threads.csv"
+PLOT = IMAGES / "threads.png"
 THREADS = sorted({*range(1, len(os.sched_getaffinity(0)) + 1), 2, 4})
 # Spacing (m) of 100 x 100 x 50 mm, times the way is gone in a run.
 SPACINGS = [(0.005, 20), (0.0025, 5), (0.00125, 1)]
@@ -47,26 +40,25 @@ def processor_seconds():
             own.ru_utime + own.ru_stime)
 
 
-def round_of(run, program, job, repeats):
+def round_of(built, job, repeats):
     """A row for each number of threads; how many processors other programs had meanwhile."""
     start, (busy, own) = time.monotonic(), processor_seconds()
-    rows = [run(program, (*job, threads), RATIO, repeats) for threads in THREADS]
+    rows = [growth.run_once(built, (*job, threads), RATIO, repeats) for threads in THREADS]
     busy_now, own_now = processor_seconds()
     passed = time.monotonic() - start
     return max(0.0, (busy_now - busy) - (own_now - own)) / passed, rows
 
 
-def quiet_rounds(program, job, repeats, wanted):
-    run = load_script("growth").run
+def quiet_rounds(built, job, repeats, wanted):
     rounds = []
     for _ in range(TRIES * wanted):
-        rounds.append(round_of(run, program, job, repeats))
+        rounds.append(round_of(built, job, repeats))
         if sum(others < QUIET for others, _ in rounds) == wanted:
             break
     return sorted(rounds, key=lambda one: one[0])[:wanted]
 
 
-def rows_of(job, rounds):
+def rows_of_rounds(job, rounds):
     spacing, _, tolerance = job
     for number, threads in enumerate(THREADS):
         each = [rows[number] for _, rows in rounds]
@@ -81,24 +73,21 @@ def rows_of(job, rounds):
                "not_ok": max(int(row["not_ok"]) for row in each)}
 
 
-def measure(program, wanted, anew):
+def measure(built, wanted, anew):
     known = [] if anew or not TABLE.exists() else [job for _, job in jobs_of_table()]
     rows = []
-    for tolerance, _ in TOLERANCES:
-        for spacing, repeats in SPACINGS:
-            job = (spacing, 1, tolerance)
-            quiet = [one for one in known if one and float(one[0]["others_most"]) < QUIET
-                     and (float(one[0]["spacing_m"]), float(one[0]["tolerance"])) == job[::2]]
-            rows += quiet[0] if quiet else rows_of(job, quiet_rounds(program, job, repeats, wanted))
-    with open(TABLE, "w", newline="") as table:
-        writer = csv.DictWriter(table, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    jobs = [(tolerance, *spacing) for tolerance, _ in TOLERANCES for spacing in SPACINGS]
+    for tolerance, spacing, repeats in progress(jobs):
+        job = (spacing, 1, tolerance)
+        quiet = [one for one in known if one and float(one[0]["others_most"]) < QUIET
+                 and (float(one[0]["spacing_m"]), float(one[0]["tolerance"])) == job[::2]]
+        rows += quiet[0] if quiet else rows_of_rounds(
+            job, quiet_rounds(built, job, repeats, wanted))
+    write_rows(TABLE, rows[0].keys(), rows)
 
 
 def jobs_of_table():
-    with open(TABLE, newline="") as table:
-        rows = list(csv.DictReader(table))
+    rows = rows_of(TABLE)
     for tolerance, name in TOLERANCES:
         for spacing, _ in SPACINGS:
             job = [row for row in rows if (float(row["tolerance"]), float(row["spacing_m"]))
@@ -107,6 +96,7 @@ def jobs_of_table():
 
 
 def draw():
+    plt = pyplot()
     figure, plots = plt.subplots(1, len(TOLERANCES), figsize=(8, 3.8), sharey=True)
     for plot, (_, title) in zip(plots, TOLERANCES):
         for (name, job), style in zip([one for one in jobs_of_table() if one[0] == title],
@@ -143,19 +133,15 @@ def tell():
                   + ("1 |" if row["threads"] == "1" else f"{float(row['of_one']):.2f}{spread} |"))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--plot", action="store_true")
-    parser.add_argument("--anew", action="store_true")
-    parser.add_argument("--program", type=Path,
-                        default=PACKAGE / "build/devel/lib/robot_tissue/growth")
+def add_arguments(parser):
+    add_programs(parser)
+    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    parser.add_argument("--anew", action="store_true", help="quiet rounds of the table, too")
     parser.add_argument("--rounds", type=int, default=7)
-    options = parser.parse_args()
+
+
+def run(options):
     if not options.plot:
-        measure(options.program, options.rounds, options.anew)
+        measure(program("growth", options.programs), options.rounds, options.anew)
     draw()
     tell()
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Measures contact: tools pressed and dragged, a sphere on a layer, friction, a block lifted.
 
 Runs the programs of test/benchmark (contact_press, contact_hertz, contact_friction, contact_lift;
@@ -8,22 +7,15 @@ doc/images/contact_press.png and contact_hertz.png from them and prints the tabl
 doc/contact.md. --plot draws and prints only.
 """
 
-import argparse
 import csv
 import math
 import subprocess
 import sys
 from collections import namedtuple
-from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
+from studies.common import (DATA, IMAGES, add_programs, numbers, percentile, program, progress,
+                            pyplot, rows_of, write_rows)
 
-PACKAGE = Path(__file__).resolve().parent.parent
-BUILDS = ["build/devel/lib/robot_tissue", "../../devel/lib/robot_tissue"]
-DATA = PACKAGE / "doc/data"
-IMAGES = PACKAGE / "doc/images"
 
 TOOLS = ["sphere", "cylinder_upright", "cylinder_lying", "box_face", "box_edge", "box_corner",
          "needle", "cup"]
@@ -63,11 +55,8 @@ def path_of(table):
     return DATA / f"contact_{table}.csv"
 
 
-def rows_of(table):
-    if not path_of(table).exists():
-        return []
-    with open(path_of(table), newline="") as file:
-        return list(csv.DictReader(file))
+def table_of(name):
+    return rows_of(path_of(name))
 
 
 def short(text):
@@ -80,38 +69,27 @@ def short(text):
 def store(study, lines):
     """Puts the rows of a program's output into the table in place of the study's earlier ones."""
     column, value = study.key
-    rows = [row for row in rows_of(study.table) if row[column] != value]
+    rows = [row for row in table_of(study.table) if row[column] != value]
     for row in csv.DictReader(lines):
         if None not in row.values():
             rows.append({name: short(row[name]) for name in study.columns})
     order = [other.key[1] for other in STUDIES if other.table == study.table]
     rows.sort(key=lambda row: order.index(row[column]))
-    with open(path_of(study.table), "w", newline="") as file:
-        table = csv.DictWriter(file, study.columns, lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+    write_rows(path_of(study.table), study.columns, rows)
 
 
 def measure(programs, only):
-    for study in STUDIES:
-        if (only or "") not in study.name or (not only and study.table == "random"):
-            continue
-        command = ["timeout", str(study.limit), "stdbuf", "-oL", str(programs / study.program)]
+    wanted = [study for study in STUDIES
+              if (only or "") in study.name and (only or study.table != "random")]
+    for study in progress(wanted, lambda study: study.name):
+        command = ["timeout", str(study.limit), "stdbuf", "-oL",
+                   str(program(study.program, programs))]
         done = subprocess.run(command + study.arguments, stdout=subprocess.PIPE,
                               universal_newlines=True, check=False)
         if done.returncode not in (0, 124):
             sys.exit(f"contact: {study.program} ended with {done.returncode}")
         store(study, done.stdout.splitlines())
         print(study.name, "cut" if done.returncode == 124 else "whole", flush=True)
-
-
-def numbers(rows, column):
-    return [float(row[column]) for row in rows]
-
-
-def percentile(values, percent):
-    ordered = sorted(values)
-    return ordered[min(len(ordered) - 1, int(percent / 100.0 * len(ordered)))]
 
 
 def dimitriadis(depth, radius, layer):
@@ -139,10 +117,11 @@ def way_along(row):
 
 
 def press_rows(tool):
-    return [row for row in rows_of("press") if row["tool"] == tool and row["leg"] in LEGS]
+    return [row for row in table_of("press") if row["tool"] == tool and row["leg"] in LEGS]
 
 
 def draw_press():
+    plt = pyplot()
     plate, (upper, lower) = plt.subplots(2, 1, figsize=(9.0, 7.0), sharex=True)
     for index, tool in enumerate(TOOLS):
         rows = press_rows(tool)
@@ -169,9 +148,10 @@ def draw_press():
 
 
 def draw_hertz():
-    rows = rows_of("hertz")
+    rows = table_of("hertz")
     if not rows:
         return
+    plt = pyplot()
     plate, axes = plt.subplots(figsize=(6.0, 4.2))
     radius, layer = (1e-3 * float(rows[0][key]) for key in ("radius_mm", "layer_mm"))
     depths = [0.05 * i for i in range(1, 81)]  # mm
@@ -220,7 +200,7 @@ def tell_hertz():
     print("| spacing (mm) | depth (mm) | force (N) | layer (N) | off | touches | penetration (mm) | "
           "s | status |")
     print("|---|---|---|---|---|---|---|---|---|")
-    for row in rows_of("hertz"):
+    for row in table_of("hertz"):
         radius, layer, depth = (1e-3 * float(row[key])
                                 for key in ("radius_mm", "layer_mm", "depth_mm"))
         force, exact = float(row["force_n"]), dimitriadis(depth, radius, layer)
@@ -231,7 +211,7 @@ def tell_hertz():
 
 def tell_friction():
     for tool in ("plate", "box", "sphere"):
-        rows = [row for row in rows_of("friction") if row["tool"] == tool]
+        rows = [row for row in table_of("friction") if row["tool"] == tool]
         late = [row for row in rows if float(row["way_mm"]) >= 7.0]
         if not late:
             continue
@@ -253,7 +233,7 @@ def tell_friction():
 
 
 def tell_lift():
-    rows = rows_of("lift")
+    rows = table_of("lift")
     for leg in ("squeeze", "lift", "hold"):
         own = [row for row in rows if row["leg"] == leg]
         if not own:
@@ -269,7 +249,7 @@ def tell_lift():
 
 
 def tell_random():
-    rows = rows_of("random")
+    rows = table_of("random")
     if not rows:
         return
     sums = {name: sum(int(row[name]) for row in rows)
@@ -283,33 +263,20 @@ def tell_random():
               f"90 % {percentile(values, 90):.3g}, greatest {max(values):.4g}")
 
 
-def find_programs(given):
-    candidates = [Path(given)] if given else [PACKAGE / build for build in BUILDS]
-    for candidate in candidates:
-        if (candidate / "contact_press").is_file():
-            return candidate
-    sys.exit("contact: no program contact_press in " + ", ".join(map(str, candidates)) +
-             "; make contact_press contact_hertz contact_friction contact_lift first, or give "
-             "--programs FOLDER")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--programs", help="folder of the programs; default: the checkout's build")
+def add_arguments(parser):
+    add_programs(parser)
     parser.add_argument("--only", metavar="NAME", help="only studies whose name holds this text: " +
                         ", ".join(study.name for study in STUDIES))
     parser.add_argument("--plot", action="store_true", help="draw and print only")
-    options = parser.parse_args()
+
+
+def run(options):
     if options.only and not any(options.only in study.name for study in STUDIES):
         sys.exit(f"contact: no study '{options.only}'; allowed: part of " +
                  ", ".join(study.name for study in STUDIES))
     if not options.plot:
-        measure(find_programs(options.programs), options.only)
+        measure(options.programs, options.only)
     draw_press()
     draw_hertz()
     for tell in (tell_press, tell_hertz, tell_friction, tell_lift, tell_random):
         tell()
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Holds the errors that `fidelity` estimates against those that finite elements tell.
 
 For cases of test/data/reference, as scenes with a spacing of 5 mm: runs `fidelity`, solves each of
@@ -7,25 +6,19 @@ Writes doc/data/fidelity.csv and prints estimate and truth side by side, and for
 the rung that `fidelity` would take is the cheapest that truly meets them.
 """
 
-import argparse
-import csv
 import math
 import subprocess
 import sys
 import tempfile
-from importlib.machinery import SourceFileLoader
-from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 
 import numpy as np
 import yaml
 
-PACKAGE = Path(__file__).resolve().parent.parent
-loader = SourceFileLoader("accuracy", str(PACKAGE / "scripts/accuracy"))
-accuracy = module_from_spec(spec_from_loader("accuracy", loader))
-loader.exec_module(accuracy)
+from studies import accuracy
+from studies.common import DATA, add_programs, program, progress, rows_of, write_rows
 
-TABLE = PACKAGE / "doc/data/fidelity.csv"
+TABLE = DATA / "fidelity.csv"
 SCENES = ["press_d5/0.45", "drag_d5/0.25", "uniaxial/0.45"]
 UPDATE = 0.001  # m
 ERRORS = (0.15, 0.10, 0.05, 0.03)  # that a choice is asked for
@@ -82,13 +75,14 @@ def estimates_of(fidelity, reference, seconds):
                    str(seconds), "--csv", str(table)]
         done = subprocess.run(command, stdout=subprocess.PIPE, universal_newlines=True, check=False)
         if done.returncode not in (0, 3):
-            sys.exit("fidelity_check: fidelity gave exit code " + str(done.returncode))
-        return [row for row in accuracy.rows_of(table) if row["status"] == "OK" and row["error"]]
+            sys.exit("fidelity: it gave exit code " + str(done.returncode))
+        return [row for row in rows_of(table) if row["status"] == "OK" and row["error"]]
 
 
 def measure(programs, reference, seconds):
-    for estimate in estimates_of(programs / "fidelity", reference, seconds):
-        field, force = truth_of(programs / "simulate", reference, float(estimate["spacing"]),
+    simulate = program("simulate", programs)
+    for estimate in estimates_of(program("fidelity", programs), reference, seconds):
+        field, force = truth_of(simulate, reference, float(estimate["spacing"]),
                                 float(estimate["tolerance"]))
         truth = max(field, force)
         yield {"case": reference["case"], "poisson_ratio": reference["poisson_ratio"],
@@ -128,29 +122,22 @@ def tell(rows, reference):
               f"{name_of(best)}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--programs", type=Path, metavar="FOLDER",
-                        help="where fidelity and simulate are; default: the checkout's build")
+def add_arguments(parser):
+    add_programs(parser)
     parser.add_argument("--case", action="append", metavar="CASE/NU",
                         help="e.g. press_d1/0.25; default: " + ", ".join(SCENES))
     parser.add_argument("--seconds", type=float, default=60.0, help="for each fidelity run (60)")
-    options = parser.parse_args()
-    programs = options.programs or accuracy.find_simulate(None).parent
+
+
+def run(options):
     wanted = options.case or SCENES
+    chosen = [row for row in rows_of(accuracy.REFERENCE / "cases.csv")
+              if f"{row['case']}/{row['poisson_ratio']}" in wanted]
+    if not chosen:
+        sys.exit("fidelity: no case of this name: " + ", ".join(wanted))
     all_rows = []
-    for reference in accuracy.rows_of(accuracy.REFERENCE / "cases.csv"):
-        if f"{reference['case']}/{reference['poisson_ratio']}" in wanted:
-            rows = list(measure(programs, reference, options.seconds))
-            tell(rows, reference)
-            all_rows += rows
-    if not all_rows:
-        sys.exit("fidelity_check: no case of this name: " + ", ".join(wanted))
-    with open(TABLE, "w", newline="") as file:
-        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        table.writeheader()
-        table.writerows(all_rows)
-
-
-if __name__ == "__main__":
-    main()
+    for reference in progress(chosen, lambda row: row["case"]):
+        rows = list(measure(options.programs, reference, options.seconds))
+        tell(rows, reference)
+        all_rows += rows
+    write_rows(TABLE, COLUMNS, all_rows)

@@ -1,29 +1,23 @@
-#!/usr/bin/python3
 """Draws figures 5 and 6 of the paper from config/paper_figure5.yaml and paper_figure6.yaml.
 
 Every load of a scene is run by itself (a scene with that load alone), several times for the time.
 Out: doc/images/paper_figure5.png, doc/images/paper_figure6.png and doc/data/paper_figures.csv.
 """
 
-import argparse
-import csv
 import math
-import re
 import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, after the backend is chosen
-import numpy as np  # noqa: E402
-import yaml  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
+import numpy as np
+import yaml
+from matplotlib.collections import LineCollection
 
-PACKAGE = Path(__file__).resolve().parent.parent
-BUILDS = ["build/devel/lib/robot_tissue/simulate", "../../devel/lib/robot_tissue/simulate"]
+from studies.common import (DATA, IMAGES, PACKAGE, add_programs, commit, compiler_of, first_match,
+                            program, progress, pyplot, rows_of, worst, write_rows)
+
 TITLES = {5: "straight downward force", 6: "diagonal upward force, along (1, 1, 1)"}
 AZIMUTH = math.radians(18.0)    # of the viewer, from the block's front (y = 0)
 ELEVATION = math.radians(12.0)
@@ -77,31 +71,21 @@ def single_load_scenes(scene):
             yield float(np.linalg.norm(force)), dict(scene, steps=[step])
 
 
-def rows_of(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def run(simulate, scene, folder):
+def solve(simulate, scene, folder):
     scene_file = folder / "scene.yaml"
     scene_file.write_text(yaml.safe_dump(scene))
     command = [str(simulate), str(scene_file), "--out", str(folder), "--quiet"]
     done = subprocess.run(command, stderr=subprocess.PIPE, universal_newlines=True, check=False)
     if done.returncode not in (0, 3):
-        sys.exit("paper_figures: " + done.stderr.strip())
+        sys.exit("paper: " + done.stderr.strip())
     return rows_of(folder / "increments.csv"), rows_of(folder / "patches.csv")[-1]
-
-
-def worst(increments):
-    order = ["OK", "LATE", "UNCONVERGED", "INVERTED"]
-    return max((row["status"] for row in increments), key=order.index)
 
 
 def measure(simulate, figure, magnitude, scene, runs, folder):
     """One row of the table, and the shape."""
     times = []
     for number in range(1, runs + 1):
-        increments, patch = run(simulate, scene, folder)
+        increments, patch = solve(simulate, scene, folder)
         times.append(sum(float(row["wall_ms"]) for row in increments))
         print(f"figure {figure}, magnitude {magnitude:g}, run {number} of {runs}: "
               f"{times[-1]:.2f} ms, {worst(increments)}", flush=True)
@@ -167,6 +151,7 @@ def draw_shape(axes, shape, box):
 
 
 def draw(figure, results, path):
+    plt = pyplot()
     plate, all_axes = plt.subplots(2, 3, figsize=(13.5, 7.2))
     corners = []
     for letter, axes, (row, shape, box) in zip("abcdef", all_axes.flat, results):
@@ -190,72 +175,34 @@ def draw(figure, results, path):
     plt.close(plate)
 
 
-def first_match(pattern, text):
-    found = re.search(pattern, text, re.MULTILINE)
-    return found.group(1).strip() if found else "unknown"
-
-
-def commit():
-    """The last commit, from git's own files."""
-    try:
-        head = (PACKAGE / ".git/HEAD").read_text().strip()
-        if not head.startswith("ref: "):
-            return head
-        loose = PACKAGE / ".git" / head[5:]
-        if loose.is_file():
-            return loose.read_text().strip()
-        packed = (PACKAGE / ".git/packed-refs").read_text()
-        return first_match(rf"^([0-9a-f]+) {re.escape(head[5:])}$", packed)
-    except OSError:
-        return "unknown"
-
-
 def header(simulate):
     processor = first_match(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text())
-    compiler = first_match(r"(GCC: \([^)]*\) [0-9.]+|clang version [0-9.]+)",
-                           simulate.read_bytes().decode("latin-1"))
-    return (f"# processor: {processor}, one thread\n# compiler: {compiler}\n"
+    return (f"# processor: {processor}, one thread\n# compiler: {compiler_of(simulate)}\n"
             f"# last commit before the run: {commit()}\n"
             "# times: sum over the increments of the solve alone; shapes: full precision in the "
             "runner's nodes.csv\n")
 
 
-def find_simulate(given):
-    for path in [Path(given)] if given else [PACKAGE / build for build in BUILDS]:
-        if path.is_file():
-            return path
-    sys.exit("paper_figures: no simulate found, build the package or give --simulate PATH")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--simulate", metavar="PATH", help="the offline runner")
+def add_arguments(parser):
+    add_programs(parser)
     parser.add_argument("--runs", type=int, default=15, metavar="N", help="of each load (15)")
-    arguments = parser.parse_args()
-    if arguments.runs < 1:
-        parser.error("--runs must be at least 1")
-    simulate = find_simulate(arguments.simulate)
+
+
+def run(options):
+    if options.runs < 1:
+        sys.exit(f"paper: --runs {options.runs}: must be at least 1")
+    simulate = program("simulate", options.programs)
     rows = []
-    for figure in (5, 6):
+    for figure in progress((5, 6), lambda figure: f"figure {figure}"):
         scene = yaml.safe_load((PACKAGE / f"config/paper_figure{figure}.yaml").read_text())
         results = []
         for magnitude, single in single_load_scenes(scene):
             with tempfile.TemporaryDirectory() as folder:
-                row, shape = measure(simulate, figure, magnitude, single, arguments.runs,
+                row, shape = measure(simulate, figure, magnitude, single, options.runs,
                                      Path(folder))
             results.append((row, shape, single["steps"][0]["load"]["patches"][0]))
             rows.append(row)
-        draw(figure, results, PACKAGE / f"doc/images/paper_figure{figure}.png")
-    table = PACKAGE / "doc/data/paper_figures.csv"
-    table.parent.mkdir(parents=True, exist_ok=True)
-    with open(table, "w", newline="") as file:
-        file.write(header(simulate))
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+        draw(figure, results, IMAGES / f"paper_figure{figure}.png")
+    write_rows(DATA / "paper_figures.csv", COLUMNS, rows, header(simulate))
     print("wrote doc/images/paper_figure5.png, doc/images/paper_figure6.png, "
           "doc/data/paper_figures.csv")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,1 @@
+"""The studies behind the numbers and pictures of doc/: `scripts/study --list` names them."""
