@@ -3,6 +3,7 @@ set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build="$root/build"
+package_lists=("$root/scripts/debian_packages")
 
 say() { printf '== %s\n' "$*"; }
 give_up() { printf '%s\n' "$*" >&2; exit 1; }
@@ -22,7 +23,7 @@ as_root() {
 
 missing_packages() {
   local package
-  grep -v '^#' "$root/scripts/debian_packages" | while read -r package; do
+  grep -hv '^#' "${package_lists[@]}" | while read -r package; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
   done
 }
@@ -51,7 +52,8 @@ configure() {
     rm -rf "$build"
   fi
   mkdir -p "$build"
-  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 ||
+  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_INSTALL_PREFIX="$build/install" "$@" >"$build/configure.log" 2>&1 ||
     { tail -n 30 "$build/configure.log" >&2; give_up "scripts: configuring failed"; }
 }
 

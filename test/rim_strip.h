@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -105,19 +106,19 @@ class Strip {
     }
     Eigen::SparseMatrix<double> matrix(count_, count_);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    SparseFactor factor;
-    factor.analyze(matrix);
-    if (!factor.factorize(matrix)) throw std::runtime_error("strip: not positive definite");
+    const std::unique_ptr<SparseFactor> factor = makeSparseFactor();
+    factor->analyze(matrix);
+    if (!factor->factorize(matrix)) throw std::runtime_error("strip: not positive definite");
     Eigen::Matrix3d energy = held_energy;
     Motions moved;
     for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::VectorXd motion = factor.solve(loads.col(axis));
+      const Eigen::VectorXd motion = factor->solve(loads.col(axis));
       energy.col(axis) -= loads.transpose() * motion;
       moved.col(axis) = atRim(motion);
     }
     for (int i = 0; i < 6; ++i) {
       const Eigen::VectorXd pull = Eigen::VectorXd::Unit(count_, rimUnknown(i)) * shear_;
-      compliance_.col(i) = atRim(factor.solve(pull));
+      compliance_.col(i) = atRim(factor->solve(pull));
     }
     Motions carried;
     carried << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity();

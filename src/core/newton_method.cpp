@@ -117,13 +117,13 @@ bool NewtonMethod::factorize(const LoadedShape& shape, const std::vector<Vec3>& 
     carried_ = std::move(curvature.carried);
     hold_ = 0.0;
     holdBy(kHold * stiffness_);
-    if (!analyzed_) factor_.analyze(matrix_);
+    if (!analyzed_) factor_->analyze(matrix_);
     analyzed_ = true;
-    if (factor_.factorize(matrix_)) return true;
+    if (factor_->factorize(matrix_)) return true;
   }
   while (hold_ < kFirmestHold * stiffness_) {
     holdBy(kFirmer * hold_);
-    if (factor_.factorize(matrix_)) return true;
+    if (factor_->factorize(matrix_)) return true;
   }
   return false;
 }
@@ -137,8 +137,8 @@ void NewtonMethod::holdBy(double stiffness) {
 
 // One step of refinement takes most of what the hold holds back.
 Eigen::VectorXd NewtonMethod::solveFor(const Eigen::VectorXd& force) const {
-  const Eigen::VectorXd step = factor_.solve(force);
-  return step + hold_ * factor_.solve(step);
+  const Eigen::VectorXd step = factor_->solve(force);
+  return step + hold_ * factor_->solve(step);
 }
 
 // Goes along the step as far as the potential falls.

@@ -1,64 +1,53 @@
 #include "robot_tissue/core/sparse_factor.h"
 
-#include <Eigen/CholmodSupport>
-
-// Of OpenBLAS, which CHOLMOD may call as its BLAS; null with another one.
-extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
-// Of OpenMP, which CHOLMOD may be built with.
-extern "C" int omp_get_max_active_levels(void) __attribute__((weak));
-extern "C" void omp_set_max_active_levels(int levels) __attribute__((weak));
+#include <Eigen/SparseCholesky>
+#include <new>
+#include <utility>
 
 namespace robot_tissue {
-
 namespace {
 
-// CHOLMOD's threads wait in a busy loop, too, and it does not ask how many it may start: while this
-// lives, OpenMP starts none.
-class OneThread {
+class EigenFactor : public SparseFactor {
  public:
-  OneThread() {
-    if (omp_set_max_active_levels == nullptr || omp_get_max_active_levels == nullptr) return;
-    levels_ = omp_get_max_active_levels();
-    omp_set_max_active_levels(0);
+  void analyze(const Eigen::SparseMatrix<double>& matrix) override {
+    fits_ = true;
+    whenItFits([&] { cholesky_.analyzePattern(matrix); });
   }
-  ~OneThread() {
-    if (levels_ >= 0) omp_set_max_active_levels(levels_);
+  bool factorize(const Eigen::SparseMatrix<double>& matrix) override {
+    whenItFits([&] { cholesky_.factorize(matrix); });
+    return fits_ && cholesky_.info() == Eigen::Success;
   }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_hand_side) const override {
+    return cholesky_.solve(right_hand_side);
+  }
 
  private:
-  int levels_ = -1;
+  // The factor of some 100,000 nodes has more entries than an int counts.
+  using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Eigen::Index>;
+
+  template <typename Work>
+  void whenItFits(const Work& work) {
+    try {
+      if (fits_) work();
+    } catch (const std::bad_alloc&) {
+      fits_ = false;
+    }
+  }
+
+  Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<Eigen::Index>> cholesky_;
+  bool fits_ = true;  // the memory
 };
+
+SparseFactorMaker made_by = &makeEigenFactor;
 
 }  // namespace
 
-struct SparseFactor::Library {
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> cholesky;
-};
+std::unique_ptr<SparseFactor> makeEigenFactor() { return std::make_unique<EigenFactor>(); }
 
-SparseFactor::SparseFactor() : library_(std::make_unique<Library>()) {
-  library_->cholesky.cholmod().print = 0;  // a matrix that is not positive definite is no news
-  // Its threads wait in a busy loop, for longer than our small fronts take, and split sums in a way
-  // that depends on their number.
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-}
+std::unique_ptr<SparseFactor> makeSparseFactor() { return made_by(); }
 
-SparseFactor::~SparseFactor() = default;
-
-void SparseFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
-  library_->cholesky.analyzePattern(matrix);
-}
-
-bool SparseFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
-  const OneThread one_thread;
-  library_->cholesky.factorize(matrix);
-  return library_->cholesky.info() == Eigen::Success;
-}
-
-Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_hand_side) const {
-  const OneThread one_thread;
-  return library_->cholesky.solve(right_hand_side);
+SparseFactorMaker setSparseFactorMaker(SparseFactorMaker maker) {
+  return std::exchange(made_by, maker);
 }
 
 }  // namespace robot_tissue

@@ -3,6 +3,7 @@
 #include <XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <filesystem>
 #include <iomanip>
 #include <locale>
 #include <sstream>
@@ -25,6 +26,7 @@ const std::vector<std::string> kOwnKeys = {"rate",
                                            "tf_timeout",
                                            "force_scale",
                                            "robot_description_param",
+                                           "scene_file",
                                            "diagnostic_period"};  // read by diagnostic_updater
 
 // The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
@@ -61,6 +63,15 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   }
 }
 
+// The node's own folder is not the user's: only an absolute path says where a scene is.
+std::string readSceneFolder(const Entry& entry) {
+  if (!entry.given()) return "";
+  const std::string allowed = "the absolute path of the scene's file";
+  const std::filesystem::path file = entry.word(allowed);
+  if (!file.is_absolute()) entry.fail("must be " + allowed);
+  return file.parent_path().string();
+}
+
 }  // namespace
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
@@ -75,6 +86,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   SceneSource source;
   source.name = name;
   source.user = SceneUser::kNode;
+  source.folder = readSceneFolder(own("scene_file"));
   source.other_keys = kOwnKeys;
 
   NodeParameters parameters;

@@ -44,7 +44,7 @@ void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
   if (source.user == SceneUser::kRunner) {
     scene.steps = readSteps(steps, scene.tissue, scene.solver, scene.tools);
   } else if (!steps.list(0, "steps").empty()) {
-    steps.fail("only the offline runner takes steps, must be [] or left out");
+    scene.remarks.push_back(steps.line("ignored, only the offline runner takes steps"));
   }
 }
 

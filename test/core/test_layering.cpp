@@ -105,6 +105,7 @@ TEST(Layering, IncludeLinesAreRead) {
 TEST(Layering, CoreStandsOnEigenAlone) {
   for (const char* folder : {"include/robot_tissue/core", "src/core"}) {
     expectOnly(folder, {"Eigen/", "robot_tissue/core/"});
+    expectNone(folder, {"CholmodSupport", "cholmod"});
   }
 }
 

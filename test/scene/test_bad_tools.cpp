@@ -9,10 +9,6 @@ class BadTools : public ::testing::TestWithParam<BadScene> {};
 TEST_P(BadTools, IsRefusedInOneLine) { expectRefusal(kNodeScene, SceneUser::kNode, GetParam()); }
 
 const std::vector<BadScene> kBadTools = {
-    {"NodeWithSteps",
-     "tools:",
-     "steps: [{settle: {}}]\ntools:",
-     {"steps = [{settle: {}}]", "only the offline runner"}},
     {"ToolKey",
      "    role: push",
      "    rolle: push",

@@ -155,6 +155,15 @@ TEST(GoodScene, WhatIsIgnoredIsSaid) {
   EXPECT_EQ(scene.solver.threads, 4);
 }
 
+TEST(GoodScene, TheNodeIgnoresStepsAndSaysSoInOneLine) {
+  const Scene scene = parseText(kNodeScene + "steps: [{settle: {}}]\n", SceneUser::kNode);
+  EXPECT_TRUE(scene.steps.empty());
+  ASSERT_EQ(scene.remarks.size(), 1U);
+  EXPECT_NE(scene.remarks[0].find("steps = [{settle: {}}]: ignored"), std::string::npos);
+  EXPECT_EQ(scene.remarks[0].find('\n'), std::string::npos);
+  EXPECT_TRUE(parseText(kNodeScene + "steps: []\n", SceneUser::kNode).remarks.empty());
+}
+
 TEST(GoodScene, OtherKeysAreLeftToTheirReader) {
   const std::string text = kNodeScene + "robot_description_param: /robot\n";
   EXPECT_NE(refusal(text, SceneUser::kNode), "");

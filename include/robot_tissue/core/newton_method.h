@@ -66,7 +66,7 @@ class NewtonMethod : public SolverMethod {
   Eigen::SparseMatrix<double> matrix_;  // second derivative in the unknowns, lower triangle
   double hold_ = 0.0;                   // on the matrix's diagonal (N/m)
   Eigen::VectorXd carried_;             // force that the held nodes' motion puts on the unknowns
-  SparseFactor factor_;
+  std::unique_ptr<SparseFactor> factor_ = makeSparseFactor();
   Balance balance_;
   double relative_ = 0.0;  // the unbalanced force over what holds the tissue
   std::chrono::steady_clock::time_point started_;

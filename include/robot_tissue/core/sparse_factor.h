@@ -9,18 +9,26 @@ namespace robot_tissue {
 
 class SparseFactor {
  public:
-  SparseFactor();
-  ~SparseFactor();
+  SparseFactor() = default;
+  SparseFactor(const SparseFactor&) = delete;
+  SparseFactor& operator=(const SparseFactor&) = delete;
+  virtual ~SparseFactor() = default;
 
   // For matrices of this pattern from now on; only the lower triangle is read.
-  void analyze(const Eigen::SparseMatrix<double>& matrix);
+  virtual void analyze(const Eigen::SparseMatrix<double>& matrix) = 0;
   // False when the matrix is not positive definite, or too large for the memory.
-  bool factorize(const Eigen::SparseMatrix<double>& matrix);
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_hand_side) const;
-
- private:
-  struct Library;
-  std::unique_ptr<Library> library_;
+  virtual bool factorize(const Eigen::SparseMatrix<double>& matrix) = 0;
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_hand_side) const = 0;
 };
+
+using SparseFactorMaker = std::unique_ptr<SparseFactor> (*)();
+
+std::unique_ptr<SparseFactor> makeEigenFactor();
+
+// By the maker that the program has set, else Eigen's.
+std::unique_ptr<SparseFactor> makeSparseFactor();
+
+// Before solvers are made. Returns the maker until now.
+SparseFactorMaker setSparseFactorMaker(SparseFactorMaker maker);
 
 }  // namespace robot_tissue

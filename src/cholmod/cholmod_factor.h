@@ -1,0 +1,13 @@
+// Sparse factorization by CHOLMOD, whose supernodal part is under the GPL: a library of its own, for
+// programs only.
+#pragma once
+
+#include <memory>
+
+#include "robot_tissue/core/sparse_factor.h"
+
+namespace robot_tissue {
+
+std::unique_ptr<SparseFactor> makeCholmodFactor();
+
+}  // namespace robot_tissue
