@@ -109,10 +109,12 @@ class InstallSpace(unittest.TestCase):
         self.assertIn("patch -", output_of(f"'{programs}/press'"))
         demo = start("roslaunch robot_tissue demo.launch headless:=true")
         try:
-            self.assertIn("reset 1", output_of(f"'{programs}/follow_demo'"))
-        finally:
-            demo.send_signal(signal.SIGINT)
-            log, _ = demo.communicate(timeout=LONGEST)
+            followed = output_of(f"'{programs}/follow_demo'")
+        except AssertionError as error:
+            followed = str(error)
+        demo.send_signal(signal.SIGINT)
+        log, _ = demo.communicate(timeout=LONGEST)
+        self.assertIn("reset 1", followed, log)
         self.assertEqual(demo.returncode, 0, log)
         self.assertNotIn(str(BUILD / "devel"), log)
 
