@@ -63,15 +63,18 @@ def run_all(modules, plot):
 def wanted_modules(words):
     """Only what is asked for is loaded: some studies need ROS, or packages that others do not."""
     wanted = STUDIES if "all" in words[:1] else [word for word in words[:1] if word in STUDIES]
+    return {name: importlib.import_module(f"studies.{name}") for name in wanted}
+
+
+def main():
     try:
-        return {name: importlib.import_module(f"studies.{name}") for name in wanted}
+        run(sys.argv[1:])
     except ModuleNotFoundError as missing:
         sys.exit(f"study: {missing.name} is missing; install what scripts/study_packages lists, "
                  "and for studies of the node source the build's devel/setup.bash")
 
 
-def main():
-    words = sys.argv[1:]
+def run(words):
     modules = wanted_modules(words)
     parser = parser_of(modules)
     options = parser.parse_args(words)
