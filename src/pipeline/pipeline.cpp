@@ -75,7 +75,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   }
   contacts_ = ToolContacts(friction, thickness);
   drives_.assign(tools.size(), {});
-  closed_.assign(tools.size(), false);
+  jaws_.assign(tools.size(), {});
   unfinished_ = false;
   pose_ = complete({});
   report_ = StepReport();
@@ -125,9 +125,11 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   goBackTo(goal);
   last_pose_ = walk(goal);
   if (report_.lost) leaveStuck(goal);
+  if (report_.lost) leaveReleased(goal);
   unhook(goal);
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
   if (report_.too_fast || report_.lost) report_.behind = toolsBehind();
+  for (Jaws& jaws : jaws_) jaws.let_go = jaws.let_go && (report_.too_fast || report_.lost);
   describeTools();
 }
 
@@ -323,7 +325,8 @@ CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
 void Pipeline::reset() {
   patches_.clear();
   contacts_.clear();
-  closed_.assign(tools_.size(), false);
+  for (Jaws& jaws : jaws_) jaws.let_go = false;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) forgetJaws(tool);
   drives_.assign(tools_.size(), {});
   tissue_.reset();
   checkpoints_.clear();

@@ -48,6 +48,14 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
   if (!jaws_meet.empty()) {
     remarks.push_back({Kind::kJawsMeet, "the jaws of " + names(jaws_meet) + " touch or overlap"});
   }
+  std::string empty_jaws;
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    const std::string& why = report.tools[tool].holds_nothing;
+    if (why.empty()) continue;
+    empty_jaws += (empty_jaws.empty() ? "" : "; ") + names(std::vector<std::size_t>{tool}) +
+                  " holds nothing: " + why;
+  }
+  if (!empty_jaws.empty()) remarks.push_back({Kind::kHoldsNothing, empty_jaws});
   return remarks;
 }
 

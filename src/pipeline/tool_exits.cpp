@@ -1,4 +1,4 @@
-// Pipeline: how a tool that appeared inside the tissue gets out of it.
+// Pipeline: how a tool gets out of the tissue that it appeared inside, or is stuck in.
 #include <algorithm>
 #include <cmath>
 
@@ -134,6 +134,46 @@ void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
     was_inside = drawOut(Links{first, end}, pose);
   }
   if (was_inside) addOnce(tool, report_.were_inside);
+}
+
+// A tool that drags tissue out with it that stands through it, as where it went beneath fixed
+// nodes, lets go.
+void Pipeline::unhook(const RobotPose& pose) {
+  std::vector<std::size_t> hooked;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (!isHooked(tool)) continue;
+    hooked.push_back(tool);
+    addOnce(tool, report_.were_inside);
+  }
+  if (!hooked.empty()) comeAnew(hooked, pose);
+}
+
+// Tissue that hangs on what a grasper holds goes through its jaws: where no shape follows it out of
+// them when they are told to let go, it comes back without them.
+void Pipeline::leaveReleased(const RobotPose& pose) {
+  std::vector<std::size_t> released;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (jaws_[tool].let_go) released.push_back(tool);
+  }
+  if (released.empty()) return;
+  report_.lost = false;
+  comeAnew(released, pose);
+}
+
+// The tissue comes back without these tools, and what they still meet they meet from outside.
+void Pipeline::comeAnew(const std::vector<std::size_t>& tools, const RobotPose& pose) {
+  RobotPose without = *last_pose_;
+  for (const std::size_t tool : tools) {
+    without = withTool(tool, complete({}), without);
+    letGoOf(tool);
+  }
+  last_pose_ = without;
+  if (advance(without)) {
+    comeAndGo(pose);
+  } else {
+    startAnew(pose);
+  }
+  last_pose_ = walk(pose);
 }
 
 }  // namespace robot_tissue

@@ -1,5 +1,7 @@
 // Pipeline: what the tools met.
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <set>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -7,6 +9,8 @@
 
 namespace robot_tissue {
 namespace {
+
+constexpr double kCancelled = 1e-6;  // of the pushes: a sum of them that has no direction
 
 bool boxesMeet(const Box& a, const Box& b) {
   return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
@@ -24,10 +28,12 @@ ToolReport Pipeline::describe(std::size_t tool) const {
   ToolReport report;
   const int index = static_cast<int>(tool);
   const Pose& tissue_T_tool = pose_.links[first_link_[tool]];
-  report.grasps = tools_[tool].role == ToolConfig::Role::kGrasper && patches_.holds(index);
+  report.grasps = grasps(tool);
   report.offset = drives_[tool].force ? Vec3(drives_[tool].way * drives_[tool].force->normalized())
                                       : Vec3(Vec3::Zero());
   report.jaws_overlap = jawsOverlap(tool);
+  if (last_pose_ && hasJaws(tool, pose_)) report.jaw_gap = gapAtTissue(tool, pose_);
+  report.holds_nothing = whyItHoldsNothing(tool);
   report.max_penetration = deepestPointOf(tool);
   std::set<int> nodes;
   for (const int node : patches_.nodes(index)) {
@@ -35,20 +41,18 @@ ToolReport Pipeline::describe(std::size_t tool) const {
     nodes.insert(node);
     ++report.contacts;
   }
-  Vec3 way = patches_.pushed(index, pose_);
   const std::vector<Vec3>& displacement = tissue_.state().displacement;
   for (const ToolContacts::Touch& touch : contacts_.touches()) {
     const double force = touch.spring.multiplier;
     if (touch.tool != index || force <= 0.0) continue;
     ++report.contacts;
     report.point += pointOf(touch.spring, displacement);
-    way += force * touch.spring.normal;
     for (const NodeWeight& carrier : touch.spring.carriers) nodes.insert(carrier.node);
   }
   if (report.contacts == 0) return report;
   report.nodes.assign(nodes.begin(), nodes.end());
   report.point /= report.contacts;
-  if (way.norm() > 1e-12) report.normal = way.normalized();
+  report.normal = normalOf(tool);
   const PatchAnswer answer = answerOf(tool);
   const Vec3 force = -answer.force;
   const Vec3 torque = -answer.torque - tissue_T_tool.translation().cross(force);
@@ -61,6 +65,38 @@ ToolReport Pipeline::describe(std::size_t tool) const {
     report.force_on_tool *= most / force.norm();
   }
   return report;
+}
+
+Vec3 Pipeline::normalOf(std::size_t tool) const {
+  std::map<int, std::vector<Vec3>> pushes;  // by link; as long as they are hard
+  for (const auto& [node, seat] : patches_.seats()[tool]) {
+    const Pose& tissue_T_link = pose_.links[at(seat.link)];
+    Vec3 push = tissue_T_link.linear() * seat.pushed;
+    if (push.isZero(0.0)) {
+      const auto out = finder_.wayOut(at(seat.link), tissue_T_link, tissue_.nodePosition(node),
+                                      std::numeric_limits<double>::infinity());
+      if (out) push = out->normal;
+    }
+    pushes[seat.link].push_back(push);
+  }
+  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+    const double force = touch.spring.multiplier;
+    if (at(touch.tool) == tool && force > 0.0) {
+      pushes[touch.link].push_back(force * touch.spring.normal);
+    }
+  }
+  const bool first_only = tools_[tool].role == ToolConfig::Role::kGrasper;
+  Vec3 sum = Vec3::Zero(), hardest = Vec3::Zero();
+  double all = 0.0;
+  for (const auto& [link, of_link] : pushes) {
+    for (const Vec3& push : of_link) {
+      sum += push;
+      all += push.norm();
+      if (push.norm() > hardest.norm()) hardest = push;
+    }
+    if (first_only && all > 0.0) break;
+  }
+  return (sum.norm() > kCancelled * all ? sum : hardest).normalized();
 }
 
 // Also of a tool that touches nothing that gives way (m).
@@ -76,8 +112,8 @@ double Pipeline::deepestPointOf(std::size_t tool) const {
 }
 
 bool Pipeline::jawsOverlap(std::size_t tool) const {
-  if (!last_pose_) return false;
-  const auto gap = jawGap(tool, report_.lost ? asked_ : pose_);
+  if (!last_pose_ || !jaws_[tool].were_apart) return false;
+  const auto gap = leastGap(tool, report_.lost ? asked_ : pose_);
   return gap && *gap <= 0.0;
 }
 

@@ -67,15 +67,23 @@ RobotPose Pipeline::complete(const RobotPose& pose) const {
 }
 
 // Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
-// or in time.
+// or in time. Tools that pass the tissue by take none.
 RobotPose Pipeline::walk(const RobotPose& pose) {
-  const RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
+  RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
   asked_ = pose;
-  const double steps = stepsBetween(start, pose);
-  if (passesBy(start, pose, steps)) {
+  bool all_pass = !any_rigid_;
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (passesBy(tool, start, pose)) {
+      start = withTool(tool, pose, start);
+    } else {
+      all_pass = false;
+    }
+  }
+  if (all_pass) {
     passTo(pose);
     return pose;
   }
+  const double steps = stepsBetween(start, pose);
   double gone = 0.0, longest = 1.0;
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
@@ -110,7 +118,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
 }
 
 Pipeline::Checkpoint Pipeline::toolsCheckpoint() const {
-  return {pose_, {}, patches_.seats(), contacts_, closed_, depths_};
+  return {pose_, {}, patches_.seats(), contacts_, jaws_, depths_};
 }
 
 Pipeline::Checkpoint Pipeline::checkpoint() const {
@@ -124,7 +132,7 @@ void Pipeline::goBackTo(const Checkpoint& good) {
   tissue_.restore(good.shape);
   patches_.restore(good.seats, tissue_);
   contacts_ = good.contacts;
-  closed_ = good.closed;
+  jaws_ = good.jaws;
   depths_ = good.depths;
 }
 
@@ -152,9 +160,10 @@ void Pipeline::goBackTo(const RobotPose& pose) {
                        checkpoints_.end());
     goBackTo(checkpoints_.back());
   }
-  if (shortest > kMostLoadSteps) {
+  const auto far = farFrom(any_rigid_ ? checkpoints_.back().pose : *last_pose_, pose);
+  if (!far.empty()) {
     report_.too_fast = true;
-    report_.jumped = farFromLast(pose);
+    report_.jumped = far;
     startAnew(pose);
   }
 }
@@ -163,7 +172,7 @@ void Pipeline::goBackTo(const RobotPose& pose) {
 void Pipeline::startAnew(const RobotPose& pose) {
   patches_.clear();
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) contacts_.clear(static_cast<int>(tool));
-  closed_.assign(tools_.size(), false);
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) forgetJaws(tool);
   pose_ = complete({});
   lieDown();
   checkpoints_.clear();
@@ -222,28 +231,6 @@ void Pipeline::leaveStuck(const RobotPose& pose) {
   }
 }
 
-// A tool that drags tissue out with it that stands through it, as where it went beneath fixed
-// nodes, lets go: the tissue comes back without it, and what it still meets it meets from outside.
-void Pipeline::unhook(const RobotPose& pose) {
-  RobotPose without = *last_pose_;
-  bool any = false;
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    if (!isHooked(tool)) continue;
-    any = true;
-    without = withTool(tool, complete({}), without);
-    letGoOf(tool);
-    addOnce(tool, report_.were_inside);
-  }
-  if (!any) return;
-  last_pose_ = without;
-  if (advance(without)) {
-    comeAndGo(pose);
-  } else {
-    startAnew(pose);
-  }
-  last_pose_ = walk(pose);
-}
-
 // Away from where the tissue is at rest, and through its surface.
 bool Pipeline::isHooked(std::size_t tool) const {
   if (!contacts_.pushes(static_cast<int>(tool), tissue_)) return false;
@@ -263,7 +250,7 @@ bool Pipeline::isHooked(std::size_t tool) const {
 void Pipeline::letGoOf(std::size_t tool) {
   patches_.letGo(static_cast<int>(tool));
   contacts_.clear(static_cast<int>(tool));
-  closed_[tool] = false;
+  forgetJaws(tool);
 }
 
 // The pose `others` with one tool where it is in `pose`.
@@ -322,14 +309,17 @@ double Pipeline::stepsTo(const RobotPose& pose) const {
 }
 
 std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
-  return last_pose_ ? farFromLast(driven(pose)) : std::vector<std::size_t>();
+  return last_pose_ ? farFrom(*last_pose_, driven(pose)) : std::vector<std::size_t>();
 }
 
-std::vector<std::size_t> Pipeline::farFromLast(const RobotPose& goal) const {
+// Tools that jump, but for those that pass the tissue by.
+std::vector<std::size_t> Pipeline::farFrom(const RobotPose& from, const RobotPose& goal) const {
   std::vector<std::size_t> far;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    const RobotPose alone = withTool(tool, goal, *last_pose_);
-    if (stepsBetween(*last_pose_, alone) > kMostLoadSteps) far.push_back(tool);
+    const RobotPose alone = withTool(tool, goal, from);
+    if (stepsBetween(from, alone) > kMostLoadSteps && !passesBy(tool, from, goal)) {
+      far.push_back(tool);
+    }
   }
   return far;
 }
@@ -353,27 +343,32 @@ double Pipeline::freeSteps(const RobotPose& pose) const {
   return steps;
 }
 
-// No tool touches or holds anything, and none comes near, nor has tissue between its links, on its
-// way of so many steps.
-bool Pipeline::passesBy(const RobotPose& from, const RobotPose& to, double steps) const {
+bool Pipeline::touchesTissue(std::size_t tool) const {
+  const auto is_of_tool = [&](const auto& touch) { return at(touch.tool) == tool; };
   const auto& touches = contacts_.touches();
-  const auto is_tools = [&](const auto& touch) { return at(touch.tool) < tools_.size(); };
-  if (any_rigid_ || !patches_.empty() || anyToolIn(tissue_.patches()) ||
-      std::any_of(touches.begin(), touches.end(), is_tools) || freeSteps(from) < steps) {
-    return false;
-  }
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    Box around;
-    around.min.setConstant(std::numeric_limits<double>::infinity());
-    around.max = -around.min;
-    for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-      const Box box = finder_.bounds(link, to.links[link]);
-      around.min = around.min.cwiseMin(box.min);
-      around.max = around.max.cwiseMax(box.max);
+  const auto& patches = tissue_.patches();
+  return patches_.holds(static_cast<int>(tool)) ||
+         std::any_of(touches.begin(), touches.end(), is_of_tool) ||
+         std::any_of(patches.begin() + static_cast<std::ptrdiff_t>(tissue_.namedPatches()),
+                     patches.end(), [&](const auto& patch) { return patch.name == names_[tool]; });
+}
+
+// It touches and holds nothing, and on its way it neither comes near tissue nor has any between its
+// links. No point of a link is farther from both ends of its way than half of that.
+bool Pipeline::passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const {
+  if (touchesTissue(tool)) return false;
+  Box around;
+  around.min.setConstant(std::numeric_limits<double>::infinity());
+  around.max = -around.min;
+  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
+    const double way = longestWay(from.links[link], to.links[link], finder_.reach(link));
+    for (const RobotPose* pose : {&from, &to}) {
+      const Box box = finder_.bounds(link, pose->links[link]);
+      around.min = around.min.cwiseMin((box.min.array() - 0.5 * way).matrix());
+      around.max = around.max.cwiseMax((box.max.array() + 0.5 * way).matrix());
     }
-    if (distance(around, tissue_.bounds()) < tissue_.lattice().spacing()) return false;
   }
-  return true;
+  return distance(around, tissue_.bounds()) >= tissue_.lattice().spacing();
 }
 
 void Pipeline::passTo(const RobotPose& pose) {

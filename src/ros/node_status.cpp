@@ -9,7 +9,8 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-// Of TissueState.msg. Jaws that meet are no fault by themselves: so do those that close on nothing.
+// Of TissueState.msg. Jaws that meet, or hold nothing, are no fault by themselves: so do those that
+// close on nothing.
 std::string wordOf(StepRemark::Kind kind) {
   switch (kind) {
     case StepRemark::Kind::kInside:
@@ -21,6 +22,7 @@ std::string wordOf(StepRemark::Kind kind) {
     case StepRemark::Kind::kLost:
       return "UNCONVERGED";
     case StepRemark::Kind::kJawsMeet:
+    case StepRemark::Kind::kHoldsNothing:
       break;
   }
   return "OK";
@@ -39,7 +41,7 @@ NodeStatus TissueNode::statusOf(const StepReport& report) {
   NodeStatus status;
   for (const StepRemark& remark : remarksOn(pipeline_)) {
     say(wordOf(remark.kind), remark.text, status);
-    tools_said_[remark.kind] = remark.text;
+    if (remark.kind != StepRemark::Kind::kHoldsNothing) tools_said_[remark.kind] = remark.text;
   }
   const SolveReport& solve = pipeline_.tissue().lastReport();
   if (report.late) {
@@ -82,6 +84,8 @@ void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& stat
     }
     status.add(name + ": points that touch", met.contacts);
     status.add(name + ": deepest in the surface (m)", met.max_penetration);
+    if (met.jaw_gap) status.add(name + ": between its jaws where tissue is (m)", *met.jaw_gap);
+    if (!met.holds_nothing.empty()) status.add(name + ": holds nothing", met.holds_nothing);
   }
 }
 

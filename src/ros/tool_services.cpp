@@ -49,13 +49,15 @@ bool TissueNode::onGrasp(Tool::Request& request, Tool::Response& response) {
     if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
     const ToolReport& report = pipeline_.report().tools[tool];
     response.success = report.grasps;
-    response.message = report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
-                                     : "tool " + inQuotes(request.tool) +
-                                           ": did not hold; allowed: jaws not farther apart than "
-                                           "grasp.open_gap, a pull below grasp.max_force";
+    response.message =
+        report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
+                      : "tool " + inQuotes(request.tool) + ": holds nothing: " +
+                            (report.holds_nothing.empty() ? "its jaws opened since"
+                                                          : report.holds_nothing);
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
+    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();  // tells why
   }
   return true;
 }

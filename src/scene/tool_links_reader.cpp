@@ -132,8 +132,11 @@ ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, 
   const std::vector<NamedLink> named = grasper ? readGrasperLinks(tool, scene_folder, remarks)
                                                : readPushLinks(tool, scene_folder, user, remarks);
   checkNames(named, user, grasper);
-  ToolLinks links{{}, named.front().name};
-  for (const NamedLink& link : named) links.links.push_back(link.link);
+  ToolLinks links;
+  for (const NamedLink& link : named) {
+    links.links.push_back(link.link);
+    links.names.push_back(link.name);
+  }
   return links;
 }
 

@@ -20,7 +20,7 @@ std::string readToolName(const Entry& entry, const ToolLinks& links) {
   const std::string& link = links.links.front().link;
   if (entry.given() || link.empty()) return readGraphName(entry);
   if (!isGraphName(link)) {
-    links.first_name.fail("needs a name beside it, as the tool's name must be " + kNameRule);
+    links.names.front().fail("needs a name beside it, as the tool's name must be " + kNameRule);
   }
   return link;
 }
@@ -73,8 +73,35 @@ GraspConfig readGrasp(const Entry& entry, double spacing, SceneUser user, Remark
   return grasp;
 }
 
+// A link of two tools: where both touch, each feels but a part of the force. With the same surface
+// they touch everywhere.
+void checkLinksAreOnce(const ToolLinks& links, const ToolConfig& tool,
+                       const std::vector<ToolConfig>& earlier, Remarks& remarks) {
+  const auto touches = [](const ToolConfig& of, std::size_t link) {
+    const bool is_frame = of.role == ToolConfig::Role::kGrasper && link + 2 < of.links.size();
+    return !of.links[link].link.empty() && (!is_frame || !of.links[link].shapes.empty());
+  };
+  const auto check = [&](std::size_t i, const ToolConfig& other, std::size_t j) {
+    const ToolLink &here = tool.links[i], &there = other.links[j];
+    if (here.link != there.link || !touches(tool, i) || !touches(other, j)) return;
+    const std::string of_other = "is a link of tool '" + other.name + "' already, ";
+    if (here.shapes.empty() && there.shapes.empty()) {
+      links.names[i].fail(of_other +
+                          "each would feel but a part of the force, must be of one tool only");
+    }
+    remarks.push_back(links.names[i].line(
+        of_other + "where the shapes of both touch, each feels but a part of the force"));
+  };
+  for (std::size_t i = 0; i < tool.links.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) check(i, tool, j);
+    for (const ToolConfig& other : earlier) {
+      for (std::size_t j = 0; j < other.links.size(); ++j) check(i, other, j);
+    }
+  }
+}
+
 ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueConfig& tissue,
-                    Remarks& remarks) {
+                    const std::vector<ToolConfig>& earlier, Remarks& remarks) {
   const MapReader map(
       entry, {"name", "link", "links", "jaws", "role", "padding", "collision_padding", "friction",
               "patch", "max_force", "grasp", "shapes"});
@@ -83,6 +110,11 @@ ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueC
   const ToolLinks links = readToolLinks(map, source.folder, source.user, tool.role, remarks);
   tool.links = links.links;
   tool.name = readToolName(map["name"], links);
+  for (const ToolConfig& other : earlier) {
+    if (other.name != tool.name) continue;
+    entry.fail("the name " + tool.name + " is an earlier tool's, must be unique");
+  }
+  checkLinksAreOnce(links, tool, earlier, remarks);
   readContact(map, tissue.model, tool, remarks);
   if (tool.role == ToolConfig::Role::kGrasper) {
     tool.grasp = readGrasp(map["grasp"], tissue.spacing, source.user, remarks);
@@ -104,12 +136,7 @@ std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
                                   const TissueConfig& tissue, Remarks& remarks) {
   std::vector<ToolConfig> tools;
   for (const Entry& tool_entry : entry.list(0, "tools")) {
-    const ToolConfig tool = readTool(tool_entry, source, tissue, remarks);
-    for (const ToolConfig& other : tools) {
-      if (other.name != tool.name) continue;
-      tool_entry.fail("the name " + tool.name + " is an earlier tool's, must be unique");
-    }
-    tools.push_back(tool);
+    tools.push_back(readTool(tool_entry, source, tissue, tools, remarks));
   }
   return tools;
 }

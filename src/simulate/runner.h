@@ -43,6 +43,7 @@ class Runner {
   void follow();
   void followPushes();
   void update();
+  void remarkHolds();
   void judgePush(std::size_t tool);
 
   const Scene& scene_;

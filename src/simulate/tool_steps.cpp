@@ -37,6 +37,7 @@ void Runner::perform(const MoveStep& step) {
     }
     keep(SolveReport(), increment, increments);
   }
+  remarkHolds();
 }
 
 int Runner::incrementsOf(const MoveStep& step, double load_steps) const {
@@ -77,6 +78,7 @@ void Runner::perform(const GraspStep& step) {
   pipeline_.grasp(tools_.indexOf(step.tool));
   follow();
   keep(SolveReport());
+  remarkHolds();
 }
 
 // The tool stays where its force has driven it.
@@ -111,7 +113,17 @@ void Runner::update() {
   updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
   if (report.too_fast) updates_.worst = std::max(updates_.worst, SolveStatus::kLate);
   if (report.lost) updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
-  for (const StepRemark& of_step : remarksOn(pipeline_)) remark(of_step.text);
+  for (const StepRemark& of_step : remarksOn(pipeline_)) {
+    const bool is_how_it_ends = of_step.kind == StepRemark::Kind::kHoldsNothing;
+    if (!is_how_it_ends) remark(of_step.text);
+  }
+}
+
+// After a step; on its way jaws may close and hold by and by.
+void Runner::remarkHolds() {
+  for (const StepRemark& at_end : remarksOn(pipeline_)) {
+    if (at_end.kind == StepRemark::Kind::kHoldsNothing) remark(at_end.text);
+  }
 }
 
 void Runner::judgePush(std::size_t tool) {

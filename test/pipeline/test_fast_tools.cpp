@@ -1,6 +1,8 @@
 // Fast and thin tools, and two at once: none passes through what it should meet.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue {
@@ -199,6 +201,26 @@ TEST(TwoTools, RigidAndConformingOnesPressSideBySide) {
   EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.02 * tools[1].force_on_tool.norm());
   walk(pipeline, both(0.003), both(-0.002));
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+// A tool far from the tissue that moves a lot takes no load steps, and is not what is too fast.
+TEST(FarTool, IsNeverBehindNorMakesOthersSo) {
+  Pipeline pipeline(block(), {}, {probe("near"), probe("far")});
+  const auto pose = [](double depth, double away) {
+    return at({pressed(depth).links.front().translation(), Vec3(away, 1.0, 1.0)});
+  };
+  for (double depth = -0.001; depth < 0.003; depth += 0.0005) pipeline.step(pose(depth, 0.0));
+  const double force = pipeline.report().tools.front().force_on_tool.z();
+  ASSERT_GT(force, 0.05);
+  pipeline.setBudget(1e-9);
+  EXPECT_FALSE(pipeline.step(pose(0.003, 0.3)).too_fast);
+  EXPECT_TRUE(pipeline.step(pose(0.008, 0.0)).too_fast);
+  EXPECT_EQ(pipeline.report().behind, std::vector<std::size_t>{0});
+  pipeline.setBudget(std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(pipeline.step(pose(0.008, 0.0)).too_fast);
+  EXPECT_FALSE(pipeline.step(pose(0.008, 0.6)).too_fast);  // 600 load steps
+  EXPECT_TRUE(pipeline.report().jumped.empty());
+  EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), force);
 }
 
 }  // namespace

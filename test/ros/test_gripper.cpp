@@ -1,4 +1,6 @@
 // A grasper whose jaws are links of the robot, and supports.
+#include <cmath>
+
 #include "forceps_fixture.h"
 
 namespace robot_tissue {
@@ -16,6 +18,9 @@ class Gripper : public Forceps {
   bool holds() {
     return waitFor([this] { return state_->grasping == std::vector<std::string>{"forceps"}; });
   }
+  bool says(const std::string& words) const {
+    return state_->message.find(words) != std::string::npos;
+  }
 };
 
 TEST_F(Gripper, HoldsWhatIsBetweenItsJawsUntilTheyOpen) {
@@ -27,6 +32,11 @@ TEST_F(Gripper, HoldsWhatIsBetweenItsJawsUntilTheyOpen) {
   EXPECT_GT(pull, -3.0);  // E A d / h beneath the jaws is 0.2 N
   EXPECT_EQ(wrench_->header.frame_id, "left_jaw");
   ASSERT_TRUE(waitForMarkers([this] { return !markers_["loading_patches"].points.empty(); }));
+  EXPECT_TRUE(waitForMarkers([this] { return markers_["contact_normals"].points.size() == 2; }));
+  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  const auto& normal = contacts_->contacts.front().normal;  // of the left jaw
+  EXPECT_NEAR(std::hypot(normal.x, normal.y, normal.z), 1.0, 1e-9);
+  EXPECT_GT(normal.y, 0.8);
   moveTo(0.002, kOpen);
   EXPECT_TRUE(waitFor([this] { return state_->grasping.empty(); }));
   EXPECT_EQ(wrench_->wrench.force.z, 0.0);
@@ -36,9 +46,14 @@ TEST_F(Gripper, GraspsAndReleasesByService) {
   const auto nothing = ask("grasp", "forceps");
   EXPECT_FALSE(nothing.success);
   EXPECT_NE(nothing.message.find("'forceps'"), std::string::npos) << nothing.message;
+  EXPECT_NE(nothing.message.find("no tissue is between its jaws"), std::string::npos)
+      << nothing.message;
+  EXPECT_TRUE(waitFor([this] { return says("'forceps' holds nothing: no tissue"); }));
   moveTo(0.0, kOpen);
   moveTo(0.0, 0.0098);  // farther than close_gap
   EXPECT_TRUE(state_->grasping.empty());
+  EXPECT_TRUE(waitFor([this] { return says("not closer than grasp.close_gap"); }));
+  EXPECT_EQ(state_->status, "OK");
   const auto grasped = ask("grasp", "forceps");
   ASSERT_TRUE(grasped.success) << grasped.message;
   ASSERT_TRUE(holds());

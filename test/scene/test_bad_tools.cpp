@@ -176,6 +176,14 @@ const std::vector<BadScene> kBadGraspers = {
      kPushTool,
      "{link: b, role: grasper, jaws: [left, left]}",
      {"tools[1].jaws[1] = left", "twice"}},
+    {"LinkOfTwoTools",
+     kPushTool,
+     kPushTool + "\n  - {name: second, link: other_tip}",
+     {"tools[2].link = other_tip", "a link of tool 'other_tip' already", "of one tool only"}},
+    {"JawOfTwoTools",
+     kPushTool,
+     kPushTool + "\n  - {name: second, role: grasper, jaws: [left, other_tip]}",
+     {"tools[2].jaws[1] = other_tip", "a link of tool 'other_tip' already", "of one tool only"}},
     {"JawWithoutLink",
      kPushTool,
      "{link: b, role: grasper, jaws: [left, {shapes: [{type: sphere, radius: 1}]}]}",
@@ -233,6 +241,10 @@ TEST_P(BadRunnerTools, IsRefusedInOneLine) {
 }
 
 const std::vector<BadScene> kBadRunnerTools = {
+    {"LinkOfTwoTools",
+     "jaws: [left_jaw,",
+     "jaws: [wrist,",
+     {"tools[4].jaws[0] = wrist", "a link of tool 'wrist' already", "of one tool only"}},
     {"ToolOfNothing",
      "  - links: [wrist",
      "  - {name: b}\n  - links: [wrist",

@@ -241,5 +241,20 @@ TEST(GoodTools, AToolStillStandsAfterItsRelease) {
   EXPECT_EQ(refusal(text, SceneUser::kRunner), "");
 }
 
+// Shapes of their own may lie apart: told, not refused. A grasper's frame touches nothing.
+TEST(GoodTools, ALinkOfTwoToolsWithShapesIsRemarkedOn) {
+  const std::string second = "  - {link: other_tip}\n  - {name: second, link: tool_tip}\n";
+  const Scene scene =
+      parseText(replaced(kNodeScene, "  - {link: other_tip}\n", second), SceneUser::kNode);
+  ASSERT_EQ(scene.remarks.size(), 1U);
+  EXPECT_NE(scene.remarks[0].find("tools[2].link = tool_tip: is a link of tool 'probe' already"),
+            std::string::npos)
+      << scene.remarks[0];
+  const std::string frame =
+      "  - {link: other_tip}\n  - {name: g, link: other_tip, role: grasper, jaws: [left, right]}\n";
+  EXPECT_TRUE(parseText(replaced(kNodeScene, "  - {link: other_tip}\n", frame), SceneUser::kNode)
+                  .remarks.empty());
+}
+
 }  // namespace
 }  // namespace robot_tissue

@@ -12,6 +12,7 @@
 // came, it finds the shapes that it left.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -36,10 +37,17 @@ struct ToolReport {
   std::vector<int> nodes;              // of its patch: held, or under a touch that pushes
   int contacts = 0;                    // touches that push, and held nodes
   Vec3 point = Vec3::Zero();           // centroid of those, tissue frame (m)
-  Vec3 normal = Vec3::Zero();          // from the tool into the tissue, mean, tissue frame
+  // Unit where `contacts` > 0, from the tool into the tissue, tissue frame: the mean by force over
+  // the touches or, where these cancel out, that of the hardest. Jaws press from two sides: of a
+  // grasper, of the first jaw that touches or holds.
+  Vec3 normal = Vec3::Zero();
   double max_penetration = 0.0;        // deepest point of the tool inside the surface (m)
   bool grasps = false;
-  bool jaws_overlap = false;   // a grasper's jaws touch each other or are inside one another
+  // A grasper's jaws touch each other or are inside one another, and were not always: those that
+  // are never apart have a hinge in common.
+  bool jaws_overlap = false;
+  std::optional<double> jaw_gap;  // of a grasper, where tissue is between its jaws or held (m)
+  std::string holds_nothing;      // of a grasper with closed jaws, or told to grasp: why; else empty
   Vec3 offset = Vec3::Zero();  // of a tool that a force drives, from its pose, tissue frame (m)
 };
 
@@ -49,7 +57,9 @@ struct StepReport {
   bool too_fast = false;            // the tools moved further than could be followed in time
   bool lost = false;                // no shape could follow the tools: the last good one stays
   bool late = false;                // it ran out of its time before the shape was in balance
-  std::vector<std::size_t> behind;  // where too_fast or lost: tools not yet at their pose
+  // Where too_fast or lost: tools not yet at their pose. Those that are nowhere near the tissue on
+  // their way always are.
+  std::vector<std::size_t> behind;
   std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
   std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
   std::vector<std::size_t> torn_off;     // graspers that lost what they held
@@ -130,6 +140,26 @@ class Pipeline {
  private:
   static constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that counts
 
+  // How a grasper's jaws stand to the tissue.
+  struct Jaws {
+    // kUnseen: no tissue is between them, which alone tells open from closed.
+    enum class State { kUnseen, kOpen, kClosed };
+    // What keeps closed jaws from holding.
+    enum class Loss { kClosedBefore, kReleased, kTorn };
+    State state = State::kOpen;
+    Loss loss = Loss::kClosedBefore;
+    std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where they hold, in each's frame (m)
+    bool asked = false;                                       // to grasp, in vain
+    bool let_go = false;  // told so since the last step, in which they hold nothing anew
+    bool were_apart = false;
+  };
+  // Two jaws seen from a point.
+  struct Pinch {
+    double gap = 0.0;  // m
+    Vec3 middle = Vec3::Zero();
+    bool is_between = false;  // the point is between them
+  };
+
   // Where a whole load step ended. Only rigid patches come back to its shape later: without them it
   // has none but on the way through a step.
   struct Checkpoint {
@@ -137,7 +167,7 @@ class Pipeline {
     Tissue::Shape shape;
     ToolPatches::Seats seats;
     ToolContacts contacts;
-    std::vector<bool> closed;
+    std::vector<Jaws> jaws;
     std::vector<double> depths;
   };
   // Of a link: in the box a vertex goes so far at once (m) and no farther.
@@ -201,7 +231,6 @@ class Pipeline {
   void checkIn(const RobotPose& pose);
   void goBackTo(const RobotPose& pose);
   void leaveStuck(const RobotPose& pose);
-  void unhook(const RobotPose& pose);
   bool isHooked(std::size_t tool) const;
   void letGoOf(std::size_t tool);
   RobotPose withTool(std::size_t tool, const RobotPose& pose, RobotPose others) const;
@@ -211,10 +240,11 @@ class Pipeline {
   bool standsStill(const RobotPose& pose) const;
   bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
   std::vector<std::size_t> toolsBehind() const;
-  std::vector<std::size_t> farFromLast(const RobotPose& goal) const;
+  std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& pose) const;
-  bool passesBy(const RobotPose& from, const RobotPose& to, double steps) const;
+  bool touchesTissue(std::size_t tool) const;
+  bool passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const;
   void passTo(const RobotPose& pose);
   double stepOf(std::size_t link) const;
 
@@ -229,20 +259,36 @@ class Pipeline {
                               int most) const;
   bool drawOut(const Links& links, RobotPose& pose) const;
   void drawOut(std::size_t tool, RobotPose& pose);
+  void unhook(const RobotPose& pose);
+  void leaveReleased(const RobotPose& pose);
+  void comeAnew(const std::vector<std::size_t>& tools, const RobotPose& pose);
 
   // tool_actions.cpp
-  std::optional<double> jawGap(std::size_t tool, const RobotPose& pose) const;
-  void openJaws();
-  void closeJaws();
-  void tearOff();
-  std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw) const;
   RobotPose driven(const RobotPose& pose) const;
   bool drive(const RobotPose& pose);
+
+  // jaws.cpp
+  std::size_t firstJaw(std::size_t tool) const { return first_link_[tool + 1] - 2; }
+  bool hasJaws(std::size_t tool, const RobotPose& pose) const;
+  std::optional<double> leastGap(std::size_t tool, const RobotPose& pose) const;
+  std::optional<Pinch> pinchAt(std::size_t tool, const RobotPose& pose, const Vec3& point) const;
+  std::optional<Pinch> narrowestPinch(std::size_t tool, const RobotPose& pose) const;
+  std::optional<double> gapAtTissue(std::size_t tool, const RobotPose& pose) const;
+  bool grasps(std::size_t tool) const;
+  void openJaws();
+  void closeJaws();
+  void watchJaws(std::size_t tool);
+  void forgetJaws(std::size_t tool);
   std::size_t hold(std::size_t tool);
+  std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
+  void tearOff();
+  std::string whyItHoldsNothing(std::size_t tool) const;
+  bool pushesWith(std::size_t link) const;
 
   // tool_reports.cpp
   void describeTools();
   ToolReport describe(std::size_t tool) const;
+  Vec3 normalOf(std::size_t tool) const;
   double deepestPointOf(std::size_t tool) const;
   bool jawsOverlap(std::size_t tool) const;
   PatchAnswer answerOf(std::size_t tool) const;
@@ -256,7 +302,7 @@ class Pipeline {
   ToolPatches patches_;
   ToolContacts contacts_;
   std::vector<Drive> drives_;
-  std::vector<bool> closed_;  // per tool: its jaws were when last seen
+  std::vector<Jaws> jaws_;  // per tool
   bool any_rigid_ = false;
   unsigned surface_version_ = 0;
   RobotPose pose_;   // of the load step under way, or the last that a shape followed

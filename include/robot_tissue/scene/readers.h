@@ -60,7 +60,7 @@ std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
 // Links in the order of ToolConfig::links.
 struct ToolLinks {
   std::vector<ToolLink> links;
-  Entry first_name;  // where the first link's name stands, or would
+  std::vector<Entry> names;  // where their names stand, or would
 };
 ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, SceneUser user,
                         ToolConfig::Role role, Remarks& remarks);
