@@ -36,6 +36,7 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   }
   for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
   leaveRimsToOwners();
+  if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
   if (step.increments) {
     climb(ramps, increments, on_increment);
   } else {

@@ -125,7 +125,7 @@ bool Pipeline::contactRound(std::vector<LoadingPatch>& of_tools, bool whole, boo
   } else {
     const bool settled =
         contacts_.update(trackTouches(pose_), contacts, pose_, tissue_, held, whole);
-    if (settled) return false;
+    if (settled && (!tissue_.isUntouched() || contacts_.touches().empty())) return false;
   }
   if (last) return true;
   of_tools = patchesOfTools();

@@ -78,6 +78,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   jaws_.assign(tools.size(), {});
   unfinished_ = false;
   pose_ = complete({});
+  contacts_.commit(pose_, tissue_);
   report_ = StepReport();
   report_.tools.resize(tools.size());
 }
@@ -332,6 +333,7 @@ void Pipeline::reset() {
   checkpoints_.clear();
   last_pose_.reset();
   pose_ = complete({});
+  contacts_.commit(pose_, tissue_);
   unfinished_ = false;
   touched_ = true;
   describeTools();
