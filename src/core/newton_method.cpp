@@ -100,7 +100,8 @@ SolveStatus NewtonMethod::iterate(LoadedShape& shape, int& iterations) {
   const std::vector<Vec3> unmoved(shape.state.displacement.size(), Vec3::Zero());
   for (iterations = 0; relative_ > options_.residual; ++iterations) {
     if (iterations == options_.max_iterations) return SolveStatus::kUnconverged;
-    if (options_.max_ms > 0.0 && elapsedMs() > options_.max_ms) return SolveStatus::kLate;
+    const bool is_over = options_.max_ms > 0.0 && elapsedMs() > options_.max_ms;
+    if (is_over && iterations > 0) return SolveStatus::kLate;
     if (!factorize(shape, unmoved)) return SolveStatus::kUnconverged;
     if (!search(solveFor(balance_.unbalanced), shape)) return SolveStatus::kUnconverged;
   }

@@ -106,6 +106,7 @@ void Tissue::restore(const Shape& shape) {
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
+  is_late_ = shape.is_late;
   deformSurface();
 }
 
@@ -138,7 +139,10 @@ void Tissue::reset() {
   state_ = lattice_.restState();
   patches_.clear();
   named_patches_ = 0;
+  due_.clear();
+  disturbed_.clear();
   last_report_ = SolveReport();
+  is_late_ = false;
   if (was_cut) rebuildSurface();
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
@@ -188,7 +192,15 @@ void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
 }
 
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
-  SolveReport report = solveInRounds(disturbed);
+  if (disturbed_.empty()) {
+    disturbed_ = disturbed;
+  } else {
+    disturbed_.insert(disturbed_.end(), disturbed.begin(), disturbed.end());
+    std::sort(disturbed_.begin(), disturbed_.end());
+    disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
+  }
+  SolveReport report = solveInRounds(disturbed_);
+  if (!is_late_) disturbed_.clear();
   last_report_.volume_ratio = report.volume_ratio = volumeRatio();
   return report;
 }
@@ -210,7 +222,10 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
                       (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_rounds_.renew(of_tools, whole, last);
     if (!renewed && (last || !hurried)) break;
-    if (late) last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
+    if (late) {
+      is_late_ = true;
+      last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
+    }
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
     before.reset();  // before the next copy
@@ -268,6 +283,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
     report.status = SolveStatus::kUnconverged;
     report.patches.resize(patches_.size());
   }
+  is_late_ = report.status == SolveStatus::kLate;
   describeShape(report);
   last_report_ = report;
   return report;
@@ -301,6 +317,7 @@ SolveReport Tissue::solveFromRest() {
     describeShape(report);
     report.volume_ratio = volumeRatio();
     last_report_ = report;
+    is_late_ = false;
   }
   return report;
 }

@@ -21,6 +21,19 @@ int wholeParts(double share) {
 
 }  // namespace
 
+// Out of time on the way of named patches: they stand there, and what they go to is due.
+bool Tissue::stopsOnTheWay(const std::vector<Ramp>& ramps) {
+  const bool named = std::all_of(ramps.begin(), ramps.end(),
+                                 [&](const Ramp& ramp) { return ramp.patch < named_patches_; });
+  if (!named || !deadline_ || !deadline_->isOver()) return false;
+  for (const Ramp& ramp : ramps) {
+    dropDue(ramp.target.name);
+    due_.push_back(ramp.target);
+  }
+  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
+  return true;
+}
+
 // How many of the method's longest steps the load takes: the way of a patch by displacement over
 // the step; a force over what its patch answers to the step. In equilibrium a hard patch of n nodes
 // answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes do (own);
@@ -80,6 +93,10 @@ SolveReport Tissue::climbByItself(const std::vector<Ramp>& ramps, const OnIncrem
     worst = std::max(worst, report.status);
     const int left = share < 1.0 ? wholeParts((1.0 - share) / stride) : 0;
     if (on_increment) on_increment(increment, increment + left, report);
+    if (share < 1.0 && stopsOnTheWay(ramps)) {
+      worst = std::max(worst, SolveStatus::kLate);
+      break;
+    }
   }
   report.status = worst;
   return report;
@@ -93,6 +110,10 @@ SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
     report = goTo(ramps, static_cast<double>(increment) / increments);
     worst = std::max(worst, report.status);
     if (on_increment) on_increment(increment, increments, report);
+    if (increment < increments && stopsOnTheWay(ramps)) {
+      worst = std::max(worst, SolveStatus::kLate);
+      break;
+    }
   }
   report.status = worst;
   return report;

@@ -34,7 +34,10 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
     refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
            "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
-  for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
+  for (Ramp& ramp : ramps) {
+    dropDue(ramp.target.name);
+    ramp.patch = place(ramp.start);
+  }
   leaveRimsToOwners();
   if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
   if (step.increments) {
@@ -42,6 +45,23 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   } else {
     climbByItself(ramps, on_increment);
   }
+}
+
+void Tissue::loadOn(const OnIncrement& on_increment) {
+  std::vector<Ramp> ramps;
+  for (const LoadingPatch& target : std::exchange(due_, {})) {
+    const LoadingPatch* standing = standingPatch(target.name);
+    if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
+  }
+  if (ramps.empty()) return;
+  for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
+  leaveRimsToOwners();
+  climbByItself(ramps, on_increment);
+}
+
+void Tissue::dropDue(const std::string& name) {
+  const auto is_it = [&](const LoadingPatch& target) { return target.name == name; };
+  due_.erase(std::remove_if(due_.begin(), due_.end(), is_it), due_.end());
 }
 
 SolveReport Tissue::release(const std::vector<std::string>& names) {
@@ -58,6 +78,7 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
     patches_.erase(named(name));
     --named_patches_;
+    dropDue(name);
   }
   const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
   return unique ? solve(freeNodes()) : solveFromRest();

@@ -42,8 +42,7 @@ Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
       supports_(supports),
       finder_({}),
       patches_(tissue_.lattice(), {}),
-      contacts_({}, {}),
-      bounds_solves_(solver.max_ms > 0.0) {
+      contacts_({}, {}) {
   surface_version_ = tissue_.surfaceVersion();
   takeTools(tools);
   tissue_.setContactRounds({[this] { return longestWays(); },
@@ -76,7 +75,8 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   contacts_ = ToolContacts(friction, thickness);
   drives_.assign(tools.size(), {});
   jaws_.assign(tools.size(), {});
-  unfinished_ = false;
+  unfinished_ = gave_up_ = false;
+  late_iterations_ = 0;
   pose_ = complete({});
   contacts_.commit(pose_, tissue_);
   report_ = StepReport();
@@ -93,49 +93,59 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
 
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = driven(pose);
+  const bool stands = standsStill(goal) && !touched_;
+  const bool was_lost = stands && report_.lost;
+  const std::vector<std::size_t> behind = report_.behind;
+  beginReport();
+  report_.lost = was_lost;
+  if (was_lost) report_.behind = behind;
+  if (stands && !isLate()) return report_;
+  const Bounded bounded(*this);
+  if (tissue_.isLoading()) loadOn();
+  if (stands) {
+    finish();
+    countLate();
+  } else {
+    late_iterations_ = 0;
+    gave_up_ = false;
+    unfinished_ = false;
+    stepTo(goal, pose);
+  }
+  report_.late = isLate();
+  report_.gave_up = gave_up_;
+  return report_;
+}
+
+void Pipeline::beginReport() {
   report_.changed = touched_;
   report_.too_fast = report_.lost = report_.late = false;
+  report_.gave_up = gave_up_;
   for (auto* tools : {&report_.behind, &report_.jumped, &report_.were_inside, &report_.torn_off}) {
     tools->clear();
   }
   report_.contact_ms = report_.solve_ms = 0.0;
   report_.substeps = 0;
-  const bool stands = standsStill(goal) && !touched_;
-  if (stands && !isLate()) return report_;
-  unfinished_ = false;
-  deadline_ = Deadline(budget_s_);
-  if (bounds_solves_ && std::isfinite(budget_s_)) tissue_.setDeadline(deadline_);
-  if (stands) {
-    carryOn();
-  } else {
-    stepTo(goal, pose);
-  }
-  tissue_.setDeadline(std::nullopt);
-  report_.late = isLate();
-  return report_;
 }
 
 // goal: the pose, with the ways of tools that a force drives.
 void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   report_.changed = report_.changed || !tissue_.isUntouched();
+  RobotPose there = goal;  // but for tools that wait outside
   if (!last_pose_ || checkpoints_.empty()) {
-    startAnew(goal);
+    startAnew(there);
   } else {
-    comeAndGo(goal);
+    comeAndGo(there);
   }
-  goBackTo(goal);
-  last_pose_ = walk(goal);
-  if (report_.lost) leaveStuck(goal);
-  if (report_.lost) leaveReleased(goal);
-  unhook(goal);
+  goBackTo(there);
+  last_pose_ = walk(there);
+  if (report_.lost) leaveStuck(there);
+  if (report_.lost) leaveReleased(there);
+  unhook(there);
+  asked_ = goal;
   touched_ = report_.too_fast || drive(pose);  // there is a way left to go
   if (report_.too_fast || report_.lost) report_.behind = toolsBehind();
   for (Jaws& jaws : jaws_) jaws.let_go = jaws.let_go && (report_.too_fast || report_.lost);
   describeTools();
-}
-
-bool Pipeline::isLate() const {
-  return unfinished_ || tissue_.lastReport().status == SolveStatus::kLate;
 }
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
@@ -275,30 +285,23 @@ bool Pipeline::anyToolIn(const std::vector<LoadingPatch>& patches) const {
       [&](const auto& patch) { return std::find(names_.begin(), end, patch.name) != end; });
 }
 
-// What the last solve had no time for.
-void Pipeline::carryOn() {
-  if (!tissue_.isUntouched()) {
-    if (!advance(*last_pose_)) report_.lost = true;
-    if (report_.lost) report_.behind = toolsBehind();
-  } else {
-    const Stopwatch watch(report_.solve_ms);
-    tissue_.settle();
-    report_.changed = true;
-  }
-  describeTools();
-}
-
 SolveReport Pipeline::settle() {
-  contacts_.ride(pose_, tissue_);
-  patches_.ride(pose_, tissue_);
-  meet(pose_);
-  const SolveReport report = tissue_.follow(patchesOfTools(), tissue_.freeNodes(), true);
+  const Bounded bounded(*this);
+  const SolveReport report = balance();
   touch();
   return report;
 }
 
+SolveReport Pipeline::balance() {
+  contacts_.ride(pose_, tissue_);
+  patches_.ride(pose_, tissue_);
+  meet(pose_);
+  return tissue_.follow(patchesOfTools(), tissue_.freeNodes(), true);
+}
+
 void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
                     int most_increments) {
+  const Bounded bounded(*this);
   tissue_.load(
       step,
       [&](int increment, int increments, const SolveReport& report) {
@@ -312,12 +315,14 @@ void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_incremen
 }
 
 SolveReport Pipeline::release(const std::vector<std::string>& names) {
+  const Bounded bounded(*this);
   const SolveReport report = tissue_.release(names);
   touch();
   return report;
 }
 
 CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
+  const Bounded bounded(*this);
   const CutReport report = tissue_.cut(corners);
   touch();
   return report;
@@ -334,7 +339,8 @@ void Pipeline::reset() {
   last_pose_.reset();
   pose_ = complete({});
   contacts_.commit(pose_, tissue_);
-  unfinished_ = false;
+  unfinished_ = gave_up_ = false;
+  late_iterations_ = 0;
   touched_ = true;
   describeTools();
 }
@@ -343,6 +349,8 @@ void Pipeline::reset() {
 void Pipeline::touch() {
   contacts_.commit(pose_, tissue_);
   touched_ = true;
+  gave_up_ = false;
+  late_iterations_ = 0;
   checkpoints_.clear();
   if (last_pose_) checkIn(*last_pose_);
   describeTools();

@@ -113,6 +113,7 @@ bool Pipeline::drawOut(const Links& links, RobotPose& pose) const {
     if (const auto steps = stepsOut(links, pose, way, fewest)) {
       shortest = way;
       fewest = *steps;
+      if (isOutOfTime()) break;
     }
   }
   for (int step = 0; step < kMostLoadSteps && isInTissue(links, pose); ++step) {
@@ -138,7 +139,7 @@ void Pipeline::drawOut(std::size_t tool, RobotPose& pose) {
 
 // A tool that drags tissue out with it that stands through it, as where it went beneath fixed
 // nodes, lets go.
-void Pipeline::unhook(const RobotPose& pose) {
+void Pipeline::unhook(RobotPose& pose) {
   std::vector<std::size_t> hooked;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     if (!isHooked(tool)) continue;
@@ -150,7 +151,7 @@ void Pipeline::unhook(const RobotPose& pose) {
 
 // Tissue that hangs on what a grasper holds goes through its jaws: where no shape follows it out of
 // them when they are told to let go, it comes back without them.
-void Pipeline::leaveReleased(const RobotPose& pose) {
+void Pipeline::leaveReleased(RobotPose& pose) {
   std::vector<std::size_t> released;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     if (jaws_[tool].let_go) released.push_back(tool);
@@ -161,7 +162,7 @@ void Pipeline::leaveReleased(const RobotPose& pose) {
 }
 
 // The tissue comes back without these tools, and what they still meet they meet from outside.
-void Pipeline::comeAnew(const std::vector<std::size_t>& tools, const RobotPose& pose) {
+void Pipeline::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose) {
   RobotPose without = *last_pose_;
   for (const std::size_t tool : tools) {
     without = withTool(tool, complete({}), without);
@@ -174,6 +175,16 @@ void Pipeline::comeAnew(const std::vector<std::size_t>& tools, const RobotPose& 
     startAnew(pose);
   }
   last_pose_ = walk(pose);
+}
+
+// Looking for the way out of the tissue takes time: a tool that there is none for stays away in the
+// pose, and is behind, once another one came in this step.
+bool Pipeline::waitsOutside(std::size_t tool, bool any_came, RobotPose& pose) {
+  const bool comes = !isAway(pose.links[first_link_[tool]]);
+  if (!comes || !any_came || !isOutOfTime()) return false;
+  pose = withTool(tool, complete({}), std::move(pose));
+  report_.too_fast = true;
+  return true;
 }
 
 }  // namespace robot_tissue

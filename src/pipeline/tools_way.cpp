@@ -144,7 +144,7 @@ void Pipeline::checkIn(const RobotPose& pose) {
 }
 
 // Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
-void Pipeline::goBackTo(const RobotPose& pose) {
+void Pipeline::goBackTo(RobotPose& pose) {
   const RobotPose& from = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
   std::size_t nearest = checkpoints_.size() - 1;
   double shortest = stepsBetween(from, pose);
@@ -168,8 +168,9 @@ void Pipeline::goBackTo(const RobotPose& pose) {
   }
 }
 
-// The tools let go, and come in from outside.
-void Pipeline::startAnew(const RobotPose& pose) {
+// The tools let go, and come in from outside. Those that wait for the next step stay away in the
+// pose.
+void Pipeline::startAnew(RobotPose& pose) {
   patches_.clear();
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) contacts_.clear(static_cast<int>(tool));
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) forgetJaws(tool);
@@ -177,7 +178,13 @@ void Pipeline::startAnew(const RobotPose& pose) {
   lieDown();
   checkpoints_.clear();
   last_pose_ = pose;
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) drawOut(tool, *last_pose_);
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    if (waitsOutside(tool, tool > 0, pose)) {
+      last_pose_ = withTool(tool, pose, *last_pose_);
+    } else {
+      drawOut(tool, *last_pose_);
+    }
+  }
   contacts_.commit(*last_pose_, tissue_);  // nothing sticks to where they were before
   checkIn(*last_pose_);
 }
@@ -192,13 +199,15 @@ void Pipeline::lieDown() {
 
 // A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
 // stay as they are.
-void Pipeline::comeAndGo(const RobotPose& pose) {
+void Pipeline::comeAndGo(RobotPose& pose) {
   RobotPose from = *last_pose_;
-  bool any = false;
+  bool any = false, any_came = false;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     const std::size_t first = first_link_[tool], end = first_link_[tool + 1];
     if (first == end || isAway(from.links[first]) == isAway(pose.links[first])) continue;
+    if (waitsOutside(tool, any_came, pose)) continue;
     any = true;
+    any_came = any_came || !isAway(pose.links[first]);
     from = withTool(tool, pose, from);
     letGoOf(tool);
     drawOut(tool, from);
@@ -211,7 +220,7 @@ void Pipeline::comeAndGo(const RobotPose& pose) {
 }
 
 // Where no shape could follow, tools that have come out of the tissue by themselves let go.
-void Pipeline::leaveStuck(const RobotPose& pose) {
+void Pipeline::leaveStuck(RobotPose& pose) {
   RobotPose from = *last_pose_;
   bool any = false;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {

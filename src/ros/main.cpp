@@ -1,11 +1,13 @@
 #include <ros/ros.h>
 
+#include <csignal>
 #include <exception>
 
 #include "robot_tissue/ros/tissue_node.h"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "robot_tissue");
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });  // as roscpp does on SIGINT
   // The last handle to go closes the log, so one stays until the last line is said.
   const ros::NodeHandle private_node("~");
   try {

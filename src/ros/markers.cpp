@@ -47,20 +47,24 @@ MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
                              std::vector<SupportConfig> supports)
     : frame_id_(std::move(frame_id)), force_scale_(force_scale), supports_(std::move(supports)) {}
 
-MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp) {
+MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
+                                 const ros::Time& reached) {
   stamp_ = stamp;
   MarkerArray array;
   addSurface(pipeline.tissue(), array);
   addWireframe(pipeline.tissue(), array);
   addFixedNodes(pipeline.tissue(), array);
   addLoadedNodes(pipeline, array);
+  stamp_ = reached;
   addContacts(pipeline, array);
+  stamp_ = stamp;
   addSupports(pipeline.tissue().lattice(), array);
   return array;
 }
 
-MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Time& stamp) {
-  MarkerArray all = build(pipeline, stamp);
+MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
+                                        const ros::Time& reached) {
+  MarkerArray all = build(pipeline, stamp, reached);
   MarkerArray changed;
   told_.resize(all.markers.size());
   for (std::size_t i = 0; i < all.markers.size(); ++i) {

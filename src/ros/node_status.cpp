@@ -9,6 +9,8 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
+constexpr double kMostMissed = 0.1;  // of the poses that are due
+
 // Of TissueState.msg. Jaws that meet, or hold nothing, are no fault by themselves: so do those that
 // close on nothing.
 std::string wordOf(StepRemark::Kind kind) {
@@ -45,8 +47,9 @@ NodeStatus TissueNode::statusOf(const StepReport& report) {
   }
   const SolveReport& solve = pipeline_.tissue().lastReport();
   if (report.late) {
-    say("LATE", "the update ran out of its budget (solver.max_ms) and is carried on", status);
-  } else if (solve.status == SolveStatus::kUnconverged) {
+    say("LATE", "the update ran out of its time (solver.max_ms, else 0.1 s) and is carried on",
+        status);
+  } else if (report.gave_up || solve.status == SolveStatus::kUnconverged) {
     say("UNCONVERGED", "a layer or patch did not come to balance", status);
   } else if (solve.status == SolveStatus::kInverted) {
     say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted", status);
@@ -55,11 +58,31 @@ NodeStatus TissueNode::statusOf(const StepReport& report) {
   return status;
 }
 
+// Poses may come as seldom as they do: `~rate` is how often they are followed at most.
+void TissueNode::diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const ros::WallTime now = ros::WallTime::now();
+  const double seconds = (now - rate_told_).toSec();
+  rate_told_ = now;
+  const PoseWatch::Counts counts = watch_.counts();
+  const bool keeps_up = counts.missed <= 1 || counts.missed <= kMostMissed * counts.came;
+  if (keeps_up) {
+    status.summary(DiagnosticStatus::OK, counts.came > 0 ? "keeps up" : "no new poses");
+  } else {
+    status.summaryf(DiagnosticStatus::WARN, "%d of %d poses were missed: updates take longer",
+                    counts.missed, counts.came);
+  }
+  status.add("poses (Hz)", counts.came / seconds);
+  status.add("poses followed (Hz)", (counts.came - counts.missed) / seconds);
+  status.add("followed at most (Hz, ~rate)", parameters_.rate_hz);
+}
+
 void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!robot_is_known_) {
     status.summary(DiagnosticStatus::ERROR, "no robot description");
   } else if (last_look_up_.status == PoseLookUp::Status::kOk) {
     status.summary(DiagnosticStatus::OK, "fresh");
+  } else if (ros::WallTime::now() < grace_end_) {
+    status.summary(DiagnosticStatus::OK, "waiting: " + last_look_up_.message);
   } else {
     status.summary(DiagnosticStatus::ERROR, last_look_up_.message);
   }

@@ -34,14 +34,14 @@ PoseWatch::PoseWatch(tf2_ros::Buffer& buffer, const ToolPoses& poses, double rat
       on_pose_(std::move(on_pose)),
       pace_(rate_hz) {
   connection_ = buffer_._addTransformsChangedListener([this] { onTransforms(); });
-  ros::NodeHandle node;
-  node.setCallbackQueue(&at_once_);
-  listener_ = std::make_unique<tf2_ros::TransformListener>(buffer_, node, false,
-                                                           ros::TransportHints().tcpNoDelay());
+  feed_ = std::make_unique<TransformFeed>(buffer_, at_once_, [this] {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    noticeTime();
+  });
 }
 
 PoseWatch::~PoseWatch() {
-  listener_.reset();  // first: from here on nothing is received
+  feed_.reset();  // first: from here on nothing is received
   buffer_._removeTransformsChangedListener(connection_);
   queue_.removeByID(reinterpret_cast<std::uint64_t>(this));
 }
@@ -54,6 +54,31 @@ void PoseWatch::start() {
 PoseWatch::Seen PoseWatch::seen() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(seen_, Seen());
+}
+
+PoseWatch::Counts PoseWatch::counts() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(counts_, Counts());
+}
+
+int PoseWatch::timeJumps() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  noticeTime();
+  return time_jumps_;
+}
+
+// With the mutex locked.
+void PoseWatch::noticeTime() {
+  const ros::Time now = ros::Time::now();
+  if (now < last_time_) {
+    ++time_jumps_;
+    buffer_.clear();
+    waiting_.reset();
+    still_.reset();
+    seen_ = Seen();
+    last_stamp_ = ros::Time();
+  }
+  last_time_ = now;
 }
 
 void PoseWatch::standAt(std::optional<StillPose> still) {
@@ -72,11 +97,13 @@ void PoseWatch::onTransforms() {
   pace_.take(now.toSec());
   last_stamp_ = look_up.stamp;
   seen_.any = true;
+  ++counts_.came;
   if (!waiting_ && still_ && still_->holds(look_up.pose)) {
     seen_.still = look_up.stamp;
     return on_still_(look_up.stamp);
   }
   const bool is_awake = waiting_.has_value();
+  if (is_awake) ++counts_.missed;
   waiting_ = std::move(look_up);
   if (!is_awake) {
     queue_.addCallback(boost::make_shared<HandOver>(*this), reinterpret_cast<std::uint64_t>(this));

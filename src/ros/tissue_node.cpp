@@ -16,7 +16,8 @@ namespace {
 
 const ros::WallDuration kRobotLookUpPeriod(1.0);
 constexpr double kLongestUpdate = 0.1;  // s, without a budget of the solver
-constexpr double kRateTolerance = 0.1;
+const ros::WallDuration kGrace(2.0);        // after a start or a jump of time
+const ros::WallDuration kClockPeriod(0.5);  // between looks for a clock
 constexpr double kWatchPeriod = 0.1;  // s, of the timer while nothing waits for it
 
 }  // namespace
@@ -27,33 +28,33 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_),
-      lowest_rate_hz_(parameters_.rate_hz),
-      highest_rate_hz_(parameters_.rate_hz),
-      frequency_(diagnostic_updater::FrequencyStatusParam(&lowest_rate_hz_, &highest_rate_hz_,
-                                                          kRateTolerance),
-                 "update rate"),
       watch_(
           buffer_, tool_poses_, parameters_.rate_hz, *ros::getGlobalCallbackQueue(),
           [this](const ros::Time& stamp) { onStill(stamp); },
           [this](PoseLookUp look_up) { update(std::move(look_up)); }) {
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
+  grace_end_ = ros::WallTime::now() + kGrace;
   const double budget_ms = parameters_.scene.solver.max_ms;
-  pipeline_.setBudget(budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate);
+  budget_s_ = budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate;
+  pipeline_.setBudget(budget_s_);
   robotIsKnown();
   settleFromRest();
   advertiseServices();
   diagnostics_.setHardwareID("none");
-  diagnostics_.add(frequency_);
+  rate_told_ = ros::WallTime::now();
+  diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
   diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
   diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
   timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
                                      [this](const ros::TimerEvent&) { onTimer(); });
+  if (!ros::Time::isSimTime()) return;
+  wall_timer_ = private_node_.createWallTimer(kClockPeriod,
+                                              [this](const ros::WallTimerEvent&) { onWallTimer(); });
 }
 
 // In the thread that receives transforms.
 void TissueNode::onStill(const ros::Time& stamp) {
-  frequency_.tick();
   publisher_.publishStill(stamp);
 }
 
@@ -64,12 +65,37 @@ void TissueNode::tick(bool seldom) {
   timer_.setPeriod(ros::Duration(seldom ? std::max(period, kWatchPeriod) : period));
 }
 
+// Timers of simulated time stand still without a clock.
+void TissueNode::onWallTimer() {
+  if (!ros::Time::now().isZero()) return wall_timer_.stop();
+  report({"NO_TRANSFORM", "use_sim_time is true, but nothing publishes a time on /clock"});
+}
+
+// Time is another one, as where a bag plays again: what was before says nothing of what is now. The
+// tools are nowhere until their next pose. True: it went back since this was last asked.
+bool TissueNode::timeWentBack() {
+  const int jumps = watch_.timeJumps();
+  if (jumps == time_jumps_) return false;
+  ROS_WARN_STREAM_COND(time_jumps_ == 0,
+                       "time went back, as where a bag plays again or a simulation is reset: the "
+                       "shape stays, the tools come in anew (said once)");
+  time_jumps_ = jumps;
+  grace_end_ = ros::WallTime::now() + kGrace;
+  jumped_at_ = ros::Time();
+  last_look_up_ = PoseLookUp();
+  if (robot_is_known_) pipeline_.step({});
+  publisher_.timeWentBack();
+  diagnostics_.force_update();  // it would wait for the time of before
+  return true;
+}
+
 void TissueNode::onTimer() {
   diagnostics_.update();
+  timeWentBack();
   if (!robotIsKnown()) {
     report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
                             "' is not set: waiting for a URDF"});
-    return tick(true);
+    return tick(!pipeline_.isLate());
   }
   const PoseWatch::Seen seen = watch_.seen();
   if (seen.still > last_look_up_.stamp) tellStill(seen.still);
@@ -77,7 +103,8 @@ void TissueNode::onTimer() {
   watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
   update(tool_poses_.lookUp(ros::Time::now()));
   const bool is_good = last_look_up_.status == PoseLookUp::Status::kOk;
-  tick(!is_good || (isStill() && !publisher_.tellsWrenches()));
+  const bool has_time = !is_good || (isStill() && !publisher_.tellsWrenches());
+  tick(has_time && !pipeline_.isLate());
 }
 
 // What goes out seldom, at a pose at which nothing was to do.
@@ -95,7 +122,7 @@ bool TissueNode::isStill() const {
 // Robot pose -> contacts -> loading patches -> solve (in Pipeline::step) -> publish.
 void TissueNode::update(PoseLookUp look_up) {
   watch_.standAt(std::nullopt);
-  frequency_.tick();
+  if (timeWentBack()) return;  // the pose may be one of before
   last_look_up_ = std::move(look_up);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
     const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;
@@ -133,12 +160,15 @@ bool TissueNode::waitsAfterJump() {
 // At a good pose.
 void TissueNode::follow() {
   const StepReport& step = pipeline_.step(last_look_up_.pose);
+  if (timeWentBack()) return;
+  warned_.clear();
   status_ = statusOf(step);
-  if (step.too_fast || !step.were_inside.empty() || !step.torn_off.empty()) {
+  const bool comes_anew = time_jumps_ > 0 && ros::WallTime::now() < grace_end_;
+  if (!comes_anew && (step.too_fast || !step.were_inside.empty() || !step.torn_off.empty())) {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   }
   publisher_.publish(pipeline_, last_look_up_.stamp, status_);
-  if (isStill()) watch_.standAt(pipeline_.stillPose());
+  if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
 }
 
 // What acts without tools: gravity and the supports.
@@ -175,10 +205,17 @@ bool TissueNode::robotIsKnown() {
   return true;
 }
 
-// The last good shape stays; what is wrong is said.
+// The last good shape stays; what is wrong is said, but for what is so at every start.
 void TissueNode::report(const NodeStatus& status) {
-  if (status.status != status_.status) ROS_WARN_STREAM(status.status << ": " << status.message);
+  if (status.status != warned_ && ros::WallTime::now() >= grace_end_) {
+    ROS_WARN_STREAM(status.status << ": " << status.message);
+    warned_ = status.status;
+  }
   status_ = status;
+  if (pipeline_.isLate()) {
+    pipeline_.carryOn();
+    publisher_.shapeChanged();
+  }
   publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_);
 }
 

@@ -76,7 +76,11 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
   const auto start = std::chrono::steady_clock::now();
   if (pipeline.report().changed) shapeChanged();
   if (status.message != last_status_.message) last_state_ = ros::Time();
-  wrenches_.publish(pipeline.report().tools, stamp);
+  if (pipeline.hasArrived()) {
+    wrenches_.publish(pipeline.report().tools, stamp);
+  } else {
+    wrenches_.publishOld();
+  }
   publishSeldom(pipeline, stamp, status);
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
@@ -85,9 +89,16 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
 
 void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& stamp,
                                     const NodeStatus& status) {
+  if (pipeline.hasArrived()) reached_ = stamp;
   publishContacts(pipeline, stamp);
   publishMarkers(pipeline, stamp);
   publishState(pipeline, stamp, status);
+}
+
+void TissuePublisher::timeWentBack() {
+  wrenches_.forget();
+  reached_ = last_contacts_ = last_markers_ = ros::Time();
+  shapeChanged();
 }
 
 bool TissuePublisher::isUpToDate() const {
@@ -129,7 +140,8 @@ void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& 
   if ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted() || too_soon) return;
   const bool whole = !markers_due_ || !latched_markers_are_out_;
   if (whole) marker_builder_.tellAll();
-  const visualization_msgs::MarkerArray array = marker_builder_.buildChanged(pipeline, stamp);
+  const visualization_msgs::MarkerArray array =
+      marker_builder_.buildChanged(pipeline, stamp, reached_);
   if (!array.markers.empty()) markers_.publish(array);
   whole_array_is_out_ = whole;
   latched_markers_are_out_ = true;
@@ -140,7 +152,7 @@ void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& 
 void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time& stamp) {
   const bool due =
       contacts_due_ || stamp - last_contacts_ >= kStatePeriod || stamp < last_contacts_;
-  if (!due || contacts_.getNumSubscribers() == 0) return;
+  if (!due || contacts_.getNumSubscribers() == 0 || !pipeline.hasArrived()) return;
   contacts_due_ = false;
   last_contacts_ = stamp;
   ContactArray array;

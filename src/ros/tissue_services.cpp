@@ -3,29 +3,42 @@
 #include <vector>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/ros/tissue_node.h"
 
 namespace robot_tissue {
 namespace {
 
-// A service call is answered within a second or so.
+// What is left when the time of an update is over is carried on in the next ones.
 constexpr int kMostIncrements = 300;
+constexpr std::size_t kMostCorners = 1000;
 
-std::string solved(const SolveReport& report) {
-  return report.status == SolveStatus::kOk ? std::string()
-                                           : std::string("; ") + toString(report.status);
+std::string solved(const SolveReport& report, bool is_late) {
+  if (report.status == SolveStatus::kOk) return "";
+  return std::string("; ") + toString(report.status) + (is_late ? ", carried on" : "");
 }
 
-void requireFinite(const Vec3& vector, const std::string& key) {
-  if (!vector.allFinite()) throw InputError(key + ": not finite; allowed: finite numbers");
+// Its corners, in its own frame.
+std::vector<Vec3> cornersOf(const Cut::Request& request) {
+  if (request.corners.size() > kMostCorners) {
+    throw InputError("corners: " + std::to_string(request.corners.size()) +
+                     " given; allowed: at most " + std::to_string(kMostCorners));
+  }
+  std::vector<Vec3> corners;
+  for (const auto& corner : request.corners) {
+    corners.push_back(toVec3(corner));
+    const std::string field = "corners[" + std::to_string(corners.size() - 1) + "]";
+    requireWithin(corners.back(), kFarthestPoint, "m", field);
+  }
+  return corners;
 }
 
 PatchConfig patchOf(const ApplyLoad::Request& request) {
   PatchConfig patch;
   patch.name = request.name;
   patch.box = {toVec3(request.min), toVec3(request.max)};
-  requireFinite(patch.box.min, "min");
-  requireFinite(patch.box.max, "max");
+  requireWithin(patch.box.min, kFarthestPoint, "m", "min");
+  requireWithin(patch.box.max, kFarthestPoint, "m", "max");
   if ((patch.box.min.array() > patch.box.max.array()).any()) {
     throw InputError("min: above max; allowed: min <= max along every axis");
   }
@@ -36,12 +49,12 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
   }
   if (!request.displacement.empty()) {
     const Vec3 displacement = toVec3(request.displacement.front());
-    requireFinite(displacement, "displacement");
+    requireWithin(displacement, kFarthestPoint, "m", "displacement");
     if (request.turns) throw InputError("turns: true; allowed: only with a force");
     patch.displacement = {{displacement.x(), displacement.y(), displacement.z()}};
   } else {
     const Vec3 force = toVec3(request.force.front());
-    requireFinite(force, "force");
+    requireWithin(force, kGreatestForce, "N", "force");
     patch.force = force;
     patch.turns = request.turns;
   }
@@ -82,8 +95,8 @@ bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Respons
 bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
   try {
     const Pose tissue_T_blade = tool_poses_.frame(request.header.frame_id);
-    std::vector<Vec3> corners;
-    for (const auto& corner : request.corners) corners.push_back(tissue_T_blade * toVec3(corner));
+    std::vector<Vec3> corners = cornersOf(request);
+    for (Vec3& corner : corners) corner = tissue_T_blade * corner;
     const CutReport cut = pipeline_.cut(corners);
     publisher_.shapeChanged();
     response.success = true;
@@ -91,7 +104,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
     response.pieces = cut.pieces;
     response.message = cut.springs_cut > 0 ? std::to_string(cut.springs_cut) + " springs cut"
                                            : "no spring crosses the polygon";
-    response.message += solved(cut.solve);
+    response.message += solved(cut.solve, pipeline_.isLate());
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
@@ -102,7 +115,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
 
 bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
   try {
-    if (request.name.empty()) throw InputError("name: empty; allowed: the name of a patch or tool");
+    requireName(request.name);
     if (isTool(request.name)) {
       pushTool(request, response);
     } else {
@@ -124,7 +137,7 @@ void TissueNode::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Respons
   }
   if (request.displacement.empty() && request.force.empty()) {
     pipeline_.release({request.name});
-    response.message = "released";
+    response.message = "released" + solved(pipeline_.tissue().lastReport(), pipeline_.isLate());
     return;
   }
   SolveReport last;
@@ -135,7 +148,8 @@ void TissueNode::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Respons
   const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
   response.force = toVector3(answer.force);
   response.displacement = toVector3(answer.displacement);
-  response.message = "loaded" + solved(last);
+  const bool is_there = !pipeline_.tissue().isLoading();
+  response.message = (is_there ? "loaded" : "on its way") + solved(last, pipeline_.isLate());
 }
 
 }  // namespace robot_tissue

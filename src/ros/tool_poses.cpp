@@ -75,8 +75,9 @@ Pose ToolPoses::frame(const std::string& frame_id) const {
   try {
     return tf2::transformToEigen(buffer_.lookupTransform(tissue_frame_, frame_id, ros::Time(0)));
   } catch (const tf2::TransformException& error) {
-    throw InputError("header.frame_id: '" + frame_id + "' has no transform to '" + tissue_frame_ +
-                     "'; allowed: a connected frame, or none (" + error.what() + ")");
+    throw InputError("header.frame_id: '" + shortText(frame_id) + "' has no transform to '" +
+                     tissue_frame_ + "'; allowed: a connected frame, or none (" +
+                     shortText(error.what()) + ")");
   }
 }
 

@@ -3,16 +3,17 @@
 #include <string>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/ros/tool_forces.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
 
-const ros::WallDuration kLongestPush(1.0);  // until a service call is answered
 constexpr double kMet = 0.95;               // of the force: the tissue answers with it
 
-std::string inQuotes(const std::string& name) { return "'" + name + "'"; }
+std::string inQuotes(const std::string& name) { return "'" + shortText(name) + "'"; }
 
 std::string listed(const std::vector<ToolConfig>& tools) {
   std::string list;
@@ -91,7 +92,10 @@ void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response
                      "; allowed: one force, or none to put the tool at its pose again");
   }
   std::optional<Vec3> force;
-  if (!request.force.empty()) force = toVec3(request.force.front());
+  if (!request.force.empty()) {
+    force = toVec3(request.force.front());
+    requireWithin(*force, kGreatestForce, "N", "tool " + inQuotes(request.name) + ": force");
+  }
   pipeline_.push(tool, force);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
     response.message = "from the next good pose on";
@@ -102,9 +106,9 @@ void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response
   response.displacement = toVector3(pipeline_.report().tools[tool].offset);
 }
 
-// Until the tool stands. Returns what became of it.
+// Until the tool stands, or the time of an update is over. Returns what became of it.
 std::string TissueNode::followPush(std::size_t tool, const Vec3& force) {
-  const ros::WallTime end = ros::WallTime::now() + kLongestPush;
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(budget_s_);
   do {
     follow();
   } while (pipeline_.report().changed && ros::WallTime::now() < end);

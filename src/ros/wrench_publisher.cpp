@@ -24,6 +24,7 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
   publishers_.clear();
   messages_.assign(tools.size(), {});
   silent_ = true;
+  has_told_ = false;
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
     const std::lock_guard<std::mutex> lock(mutex_);
     listener_came_.notify_one();
@@ -47,6 +48,13 @@ void WrenchPublisher::publish(const std::vector<ToolReport>& reports, const ros:
     messages_[tool].wrench.torque = toVector3(reports[tool].torque_on_tool);
   }
   silent_ = false;
+  has_told_ = true;
+  if (rate_hz_ <= 0.0) send();
+}
+
+void WrenchPublisher::publishOld() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  silent_ = !has_told_;
   if (rate_hz_ <= 0.0) send();
 }
 
@@ -59,6 +67,12 @@ void WrenchPublisher::publishAgain(const ros::Time& stamp) {
 void WrenchPublisher::fallSilent() {
   const std::lock_guard<std::mutex> lock(mutex_);
   silent_ = true;
+}
+
+void WrenchPublisher::forget() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  silent_ = true;
+  has_told_ = false;
 }
 
 // With the mutex locked.

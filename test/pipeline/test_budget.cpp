@@ -120,22 +120,6 @@ TEST(Budget, WhatIsLeftIsCarriedOnWhileTheToolStands) {
   EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.05 * kSpacing);
 }
 
-// What the bound cut short stays so no longer than the steps do: a load is brought on in full.
-TEST(Budget, OfAStepDoesNotBoundALoad) {
-  Pipeline pipeline = bounded(1e6);
-  pipeline.setBudget(0.0);
-  pipeline.step(pressed(-0.001));
-  pipeline.step(pressed(0.002));
-  EXPECT_TRUE(pipeline.report().late || pipeline.report().too_fast);
-  LoadStep load;
-  load.patches.push_back({});
-  load.patches.front().name = "punch";
-  load.patches.front().box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, kWidth, kTop)};
-  load.patches.front().displacement = {{0.0, 0.0, -0.002}};
-  pipeline.load(load);
-  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
-}
-
 TEST(Budget, DrivenToolMeetsItsForceInLaterSteps) {
   Pipeline pipeline = bounded(kTooShort);
   pipeline.setBudget(1e-3 * kTooShort);

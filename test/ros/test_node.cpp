@@ -120,6 +120,9 @@ TEST_F(RunningNode, BadCutsAreRefusedAndChangeNothing) {
   EXPECT_FALSE(lost.success);
   EXPECT_NE(lost.message.find("no_such_frame"), std::string::npos);
   EXPECT_EQ(lost.message.find('\n'), std::string::npos);
+  EXPECT_LT(cut(kCut, std::string(1000000, 'x')).message.size(), 300U);
+  EXPECT_FALSE(cut({{0, 0, 0}, {1e300, 1, 1}, {2, 0, 2}}).success);
+  EXPECT_FALSE(cut(std::vector<std::vector<double>>(100000, {0.0, 0.0, 0.0})).success);
   const auto beside = cut({{0.5, 0, 0}, {0.5, 0.1, 0}, {0.5, 0.1, 0.1}});
   EXPECT_TRUE(beside.success);
   EXPECT_EQ(beside.springs_cut, 0);
@@ -143,9 +146,13 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
   for (const auto& refused : {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
                               load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
                               load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY),
-                              load("far", 0.0, 0.01, 1.0)}) {
+                              load("far", 0.0, 0.01, 1.0), load("a,b", 0.0, 0.01, 0.001),
+                              load("two\nlines", 0.0, 0.01, 0.001), load("wide", -1e300, 0.01, 0.001),
+                              load(std::string(1000000, 'x'), 0.0, 0.01, 0.001),
+                              release(std::string(1000000, 'x')), load("deep", 0.0, 0.01, 1e300)}) {
     EXPECT_FALSE(refused.success);
     EXPECT_FALSE(refused.message.empty());
+    EXPECT_LT(refused.message.size(), 300U);
     EXPECT_EQ(refused.message.find('\n'), std::string::npos);
   }
   EXPECT_FALSE(release("unknown").success);

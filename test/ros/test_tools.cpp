@@ -158,7 +158,7 @@ TEST_F(Tools, PushesThatAreNoneAreRefusedWithALine) {
   turned.turns = true;
   for (const auto& refused :
        {applyLoad(moved), applyLoad(turned), push("probe", {vector(0.0, 0.0, 0.0)}),
-        push("probe", {vector(0.0, 0.0, std::nan(""))}),
+        push("probe", {vector(0.0, 0.0, std::nan(""))}), push("probe", {vector(0.0, 0.0, 1e300)}),
         push("probe", {vector(0.0, 0.0, -0.1), vector(0.0, 0.0, -0.1)})}) {
     EXPECT_FALSE(refused.success);
     EXPECT_NE(refused.message.find("probe"), std::string::npos) << refused.message;
@@ -177,6 +177,7 @@ TEST_F(Tools, OnlyGraspersGrasp) {
   EXPECT_NE(unknown.message.find("'tongs'"), std::string::npos) << unknown.message;
   EXPECT_NE(unknown.message.find("probe, slick, fork"), std::string::npos) << unknown.message;
   EXPECT_FALSE(ask("release", "probe").success);
+  EXPECT_LT(ask("grasp", std::string(1000000, 'x')).message.size(), 300U);
 }
 
 TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {

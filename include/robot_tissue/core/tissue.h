@@ -84,7 +84,8 @@ class Tissue {
   void setContactRounds(ContactRounds rounds) { contact_rounds_ = std::move(rounds); }
 
   // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
-  // one solve at least, with one cycle of the method. None: solver.max_ms bounds each solve.
+  // one solve at least, with one cycle of the method. Loads stop on their way then, to be carried
+  // on (loadOn). None: solver.max_ms bounds each solve.
   void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
 
   // Equilibrium under what acts now.
@@ -93,6 +94,12 @@ class Tissue {
   // the method needs more than most_increments.
   void load(const LoadStep& step, const OnIncrement& on_increment = {},
             int most_increments = 100000);
+  // There was no time to come to balance, whatever else is to be said of the shape, or to bring
+  // named patches to their loads.
+  bool isLate() const { return is_late_ || isLoading(); }
+  bool isLoading() const { return !due_.empty(); }
+  // Brings those patches on.
+  void loadOn(const OnIncrement& on_increment = {});
   // What a named patch met in the last solve; zero when there is none of that name.
   PatchAnswer answerOf(const std::string& name, const SolveReport& report) const;
   // Takes patches away; the shape is found anew from rest under the loads that stay.
@@ -109,9 +116,10 @@ class Tissue {
     std::vector<LoadingPatch> patches;
     std::size_t named_patches = 0;
     SolveReport report;
+    bool is_late = false;
   };
   Shape shape() const {
-    return {displacements(), state_.cells, patches_, named_patches_, last_report_};
+    return {displacements(), state_.cells, patches_, named_patches_, last_report_, is_late_};
   }
   void restore(const Shape& shape);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
@@ -145,9 +153,11 @@ class Tissue {
   static void goAlong(const Ramp& ramp, double share, LoadingPatch& patch);
   void requireOwnNodes(const std::vector<LoadingPatch>& patches) const;
   std::size_t place(const LoadingPatch& patch);
+  void dropDue(const std::string& name);
   Ramp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
   const LoadingPatch* standingPatch(const std::string& name) const;
   // tissue_climb.cpp; reports are the last increment's, with the worst status of all.
+  bool stopsOnTheWay(const std::vector<Ramp>& ramps);
   double foreseenSteps(const std::vector<Ramp>& ramps) const;
   int foreseenIncrements(const std::vector<Ramp>& ramps) const;
   SolveReport climbByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
@@ -173,7 +183,10 @@ class Tissue {
   Box bounds_;                  // of them
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
+  std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there
+  std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
+  bool is_late_ = false;  // likewise
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
   ContactRounds contact_rounds_;

@@ -57,6 +57,7 @@ struct StepReport {
   bool too_fast = false;            // the tools moved further than could be followed in time
   bool lost = false;                // no shape could follow the tools: the last good one stays
   bool late = false;                // it ran out of its time before the shape was in balance
+  bool gave_up = false;             // late again and again where the tools stand: carried on no more
   // Where too_fast or lost: tools not yet at their pose. Those that are nowhere near the tissue on
   // their way always are.
   std::vector<std::size_t> behind;
@@ -108,10 +109,16 @@ class Pipeline {
   static constexpr int kMostLoadSteps = 400;
   // The tools that such a jump to the pose takes.
   std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
-  // Time that a step may take (s), after which it leaves the rest of the way to the next one. With
-  // solver.max_ms it begins no further solve then either, and is late: the next step goes on from
-  // there, also when the tools stand.
+  // Time that a step, or one of the calls below, may take (s). Then it begins no further solve, the
+  // rest of the way and of the loads is left to the next step, and so is a tool that would have to
+  // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
+  // There is such a rest of a solve or a load.
+  bool isLate() const;
+  // Goes on with it while the tools have no pose: they stay where they are.
+  const StepReport& carryOn();
+  // The tools are where they were asked to be last, and the shape is the one there, in balance.
+  bool hasArrived() const;
 
   // As Tissue's, with the tools and supports where they are.
   SolveReport settle();
@@ -175,6 +182,17 @@ class Pipeline {
     Box box;
     double longest = 0.0;
   };
+  // What is done in its life has the budget, counted from its beginning.
+  class Bounded {
+   public:
+    explicit Bounded(Pipeline& pipeline);
+    ~Bounded() { tissue_.setDeadline(std::nullopt); }
+    Bounded(const Bounded&) = delete;
+    Bounded& operator=(const Bounded&) = delete;
+
+   private:
+    Tissue& tissue_;
+  };
   // Numbers of links, from `first` up to before `end`.
   struct Links {
     std::size_t first = 0;
@@ -195,15 +213,20 @@ class Pipeline {
   bool wentThrough(const Checkpoint& good) const;
   double throughAt(std::size_t link) const;
   bool isUnsettled() const;
-  bool isOutOfTime() const { return bounds_solves_ && deadline_.isOver(); }
-  bool isLate() const;
+  bool isOutOfTime() const { return deadline_.isOver(); }
+  void beginReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
   std::vector<LoadingPatch> patchesOfTools() const;
   void pushRigid(const RobotPose& pose);
   bool isRigid(int tool) const;
   bool anyToolIn(const std::vector<LoadingPatch>& patches) const;
-  void carryOn();
   void touch();
+
+  // late_work.cpp
+  SolveReport balance();
+  void loadOn();
+  void finish();
+  void countLate();
 
   // contact_rounds.cpp
   std::vector<Surroundings> surroundings() const;
@@ -229,14 +252,14 @@ class Pipeline {
   Checkpoint checkpoint() const;
   void goBackTo(const Checkpoint& good);
   void checkIn(const RobotPose& pose);
-  void goBackTo(const RobotPose& pose);
-  void leaveStuck(const RobotPose& pose);
+  void goBackTo(RobotPose& pose);
+  void leaveStuck(RobotPose& pose);
   bool isHooked(std::size_t tool) const;
   void letGoOf(std::size_t tool);
   RobotPose withTool(std::size_t tool, const RobotPose& pose, RobotPose others) const;
-  void startAnew(const RobotPose& pose);
+  void startAnew(RobotPose& pose);
   void lieDown();
-  void comeAndGo(const RobotPose& pose);
+  void comeAndGo(RobotPose& pose);
   bool standsStill(const RobotPose& pose) const;
   bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
   std::vector<std::size_t> toolsBehind() const;
@@ -259,9 +282,10 @@ class Pipeline {
                               int most) const;
   bool drawOut(const Links& links, RobotPose& pose) const;
   void drawOut(std::size_t tool, RobotPose& pose);
-  void unhook(const RobotPose& pose);
-  void leaveReleased(const RobotPose& pose);
-  void comeAnew(const std::vector<std::size_t>& tools, const RobotPose& pose);
+  void unhook(RobotPose& pose);
+  void leaveReleased(RobotPose& pose);
+  void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
+  bool waitsOutside(std::size_t tool, bool any_came, RobotPose& pose);
 
   // tool_actions.cpp
   RobotPose driven(const RobotPose& pose) const;
@@ -310,8 +334,9 @@ class Pipeline {
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
-  bool bounds_solves_ = false;  // with the budget
-  Deadline deadline_;           // of the step under way
+  Deadline deadline_;           // of the call under way
+  int late_iterations_ = 0;     // of the method, where the tools stand
+  bool gave_up_ = false;        // there
   bool unfinished_ = false;     // the last load step had no time for all that it would have done
   bool touched_ = true;         // the reports are to be brought up to date
   std::vector<Vec3> vertices_;  // of the last contacts

@@ -22,10 +22,13 @@ class MarkerBuilder {
   // force_scale in m/N.
   MarkerBuilder(std::string frame_id, double force_scale, std::vector<SupportConfig> supports);
 
-  visualization_msgs::MarkerArray build(const Pipeline& pipeline, const ros::Time& stamp);
+  // reached: stamp of the pose that the forces are of; the shape is as it is at `stamp`.
+  visualization_msgs::MarkerArray build(const Pipeline& pipeline, const ros::Time& stamp,
+                                        const ros::Time& reached);
   // Of what build() gives, the markers that look otherwise than when this was asked last; all of
   // them after tellAll().
-  visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp);
+  visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
+                                               const ros::Time& reached);
   void tellAll() { told_.clear(); }
 
  private:

@@ -7,7 +7,6 @@
 #include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
 #include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
 
 #include <cstdint>
 #include <functional>
@@ -17,6 +16,7 @@
 
 #include "robot_tissue/pipeline/still_pose.h"
 #include "robot_tissue/ros/tool_poses.h"
+#include "robot_tissue/ros/transform_feed.h"
 #include "robot_tissue/ros/update_pace.h"
 
 namespace robot_tissue {
@@ -43,6 +43,14 @@ class PoseWatch {
     ros::Time still;  // the newest stamp of a still one; zero when there was none
   };
   Seen seen();
+  // Likewise: those that were due, and those of them that a newer one took the place of.
+  struct Counts {
+    int came = 0;
+    int missed = 0;
+  };
+  Counts counts();
+  // How often time has gone back so far, as where a bag plays again. What was received before goes.
+  int timeJumps();
   // From here on these poses are answered as still ones; none: none is.
   void standAt(std::optional<StillPose> still);
 
@@ -55,6 +63,7 @@ class PoseWatch {
   };
   class HandOver;
 
+  void noticeTime();
   void onTransforms();
   void handOver();
 
@@ -67,12 +76,15 @@ class PoseWatch {
   UpdatePace pace_;
   bool started_ = false;
   Seen seen_;
+  Counts counts_;
+  ros::Time last_time_;
+  int time_jumps_ = 0;
   ros::Time last_stamp_;
   std::optional<StillPose> still_;
   std::optional<PoseLookUp> waiting_;  // for the spinner's thread
   boost::signals2::connection connection_;
   AtOnce at_once_;
-  std::unique_ptr<tf2_ros::TransformListener> listener_;
+  std::unique_ptr<TransformFeed> feed_;
 };
 
 }  // namespace robot_tissue

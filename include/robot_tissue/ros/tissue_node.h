@@ -6,13 +6,13 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <diagnostic_updater/update_functions.h>
 #include <robot_tissue/ApplyLoad.h>
 #include <robot_tissue/Cut.h>
 #include <robot_tissue/Tool.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <ros/timer.h>
+#include <ros/wall_timer.h>
 #include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
 
@@ -38,7 +38,9 @@ class TissueNode {
  private:
   void onStill(const ros::Time& stamp);
   void onTimer();
+  void onWallTimer();
   void tick(bool seldom);
+  bool timeWentBack();
   void tellStill(const ros::Time& stamp);
   bool isStill() const;
   void update(PoseLookUp look_up);
@@ -49,6 +51,7 @@ class TissueNode {
   void report(const NodeStatus& status);
   // node_status.cpp
   NodeStatus statusOf(const StepReport& report);
+  void diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -72,6 +75,7 @@ class TissueNode {
   ros::NodeHandle private_node_;
   NodeParameters parameters_;
   Pipeline pipeline_;
+  double budget_s_ = 0.0;  // of an update or a service's call
   tf2_ros::Buffer buffer_;
   ToolPoses tool_poses_;
   TissuePublisher publisher_;
@@ -81,14 +85,16 @@ class TissueNode {
   bool ticks_seldom_ = false;
   ros::Time jumped_at_;  // stamp of the first pose after a jump that is not followed yet
   NodeStatus status_;
+  ros::WallTime grace_end_;  // until then it is no fault that no pose is there yet
+  std::string warned_;       // status that was warned about last, until there is a good pose
+  int time_jumps_ = 0;
   std::map<StepRemark::Kind, std::string> tools_said_;  // since the diagnostics were last told
   bool was_late_ = false;                               // likewise
+  ros::WallTime rate_told_;
   diagnostic_updater::Updater diagnostics_;
-  double lowest_rate_hz_ = 0.0;
-  double highest_rate_hz_ = 0.0;
-  diagnostic_updater::FrequencyStatus frequency_;
   ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
   ros::Timer timer_;
+  ros::WallTimer wall_timer_;  // in simulated time, until there is some
   PoseWatch watch_;  // the first to go: it calls into the others
 };
 

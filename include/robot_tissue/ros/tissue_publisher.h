@@ -1,7 +1,8 @@
 // Everything the node publishes, in one place. Markers go out only when they changed and somebody
 // listens, at most at their own rate: those that changed, and all of them when somebody came and
 // when the shape has come to rest, so that the latched array is whole and nothing that a slow
-// listener lost stays lost. Contacts go out when they changed, and as often as the state.
+// listener lost stays lost. Contacts go out when they changed, and as often as the state. While the
+// tissue is behind the tools, wrenches and contacts are those of the last pose that it reached.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -37,6 +38,8 @@ class TissuePublisher {
   // publishSeldom.
   void publishStill(const ros::Time& stamp) { wrenches_.publishAgain(stamp); }
   void publishSeldom(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  // What was told so far is of another time.
+  void timeWentBack();
   // Nothing but what goes out once a second and at every pose is to be published.
   bool isUpToDate() const;
   bool tellsWrenches() const { return wrenches_.isListenedTo(); }
@@ -63,6 +66,7 @@ class TissuePublisher {
   bool whole_array_is_out_ = false;  // with nothing changed since
   bool contacts_due_ = true;
   ros::Time last_contacts_;
+  ros::Time reached_;  // stamp of the last pose that the tissue reached
   bool latched_markers_are_out_ = false;
   ros::Time last_markers_;
   NodeStatus last_status_;

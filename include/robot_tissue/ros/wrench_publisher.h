@@ -33,8 +33,13 @@ class WrenchPublisher {
   void publish(const std::vector<ToolReport>& reports, const ros::Time& stamp);
   // The last ones hold at this pose as well. In any thread.
   void publishAgain(const ros::Time& stamp);
+  // The tissue is behind the tools: the last ones are told as they were, with the stamp of the pose
+  // that they belong to.
+  void publishOld();
   // No good pose: nothing is sent until there is one again.
   void fallSilent();
+  // Those told so far are of another time: they are not told again.
+  void forget();
   bool isListenedTo() const;
 
  private:
@@ -48,6 +53,7 @@ class WrenchPublisher {
   std::mutex mutex_;                        // of the members up to the thread
   std::vector<geometry_msgs::WrenchStamped> messages_;
   bool silent_ = true;
+  bool has_told_ = false;
   bool stops_ = false;
   std::condition_variable listener_came_;  // or the thread is to stop
   std::thread thread_;

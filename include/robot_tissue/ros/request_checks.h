@@ -1,0 +1,21 @@
+// What a service's request may say. Each throws InputError with one short line that names the field,
+// the value and what is allowed.
+#pragma once
+
+#include <string>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+constexpr double kFarthestPoint = 1e6;  // m: beyond, a tool stands nowhere
+constexpr double kGreatestForce = 1e6;  // N
+
+// Names become namespaces of markers and words of messages, as in scenes.
+void requireName(const std::string& name);
+
+// No component beyond `most`, in this unit.
+void requireWithin(const Vec3& vector, double most, const std::string& unit,
+                   const std::string& field);
+
+}  // namespace robot_tissue

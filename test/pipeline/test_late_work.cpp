@@ -1,0 +1,168 @@
+// What a call of the pipeline has no time for is carried on by the steps that follow. The budget is
+// none at all, so that it does not matter how fast the machine is.
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kMostSteps = 400;
+
+Pipeline blockUnder(const std::vector<ToolGeometry>& tools) {
+  return {block(), methodOf("elastic"), tools};
+}
+
+LoadStep punch(double depth) {
+  LoadStep load;
+  load.patches.push_back({});
+  load.patches.front().name = "punch";
+  load.patches.front().box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, kWidth, kTop)};
+  load.patches.front().displacement = {{0.0, 0.0, -depth}};
+  return load;
+}
+
+PatchAnswer answerOfPunch(const Pipeline& pipeline) {
+  return pipeline.tissue().answerOf("punch", pipeline.tissue().lastReport());
+}
+
+void stepUntilDone(Pipeline& pipeline, const RobotPose& pose) {
+  int steps = 0;
+  while (pipeline.step(pose).changed && ++steps < kMostSteps) {
+  }
+  EXPECT_LT(steps, kMostSteps);
+  EXPECT_FALSE(pipeline.isLate());
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+}
+
+double force(const Pipeline& pipeline) {
+  return pipeline.report().tools.front().force_on_tool.norm();
+}
+
+TEST(LateWork, BudgetBoundsSolvesWithoutMaxMs) {
+  Pipeline pipeline = blockUnder({probe()});
+  pipeline.setBudget(0.0);
+  for (double depth = -0.001; depth < 0.004; depth += 0.0005) {
+    pipeline.step(pressed(depth));
+    EXPECT_LE(pipeline.tissue().lastReport().iterations, 1);
+    EXPECT_LE(pipeline.report().substeps, 1);
+  }
+  EXPECT_TRUE(pipeline.isLate() || pipeline.report().too_fast);
+  EXPECT_FALSE(pipeline.hasArrived());
+  stepUntilDone(pipeline, pressed(0.004));
+  EXPECT_TRUE(pipeline.hasArrived());
+}
+
+TEST(LateWork, LoadIsBroughtOnInLaterSteps) {
+  Pipeline hurried = blockUnder({probe()}), patient = blockUnder({probe()});
+  hurried.setBudget(0.0);
+  for (Pipeline* pipeline : {&hurried, &patient}) {
+    pipeline->step(pressed(-0.01));
+    pipeline->load(punch(0.01));
+  }
+  EXPECT_TRUE(hurried.isLate());
+  EXPECT_TRUE(hurried.tissue().isLoading());
+  EXPECT_GT(answerOfPunch(hurried).displacement.z(), -0.009);
+  stepUntilDone(hurried, pressed(-0.01));
+  EXPECT_DOUBLE_EQ(answerOfPunch(hurried).displacement.z(), -0.01);
+  EXPECT_LT(relativeDifference(hurried.tissue(), patient.tissue()), 0.03);
+}
+
+TEST(LateWork, LoadIsBroughtOnWhileTheToolsHaveNoPose) {
+  Pipeline pipeline = blockUnder({probe()});
+  pipeline.setBudget(0.0);
+  pipeline.load(punch(0.01));
+  int calls = 0;
+  while (pipeline.isLate() && ++calls < kMostSteps) pipeline.carryOn();
+  EXPECT_GT(calls, 1);
+  EXPECT_DOUBLE_EQ(answerOfPunch(pipeline).displacement.z(), -0.01);
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+}
+
+TEST(LateWork, LoadUnderWayIsReleased) {
+  Pipeline pipeline = blockUnder({probe()});
+  pipeline.setBudget(0.0);
+  pipeline.step(pressed(-0.01));
+  pipeline.load(punch(0.01));
+  pipeline.release({"punch"});
+  EXPECT_FALSE(pipeline.tissue().isLoading());
+  stepUntilDone(pipeline, pressed(-0.01));
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+TEST(LateWork, CutIsBalancedInLaterSteps) {
+  Pipeline hurried = blockUnder({probe()}), patient = blockUnder({probe()});
+  const double x = kMiddle + 0.0125;  // between nodes
+  for (Pipeline* pipeline : {&hurried, &patient}) {
+    walk(*pipeline, -0.001, 0.005);
+    pipeline->step(pressed(0.005));
+  }
+  hurried.setBudget(0.0);
+  for (Pipeline* pipeline : {&hurried, &patient}) {
+    pipeline->cut({Vec3(x, -1.0, 0.01), Vec3(x, 1.0, 0.01), Vec3(x, 1.0, 1.0), Vec3(x, -1.0, 1.0)});
+  }
+  EXPECT_LE(hurried.tissue().lastReport().iterations, 1);
+  EXPECT_TRUE(hurried.isLate());
+  stepUntilDone(hurried, pressed(0.005));
+  patient.step(pressed(0.005));
+  EXPECT_NEAR(force(hurried), force(patient), 0.05 * force(patient));
+  EXPECT_LT(relativeDifference(hurried.tissue(), patient.tissue()), 0.05);
+}
+
+// The shape is found anew from rest when the last tool leaves.
+TEST(LateWork, StandingLoadComesBackWhenTheLastToolLeaves) {
+  Pipeline hurried = blockUnder({probe()}), patient = blockUnder({probe()});
+  for (Pipeline* pipeline : {&hurried, &patient}) {
+    pipeline->load(punch(0.01));
+    walk(*pipeline, -0.001, 0.003);
+  }
+  hurried.setBudget(0.0);
+  stepUntilDone(hurried, pressed(-0.01));
+  patient.step(pressed(-0.01));
+  EXPECT_DOUBLE_EQ(answerOfPunch(hurried).displacement.z(), -0.01);
+  EXPECT_LT(relativeDifference(hurried.tissue(), patient.tissue()), 0.03);
+}
+
+TEST(LateWork, ToolsThatAppearInsideComeInOneByOneWithoutTime) {
+  Pipeline pipeline = blockUnder({probe("left"), probe("right")});
+  pipeline.setBudget(0.0);
+  const double z = kTop + kRadius - 0.004;
+  const RobotPose inside = at({Vec3(0.015, kMiddle, z), Vec3(0.045, kMiddle, z)});
+  const StepReport& report = pipeline.step(inside);
+  EXPECT_EQ(report.were_inside, std::vector<std::size_t>{0});
+  EXPECT_TRUE(report.too_fast);
+  EXPECT_EQ(std::count(report.behind.begin(), report.behind.end(), 1U), 1);
+  EXPECT_FALSE(pipeline.hasArrived());
+  pipeline.step(inside);
+  EXPECT_EQ(report.were_inside, std::vector<std::size_t>{1});
+  stepUntilDone(pipeline, inside);
+  EXPECT_TRUE(pipeline.hasArrived());
+  EXPECT_NEAR(report.tools[0].force_on_tool.z(), report.tools[1].force_on_tool.z(),
+              0.05 * report.tools[0].force_on_tool.z());
+}
+
+// What no shape follows is told for as long as the tools stand there.
+TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
+  ToolGeometry above = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "above");
+  ToolGeometry below = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "below");
+  TissueConfig tissue = block("elastic", 2.0 * kSpacing);
+  tissue.fixed.clear();
+  tissue.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)});
+  Pipeline pipeline(tissue, methodOf("elastic"), {above, below});
+  const auto squeezed = [](double gap) {
+    const double middle = 0.5 * kTop, half = 0.5 * gap + 0.005;
+    return at({Vec3(0.13, kMiddle, middle + half), Vec3(0.13, kMiddle, middle - half)});
+  };
+  pipeline.step(squeezed(kTop + 0.002));
+  double gap = kTop;
+  for (; gap > 0.0 && !pipeline.report().lost; gap -= 0.01) pipeline.step(squeezed(gap));
+  if (!pipeline.report().lost) pipeline.step(squeezed(-0.002));
+  ASSERT_TRUE(pipeline.report().lost);
+  const RobotPose stands = squeezed(gap > 0.0 ? gap + 0.01 : -0.002);
+  for (int step = 0; step < 3; ++step) {
+    pipeline.step(stands);
+    EXPECT_TRUE(pipeline.report().lost);
+    EXPECT_FALSE(pipeline.hasArrived());
+  }
+}
+
+}  // namespace
+}  // namespace robot_tissue

@@ -1,0 +1,144 @@
+// A node in simulated time, with this test as its clock: time that is not there yet, goes on slowly
+// told poses, and goes back as where a bag plays again.
+#include <rosgraph_msgs/Clock.h>
+#include <rosgraph_msgs/Log.h>
+
+#include <algorithm>
+
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+const ros::Duration kStep(0.02);  // of the clock
+
+class SimTime : public NodeTest {
+ protected:
+  SimTime() : clock_(node_.advertise<rosgraph_msgs::Clock>("/clock", 100)) {
+    publishes_transform_ = false;
+    subscribers_.push_back(node_.subscribe<rosgraph_msgs::Log>(
+        "/rosout", 100, [this](const rosgraph_msgs::LogConstPtr& line) {
+          if (line->name == "/tissue" && line->level >= rosgraph_msgs::Log::WARN) {
+            warnings_.push_back(line->msg);
+          }
+        }));
+    subscribers_.push_back(node_.subscribe<TissueState>(
+        "/tissue/state", 1000,
+        [this](const TissueStateConstPtr& state) { stamps_.push_back(state->header.stamp); }));
+  }
+
+  // The clock goes on by a step, with a pose of its time in every so many of them.
+  void tick(int steps_a_pose = 1) {
+    now_ += kStep;
+    rosgraph_msgs::Clock message;
+    message.clock = now_;
+    clock_.publish(message);
+    if (++steps_ % steps_a_pose == 0) sendPose(now_);
+  }
+
+  void sendPose(const ros::Time& stamp) {
+    auto all = transforms();
+    for (auto& transform : all) transform.header.stamp = stamp;
+    broadcaster_.sendTransform(all);
+  }
+
+  bool tickUntil(const std::function<bool()>& condition, int steps_a_pose = 1) {
+    return waitFor([&] {
+      tick(steps_a_pose);
+      return condition();
+    });
+  }
+
+  bool warnsOf(const std::string& text) const {
+    return std::any_of(warnings_.begin(), warnings_.end(), [&](const std::string& warning) {
+      return warning.find(text) != std::string::npos;
+    });
+  }
+
+  // From this time on, until the node is at work.
+  void playFrom(double seconds, double depth) {
+    now_ = ros::Time(seconds);
+    depth_ = depth;
+    const auto is_there = [&] {
+      return state_ && state_->status == "OK" && wrench_ && wrench_->header.stamp >= played_from_ &&
+             wrench_->header.stamp <= now_;
+    };
+    played_from_ = now_;
+    wrench_.reset();
+    ASSERT_TRUE(tickUntil(is_there));
+  }
+
+  // What was sent so far has been worked off.
+  void drain() {
+    ask("release", "nothing");
+    ros::spinOnce();
+  }
+
+  ros::Publisher clock_;
+  ros::Time now_, played_from_;
+  int steps_ = 0;
+  std::vector<std::string> warnings_;
+  std::vector<ros::Time> stamps_;  // of states
+};
+
+// The first one: there is no time yet.
+TEST_F(SimTime, WithoutAClockIsWarnedAboutAndWaitedFor) {
+  ASSERT_TRUE(waitFor([this] { return warnsOf("/clock"); }));
+  playFrom(100.0, -0.01);
+  EXPECT_FALSE(warnsOf("no transform"));
+  ASSERT_TRUE(tickUntil([this] { return diagnostics_.count("tissue: update rate") > 0; }));
+}
+
+TEST_F(SimTime, PosesAtAnyRateKeepUp) {
+  playFrom(200.0, -0.01);
+  for (const int steps_a_pose : {5, 2, 1}) {  // 10, 25 and 50 Hz
+    for (int period = 0; period < 2; ++period) {
+      diagnostics_.clear();
+      ASSERT_TRUE(tickUntil([this] { return diagnostics_.count("tissue: update rate") > 0; },
+                            steps_a_pose));
+    }
+    const auto& rate = diagnostics_["tissue: update rate"];
+    EXPECT_EQ(rate.level, diagnostic_msgs::DiagnosticStatus::OK) << rate.message;
+    EXPECT_EQ(rate.message, "keeps up");
+  }
+}
+
+TEST_F(SimTime, ABagThatPlaysAgainWarnsOnceAtMost) {
+  playFrom(300.0, 0.004);
+  warnings_.clear();
+  for (int loop = 0; loop < 3; ++loop) {
+    ASSERT_TRUE(tickUntil([this] { return state_->force_of_tools.z < -0.05; }));
+    drain();
+    stamps_.clear();
+    playFrom(250.0, -0.03);  // as the bag begins
+    drain();
+    for (const ros::Time& stamp : stamps_) EXPECT_LT(stamp.toSec(), 290.0) << "of before";
+    EXPECT_EQ(wrench_->wrench.force.z, 0.0);
+    depth_ = 0.004;
+    now_ = ros::Time(300.0);
+    ASSERT_TRUE(tickUntil([this] { return wrench_->header.stamp.toSec() > 300.0; }));
+  }
+  EXPECT_LE(warnings_.size(), 1U);
+  for (const std::string& warning : warnings_) {
+    EXPECT_NE(warning.find("time went back"), std::string::npos) << warning;
+  }
+}
+
+TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
+  playFrom(400.0, -0.01);
+  sendPose(now_ + ros::Duration(3600.0));
+  ASSERT_TRUE(tickUntil([this] { return warnsOf("ahead of now"); }));
+  depth_ = 0.004;
+  EXPECT_TRUE(tickUntil([this] { return state_->status == "OK" && wrench_->wrench.force.z < -0.1; }));
+  EXPECT_LT(wrench_->header.stamp, now_ + ros::Duration(1.0));
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_sim_time");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,98 @@
+// A tool that races in and out of the tissue, faster than the node can follow: what is told of a
+// pose is of that pose.
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kClear = 0.01, kDeep = 0.006;  // of the probe's lowest point above, beneath (m)
+constexpr double kFlat = 0.003;  // of the probe's lowest point: so high its side may touch (m)
+
+class Stamps : public NodeTest {
+ protected:
+  Stamps() {
+    subscribers_.push_back(node_.subscribe<geometry_msgs::WrenchStamped>(
+        "/tissue/probe/measured_cf", 5000,
+        [this](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+          const auto& force = wrench->wrench.force;
+          isTold(wrench->header.stamp, std::hypot(force.x, force.y, force.z), wrenches_);
+        }));
+    subscribers_.push_back(node_.subscribe<ContactArray>(
+        "/tissue/contacts", 5000, [this](const ContactArrayConstPtr& array) {
+          double force = 0.0;
+          for (const TissueContact& contact : array->contacts) force += std::abs(contact.force.z);
+          isTold(array->header.stamp, force, arrays_);
+        }));
+    publishes_transform_ = false;
+  }
+
+  void isTold(const ros::Time& stamp, double force, int& count) {
+    ++count;
+    last_told_ = std::max(last_told_, stamp);
+    const auto pose = depths_.find(stamp);
+    ASSERT_NE(pose, depths_.end()) << "of no pose that was sent";
+    if (pose->second < -kFlat) {
+      EXPECT_LT(force, 1e-6) << "N, " << -pose->second << " m above the tissue";
+    }
+  }
+
+  // One pose, all of one stamp.
+  void send() {
+    auto all = transforms();
+    for (auto& transform : all) transform.header.stamp = all.front().header.stamp;
+    depths_[all.front().header.stamp] = depth_;
+    broadcaster_.sendTransform(all);
+  }
+
+  bool sendUntil(const std::function<bool()>& condition) {
+    return waitFor([&] {
+      send();
+      return condition();
+    });
+  }
+
+  bool arrives(double depth) {
+    depth_ = depth;
+    const ros::Time moved = ros::Time::now();
+    return sendUntil([&] { return wrench_ && wrench_->header.stamp > moved; });
+  }
+
+  // The node says that it is behind.
+  bool falls_behind(double depth) {
+    depth_ = depth;
+    said_.clear();
+    return sendUntil([this] { return said_.count("TOO_FAST") + said_.count("LATE") > 0; });
+  }
+
+  std::map<ros::Time, double> depths_;  // of the probe (m), by stamps of the poses sent
+  ros::Time last_told_;
+  int wrenches_ = 0, arrays_ = 0;
+};
+
+TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
+  ASSERT_TRUE(arrives(-kClear));
+  for (int time = 0; time < 5; ++time) {
+    const ros::Time reached = last_told_;
+    ASSERT_TRUE(falls_behind(kDeep));
+    ASSERT_TRUE(falls_behind(-kClear));
+    EXPECT_GE(last_told_, reached);
+  }
+  ASSERT_TRUE(arrives(kDeep));
+  ASSERT_TRUE(sendUntil([this] { return state_->status == "OK"; }));
+  EXPECT_LT(wrench_->wrench.force.z, -0.1);
+  ASSERT_TRUE(falls_behind(-kClear));
+  ASSERT_TRUE(arrives(-kClear));
+  EXPECT_EQ(wrench_->wrench.force.z, 0.0);
+  EXPECT_GT(wrenches_, 100);
+  EXPECT_GT(arrays_, 2);
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_stamps");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}

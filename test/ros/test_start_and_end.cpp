@@ -1,0 +1,109 @@
+// A node's first and last moments, of a process of its own.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+class NodeProcess {
+ public:
+  NodeProcess() {
+    int ends[2];
+    if (pipe(ends) != 0) return;
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(ends[1], STDOUT_FILENO);
+      dup2(ends[1], STDERR_FILENO);
+      close(ends[0]);
+      execl(NODE_PATH, NODE_PATH, "__name:=tissue", static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    close(ends[1]);
+    output_ = ends[0];
+    fcntl(output_, F_SETFL, O_NONBLOCK);
+  }
+  ~NodeProcess() {
+    if (pid_ > 0 && !hasEnded()) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    close(output_);
+  }
+  NodeProcess(const NodeProcess&) = delete;
+  NodeProcess& operator=(const NodeProcess&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+  bool hasEnded() {
+    read();
+    if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return ended_;
+  }
+  int status() const { return status_; }
+  const std::string& read() {
+    char buffer[4096];
+    for (ssize_t count = 0; (count = ::read(output_, buffer, sizeof(buffer))) > 0;) {
+      said_.append(buffer, static_cast<std::size_t>(count));
+    }
+    return said_;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  int output_ = -1, status_ = -1;
+  bool ended_ = false;
+  std::string said_;
+};
+
+bool isRegistered(const std::string& name) {
+  ros::V_string nodes;
+  return ros::master::getNodes(nodes) && std::find(nodes.begin(), nodes.end(), name) != nodes.end();
+}
+
+class Start : public NodeTest {};
+class StartAndEnd : public NodeTest, public ::testing::WithParamInterface<int> {};
+
+// Beside a robot that is there, nothing is wrong at any moment.
+TEST_P(StartAndEnd, AreQuietAndInOrder) {
+  NodeProcess node;
+  ASSERT_TRUE(waitFor([&] { return state_ && state_->status == "OK"; })) << node.read();
+  ASSERT_TRUE(isRegistered("/tissue"));
+  node.signal(GetParam());
+  ASSERT_TRUE(waitFor([&] { return node.hasEnded(); }));
+  EXPECT_TRUE(WIFEXITED(node.status())) << "ended by a signal";
+  EXPECT_EQ(WEXITSTATUS(node.status()), 0);
+  EXPECT_FALSE(isRegistered("/tissue"));
+  EXPECT_EQ(node.read().find("WARN"), std::string::npos) << node.read();
+  EXPECT_EQ(node.read().find("ERROR"), std::string::npos) << node.read();
+}
+
+INSTANTIATE_TEST_SUITE_P(Node, StartAndEnd, ::testing::Values(SIGINT, SIGTERM),
+                         [](const ::testing::TestParamInfo<int>& signal) {
+                           return std::string(signal.param == SIGINT ? "SigInt" : "SigTerm");
+                         });
+
+// A robot that never comes is warned about, once.
+TEST_F(Start, ARobotThatDoesNotComeIsWarnedAbout) {
+  publishes_transform_ = false;
+  NodeProcess node;
+  const auto warning = [&] { return node.read().find("NO_TRANSFORM"); };
+  ASSERT_TRUE(waitFor([&] { return warning() != std::string::npos; }));
+  EXPECT_EQ(node.read().find("NO_TRANSFORM", warning() + 1), std::string::npos);
+  node.signal(SIGTERM);
+  EXPECT_TRUE(waitFor([&] { return node.hasEnded(); }));
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_start_and_end");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
