@@ -17,9 +17,14 @@ std::string number(double value) {
   return text;
 }
 
+// Those of a scene are within narrower ranges, by the tissue's size; a URDF's come unchecked (m).
+constexpr double kSmallest = 1e-9;
+constexpr double kLargest = 1e6;
+
 double positive(double value, const char* what, const std::string& owner) {
-  if (value > 0.0 && std::isfinite(value)) return value;
-  throw InputError(owner + ": " + what + " is " + number(value) + "; allowed is > 0 (m)");
+  if (value >= kSmallest && value <= kLargest) return value;
+  throw InputError(owner + ": " + what + " is " + number(value) + "; allowed is > 0, from " +
+                   number(kSmallest) + " to " + number(kLargest) + " (m)");
 }
 
 }  // namespace
@@ -27,11 +32,16 @@ double positive(double value, const char* what, const std::string& owner) {
 CollisionShape::CollisionShape(const ToolShape& shape, const std::string& owner,
                                std::vector<std::string>& warnings)
     : shape_(shape) {
-  if (!(shape.padding >= 0.0 && std::isfinite(shape.padding))) {
-    throw InputError(owner + ": padding is " + number(shape.padding) + "; allowed is >= 0 (m)");
+  if (!(shape.padding >= 0.0 && shape.padding <= kLargest)) {
+    throw InputError(owner + ": padding is " + number(shape.padding) +
+                     "; allowed is >= 0 (m), up to " + number(kLargest));
   }
   if (!shape.pose.matrix().allFinite()) {
     throw InputError(owner + ": its pose has a number that is not finite");
+  }
+  if (!(shape.pose.translation().cwiseAbs().maxCoeff() <= kLargest)) {
+    throw InputError(owner + ": it is " + number(shape.pose.translation().norm()) +
+                     " m from its link; allowed is up to " + number(kLargest));
   }
   if (shape.type == Type::kMesh) {
     measureMesh(owner, warnings);
@@ -67,6 +77,7 @@ void CollisionShape::measureMesh(const std::string& owner, std::vector<std::stri
   mesh_ = std::make_shared<const ToolMesh>(shape_.resource, shape_.scale, owner, warnings);
   thickness_ = mesh_->thickness();
   bounds_ = mesh_->bounds();
+  positive((bounds_.max - bounds_.min).maxCoeff(), "size of its mesh", owner);
 }
 
 SignedDistance CollisionShape::unpadded(const Vec3& point) const {

@@ -37,8 +37,10 @@ TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const s
     warnings.push_back(name + *fault + "; depths near such places are only estimates");
     return turnedOutwards(std::move(mesh));
   } catch (const InputError& error) {
-    throw InputError(name + error.what() +
-                     "; allowed is a package:// or file:// address of a closed mesh with volume");
+    throw InputError(
+        name + error.what() +
+        "; allowed is a package:// or file:// address of a closed mesh with volume, in " +
+        kMeshFileRule);
   }
 }
 

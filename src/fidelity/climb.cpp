@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ladder.h"
+#include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -73,7 +74,7 @@ class Climb {
     const double allowed = spacing < scene_.tissue.spacing ? 0.5 * secondsLeft() : secondsLeft();
     const double expected = expectedSeconds(spacing);
     const Rung rung{options_.method, spacing, tolerances_.back()};
-    if (nodes > mostNodes()) {
+    if (nodes > mostNodes(freeMemory(), options_.method)) {
       addGap(rung, "not tried: " + numberText(nodes) + " nodes are more than the memory holds");
     } else if (spacing < scene_.tissue.spacing && expected > allowed) {
       addGap(rung, "not tried: would take about " + numberText(std::ceil(expected)) +

@@ -42,10 +42,10 @@ FidelityArguments parseFidelityArguments(const std::vector<std::string>& words) 
   for (const char* needed : {"--error", "--rate"}) {
     if (!line.value(needed)) throw InputError(std::string(needed) + " is missing" + usage);
   }
-  parsed.error = numberOf(line, "--error", parsed.error, Range::open(0.0, 1.0));
-  parsed.rate = numberOf(line, "--rate", parsed.rate, Range::positive("Hz"));
-  parsed.seconds = numberOf(line, "--seconds", parsed.seconds, Range::positive("s"));
-  parsed.way_an_update = numberOf(line, "--way", parsed.way_an_update, Range::positive("m"));
+  parsed.error = numberOf(line, "--error", parsed.error, Range{1e-9, 1.0, ""});
+  parsed.rate = numberOf(line, "--rate", parsed.rate, Range{1e-3, 1e9, "Hz"});
+  parsed.seconds = numberOf(line, "--seconds", parsed.seconds, Range{1e-3, 1e6, "s"});
+  parsed.way_an_update = numberOf(line, "--way", parsed.way_an_update, Range{1e-9, 1e3, "m"});
   parsed.method = methodOf(line, parsed.method);
   return parsed;
 }
@@ -55,7 +55,7 @@ std::string fidelityHelp() {
 Tries the scene on coarser and finer lattices, estimates the error of each, measures what an update
 costs on this machine, and names the cheapest that meets both.
 
-  --error X         relative error allowed of displacements and forces, 0 < X < 1
+  --error X         relative error allowed of displacements and forces, 1e-9 to 1
   --rate HZ         updates a second that are wanted
   --write OUT.yaml  writes the scene with what was chosen
   --seconds N       how long measuring may take (60); what does not fit in is not tried

@@ -1,10 +1,7 @@
 #include "ladder.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "robot_tissue/core/grid.h"
 
@@ -58,15 +55,6 @@ std::vector<double> ladderSpacings(const TissueConfig& tissue, int coarser, int 
 double nodesAt(const TissueConfig& tissue, double spacing) {
   const Vec3 cells = (extentOf(tissue) / spacing).array().ceil();
   return nodeCount(cells * spacing, spacing);
-}
-
-double mostNodes() {
-  constexpr double kBytesPerNode = 3000.0;  // lattice, springs, shape and surface
-  const long pages = sysconf(_SC_PHYS_PAGES);
-  const long page_bytes = sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page_bytes <= 0) return std::numeric_limits<int>::max() / 3.0;
-  return std::min(static_cast<double>(pages) * static_cast<double>(page_bytes) / kBytesPerNode,
-                  std::numeric_limits<int>::max() / 3.0);
 }
 
 }  // namespace robot_tissue

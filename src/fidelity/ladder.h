@@ -17,7 +17,4 @@ std::vector<double> ladderSpacings(const TissueConfig& tissue, int coarser, int 
 // Nodes of the box, or of the mesh's bounding box, at this spacing.
 double nodesAt(const TissueConfig& tissue, double spacing);
 
-// Most nodes that the memory of this machine holds.
-double mostNodes();
-
 }  // namespace robot_tissue

@@ -1,12 +1,13 @@
 #include "robot_tissue/mesh/mesh_file.h"
 
-#include <geometric_shapes/mesh_operations.h>
 #include <rospack/rospack.h>
 
-#include <exception>
-#include <memory>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 
-#include "robot_tissue/mesh/quiet_console.h"
+#include "mesh_formats.h"
+#include "robot_tissue/mesh/regular_file.h"
 
 namespace robot_tissue {
 namespace {
@@ -18,13 +19,16 @@ bool startsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }
 
-// file:// address of a package:// one. The retriever that geometric_shapes uses would print what it
-// does not find.
-std::string fileAddress(const std::string& resource) {
-  if (!startsWith(resource, kPackage)) return resource;
-  const std::string place = resource.substr(kPackage.size());
-  const std::size_t slash = place.find('/');
-  const std::string name = place.substr(0, slash);
+// By the ending of the name, whatever its case; null for other files.
+TriangleMesh (*meshReaderFor(const std::string& path))(const std::string& bytes) {
+  std::string ending = std::filesystem::path(path).extension();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (ending == ".stl") return readStl;
+  if (ending == ".obj") return readObj;
+  return ending == ".dae" ? readDae : nullptr;
+}
+
+std::string packageFolder(const std::string& name) {
   rospack::Rospack packages;
   packages.setQuiet(true);
   std::vector<std::string> search_path;
@@ -33,38 +37,46 @@ std::string fileAddress(const std::string& resource) {
     packages.crawl(search_path, false);
     packages.find(name, folder);
   }
-  if (folder.empty()) throw InputError("cannot be loaded (no ROS package " + name + " is found)");
-  return kFile + folder + (slash == std::string::npos ? "" : place.substr(slash));
+  if (folder.empty()) throw InputError("no ROS package " + name + " is found");
+  return folder;
+}
+
+std::string pathInPackage(const std::string& place) {
+  const std::size_t slash = std::min(place.find('/'), place.size());
+  const std::string inner = std::filesystem::path("." + place.substr(slash)).lexically_normal();
+  if (inner == ".." || startsWith(inner, "../")) throw InputError("its path leaves the package");
+  return packageFolder(place.substr(0, slash)) + "/" + inner;
+}
+
+std::string pathOf(const std::string& resource) {
+  if (startsWith(resource, kPackage)) return pathInPackage(resource.substr(kPackage.size()));
+  return resource.substr(kFile.size());
+}
+
+TriangleMesh readByName(const std::string& path) {
+  TriangleMesh (*const read)(const std::string&) = meshReaderFor(path);
+  if (read == nullptr) throw InputError("its name ends neither in .stl nor .obj nor .dae");
+  const TriangleMesh mesh = read(readRegularFile(path, kLargestMeshFile));
+  if (mesh.triangles.empty()) throw InputError("has no triangles");
+  return mesh;
 }
 
 }  // namespace
 
+bool isMeshName(const std::string& path) { return meshReaderFor(path) != nullptr; }
+
 TriangleMesh loadMeshFile(const std::string& resource, const Vec3& scale) {
   // Anything else would be looked for on the network.
-  if (!startsWith(resource, kPackage) && !startsWith(resource, kFile)) {
+  if (!startsWith(resource, kPackage) && !startsWith(resource, kFile + "/")) {
     throw InputError("is no package:// or file:// address");
   }
-  const std::string address = fileAddress(resource);
-  QuietConsole console;
-  std::unique_ptr<shapes::Mesh> loaded;
-  std::string reason;
   try {
-    loaded.reset(shapes::createMeshFromResource(address, scale));
-    reason = console.reason();
-  } catch (const std::exception& error) {
-    reason = std::string(" (") + error.what() + ")";
+    TriangleMesh mesh = readByName(pathOf(resource));
+    for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
+    return mesh;
+  } catch (const InputError& error) {
+    throw InputError("cannot be loaded (" + std::string(error.what()) + ")");
   }
-  if (!loaded || loaded->triangle_count == 0) throw InputError("cannot be loaded" + reason);
-  TriangleMesh mesh;
-  for (unsigned int vertex = 0; vertex < loaded->vertex_count; ++vertex) {
-    mesh.vertices.emplace_back(Eigen::Map<const Vec3>(loaded->vertices + 3 * vertex));
-  }
-  for (unsigned int t = 0; t < loaded->triangle_count; ++t) {
-    const unsigned int* corners = loaded->triangles + 3 * t;
-    mesh.triangles.push_back(
-        {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2])});
-  }
-  return mesh;
 }
 
 }  // namespace robot_tissue

@@ -12,6 +12,7 @@
 
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
@@ -19,6 +20,10 @@ namespace {
 constexpr double kLowestRate = 0.01;           // Hz
 constexpr double kHighestRate = 10000.0;       // Hz
 constexpr double kHighestWrenchRate = 1000.0;  // Hz
+constexpr double kShortestTimeout = 1e-3;      // s
+constexpr double kLongestTimeout = 1e6;        // s
+constexpr double kLeastForceScale = 1e-9;      // m/N
+constexpr double kMostForceScale = 1e9;        // m/N
 
 const std::vector<std::string> kOwnKeys = {"rate",
                                            "marker_rate",
@@ -39,6 +44,24 @@ std::string shortestText(double value) {
   }
 }
 
+// rosparam reads YAML 1.1, where an exponent needs a point and a sign: it makes words of 1e-6 and
+// 3.0e9, which are as good as numbers.
+bool isNumberOfRosparam(const std::string& text) {
+  if (!parseNumber(text)) return false;
+  const std::size_t exponent = text.find_first_of("eE");
+  if (exponent == std::string::npos) return true;
+  const bool has_sign = text[exponent + 1] == '+' || text[exponent + 1] == '-';
+  return has_sign && text.find('.') < exponent;
+}
+
+// A text that the server would not have as one unless its writer meant it, is in quotes as in a
+// file: a word, no number and no truth.
+YAML::Node wordOf(const std::string& text) {
+  YAML::Node node(text);
+  if (isNumberOfRosparam(text) || text == "true" || text == "false") node.SetTag("!");
+  return node;
+}
+
 YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
   switch (value.getType()) {
     case XmlRpc::XmlRpcValue::TypeStruct: {
@@ -52,14 +75,15 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue& value) {
       return list;
     }
     case XmlRpc::XmlRpcValue::TypeString:
-      return YAML::Node(static_cast<std::string>(value));
+      return wordOf(value);
     case XmlRpc::XmlRpcValue::TypeDouble:
       return YAML::Node(shortestText(value));
-    default: {
-      std::ostringstream text;
-      text << value;
-      return YAML::Node(text.str());
-    }
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return YAML::Node(std::to_string(static_cast<int>(value)));
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value) ? "true" : "false");
+    default:  // nothing that a scene has: a date, bytes
+      return YAML::Node(YAML::NodeType::Null);
   }
 }
 
@@ -90,16 +114,16 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   source.other_keys = kOwnKeys;
 
   NodeParameters parameters;
-  const Range rate{kLowestRate, kHighestRate, false, false, "Hz"};
+  const Range rate{kLowestRate, kHighestRate, "Hz"};
   parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
   parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
   parameters.wrench_rate_hz =
-      own("wrench_rate")
-          .numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, false, false, "Hz"});
+      own("wrench_rate").numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, "Hz"});
   parameters.tf_timeout_s =
-      own("tf_timeout").numberOr(parameters.tf_timeout_s, Range::positive("s"));
+      own("tf_timeout").numberOr(parameters.tf_timeout_s, {kShortestTimeout, kLongestTimeout, "s"});
   parameters.force_scale =
-      own("force_scale").numberOr(parameters.force_scale, Range::positive("m/N"));
+      own("force_scale")
+          .numberOr(parameters.force_scale, {kLeastForceScale, kMostForceScale, "m/N"});
   if (own("robot_description_param").given()) {
     parameters.robot_description_param =
         own("robot_description_param").word("the name of a parameter that holds a URDF");

@@ -17,30 +17,20 @@ std::optional<double> plainNumber(const YAML::Node& node) {
   return isPlainScalar(node) ? parseNumber(node.Scalar()) : std::nullopt;
 }
 
-}  // namespace
-
-bool Range::contains(double value) const {
-  const bool above = lowest_open ? value > lowest : value >= lowest;
-  const bool below = highest_open ? value < highest : value <= highest;
-  return above && below;
+std::string countText(std::size_t at_least, std::size_t at_most) {
+  if (at_least == at_most) return "exactly " + std::to_string(at_least) + " ";
+  if (at_least == 0) return "up to " + std::to_string(at_most) + " ";
+  return std::to_string(at_least) + " to " + std::to_string(at_most) + " ";
 }
 
+}  // namespace
+
+// Written so that NaN is in none.
+bool Range::contains(double value) const { return value >= lowest && value <= highest; }
+
 std::string Range::text() const {
-  const std::string in_unit = unit.empty() ? "" : " in " + unit;
-  const std::string high = numberText(highest);
-  if (lowest == -kLargestNumber && highest == kLargestNumber) {
-    return "a finite number" + in_unit + ", at most " + high + " in size";
-  }
-  if (lowest == kSmallestPositive) {
-    return "a number > 0" + in_unit + " (" + numberText(lowest) + " to " + high + ")";
-  }
-  if (highest == kLargestNumber) {
-    return "a number >= " + numberText(lowest) + in_unit + " (up to " + high + ")";
-  }
-  if (lowest_open && highest_open) {
-    return "a number > " + numberText(lowest) + " and < " + high + in_unit;
-  }
-  return "a number from " + numberText(lowest) + " to " + high + in_unit;
+  return "a number from " + numberText(lowest) + " to " + numberText(highest) +
+         (unit.empty() ? "" : " in " + unit);
 }
 
 Entry::Entry(const YAML::Node& node, std::string path, std::string source, int parent_line)
@@ -91,8 +81,9 @@ int Entry::integerOr(int otherwise, int lowest, int highest) const {
 }
 
 bool Entry::truth() const {
-  if (isWord("true")) return true;
-  if (!isWord("false")) fail("must be true or false");
+  const bool plain = given() && isPlainScalar(node_);
+  if (plain && isWord("true")) return true;
+  if (!plain || !isWord("false")) fail("must be true or false");
   return false;
 }
 
@@ -132,11 +123,12 @@ std::string Entry::choice(const std::vector<std::string>& available,
   fail(has(planned) ? "not available yet, " + allowed : allowed);
 }
 
-std::vector<Entry> Entry::list(std::size_t at_least, const std::string& what) const {
-  if (!given() || !node_.IsSequence() || node_.size() < at_least) {
-    const std::string count =
-        at_least > 0 ? " with at least " + std::to_string(at_least) + " entries" : "";
-    fail("must be a list of " + what + count);
+std::vector<Entry> Entry::list(std::size_t at_least, const std::string& what,
+                               std::size_t at_most) const {
+  const bool is_list = given() && node_.IsSequence();
+  if (!is_list && at_least == 0) fail("must be a list of " + what);
+  if (!is_list || node_.size() < at_least || node_.size() > at_most) {
+    fail("must be a list of " + countText(at_least, at_most) + what);
   }
   std::vector<Entry> entries;
   for (const auto& item : node_) {

@@ -1,6 +1,7 @@
 // A load step: rigid patches, each on nodes of its own.
 #include <algorithm>
 
+#include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -11,18 +12,14 @@ bool sameNodes(const NodeRange& a, const NodeRange& b) {
   return a.first == b.first && a.last == b.last;
 }
 
-// Names become fields of CSV files and namespaces of markers.
 std::string readPatchName(const Entry& entry) {
-  const std::string allowed = "a name without commas, quotes and control characters";
-  const std::string name = entry.word(allowed);
-  const bool bad = std::any_of(name.begin(), name.end(), [](char c) {
-    return c == ',' || c == '"' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-  });
-  if (bad) entry.fail("must be " + allowed);
+  const std::string name = entry.word("a name");
+  const std::string fault = patchNameFault(name);
+  if (!fault.empty()) entry.fail(fault);
   return name;
 }
 
-std::array<std::optional<double>, 3> readDisplacement(const Entry& entry) {
+std::array<std::optional<double>, 3> readDisplacement(const Entry& entry, const Range& range) {
   const std::string allowed = "must be a list of 3 entries, each a number in m or the word free";
   if (!entry.node().IsSequence() || entry.node().size() != 3) entry.fail(allowed);
   std::array<std::optional<double>, 3> displacement;
@@ -33,7 +30,7 @@ std::array<std::optional<double>, 3> readDisplacement(const Entry& entry) {
     if (!node.IsScalar() || !parseNumber(node.Scalar())) {
       components[axis].fail("must be a number in m or the word free");
     }
-    displacement[axis] = components[axis].number(Range::any("m"));
+    displacement[axis] = components[axis].number(range);
   }
   if (std::none_of(displacement.begin(), displacement.end(),
                    [](const auto& component) { return component.has_value(); })) {
@@ -42,7 +39,7 @@ std::array<std::optional<double>, 3> readDisplacement(const Entry& entry) {
   return displacement;
 }
 
-void readDrive(const MapReader& map, PatchConfig& patch) {
+void readDrive(const MapReader& map, const Range& range, PatchConfig& patch) {
   const Entry displacement = map["displacement"];
   const Entry force = map["force"];
   if (displacement.given() == force.given()) {
@@ -50,9 +47,9 @@ void readDrive(const MapReader& map, PatchConfig& patch) {
                      " displacement and force, must have exactly one");
   }
   if (force.given()) {
-    patch.force = force.vec3(Range::any("N"));
+    patch.force = readVector(force, ranges::force(), ranges::kLeastForce);
   } else {
-    patch.displacement = readDisplacement(displacement);
+    patch.displacement = readDisplacement(displacement, range);
   }
 }
 
@@ -89,7 +86,8 @@ void checkNodes(const Entry& entry, const Grid& grid, const StandingPatch& patch
 }  // namespace
 
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
-                  const SolverConfig& solver, std::vector<StandingPatch>& standing) {
+                  const SolverConfig& solver, const Range& displacement,
+                  std::vector<StandingPatch>& standing) {
   const MapReader map(entry, {"increments", "patches"});
   LoadStep step;
   if (map["increments"].given()) step.increments = map["increments"].integer(1, kMostIncrements);
@@ -104,7 +102,7 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
     }
     names.push_back(patch.name);
     patch.box = readNodeBox(patch_map, grid);
-    readDrive(patch_map, patch);
+    readDrive(patch_map, displacement, patch);
     readTurns(patch_map["turns"], solver, patch);
     const StandingPatch stands{patch.name, grid.nodesIn(patch.box)};
     checkNodes(patch_entry, grid, stands, fixed, standing);

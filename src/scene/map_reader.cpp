@@ -79,8 +79,8 @@ Entry MapReader::operator[](const std::string& key) const {
   return map_.child(YAML::Node(YAML::NodeType::Undefined), key);
 }
 
-Box MapReader::box(bool strict) const {
-  const Box box{(*this)["min"].vec3(Range::any("m")), (*this)["max"].vec3(Range::any("m"))};
+Box MapReader::box(const Range& range, bool strict) const {
+  const Box box{(*this)["min"].vec3(range), (*this)["max"].vec3(range)};
   const std::vector<Entry> upper = (*this)["max"].list(3, "numbers");
   for (int axis = 0; axis < 3; ++axis) {
     if (box.max[axis] > box.min[axis] || (!strict && box.max[axis] == box.min[axis])) continue;

@@ -18,22 +18,17 @@ TriangleMesh load(const Entry& resource, const std::string& address, const Vec3&
   try {
     return loadMeshFile(address, scale);
   } catch (const InputError& error) {
-    resource.fail(onOneLine(error.what()) + ", must be a mesh file, such as STL, OBJ or DAE");
+    resource.fail(onOneLine(error.what()) + ", must be " + kMeshFileRule);
   }
 }
 
-bool inReach(const TriangleMesh& mesh) {
+// Written so that NaN is out of reach.
+void requireInReach(const Entry& resource, const TriangleMesh& mesh, const Range& place) {
   for (const Vec3& vertex : mesh.vertices) {
-    // Written so that NaN is out of reach.
-    if (!(vertex.cwiseAbs().maxCoeff() <= kLargestNumber)) return false;
+    if (vertex.cwiseAbs().maxCoeff() <= place.highest) continue;
+    resource.fail("the mesh, scaled, has a coordinate that is not finite or beyond " +
+                  numberText(place.highest) + " m, must have none");
   }
-  return true;
-}
-
-void requireInReach(const Entry& resource, const TriangleMesh& mesh) {
-  if (inReach(mesh)) return;
-  resource.fail("the mesh, scaled, has a coordinate that is not finite or beyond " +
-                numberText(kLargestNumber) + " m, must have none");
 }
 
 }  // namespace
@@ -55,17 +50,19 @@ std::string readResource(const Entry& entry, const std::string& scene_folder) {
     path = std::filesystem::absolute(scene_folder / path).lexically_normal();
   }
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
+  if (!std::filesystem::exists(path, ignored)) {
     entry.fail("must be an existing file, there is none at " + path.string());
+  }
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    entry.fail("is a folder, a pipe or a device, must be " + kMeshFileRule);
   }
   return file + path.string();
 }
 
 Vec3 readScale(const Entry& entry) {
   if (!entry.given()) return Vec3::Ones();
-  if (entry.node().IsSequence()) return entry.vec3(Range::positive(""));
-  if (!entry.node().IsScalar()) entry.fail("must be a number > 0 or a list of 3 of them");
-  return Vec3::Constant(entry.number(Range::positive("")));
+  if (entry.node().IsSequence()) return entry.vec3(ranges::scale());
+  return Vec3::Constant(entry.number(ranges::scale()));
 }
 
 TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) {
@@ -73,7 +70,7 @@ TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) 
   const Entry resource = map["resource"];
   const std::string address = readResource(resource, scene_folder);
   TriangleMesh mesh = load(resource, address, readScale(map["scale"]));
-  requireInReach(resource, mesh);
+  requireInReach(resource, mesh, ranges::pickedPlace());
   mesh = welded(mesh);
   if (const auto fault = meshFault(mesh)) {
     resource.fail("the mesh " + *fault + "; must be closed and not intersect itself");
@@ -81,10 +78,16 @@ TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) 
   return facingOutward(std::move(mesh));
 }
 
-void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale) {
+void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale,
+                     const LengthRanges& lengths) {
   if (isOfPackage(address)) return;
   const TriangleMesh mesh = load(resource, address, scale);
-  requireInReach(resource, mesh);
+  requireInReach(resource, mesh, lengths.place);
+  const Box box = boundsOf(mesh.vertices);
+  if ((box.max - box.min).maxCoeff() < lengths.length.lowest) {
+    resource.fail("the mesh, scaled, is smaller than " + numberText(lengths.length.lowest) +
+                  " m, must be larger");
+  }
   const auto fault = meshFault(welded(mesh));
   if (!fault || startsWith(*fault, "intersects itself")) return;  // a tool may, it is warned of
   resource.fail("the mesh " + *fault + "; must be closed and have a volume");
@@ -93,7 +96,7 @@ void requireToolMesh(const Entry& resource, const std::string& address, const Ve
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh) {
   const Box bounds = boundsOf(mesh.vertices);
   const double smallest = (bounds.max - bounds.min).minCoeff();
-  if (spacing.number(Range::positive("m")) <= smallest) return;
+  if (spacing.number(ranges::spacing()) <= smallest) return;
   spacing.fail("must be at most the mesh's smallest extent, " + numberText(smallest) + " m");
 }
 

@@ -1,42 +1,28 @@
 #include "robot_tissue/scene/scene_gate.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "robot_tissue/mesh/regular_file.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
+#include "scene_text.h"
 
 namespace robot_tissue {
 namespace {
 
 std::string readFile(const std::string& path) {
-  const std::string allowed = ": must be a scene file that can be read";
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(onOneLine(path) + ": is a folder" + allowed);
+  try {
+    return readRegularFile(path, kLargestSceneFile);
+  } catch (const InputError& error) {
+    throw InputError(onOneLine(path) + ": " + error.what() +
+                     ": must be a scene file that can be read, up to 10 MB");
   }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.is_open() && !file.bad()) return text;
-  throw InputError(onOneLine(path) + ": " + std::strerror(errno != 0 ? errno : EIO) + allowed);
 }
 
-YAML::Node parseYaml(const std::string& text, const std::string& path) {
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      throw InputError(onOneLine(path) + ": has " + std::to_string(documents.size()) +
-                       " YAML documents, must have one");
-    }
-    return documents.empty() ? YAML::Node() : documents.front();
-  } catch (const YAML::Exception& error) {
-    const std::string at = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw InputError(onOneLine(path) + at + ": not YAML: " + onOneLine(error.msg));
-  }
+// By the method that it is solved with; readTissue knows the model's own only.
+void requireMemoryOfMethod(const Entry& tissue, const Scene& scene) {
+  requireMemory(tissue.child(tissue.node()["spacing"], "spacing"), scene.tissue,
+                scene.solver.method);
 }
 
 void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
@@ -58,11 +44,12 @@ Scene parseScene(const YAML::Node& root, const SceneSource& source) {
   const bool supported = map["supports"].given() && map["supports"].node().size() > 0;
   scene.tissue = readTissue(map["tissue"], source.folder, supported, scene.remarks);
   scene.solver = readSolver(map["solver"], scene.tissue.model, source.overrides, scene.remarks);
+  requireMemoryOfMethod(map["tissue"], scene);
   if (map["tools"].given()) {
     scene.tools = readTools(map["tools"], source, scene.tissue, scene.remarks);
   }
   if (map["supports"].given()) {
-    scene.supports = readSupports(map["supports"], scene.tissue.model);
+    scene.supports = readSupports(map["supports"], scene.tissue);
   }
   readSteps(map["steps"], source, scene);
   return scene;

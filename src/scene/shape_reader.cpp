@@ -6,10 +6,10 @@
 
 namespace robot_tissue {
 
-Pose readPose(const MapReader& map) {
-  const Vec3 rpy = map["rpy"].vec3Or(Vec3::Zero(), Range::any("rad"));
+Pose readPose(const MapReader& map, const Range& place) {
+  const Vec3 rpy = map["rpy"].vec3Or(Vec3::Zero(), ranges::angle());
   Pose pose = Pose::Identity();
-  pose.translation() = map["xyz"].vec3Or(Vec3::Zero(), Range::any("m"));
+  pose.translation() = map["xyz"].vec3Or(Vec3::Zero(), place);
   pose.linear() =
       (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
        Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
@@ -17,13 +17,7 @@ Pose readPose(const MapReader& map) {
   return pose;
 }
 
-Vec3 readNonZero(const Entry& entry, const std::string& unit) {
-  const Vec3 value = entry.vec3(Range::any(unit));
-  if (value.norm() >= kSmallestPositive) return value;
-  entry.fail("must not be zero, its length at least " + numberText(kSmallestPositive));
-}
-
-ToolShape readToolShape(const Entry& entry, const std::string& scene_folder) {
+ToolShape readToolShape(const Entry& entry, const Surroundings& surroundings) {
   const MapReader any_type(
       entry, {"type", "radius", "length", "size", "resource", "scale", "padding", "xyz", "rpy"});
   const std::string type = any_type["type"].choice({"sphere", "cylinder", "box", "mesh"}, {});
@@ -34,20 +28,21 @@ ToolShape readToolShape(const Entry& entry, const std::string& scene_folder) {
       {"mesh", {"type", "resource", "scale", "padding", "xyz", "rpy"}}};
   const MapReader map(entry, kKeys.at(type));
   ToolShape shape;
-  shape.pose = readPose(map);
-  shape.padding = map["padding"].numberOr(shape.padding, Range::atLeastZero("m"));
+  const LengthRanges& lengths = surroundings.lengths;
+  shape.pose = readPose(map, lengths.place);
+  shape.padding = map["padding"].numberOr(shape.padding, lengths.gap);
   if (type == "box") {
     shape.type = ToolShape::Type::kBox;
-    shape.size = map["size"].vec3(Range::positive("m"));
+    shape.size = map["size"].vec3(lengths.length);
   } else if (type == "mesh") {
     shape.type = ToolShape::Type::kMesh;
-    shape.resource = readResource(map["resource"], scene_folder);
+    shape.resource = readResource(map["resource"], surroundings.scene_folder);
     shape.scale = readScale(map["scale"]);
-    requireToolMesh(map["resource"], shape.resource, shape.scale);
+    requireToolMesh(map["resource"], shape.resource, shape.scale, lengths);
   } else {
     shape.type = type == "sphere" ? ToolShape::Type::kSphere : ToolShape::Type::kCylinder;
-    shape.radius = map["radius"].number(Range::positive("m"));
-    if (type == "cylinder") shape.length = map["length"].number(Range::positive("m"));
+    shape.radius = map["radius"].number(lengths.length);
+    if (type == "cylinder") shape.length = map["length"].number(lengths.length);
   }
   return shape;
 }

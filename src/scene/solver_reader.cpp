@@ -34,11 +34,11 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
     requireFit(method, solver.method, model);
   }
   const Entry tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance");
-  solver.tolerance = tolerance.numberOr(solver.tolerance, Range::open(0.0, 1.0));
+  solver.tolerance = tolerance.numberOr(solver.tolerance, ranges::tolerance());
   if (tolerance.given() && solver.method == "newton") {
     remarks.push_back(tolerance.line("ignored, method newton solves exactly"));
   }
-  solver.max_ms = map["max_ms"].numberOr(solver.max_ms, Range::atLeastZero("ms"));
+  solver.max_ms = map["max_ms"].numberOr(solver.max_ms, ranges::budget());
   const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
   solver.threads = threads.integerOr(solver.threads, 1, 256);
   if (solver.threads > 1 && solver.method != "layered") {

@@ -10,6 +10,8 @@ namespace {
 
 const std::vector<std::string> kSteps = {"settle", "load",  "cut",     "move",
                                          "push",   "grasp", "release", "reset"};
+constexpr std::size_t kMostSteps = 1000000;
+constexpr std::size_t kMostCorners = 1000;
 const std::vector<std::string> kPlannedSteps = {"suture"};
 
 // What the steps are read against, and what stands on the way through them.
@@ -17,6 +19,7 @@ struct Program {
   const TissueConfig& tissue;
   const SolverConfig& solver;
   const std::vector<ToolConfig>& tools;
+  LengthRanges lengths;
   Grid grid;
   std::vector<NodeRange> fixed;
   std::vector<StandingPatch> patches;
@@ -55,11 +58,11 @@ void checkPolygon(const Entry& entry, const std::vector<Vec3>& corners, double s
   }
 }
 
-CutStep readCut(const Entry& entry, double spacing) {
+CutStep readCut(const Entry& entry, const LengthRanges& lengths, double spacing) {
   const MapReader map(entry, {"corners"});
   CutStep step;
-  for (const Entry& corner : map["corners"].list(3, "corners")) {
-    step.corners.push_back(corner.vec3(Range::any("m")));
+  for (const Entry& corner : map["corners"].list(3, "corners", kMostCorners)) {
+    step.corners.push_back(corner.vec3(lengths.place));
   }
   checkPolygon(map["corners"], step.corners, spacing);
   return step;
@@ -117,10 +120,11 @@ std::string readKind(const Entry& entry) {
 
 Step readStep(const std::string& kind, const Entry& entry, Program& program) {
   if (kind == "load") {
-    return readLoad(entry, program.grid, program.fixed, program.solver, program.patches);
+    return readLoad(entry, program.grid, program.fixed, program.solver,
+                    program.lengths.displacement, program.patches);
   }
-  if (kind == "cut") return readCut(entry, program.tissue.spacing);
-  if (kind == "move") return readMove(entry, program.tools, program.placed_tools);
+  if (kind == "cut") return readCut(entry, program.lengths, program.tissue.spacing);
+  if (kind == "move") return readMove(entry, program.tools, program.lengths, program.placed_tools);
   if (kind == "push") return readPush(entry, program.tools, program.placed_tools);
   if (kind == "grasp") return readGraspStep(entry, program.tools, program.placed_tools);
   if (kind == "release") return readRelease(entry, program);
@@ -135,10 +139,10 @@ Step readStep(const std::string& kind, const Entry& entry, Program& program) {
 
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
                             const SolverConfig& solver, const std::vector<ToolConfig>& tools) {
-  Program program{tissue, solver, tools, filledGrid(tissue).grid, {}, {}, {}};
+  Program program{tissue, solver, tools, lengthsOf(tissue), filledGrid(tissue).grid, {}, {}, {}};
   for (const Box& box : tissue.fixed) program.fixed.push_back(program.grid.nodesIn(box));
   std::vector<Step> steps;
-  for (const Entry& step_entry : entry.list(0, "steps")) {
+  for (const Entry& step_entry : entry.list(0, "steps", kMostSteps)) {
     const std::string kind = readKind(step_entry);
     const MapReader map(step_entry, kSteps);
     steps.push_back(readStep(kind, map[kind], program));

@@ -1,21 +1,27 @@
 // What the tissue rests on.
 #include "robot_tissue/scene/readers.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
 
-ToolShape readPlane(const MapReader& map) {
+ToolShape readPlane(const MapReader& map, const Range& place) {
   ToolShape plane;
   plane.type = ToolShape::Type::kPlane;
-  const Vec3 normal = readNonZero(map["normal"], "").normalized();
-  plane.pose.translation() = map["point"].vec3(Range::any("m"));
+  const Vec3 normal =
+      readNonZero(map["normal"], ranges::direction(), ranges::kLeastDirection).normalized();
+  plane.pose.translation() = map["point"].vec3(place);
   plane.pose.linear() =
       Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
   return plane;
 }
 
-ToolShape readBox(const MapReader& map) {
-  const Box box = map.box(true);
+ToolShape readBox(const MapReader& map, const LengthRanges& lengths) {
+  const Box box = map.box(lengths.place, true);
+  if ((box.max - box.min).minCoeff() < lengths.length.lowest) {
+    map.entry().fail("the box is thinner than " + numberText(lengths.length.lowest) +
+                     " m, must be as thick at least");
+  }
   ToolShape shape;
   shape.type = ToolShape::Type::kBox;
   shape.size = box.max - box.min;
@@ -23,7 +29,8 @@ ToolShape readBox(const MapReader& map) {
   return shape;
 }
 
-SupportConfig readSupport(const Entry& entry, const std::string& default_name) {
+SupportConfig readSupport(const Entry& entry, const std::string& default_name,
+                          const LengthRanges& lengths) {
   const MapReader any_type(entry, {"name", "type", "point", "normal", "min", "max", "friction"});
   const bool plane = any_type["type"].choice({"plane", "box"}, {}) == "plane";
   const MapReader map(
@@ -31,23 +38,23 @@ SupportConfig readSupport(const Entry& entry, const std::string& default_name) {
                    : std::vector<std::string>{"name", "type", "min", "max", "friction"});
   SupportConfig support;
   support.name = map["name"].given() ? readGraphName(map["name"]) : default_name;
-  support.shape = plane ? readPlane(map) : readBox(map);
-  support.friction = map["friction"].numberOr(support.friction, Range::atLeastZero(""));
+  support.shape = plane ? readPlane(map, lengths.place) : readBox(map, lengths);
+  support.friction = map["friction"].numberOr(support.friction, ranges::friction());
   return support;
 }
 
 }  // namespace
 
-std::vector<SupportConfig> readSupports(const Entry& entry, const std::string& model) {
+std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue) {
   const std::vector<Entry> entries = entry.list(0, "supports");
-  if (!entries.empty() && hardPatchesOnly(model)) {
-    entry.fail("with tissue.model " + model +
+  if (!entries.empty() && hardPatchesOnly(tissue.model)) {
+    entry.fail("with tissue.model " + tissue.model +
                " must be [] or left out, its method moves hard patches only");
   }
   std::vector<SupportConfig> supports;
   for (const Entry& support_entry : entries) {
     const std::string default_name = "support_" + std::to_string(supports.size() + 1);
-    const SupportConfig support = readSupport(support_entry, default_name);
+    const SupportConfig support = readSupport(support_entry, default_name, lengthsOf(tissue));
     for (const SupportConfig& other : supports) {
       if (other.name != support.name) continue;
       support_entry.fail("the name " + support.name + " is an earlier support's, must be unique");

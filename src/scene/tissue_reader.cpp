@@ -1,11 +1,9 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/registry.h"
+#include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -18,44 +16,32 @@ const std::vector<std::string> kMaterialKeys = {"young_modulus", "poisson_ratio"
 void readShape(const Entry& entry, const std::string& scene_folder, TissueConfig& tissue) {
   const MapReader any_type(entry, {"type", "min", "max", "resource", "scale"});
   if (any_type["type"].choice({"box", "mesh"}, {}) == "box") {
-    tissue.shape = MapReader(entry, {"type", "min", "max"}).box(true);
+    tissue.shape = MapReader(entry, {"type", "min", "max"}).box(ranges::pickedPlace(), true);
   } else {
     tissue.mesh = std::make_shared<const TriangleMesh>(readMeshShape(entry, scene_folder));
   }
 }
 
-double physicalMemoryBytes() {
-  const long pages = sysconf(_SC_PHYS_PAGES);
-  const long page_bytes = sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page_bytes <= 0) return std::numeric_limits<double>::max();
-  return static_cast<double>(pages) * static_cast<double>(page_bytes);
+// The tissue must not stand so far off that its spacing drowns in rounding.
+void requireNear(const Entry& spacing_entry, const Box& box, double spacing) {
+  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  if (farthest <= ranges::kFarthestCell * spacing) return;
+  spacing_entry.fail("the tissue reaches to " + numberText(farthest) +
+                     " m from its frame's origin, must be at most " +
+                     numberText(ranges::kFarthestCell) + " spacings");
 }
 
-void checkNodeCount(const Entry& spacing_entry, const Vec3& extent, double spacing) {
-  // Estimate: lattice, springs, shape and surface, and the shapes kept along a tool's way.
-  constexpr double kBytesPerNode = 3000.0;
-  constexpr double kSpringsPerNode = 3.0;
-  const double memory = physicalMemoryBytes();
-  const double most_springs = std::numeric_limits<int>::max();  // they are numbered by int
-  const double most = std::floor(std::min(memory / kBytesPerNode, most_springs / kSpringsPerNode));
-  const double count = nodeCount(extent, spacing);
-  if (count <= most) return;
-  spacing_entry.fail("makes " + numberText(count) + " nodes, more than the memory of " +
-                     numberText(std::round(memory / 1e6)) + " MB allows: must give at most " +
-                     numberText(most) + " nodes");
-}
+std::string megabytes(double bytes) { return numberText(std::round(bytes / 1e6)) + " MB"; }
 
 double readMeshSpacing(const Entry& entry, const TriangleMesh& mesh) {
-  const double spacing = entry.number(Range::positive("m"));
+  const double spacing = entry.number(ranges::spacing());
   requireSpacingWithin(entry, mesh);
-  const Box bounds = boundsOf(mesh.vertices);
-  const Vec3 cells = ((bounds.max - bounds.min) / spacing).array().ceil();
-  checkNodeCount(entry, cells * spacing, spacing);  // before a grid numbers them by int
+  requireNear(entry, boundsOf(mesh.vertices), spacing);
   return spacing;
 }
 
 double readSpacing(const Entry& entry, const Box& shape) {
-  const double spacing = entry.number(Range::positive("m"));
+  const double spacing = entry.number(ranges::spacing());
   const Vec3 extent = shape.max - shape.min;
   for (int axis = 0; axis < 3; ++axis) {
     const double ratio = extent[axis] / spacing;
@@ -67,7 +53,7 @@ double readSpacing(const Entry& entry, const Box& shape) {
     entry.fail("must divide the shape's extent along " + std::string(1, "xyz"[axis]) + ", " +
                numberText(extent[axis]) + " m, into whole parts" + fits);
   }
-  checkNodeCount(entry, extent, spacing);
+  requireNear(entry, shape, spacing);
   return spacing;
 }
 
@@ -75,15 +61,15 @@ double readSpacing(const Entry& entry, const Box& shape) {
 void readMaterialEntries(const MapReader& map, const std::string& model, Material& material,
                          Remarks& remarks) {
   const Entry poisson = map["poisson_ratio"];
-  material.poisson_ratio = poisson.numberOr(material.poisson_ratio, Range::closed(0.25, 0.49));
+  material.poisson_ratio = poisson.numberOr(material.poisson_ratio, ranges::poissonRatio());
   if (poisson.given() && model == "six_spring") {
     remarks.push_back(poisson.line("ignored, model six_spring has no Poisson's ratio"));
   }
-  material.density = map["density"].numberOr(material.density, Range::positive("kg/m^3"));
+  material.density = map["density"].numberOr(material.density, ranges::density());
   material.young_modulus =
-      map["young_modulus"].numberOr(material.young_modulus, Range::positive("Pa"));
+      map["young_modulus"].numberOr(material.young_modulus, ranges::youngModulus());
   if (map["spring_stiffness"].given()) {
-    material.spring_stiffness = map["spring_stiffness"].number(Range::positive("N/m"));
+    material.spring_stiffness = map["spring_stiffness"].number(ranges::springStiffness());
   }
 }
 
@@ -99,8 +85,22 @@ Material readMaterial(const Entry& entry, const std::string& model, Remarks& rem
   Material material;
   readMaterialEntries(map, model, material, remarks);
   if (!stiffness.given())
-    material.young_modulus = map["young_modulus"].number(Range::positive("Pa"));
+    material.young_modulus = map["young_modulus"].number(ranges::youngModulus());
   return material;
+}
+
+void requireContrast(const MapReader& region, const Material& around, const Material& material) {
+  const double contrast = material.spring_stiffness
+                              ? *material.spring_stiffness / *around.spring_stiffness
+                              : material.young_modulus / around.young_modulus;
+  if (std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast) return;
+  region[material.spring_stiffness ? "spring_stiffness" : "young_modulus"].fail(
+      "must be within a factor of " + numberText(ranges::kMostContrast) + " of tissue.material's");
+}
+
+Vec3 readGravity(const Entry& entry) {
+  if (!entry.given()) return Vec3::Zero();
+  return readVector(entry, ranges::gravity(), ranges::kLeastGravity);
 }
 
 // Where the nodes stand, or with an offset of half a spacing the cells' centers.
@@ -123,7 +123,7 @@ Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& gr
   const MapReader map(entry, keys);
   Region region;
   if (map["name"].given()) region.name = map["name"].word("a name");
-  region.box = map.box(false);
+  region.box = map.box(ranges::pickedPlace(), false);
   if (!grid.holdsCell(region.box)) {
     entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
   }
@@ -140,6 +140,7 @@ Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& gr
   }
   region.material = tissue.material;
   readMaterialEntries(map, tissue.model, region.material, remarks);
+  requireContrast(map, tissue.material, region.material);
   return region;
 }
 
@@ -171,9 +172,23 @@ void readBoxes(const MapReader& map, TissueConfig& tissue, Remarks& remarks) {
 }  // namespace
 
 Box readNodeBox(const MapReader& map, const Grid& grid) {
-  const Box box = map.box(false);
+  const Box box = map.box(ranges::pickedPlace(), false);
   if (!grid.nodesIn(box).empty()) return box;
   map.entry().fail("the box holds no node, must hold at least one; " + nodesText(grid, 0.0));
+}
+
+void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::string& method) {
+  const double nodes = tissue.mesh ? nodesWithin(*tissue.mesh, tissue.spacing)
+                                   : nodeCount(tissue.shape.max - tissue.shape.min, tissue.spacing);
+  const double around = tissue.mesh ? memoryAround(*tissue.mesh, tissue.spacing) : 0.0;
+  const double free = freeMemory();
+  const double most = mostNodes(free - around, method);
+  if (nodes <= most) return;
+  spacing.fail("makes " + numberText(std::round(nodes)) + " nodes, which take " +
+               megabytes(around + memoryOf(nodes, method)) + " with method " + method + " where " +
+               megabytes(free) + " are free: " +
+               (most > 0.0 ? "must give at most " + numberText(most) + " nodes"
+                           : "must be larger, or the mesh smaller"));
 }
 
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
@@ -191,8 +206,9 @@ TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, boo
     remarks.push_back(MapReader(map["material"], kMaterialKeys)["spring_stiffness"].line(
         "every spring has it, also those of cells that the mesh fills only in part"));
   }
+  requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());  // before the grid
   readBoxes(map, tissue, remarks);
-  tissue.gravity = map["gravity"].vec3Or(tissue.gravity, Range::any("m/s^2"));
+  tissue.gravity = readGravity(map["gravity"]);
   if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty() && !supported) {
     map["gravity"].fail(
         "must be zero unless tissue.fixed holds nodes or supports bear it, the tissue would fall");

@@ -16,7 +16,7 @@ struct NamedLink {
   Entry name;
 };
 
-std::map<std::string, double> readCollisionPadding(const Entry& entry) {
+std::map<std::string, double> readCollisionPadding(const Entry& entry, const Range& gap) {
   std::map<std::string, double> padding;
   if (!entry.given()) return padding;
   if (!entry.node().IsMap()) entry.fail("must be a map of names of collisions of the URDF to m");
@@ -25,45 +25,45 @@ std::map<std::string, double> readCollisionPadding(const Entry& entry) {
     if (item.first.IsScalar()) names.push_back(item.first.Scalar());
   }
   const MapReader map(entry, names);
-  for (const std::string& name : names) padding[name] = map[name].number(Range::atLeastZero("m"));
+  for (const std::string& name : names) padding[name] = map[name].number(gap);
   return padding;
 }
 
-NamedLink readLink(const MapReader& map, const std::string& scene_folder, Remarks& remarks) {
+NamedLink readLink(const MapReader& map, const Surroundings& surroundings, Remarks& remarks) {
   NamedLink named{{}, map["link"]};
   ToolLink& link = named.link;
   if (named.name.given()) link.link = named.name.word(kLinkName);
-  link.padding = map["padding"].numberOr(link.padding, Range::atLeastZero("m"));
+  link.padding = map["padding"].numberOr(link.padding, surroundings.lengths.gap);
   if (map["shapes"].given()) {
     for (const Entry& shape : map["shapes"].list(0, "shapes")) {
-      link.shapes.push_back(readToolShape(shape, scene_folder));
+      link.shapes.push_back(readToolShape(shape, surroundings));
     }
   }
   if (link.link.empty() && link.shapes.empty() && map["shapes"].given()) {
     map["shapes"].list(1, "shapes");  // nothing else says what the tool is made of
   }
   const Entry collisions = map["collision_padding"];
-  link.collision_padding = readCollisionPadding(collisions);
+  link.collision_padding = readCollisionPadding(collisions, surroundings.lengths.gap);
   if (collisions.given() && !link.shapes.empty()) {
     remarks.push_back(collisions.line("ignored, shapes take the place of the URDF's collisions"));
   }
   return named;
 }
 
-NamedLink readListedLink(const Entry& entry, const std::string& scene_folder, Remarks& remarks) {
+NamedLink readListedLink(const Entry& entry, const Surroundings& surroundings, Remarks& remarks) {
   if (entry.node().IsScalar()) return {{entry.word(kLinkName), 0.0, {}, {}}, entry};
   const MapReader map(entry, kLinkKeys);
   if (!map["link"].given() && !map["shapes"].given()) {
     entry.fail("must have link, shapes or both");
   }
-  return readLink(map, scene_folder, remarks);
+  return readLink(map, surroundings, remarks);
 }
 
-std::vector<NamedLink> readLinkList(const Entry& entry, const std::string& scene_folder,
-                                    Remarks& remarks) {
+std::vector<NamedLink> readLinkList(const Entry& entry, const Surroundings& surroundings,
+                                    Remarks& remarks, std::size_t at_least, std::size_t at_most) {
   std::vector<NamedLink> links;
-  for (const Entry& link_entry : entry.list(1, "links")) {
-    const NamedLink named = readListedLink(link_entry, scene_folder, remarks);
+  for (const Entry& link_entry : entry.list(at_least, "links", at_most)) {
+    const NamedLink named = readListedLink(link_entry, surroundings, remarks);
     const std::string& name = named.link.link;
     const bool twice = !name.empty() && std::any_of(links.begin(), links.end(), [&](const auto& o) {
       return o.link.link == name;
@@ -81,32 +81,31 @@ void requireSingleLinkKeysAbsent(const MapReader& map) {
   }
 }
 
-std::vector<NamedLink> readPushLinks(const MapReader& tool, const std::string& scene_folder,
+std::vector<NamedLink> readPushLinks(const MapReader& tool, const Surroundings& surroundings,
                                      SceneUser user, Remarks& remarks) {
   if (tool["jaws"].given()) tool["jaws"].fail("must be left out, only role grasper has jaws");
   if (tool["links"].given()) {
     requireSingleLinkKeysAbsent(tool);
-    return readLinkList(tool["links"], scene_folder, remarks);
+    return readLinkList(tool["links"], surroundings, remarks, 1, kMostEntries);
   }
   if (user == SceneUser::kRunner && !tool["link"].given() && !tool["shapes"].given()) {
     tool.entry().fail("must have link, links or shapes");
   }
-  return {readLink(tool, scene_folder, remarks)};
+  return {readLink(tool, surroundings, remarks)};
 }
 
 // The tool's own link, which touches nothing without shapes, then the jaws.
-std::vector<NamedLink> readGrasperLinks(const MapReader& tool, const std::string& scene_folder,
+std::vector<NamedLink> readGrasperLinks(const MapReader& tool, const Surroundings& surroundings,
                                         Remarks& remarks) {
   if (tool["links"].given()) {
     tool["links"].fail("must be left out, role grasper has one link of its own and jaws");
   }
-  std::vector<NamedLink> links = {readLink(tool, scene_folder, remarks)};
+  std::vector<NamedLink> links = {readLink(tool, surroundings, remarks)};
   for (const char* key : {"padding", "collision_padding"}) {
     if (!tool[key].given() || !links.front().link.shapes.empty()) continue;
     tool[key].fail("the grasper's own link has no shapes, must stand with the jaws");
   }
-  const std::vector<NamedLink> jaws = readLinkList(tool["jaws"], scene_folder, remarks);
-  if (jaws.size() != 2) tool["jaws"].fail("must be a list of exactly 2 links");
+  const std::vector<NamedLink> jaws = readLinkList(tool["jaws"], surroundings, remarks, 2, 2);
   links.insert(links.end(), jaws.begin(), jaws.end());
   return links;
 }
@@ -126,11 +125,11 @@ void checkNames(const std::vector<NamedLink>& links, SceneUser user, bool graspe
 
 }  // namespace
 
-ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, SceneUser user,
+ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
                         ToolConfig::Role role, Remarks& remarks) {
   const bool grasper = role == ToolConfig::Role::kGrasper;
-  const std::vector<NamedLink> named = grasper ? readGrasperLinks(tool, scene_folder, remarks)
-                                               : readPushLinks(tool, scene_folder, user, remarks);
+  const std::vector<NamedLink> named = grasper ? readGrasperLinks(tool, surroundings, remarks)
+                                               : readPushLinks(tool, surroundings, user, remarks);
   checkNames(named, user, grasper);
   ToolLinks links;
   for (const NamedLink& link : named) {

@@ -38,14 +38,14 @@ const ToolConfig& readTool(const Entry& entry, const std::vector<ToolConfig>& to
   return *tool;
 }
 
-MoveStep::Place readPlace(const Entry& entry, bool grasper) {
+MoveStep::Place readPlace(const Entry& entry, bool grasper, const LengthRanges& lengths) {
   const MapReader map(entry, {"xyz", "rpy", "opening"});
-  map["xyz"].vec3(Range::any("m"));  // unlike a shape's it has to be given
+  map["xyz"].vec3(lengths.place);  // unlike a shape's it has to be given
   MoveStep::Place place;
-  place.pose = readPose(map);
+  place.pose = readPose(map, lengths.place);
   const Entry opening = map["opening"];
   if (opening.given() && !grasper) opening.fail("must be left out, only role grasper opens");
-  place.opening = opening.numberOr(place.opening, Range::atLeastZero("m"));
+  place.opening = opening.numberOr(place.opening, lengths.gap);
   return place;
 }
 
@@ -64,18 +64,18 @@ void requireStands(const Entry& entry, const std::string& tool,
 }
 
 MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
-                  std::set<std::string>& standing) {
+                  const LengthRanges& lengths, std::set<std::string>& standing) {
   const MapReader map(entry, {"tool", "from", "to", "increments"});
   const ToolConfig& tool = readTool(map["tool"], tools);
   MoveStep step;
   step.tool = tool.name;
   const Entry from = map["from"];
   if (from.given()) {
-    step.from = readPlace(from, isGrasper(tool));
+    step.from = readPlace(from, isGrasper(tool), lengths);
   } else if (standing.count(tool.name) == 0) {
     from.fail("the tool stands nowhere at this step, must be a map of xyz, rpy, opening");
   }
-  step.to = readPlace(map["to"], isGrasper(tool));
+  step.to = readPlace(map["to"], isGrasper(tool), lengths);
   step.increments = readIncrements(map["increments"]);
   standing.insert(tool.name);
   return step;
@@ -87,7 +87,7 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
   PushStep step;
   step.tool = readTool(map["tool"], tools).name;
   requireStands(map["tool"], step.tool, standing);
-  step.force = readNonZero(map["force"], "N");
+  step.force = readNonZero(map["force"], ranges::force(), ranges::kLeastForce);
   step.increments = readIncrements(map["increments"]);
   return step;
 }

@@ -50,23 +50,27 @@ void readContact(const MapReader& map, const std::string& model, ToolConfig& too
                  Remarks& remarks) {
   tool.patch = readPatch(map["patch"], model);
   const Entry friction = map["friction"];
-  tool.friction = friction.numberOr(tool.friction, Range::atLeastZero(""));
+  tool.friction = friction.numberOr(tool.friction, ranges::friction());
   if (friction.given() && tool.patch == ToolConfig::Patch::kRigid) {
     remarks.push_back(friction.line("ignored, a rigid patch sticks to its tool"));
   }
-  tool.max_force = map["max_force"].numberOr(tool.max_force, Range::atLeastZero("N"));
+  tool.max_force = map["max_force"].numberOr(tool.max_force, ranges::forceLimit());
 }
 
-GraspConfig readGrasp(const Entry& entry, double spacing, SceneUser user, Remarks& remarks) {
+GraspConfig readGrasp(const Entry& entry, const TissueConfig& tissue, SceneUser user,
+                      Remarks& remarks) {
+  const LengthRanges lengths = lengthsOf(tissue);
   const Entry given = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
   const MapReader map(given, {"close_gap", "open_gap", "max_force", "opening_axis"});
   GraspConfig grasp;
-  grasp.close_gap = map["close_gap"].numberOr(spacing, Range::positive("m"));
+  grasp.close_gap = map["close_gap"].numberOr(tissue.spacing, lengths.length);
   grasp.open_gap = map["open_gap"].numberOr(
-      1.5 * grasp.close_gap, {grasp.close_gap, kLargestNumber, false, false, "m, the close_gap"});
-  grasp.max_force = map["max_force"].numberOr(grasp.max_force, Range::atLeastZero("N"));
+      1.5 * grasp.close_gap, {grasp.close_gap, lengths.gap.highest, "m, not below the close_gap"});
+  grasp.max_force = map["max_force"].numberOr(grasp.max_force, ranges::forceLimit());
   const Entry axis = map["opening_axis"];
-  if (axis.given()) grasp.opening_axis = readNonZero(axis, "").normalized();
+  if (axis.given())
+    grasp.opening_axis =
+        readNonZero(axis, ranges::direction(), ranges::kLeastDirection).normalized();
   if (axis.given() && user == SceneUser::kNode) {
     remarks.push_back(axis.line("ignored, the robot's joints move the jaws"));
   }
@@ -107,7 +111,8 @@ ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueC
               "patch", "max_force", "grasp", "shapes"});
   ToolConfig tool;
   tool.role = readRole(map["role"], tissue.model);
-  const ToolLinks links = readToolLinks(map, source.folder, source.user, tool.role, remarks);
+  const ToolLinks links =
+      readToolLinks(map, {source.folder, lengthsOf(tissue)}, source.user, tool.role, remarks);
   tool.links = links.links;
   tool.name = readToolName(map["name"], links);
   for (const ToolConfig& other : earlier) {
@@ -117,7 +122,7 @@ ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueC
   checkLinksAreOnce(links, tool, earlier, remarks);
   readContact(map, tissue.model, tool, remarks);
   if (tool.role == ToolConfig::Role::kGrasper) {
-    tool.grasp = readGrasp(map["grasp"], tissue.spacing, source.user, remarks);
+    tool.grasp = readGrasp(map["grasp"], tissue, source.user, remarks);
   } else if (map["grasp"].given()) {
     map["grasp"].fail("must be left out, only role grasper holds tissue");
   }

@@ -70,6 +70,31 @@ std::string onOneLine(const std::string& text) {
   return line;
 }
 
+// As RFC 3629 has it: no longer forms than needed, no surrogates, nothing beyond U+10FFFF.
+bool isUtf8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0U;
+    };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xC2 ? 0
+                               : first < 0xE0 ? 2
+                               : first < 0xF0 ? 3
+                               : first < 0xF5 ? 4
+                                              : 0;
+    if (length == 0) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((byte(k) & 0xC0U) != 0x80U) return false;
+    }
+    const bool wrong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F) ||
+                       (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) > 0x8F);
+    if (wrong) return false;
+    i += length;
+  }
+  return true;
+}
+
 std::string shortText(const std::string& text) {
   std::string line = onOneLine(text);
   if (line.size() <= kLongestValue) return line;

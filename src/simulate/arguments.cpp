@@ -36,7 +36,7 @@ Runs the steps of a scene and writes what the tissue did to DIR; needs no ROS ma
 
   --out DIR         folder for nodes.csv, patches.csv, increments.csv, tools.csv and surface.stl
   --method NAME     solver method, instead of the scene's solver.method
-  --tolerance X     relative, 0 < X < 1, instead of the scene's solver.tolerance
+  --tolerance X     relative, 1e-9 to 0.5, instead of the scene's solver.tolerance
   --threads N       1 to 256, instead of the scene's solver.threads
   --list-methods    prints the solver methods
   --list-models     prints the tissue models

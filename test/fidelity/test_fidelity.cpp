@@ -91,7 +91,7 @@ TEST_F(Fidelity, BadInputIsRefusedInOneLine) {
   expectRefused({}, "SCENE.yaml is missing");
   expectRefused({scene, "--error", "0.1"}, "--rate is missing");
   expectRefused({scene, "--error", "0", "--rate", "1"},
-                "--error = 0: must be a number > 0 and < 1");
+                "--error = 0: must be a number from 1e-09 to 1");
   expectRefused({scene, "--error", "0.1", "--rate", "fast"}, "--rate = fast: must be a number");
   expectRefused({scene, "--error", "0.1", "--rate", "1", "--second", "3"},
                 "did you mean --seconds");

@@ -16,8 +16,8 @@ struct Ended {
 
 struct Case {
   const char* name;
-  const char* key;    // private parameter to set
-  const char* value;  // as text
+  const char* key;  // private parameter to set
+  XmlRpc::XmlRpcValue value;
   const char* names;  // what the message must hold
 };
 
@@ -40,7 +40,7 @@ TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
   XmlRpc::XmlRpcValue scene;
   ASSERT_TRUE(ros::param::get("/good_scene", scene));
   ros::param::set("/" + name, scene);
-  ros::param::set("/" + name + "/" + GetParam().key, std::string(GetParam().value));
+  ros::param::set("/" + name + "/" + GetParam().key, GetParam().value);
   const Ended ended = runNode(name);
   EXPECT_EQ(ended.exit_code, 2) << ended.output;
   EXPECT_NE(ended.output.find(GetParam().names), std::string::npos) << ended.output;
@@ -48,17 +48,21 @@ TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
 
 INSTANTIATE_TEST_SUITE_P(
     Node, BadParameter,
-    ::testing::Values(Case{"spacing", "tissue/spacing", "-0.005", "tissue.spacing = -0.005"},
-                      Case{"ratio", "tissue/spacing", "0.03", "tissue.spacing = 0.03"},
+    ::testing::Values(Case{"spacing", "tissue/spacing", -0.005, "tissue.spacing = -0.005"},
+                      Case{"ratio", "tissue/spacing", 0.03, "tissue.spacing = 0.03"},
                       Case{"model", "tissue/model", "jelly", "tissue.model = jelly"},
                       Case{"method", "solver/method", "jacobi", "solver.method = jacobi"},
-                      Case{"unknown_key", "tissue/sapcing", "0.005", "tissue.sapcing"},
-                      Case{"own_unknown_key", "ratee", "100", "ratee"},
-                      Case{"rate", "rate", "0", "rate = 0"},
-                      Case{"wrench_rate", "wrench_rate", "1001", "wrench_rate = 1001"},
-                      Case{"negative_wrench_rate", "wrench_rate", "-1", "wrench_rate = -1"},
+                      Case{"unknown_key", "tissue/sapcing", 0.005, "tissue.sapcing"},
+                      Case{"own_unknown_key", "ratee", 100, "ratee"},
+                      Case{"quoted", "tissue/spacing", "0.005", "tissue.spacing = \"0.005\""},
+                      Case{"truth", "tissue/spacing", true, "tissue.spacing = true"},
+                      Case{"own_quoted", "rate", "50", "rate = \"50\""},
+                      Case{"own_truth", "tf_timeout", true, "tf_timeout = true"},
+                      Case{"rate", "rate", 0, "rate = 0"},
+                      Case{"wrench_rate", "wrench_rate", 1001, "wrench_rate = 1001"},
+                      Case{"negative_wrench_rate", "wrench_rate", -1, "wrench_rate = -1"},
                       Case{"scene_file", "scene_file", "scene.yaml", "scene_file = scene.yaml"},
-                      Case{"timeout", "tf_timeout", "-1", "tf_timeout = -1"},
+                      Case{"timeout", "tf_timeout", -1, "tf_timeout = -1"},
                       Case{"description", "robot_description_param", "/broken_description", "URDF"},
                       Case{"other_robot", "robot_description_param", "/other_description",
                            "probe"}),

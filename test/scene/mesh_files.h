@@ -20,7 +20,7 @@ inline std::string meshFolder() {
 }
 
 inline void writeFile(const std::string& name, const std::string& text) {
-  std::ofstream file(meshFolder() + "/" + name);
+  std::ofstream file(meshFolder() + "/" + name, std::ios::binary);
   file << text;
   ASSERT_TRUE(file.flush().good()) << name;
 }

@@ -68,9 +68,9 @@ TEST_F(BallScene, GivesTheMeshAndItsLattice) {
 TEST_F(BallScene, SpacingThatIsTooLargeOrMakesTooManyNodes) {
   expectRefusal("spacing: 0.01", "spacing: 0.07",
                 {"tissue.spacing = 0.07", "at most the mesh's smallest extent, 0.066"});
-  expectRefusal("spacing: 0.01", "spacing: 1.0e-8",
-                {"tissue.spacing = 1.0e-8", "e+20 nodes", "must give at most"});
-  expectRefusal("spacing: 0.01", "spacing: 1.0e-12", {"tissue.spacing = 1.0e-12", "nodes"});
+  expectRefusal("spacing: 0.01", "spacing: 1.0e-5",
+                {"tissue.spacing = 1.0e-5", "e+11 nodes", "MB are free", "must be larger"});
+  expectRefusal("spacing: 0.01", "spacing: 1.0e-12", {"tissue.spacing = 1.0e-12", "from 1e-06"});
 }
 
 // (0.03, 0.03, 0.03) is in the grid, but the ball has no cell there.

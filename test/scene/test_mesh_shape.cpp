@@ -127,7 +127,7 @@ TEST(MeshShape, EntriesThatAreNotAllowed) {
   expectRefusal(refusal("resource: package://no_such_package"), {"package no_such_package"});
   for (const char* scale : {"0", "-0.001", ".nan", "large", "{}", "[1, 1, 0]"}) {
     expectRefusal(refusal(std::string("resource: box.stl, scale: ") + scale),
-                  {"tissue.shape.scale", "a number > 0"});
+                  {"tissue.shape.scale", "a number from 1e-09 to 1e+09"});
   }
 }
 
@@ -137,7 +137,7 @@ TEST(MeshShape, FileThatIsNoMeshIsRefused) {
       writeFile(name, text);
       const std::string message = refusal(std::string("resource: ") + name);
       expectRefusal(message, {std::string("tissue.shape.resource = ") + name, "cannot be loaded",
-                              "must be a mesh file, such as STL, OBJ or DAE"});
+                              "must be a mesh file: STL, OBJ or DAE, up to 100 MB"});
     }
   }
 }

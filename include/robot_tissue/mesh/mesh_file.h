@@ -1,17 +1,25 @@
-// Mesh files (STL, OBJ, DAE and what else Assimp reads) as plain triangles.
+// Mesh files (STL, OBJ, DAE) as plain triangles.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
 
-// `resource`: package:// or file:// address; nothing is fetched from the network. The triangles are
-// as in the file, with coordinates times `scale`: not joined, not checked. A DAE file's own unit
-// and up axis count for nothing, as for tool meshes. Throws InputError whose text is the end of a
-// line that begins with the mesh's name: "is no package:// or file:// address", "cannot be loaded
-// (reason)".
+constexpr std::size_t kLargestMeshFile = 100000000;  // bytes
+const std::string kMeshFileRule = "a mesh file: STL, OBJ or DAE, up to 100 MB";
+
+// Whether the name ends as that of a mesh file that is read.
+bool isMeshName(const std::string& path);
+
+// `resource`: package:// or file:// address; nothing is fetched from the network, and a path does
+// not leave its package. The name tells the format, and the content must be of it. The triangles
+// are as in the file, with coordinates times `scale`: not joined, not checked. A DAE file's own
+// unit and up axis count for nothing, as for tool meshes. Throws InputError whose text is the end
+// of a line that begins with the mesh's name: "is no package:// or file:// address", "cannot be
+// loaded (reason)".
 TriangleMesh loadMeshFile(const std::string& resource, const Vec3& scale);
 
 }  // namespace robot_tissue

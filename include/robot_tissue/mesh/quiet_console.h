@@ -1,4 +1,4 @@
-// Holds back what third-party libraries (urdfdom, geometric_shapes) print through console_bridge
+// Holds back what urdfdom prints through console_bridge
 // while it lives, and keeps it for our own message.
 #pragma once
 

@@ -12,33 +12,17 @@
 
 namespace robot_tissue {
 
-// Numbers beyond this are refused everywhere, so that products of a few of them stay finite.
-constexpr double kLargestNumber = 1e15;
-constexpr double kSmallestPositive = 1e-12;
-
-// Allowed numbers: an interval, each end closed unless said to be open.
+// Allowed numbers: an interval, its ends among them. What each key may be: ranges.h.
 struct Range {
-  double lowest = -kLargestNumber;
-  double highest = kLargestNumber;
-  bool lowest_open = false;
-  bool highest_open = false;
+  double lowest = 0.0;
+  double highest = 0.0;
   std::string unit;
-
-  static Range any(const std::string& unit) {
-    return {-kLargestNumber, kLargestNumber, false, false, unit};
-  }
-  static Range positive(const std::string& unit) {
-    return {kSmallestPositive, kLargestNumber, false, false, unit};
-  }
-  static Range atLeastZero(const std::string& unit) {
-    return {0.0, kLargestNumber, false, false, unit};
-  }
-  static Range closed(double lowest, double highest) { return {lowest, highest, false, false, ""}; }
-  static Range open(double lowest, double highest) { return {lowest, highest, true, true, ""}; }
 
   bool contains(double value) const;
   std::string text() const;  // "a number from 0.25 to 0.49"
 };
+
+constexpr std::size_t kMostEntries = 10000;  // of a list
 
 class Entry {
  public:
@@ -63,7 +47,8 @@ class Entry {
   std::string choice(const std::vector<std::string>& available,
                      const std::vector<std::string>& planned) const;
   // `what` names the entries, e.g. "patches".
-  std::vector<Entry> list(std::size_t at_least, const std::string& what) const;
+  std::vector<Entry> list(std::size_t at_least, const std::string& what,
+                          std::size_t at_most = kMostEntries) const;
   bool isWord(const std::string& word) const;
 
   // "scene.yaml:7: tissue.spacing = -1: must be ..."; `reason` is the part after the value.

@@ -19,7 +19,7 @@ class MapReader {
   const Entry& entry() const { return map_; }
 
   // The keys `min` and `max`; `strict` asks for an extent > 0 along every axis.
-  Box box(bool strict) const;
+  Box box(const Range& range, bool strict) const;
 
  private:
   Entry map_;

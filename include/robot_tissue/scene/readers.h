@@ -11,6 +11,7 @@
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/map_reader.h"
+#include "robot_tissue/scene/ranges.h"
 #include "robot_tissue/scene/scene_gate.h"
 
 namespace robot_tissue {
@@ -23,6 +24,9 @@ inline bool hardPatchesOnly(const std::string& model) { return model == "six_spr
 // `scene_folder`: where relative paths of a mesh start. `supported`: the scene has supports.
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
                         Remarks& remarks);
+
+// Refuses a lattice that the memory which is free does not hold with this method.
+void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::string& method);
 
 // Keys min and max of a map, as nodes of the grid; refused when there are none.
 Box readNodeBox(const MapReader& map, const Grid& grid);
@@ -42,11 +46,12 @@ struct StandingPatch {
   NodeRange nodes;
 };
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
-                  const SolverConfig& solver, std::vector<StandingPatch>& standing);
+                  const SolverConfig& solver, const Range& displacement,
+                  std::vector<StandingPatch>& standing);
 
 // `standing`: names of the tools that a move has placed.
 MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
-                  std::set<std::string>& standing);
+                  const LengthRanges& lengths, std::set<std::string>& standing);
 PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing);
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
@@ -57,25 +62,28 @@ void requireStands(const Entry& entry, const std::string& tool,
 std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
                                   const TissueConfig& tissue, Remarks& remarks);
 
+// What the shapes of tools are read against.
+struct Surroundings {
+  std::string scene_folder;  // where relative paths of meshes start
+  LengthRanges lengths;
+};
+
 // Links in the order of ToolConfig::links.
 struct ToolLinks {
   std::vector<ToolLink> links;
   std::vector<Entry> names;  // where their names stand, or would
 };
-ToolLinks readToolLinks(const MapReader& tool, const std::string& scene_folder, SceneUser user,
+ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
                         ToolConfig::Role role, Remarks& remarks);
 
-std::vector<SupportConfig> readSupports(const Entry& entry, const std::string& model);
+std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue);
 
 // A name that may be part of a topic's.
 std::string readGraphName(const Entry& entry);
 
 // Keys xyz (m) and rpy (rad; roll, pitch, yaw about the fixed axes x, y, z, as in URDF), each zero
 // when not given.
-Pose readPose(const MapReader& map);
-
-// Refuses a vector too short to have a direction.
-Vec3 readNonZero(const Entry& entry, const std::string& unit);
+Pose readPose(const MapReader& map, const Range& place);
 
 // Address of a mesh file: package:// stays as it is; a path must be an existing file, relative to
 // the scene's folder, and becomes file://.
@@ -89,11 +97,12 @@ TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder);
 
 // Refuses a tool's mesh that is not closed, has no volume or cannot be read. One of a package is
 // left to those who make a tool of it: a scene may be read where the package is not.
-void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale);
+void requireToolMesh(const Entry& resource, const std::string& address, const Vec3& scale,
+                     const LengthRanges& lengths);
 
 // Refuses a spacing larger than the mesh's smallest extent.
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh);
 
-ToolShape readToolShape(const Entry& entry, const std::string& scene_folder);
+ToolShape readToolShape(const Entry& entry, const Surroundings& surroundings);
 
 }  // namespace robot_tissue

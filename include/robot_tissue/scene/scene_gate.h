@@ -33,6 +33,8 @@ struct SceneSource {
 
 Scene parseScene(const YAML::Node& root, const SceneSource& source);
 
+constexpr std::size_t kLargestSceneFile = 10000000;  // bytes
+
 // Reads a file for the runner.
 Scene loadScene(const std::string& path, const SolverOverrides& overrides = {});
 

@@ -15,6 +15,8 @@ std::string valueText(const YAML::Node& node);
 std::string onOneLine(const std::string& text);
 
 // On one line and cut short after some 60 characters.
+bool isUtf8(const std::string& text);
+
 std::string shortText(const std::string& text);
 
 // Short decimal text, up to nine digits.

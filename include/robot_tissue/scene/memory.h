@@ -1,0 +1,25 @@
+// How much memory a scene takes, and how much this process may still have.
+#pragma once
+
+#include <string>
+
+#include "robot_tissue/core/triangle_mesh.h"
+
+namespace robot_tissue {
+
+// Bytes that the machine has left, or what a container (cgroup, version 1 or 2) or a limit of the
+// process (ulimit -v, -d) leaves of them. `root`: where /proc and /sys are looked for.
+double freeMemory(const std::string& root = "");
+
+// Bytes that a lattice of so many nodes takes with its shape, surface and solver.
+double memoryOf(double nodes, const std::string& method);
+
+// The most nodes whose memory is within `bytes`, and that are numbered by int.
+double mostNodes(double bytes, const std::string& method);
+
+// Of a mesh in a lattice: about how many nodes it holds, and the bytes of the grid around it and of
+// its surface when its triangles are no larger than the spacing.
+double nodesWithin(const TriangleMesh& mesh, double spacing);
+double memoryAround(const TriangleMesh& mesh, double spacing);
+
+}  // namespace robot_tissue
