@@ -2,6 +2,8 @@
 """package.xml names keys that rosdep has, and the scripts install what these keys stand for.
 """
 import csv
+import shutil
+import subprocess
 import sys
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -49,6 +51,13 @@ class Dependencies(unittest.TestCase):
         root = ElementTree.parse(SOURCE / "package.xml").getroot()
         for tag in ("author", "maintainer", "license", "url"):
             self.assertTrue(root.findtext(tag), tag)
+
+    @unittest.skipUnless(shutil.which("catkin_lint"), "a ROS from elsewhere has none")
+    def test_catkin_lint_finds_nothing(self):
+        lint = subprocess.run(["catkin_lint", "--offline", "--rosdistro", "noetic", str(SOURCE)],
+                              capture_output=True, text=True)
+        self.assertEqual(lint.returncode, 0, lint.stdout + lint.stderr)
+        self.assertIn("checked 1 packages and found 0 problems", lint.stdout + lint.stderr)
 
 
 if __name__ == "__main__":
