@@ -1,4 +1,4 @@
-// Sparse factorization by CHOLMOD, whose supernodal part is under the GPL: a library of its own, for
+// Sparse factorization by CHOLMOD. Its supernodal part is under the GPL: a library of its own, for
 // programs only.
 #pragma once
 

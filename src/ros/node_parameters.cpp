@@ -25,14 +25,10 @@ constexpr double kLongestTimeout = 1e6;        // s
 constexpr double kLeastForceScale = 1e-9;      // m/N
 constexpr double kMostForceScale = 1e9;        // m/N
 
-const std::vector<std::string> kOwnKeys = {"rate",
-                                           "marker_rate",
-                                           "wrench_rate",
-                                           "tf_timeout",
-                                           "force_scale",
-                                           "robot_description_param",
-                                           "scene_file",
-                                           "diagnostic_period"};  // read by diagnostic_updater
+const std::vector<std::string> kOwnKeys = {
+    "rate",       "marker_rate",      "wrench_rate",
+    "tf_timeout", "force_scale",      "robot_description_param",
+    "scene_file", "diagnostic_period"};  // read by diagnostic_updater
 
 // The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
 std::string shortestText(double value) {

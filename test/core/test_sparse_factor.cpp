@@ -1,10 +1,9 @@
 // Eigen's factorization, which everyone has, and the one that this program took, which may be
 // CHOLMOD's.
-#include "robot_tissue/core/sparse_factor.h"
-
 #include <gtest/gtest.h>
 
 #include "elastic_fixtures.h"
+#include "robot_tissue/core/sparse_factor.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {

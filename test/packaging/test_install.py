@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What is installed is complete: the demo runs from it, and another package builds and runs with it.
+"""What is installed is complete: the demo runs from it, another package builds and runs with it.
 
 usage: test_install.py BUILD_DIR [--gtest_output=xml:FILE], configured to install within BUILD_DIR.
 """
@@ -95,10 +95,12 @@ class InstallSpace(unittest.TestCase):
         folders = output_of("printenv CMAKE_PREFIX_PATH").strip().split(":") + ["/usr"]
         includes = " ".join(f"-isystem '{folder}/include'" for folder in folders
                             if folder != "/usr" and Path(folder, "include").is_dir())
-        output_of(f"c++ -std=c++17 -fsyntax-only {includes} $(pkg-config --cflags eigen3) headers.cpp")
+        output_of(f"c++ -std=c++17 -fsyntax-only {includes} $(pkg-config --cflags eigen3) "
+                  "headers.cpp")
 
     def test_simulate_runs(self):
-        output_of(f"rosrun robot_tissue simulate '{self.share}/config/probe_scene.yaml' --out probe")
+        scene = self.share / "config/probe_scene.yaml"
+        output_of(f"rosrun robot_tissue simulate '{scene}' --out probe")
         self.assertTrue((WORK / "probe/tools.csv").is_file())
 
     def test_a_package_builds_with_it_and_follows_the_demo(self):
