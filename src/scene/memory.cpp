@@ -1,7 +1,6 @@
 #include "robot_tissue/scene/memory.h"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>

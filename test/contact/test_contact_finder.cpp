@@ -204,6 +204,19 @@ TEST(ContactFinder, MeasuresThatAreNotPositiveAreRefused) {
   EXPECT_NE(refusal(sphere(0.1), -0.001).find("padding is -0.001"), std::string::npos);
 }
 
+// As a URDF may have them, which no scene's ranges guard.
+TEST(ContactFinder, MeasuresWithoutAMeaningAreRefused) {
+  EXPECT_NE(refusal(sphere(1e15)).find("sphere radius is 1e+15; allowed is > 0, from 1e-09 to"),
+            std::string::npos);
+  EXPECT_NE(refusal(box(Vec3(0.1, 1e-30, 0.1))).find("box size is 1e-30"), std::string::npos);
+  ToolShape far = sphere(0.1);
+  far.pose.translation().x() = 1e15;
+  EXPECT_NE(refusal(far).find("1e+15 m from its link"), std::string::npos);
+  ToolShape huge = mesh(writeStl("grown.stl", boxTriangles(Vec3(1.0, 1.0, 1.0))));
+  huge.scale *= 1e12;
+  EXPECT_NE(refusal(huge).find("size of its mesh is 1e+12"), std::string::npos);
+}
+
 TEST(ContactFinder, PoseOrSurfaceOfAnotherSizeIsRefused) {
   const Sheet sheet = makeSheet(2, 0.005);
   const ContactFinder finder({makeTool({sphere(0.01)})});
