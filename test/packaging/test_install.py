@@ -110,13 +110,19 @@ class InstallSpace(unittest.TestCase):
         programs = WORK / "downstream/devel/lib/robot_tissue_downstream"
         self.assertIn("patch -", output_of(f"'{programs}/press'"))
         demo = start("roslaunch robot_tissue demo.launch headless:=true")
+        calls = re.findall(r"^rosservice call .*?'$", (SOURCE / "README.md").read_text(),
+                           re.MULTILINE | re.DOTALL)
         try:
             followed = output_of(f"'{programs}/follow_demo'")
-        except AssertionError as error:
-            followed = str(error)
-        demo.send_signal(signal.SIGINT)
-        log, _ = demo.communicate(timeout=LONGEST)
-        self.assertIn("reset 1", followed, log)
+            answers = [output_of(call) for call in calls if "/cut" in call or "punch" in call]
+            diagnostics = output_of("rostopic echo -n 1 /diagnostics")
+        finally:
+            demo.send_signal(signal.SIGINT)
+            log, _ = demo.communicate(timeout=LONGEST)
+            print(log)  # shown beside what fails
+        self.assertIn("reset 1", followed)
+        self.assertEqual(["success:" in answer for answer in answers], [True, True], answers)
+        self.assertIn("robot_tissue: solver", diagnostics)
         self.assertEqual(demo.returncode, 0, log)
         self.assertNotIn(str(BUILD / "devel"), log)
 
