@@ -18,8 +18,37 @@ constexpr double kToolStep = 0.2;      // of the spacing
 constexpr int kContactRounds = 16;     // in which the shape is what was solved for
 constexpr int kMostRounds = 200;       // with those that are cut short
 constexpr int kMostIterations = 1500;  // of the rounds of one load step
+constexpr int kMostIdle = 300;         // cycles, in rounds that led neither nearer nor farther
+constexpr int kIdleRound = 12;         // cycles that a round counts for at least
+constexpr double kNearer = 0.7;        // of the least error: a round led nearer to balance
+constexpr double kFarther = 1.1;       // of the farthest way: it led on, as where tissue slips
 constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
 constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
+
+// Whether the rounds of a load step still gain, by error or by way.
+class Gain {
+ public:
+  explicit Gain(Tissue::Displacements start) : start_(std::move(start)) {}
+
+  void note(const SolveReport& report, const std::vector<Vec3>& now, bool whole) {
+    double way = 0.0;
+    for (std::size_t node = 0; node < now.size(); ++node) {
+      way += (now[node] - (*start_)[node]).squaredNorm();
+    }
+    const bool gains = whole || report.error_estimate < kNearer * least_ ||
+                       way > kFarther * kFarther * farthest_;
+    idle_ = gains ? 0 : idle_ + std::max(report.iterations, kIdleRound);
+    least_ = std::min(least_, report.error_estimate);
+    farthest_ = std::max(farthest_, way);
+  }
+  bool isOver() const { return idle_ > kMostIdle; }
+
+ private:
+  Tissue::Displacements start_;
+  double least_ = std::numeric_limits<double>::infinity();
+  double farthest_ = 0.0;  // squared (m^2)
+  int idle_ = 0;
+};
 
 }  // namespace
 
@@ -209,7 +238,9 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (!contact_rounds_.renew) return solveOnce(disturbed);
   Displacements before = displacements();
+  Gain gain(before);
   SolveReport report = solveOnce(disturbed);
+  SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
     const bool late = deadline_ && deadline_->isOver();
@@ -217,8 +248,9 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
+    gain.note(of_round, state_.displacement, whole);
     const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
-                      report.iterations > kMostIterations ||
+                      report.iterations > kMostIterations || gain.isOver() ||
                       (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_rounds_.renew(of_tools, whole, last);
     if (!renewed && (last || !hurried)) break;
@@ -231,7 +263,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     before.reset();  // before the next copy
     before = displacements();
     const SolveReport earlier = report;
-    report = solveOnce({});
+    report = of_round = solveOnce({});
     report.wall_ms += earlier.wall_ms;
     report.iterations += earlier.iterations;
     last_report_ = report;
@@ -268,13 +300,21 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   return true;
 }
 
+// Of the next solve; 0: no bound.
+double Tissue::mostMs() const {
+  if (!deadline_) return max_ms_;
+  const double left = std::max(kLeastMs, kShareOfTime * deadline_->leftMs());
+  if (!std::isfinite(left)) return max_ms_;
+  return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
+}
+
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const bool may_fail = !method_->staysFinite();
   const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
   const std::vector<LoadingPatch> last_good_patches = patches_;
   kept_.reset();
   limitWays();
-  method_->limitTime(deadline_ ? std::max(kLeastMs, kShareOfTime * deadline_->leftMs()) : max_ms_);
+  method_->limitTime(mostMs());
   SolveReport report = method_->solve(patches_, disturbed, state_);
   if (may_fail && !hasOnlyFiniteNumbers(report)) {
     state_.displacement = last_good;

@@ -11,9 +11,12 @@ constexpr int kMostLateIterations = 1500;  // where the tools stand: as many as 
 
 }  // namespace
 
-Pipeline::Bounded::Bounded(Pipeline& pipeline) : tissue_(pipeline.tissue_) {
-  pipeline.deadline_ = Deadline(pipeline.budget_s_);
-  if (std::isfinite(pipeline.budget_s_)) tissue_.setDeadline(pipeline.deadline_);
+Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
+  const std::optional<Deadline>& end = pipeline.end_;
+  Deadline& deadline = pipeline.deadline_;
+  deadline = Deadline(pipeline.budget_s_);
+  if (end && end->leftMs() < deadline.leftMs()) deadline = *end;
+  if (end || std::isfinite(pipeline.budget_s_)) pipeline.tissue_.setDeadline(deadline);
 }
 
 const StepReport& Pipeline::carryOn() {

@@ -91,6 +91,11 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
   touched_ = true;
 }
 
+void Pipeline::setEnd(const Deadline& end) {
+  end_ = end;
+  tissue_.setDeadline(end_);
+}
+
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = driven(pose);
   const bool stands = standsStill(goal) && !touched_;
@@ -129,6 +134,7 @@ void Pipeline::beginReport() {
 
 // goal: the pose, with the ways of tools that a force drives.
 void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
+  if (touched_) dead_end_.reset();
   report_.changed = report_.changed || !tissue_.isUntouched();
   RobotPose there = goal;  // but for tools that wait outside
   if (!last_pose_ || checkpoints_.empty()) {
@@ -180,6 +186,7 @@ bool Pipeline::advance(const RobotPose& pose, bool insists) {
   closeJaws();
   contacts_.commit(pose, tissue_);
   tearOff();
+  dead_end_.reset();
   return true;
 }
 

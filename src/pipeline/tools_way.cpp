@@ -66,6 +66,14 @@ RobotPose Pipeline::complete(const RobotPose& pose) const {
   return complete;
 }
 
+// The shortest load step that way is the one that no shape followed when last tried from there.
+bool Pipeline::leadsNowhere(const RobotPose& from, const RobotPose& to) const {
+  if (!dead_end_ || stepsBetween(dead_end_->from, from) > 0.0) return false;
+  const double steps = stepsBetween(from, to);
+  const RobotPose shortest = steps > kShortest ? between(from, to, kShortest / steps) : to;
+  return stepsBetween(dead_end_->to, shortest) < 0.5 * kShortest;
+}
+
 // Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
 // or in time. Tools that pass the tissue by take none.
 RobotPose Pipeline::walk(const RobotPose& pose) {
@@ -83,11 +91,15 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     passTo(pose);
     return pose;
   }
+  if (leadsNowhere(start, pose)) {
+    report_.lost = true;
+    return start;
+  }
   const double steps = stepsBetween(start, pose);
   double gone = 0.0, longest = 1.0;
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
-    const double free = tissue_.isUntouched() ? freeSteps(came()) : 0.0;
+    const double free = freeSteps(came(), pose);
     const double stride = std::max(longest, free);
     const bool whole = gone + stride < steps;
     if (!whole && any_rigid_) break;
@@ -98,6 +110,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     if (!followed) {
       if (is_short) {
         report_.lost = true;
+        dead_end_ = DeadEnd{came(), on_the_way};
         return came();
       }
       longest = kShortest;
@@ -171,6 +184,7 @@ void Pipeline::goBackTo(RobotPose& pose) {
 // The tools let go, and come in from outside. Those that wait for the next step stay away in the
 // pose.
 void Pipeline::startAnew(RobotPose& pose) {
+  dead_end_.reset();
   patches_.clear();
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) contacts_.clear(static_cast<int>(tool));
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) forgetJaws(tool);
@@ -257,6 +271,7 @@ bool Pipeline::isHooked(std::size_t tool) const {
 }
 
 void Pipeline::letGoOf(std::size_t tool) {
+  dead_end_.reset();
   patches_.letGo(static_cast<int>(tool));
   contacts_.clear(static_cast<int>(tool));
   forgetJaws(tool);
@@ -342,11 +357,12 @@ double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const 
   return steps;
 }
 
-// Steps that every link may go from here before it can touch.
-double Pipeline::freeSteps(const RobotPose& pose) const {
+// Steps that every link on its way may go from here before it can touch.
+double Pipeline::freeSteps(const RobotPose& from, const RobotPose& to) const {
   double steps = std::numeric_limits<double>::infinity();
   for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
-    const Box box = finder_.bounds(link, pose.links[link]);
+    if (longestWay(from.links[link], to.links[link], finder_.reach(link)) == 0.0) continue;
+    const Box box = finder_.bounds(link, from.links[link]);
     steps = std::min(steps, distance(box, tissue_.bounds()) / stepOf(link));
   }
   return steps;

@@ -1,6 +1,7 @@
 // The runner's command line.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct Arguments {
   std::string scene;
   std::string out;
   SolverOverrides overrides;
+  std::optional<double> max_seconds;  // of the wall's clock, of the whole run
   bool list_methods = false;
   bool list_models = false;
   bool quiet = false;

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include "robot_tissue/core/types.h"
@@ -14,8 +16,23 @@ namespace robot_tissue {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// The folders there are, and who may write or discard them now.
+std::mutex& guard() {
+  static std::mutex mutex;
+  return mutex;
+}
+std::set<OutputFolder*>& folders() {
+  static std::set<OutputFolder*> all;
+  return all;
+}
+
+}  // namespace
+
 OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> files)
     : path_(fs::absolute(path).lexically_normal()), files_(std::move(files)) {
+  const std::lock_guard<std::mutex> lock(guard());
   if (!path_.has_filename()) path_ = path_.parent_path();  // "results/"
   makeFolders();
   std::string pattern = (path_ / ".simulate-XXXXXX").string();
@@ -27,6 +44,7 @@ OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> fil
     refuse(why);
   }
   staging_ = pattern;
+  folders().insert(this);
 }
 
 void OutputFolder::makeFolders() {
@@ -54,6 +72,18 @@ void OutputFolder::makeFolders() {
 }
 
 OutputFolder::~OutputFolder() {
+  const std::lock_guard<std::mutex> lock(guard());
+  folders().erase(this);
+  discard();
+}
+
+// The lock is held on to: nothing is written any more, as the program ends.
+void OutputFolder::discardAll() {
+  guard().lock();
+  for (OutputFolder* folder : folders()) folder->discard();
+}
+
+void OutputFolder::discard() {
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
   if (committed_) return;
@@ -61,6 +91,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::write(const std::string& file, const std::string& content) {
+  const std::lock_guard<std::mutex> lock(guard());
   std::ofstream stream(staging_ / file, std::ios::binary);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
@@ -68,6 +99,7 @@ void OutputFolder::write(const std::string& file, const std::string& content) {
 }
 
 void OutputFolder::commit() {
+  const std::lock_guard<std::mutex> lock(guard());
   for (const std::string& file : files_) {
     std::error_code error;
     fs::rename(staging_ / file, path_ / file, error);

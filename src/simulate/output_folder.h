@@ -22,8 +22,12 @@ class OutputFolder {
   void write(const std::string& file, const std::string& content);
   void commit();
 
+  // Takes away what those that are not committed have made; for an end by a signal.
+  static void discardAll();
+
  private:
   void makeFolders();
+  void discard();
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::filesystem::path path_;

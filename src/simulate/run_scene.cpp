@@ -7,12 +7,14 @@
 namespace robot_tissue {
 
 bool RunResult::allOk() const {
-  return std::all_of(increments.begin(), increments.end(),
+  return cut_off.empty() &&
+         std::all_of(increments.begin(), increments.end(),
                      [](const auto& row) { return row.report.status == SolveStatus::kOk; });
 }
 
-RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step) {
-  return Runner(scene, on_row, on_step).run();
+RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
+                   const Deadline& deadline) {
+  return Runner(scene, on_row, on_step, deadline).run();
 }
 
 }  // namespace robot_tissue

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/deadline.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/tissue.h"
 
@@ -41,9 +42,10 @@ struct RunResult {
   std::vector<Vec3> displacement;  // per node (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
   std::vector<std::array<int, 3>> triangles;
+  std::string cut_off;  // where the time was over; empty: all was run
   std::vector<std::string> remarks;  // lines the user should see, e.g. a tool that missed its force
 
-  bool allOk() const;
+  bool allOk() const;  // and all was run
 };
 
 // Called after each increment: the row and how many increments its step has.
@@ -52,7 +54,9 @@ using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 // Called when a step (from 0) has ended, with the tissue as it is then.
 using OnStep = std::function<void(int step, const Tissue& tissue)>;
 
-// Throws InputError when a tool's shapes or a step are refused; the message names the step.
-RunResult runScene(const Scene& scene, const OnRow& on_row = {}, const OnStep& on_step = {});
+// Throws InputError when a tool's shapes or a step are refused; the message names the step. After
+// the deadline it ends with the increment under way.
+RunResult runScene(const Scene& scene, const OnRow& on_row = {}, const OnStep& on_step = {},
+                   const Deadline& deadline = Deadline());
 
 }  // namespace robot_tissue

@@ -1,6 +1,7 @@
 #include "runner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -37,17 +38,31 @@ std::vector<ToolConfig> movedTools(const Scene& scene) {
 
 }  // namespace
 
-Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step)
+Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
+               const Deadline& deadline)
     : scene_(scene),
       on_row_(on_row),
       on_step_(on_step),
+      deadline_(deadline),
       tools_(movedTools(scene)),
       pipeline_(scene.tissue, scene.solver, toolsOf(movedTools(scene)).tools, scene.supports),
       pushes_(tools_.count()) {
   for (const std::string& warning : pipeline_.toolWarnings()) result_.remarks.push_back(warning);
+  if (std::isfinite(deadline.leftMs())) pipeline_.setEnd(deadline);
 }
 
 RunResult Runner::run() {
+  try {
+    performAll();
+  } catch (const TimeIsOver&) {
+    result_.cut_off = pathOf(scene_, step_) + " increment " +
+                      std::to_string(result_.increments.back().increment);
+  }
+  keepShape();
+  return std::move(result_);
+}
+
+void Runner::performAll() {
   for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
     step_ = static_cast<int>(i);
     try {
@@ -57,8 +72,6 @@ RunResult Runner::run() {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());
     }
   }
-  keepShape();
-  return std::move(result_);
 }
 
 void Runner::perform(const SettleStep&) {
@@ -128,6 +141,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   }
   result_.increments.push_back({step_, increment, report});
   if (on_row_) on_row_(result_.increments.back(), increments);
+  const bool more = increment < increments || at(step_) + 1 < scene_.steps.size();
+  if (more && deadline_.isOver()) throw TimeIsOver();
 }
 
 // Once a step.

@@ -11,10 +11,11 @@ namespace robot_tissue {
 
 class Runner {
  public:
-  Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step);
+  Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step, const Deadline& deadline);
   RunResult run();
 
  private:
+  struct TimeIsOver {};
   // What the tools' updates since the last row came to.
   struct Updates {
     bool any = false;
@@ -28,6 +29,7 @@ class Runner {
   void perform(const CutStep& step);
   void perform(const ReleaseStep& step);
   void perform(const ResetStep& step);
+  void performAll();
   void remark(const std::string& text);
   void keep(SolveReport report, int increment = 1, int increments = 1);
   void keepTool(std::size_t tool, int increment);
@@ -49,6 +51,7 @@ class Runner {
   const Scene& scene_;
   const OnRow& on_row_;
   const OnStep& on_step_;
+  const Deadline& deadline_;
   ToolPlaces tools_;
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)

@@ -38,6 +38,11 @@ OnRow progressOn(std::ostream& err, std::size_t steps) {
 }
 
 void tellNotOk(const RunResult& result, std::ostream& err) {
+  if (!result.cut_off.empty()) {
+    err << "simulate: --max-seconds is over at " << result.cut_off
+        << ", what follows was not run\n";
+    return;
+  }
   const auto not_ok = [](const IncrementRow& row) { return row.report.status != SolveStatus::kOk; };
   const auto& rows = result.increments;
   const auto first = std::find_if(rows.begin(), rows.end(), not_ok);
@@ -56,15 +61,17 @@ void write(const RunResult& result, OutputFolder& folder) {
   folder.commit();
 }
 
-RunResult runNamed(const Scene& scene, const std::string& file, const OnRow& on_row) {
+RunResult runNamed(const Scene& scene, const std::string& file, const OnRow& on_row,
+                   const Deadline& deadline) {
   try {
-    return runScene(scene, on_row);
+    return runScene(scene, on_row, {}, deadline);
   } catch (const InputError& error) {
     throw InputError(onOneLine(file) + ": " + error.what());
   }
 }
 
 int run(const Arguments& arguments, std::ostream& err, bool terminal) {
+  const Deadline deadline = arguments.max_seconds ? Deadline(*arguments.max_seconds) : Deadline();
   const Scene scene = loadScene(arguments.scene, arguments.overrides);
   OutputFolder folder(arguments.out,
                       {"nodes.csv", "patches.csv", "increments.csv", "tools.csv", "surface.stl"});
@@ -72,8 +79,8 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
     for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';
   }
   const bool progress = terminal && !arguments.quiet;
-  const RunResult result =
-      runNamed(scene, arguments.scene, progress ? progressOn(err, scene.steps.size()) : OnRow());
+  const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
+  const RunResult result = runNamed(scene, arguments.scene, on_row, deadline);
   write(result, folder);
   if (!arguments.quiet) {
     for (const std::string& remark : result.remarks) err << "simulate: " << remark << '\n';

@@ -143,6 +143,7 @@ class Tissue {
   void limitWays();
   bool goBack(const std::vector<Vec3>& before);
   void putToolPatches(std::vector<LoadingPatch> of_tools);
+  double mostMs() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);

@@ -119,6 +119,8 @@ class Pipeline {
   const StepReport& carryOn();
   // The tools are where they were asked to be last, and the shape is the one there, in balance.
   bool hasArrived() const;
+  // No call begins a solve after it; what a call leaves then it tells as late.
+  void setEnd(const Deadline& end);
 
   // As Tissue's, with the tools and supports where they are.
   SolveReport settle();
@@ -182,21 +184,26 @@ class Pipeline {
     Box box;
     double longest = 0.0;
   };
-  // What is done in its life has the budget, counted from its beginning.
+  // What is done in its life has the budget, counted from its beginning, and ends with all calls.
   class Bounded {
    public:
     explicit Bounded(Pipeline& pipeline);
-    ~Bounded() { tissue_.setDeadline(std::nullopt); }
+    ~Bounded() { pipeline_.tissue_.setDeadline(pipeline_.end_); }
     Bounded(const Bounded&) = delete;
     Bounded& operator=(const Bounded&) = delete;
 
    private:
-    Tissue& tissue_;
+    Pipeline& pipeline_;
   };
   // Numbers of links, from `first` up to before `end`.
   struct Links {
     std::size_t first = 0;
     std::size_t end = 0;
+  };
+  // A shortest load step that no shape followed.
+  struct DeadEnd {
+    RobotPose from;
+    RobotPose to;
   };
   // A tool that a force drives.
   struct Drive {
@@ -265,7 +272,8 @@ class Pipeline {
   std::vector<std::size_t> toolsBehind() const;
   std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
-  double freeSteps(const RobotPose& pose) const;
+  double freeSteps(const RobotPose& from, const RobotPose& to) const;
+  bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
   bool touchesTissue(std::size_t tool) const;
   bool passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const;
   void passTo(const RobotPose& pose);
@@ -334,9 +342,11 @@ class Pipeline {
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
-  Deadline deadline_;           // of the call under way
-  int late_iterations_ = 0;     // of the method, where the tools stand
-  bool gave_up_ = false;        // there
+  std::optional<Deadline> end_;      // of all calls
+  Deadline deadline_;                // of the call under way
+  std::optional<DeadEnd> dead_end_;  // none: the tissue has changed since
+  int late_iterations_ = 0;          // of the method, where the tools stand
+  bool gave_up_ = false;             // there
   bool unfinished_ = false;     // the last load step had no time for all that it would have done
   bool touched_ = true;         // the reports are to be brought up to date
   std::vector<Vec3> vertices_;  // of the last contacts

@@ -1,0 +1,127 @@
+// The program from outside: what bounds it, and that it ends whatever it is given.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace robot_tissue {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr rlim_t kProcessorSeconds = 10;
+
+// Many increments of a press that takes long.
+const std::string kLongScene = R"(tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}
+  spacing: 0.005
+  material: {young_modulus: 10000.0, poisson_ratio: 0.45}
+  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]
+solver: {method: newton}
+steps:
+  - load:
+      increments: 10000
+      patches:
+        - {name: p, min: [0.04, 0.04, 0.05], max: [0.06, 0.06, 0.05], displacement: [0, 0, -0.01]}
+)";
+
+std::string readText(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class BoundedRun : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "bounded_run_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    std::ofstream(folder_ / "long.yaml") << kLongScene;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Of the program, with its stderr in a file, and at most so much of the processor.
+  pid_t start(std::vector<std::string> words) const {
+    words.insert(words.begin(), SIMULATE_PATH);
+    const std::string err = (folder_ / "stderr.txt").string();
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const rlimit most{kProcessorSeconds, kProcessorSeconds};
+    setrlimit(RLIMIT_CPU, &most);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    if (freopen(err.c_str(), "w", stderr) == nullptr) _exit(127);
+    execv(SIMULATE_PATH, arguments.data());
+    _exit(127);
+  }
+  int statusOf(pid_t child) const {
+    int status = -1;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    return status;
+  }
+  std::string err() const { return readText(folder_ / "stderr.txt"); }
+
+  // Interrupts it when it has begun to compute.
+  void expectNothingLeftBehind(int signal) const {
+    const fs::path out = folder_ / "out" / "deep";
+    const pid_t child = start({(folder_ / "long.yaml").string(), "--out", out.string()});
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!fs::exists(out) || fs::is_empty(out)) {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+      std::this_thread::yield();
+    }
+    kill(child, signal);
+    const int status = statusOf(child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(BoundedRun, LeavesNothingBehindWhenInterrupted) { expectNothingLeftBehind(SIGINT); }
+
+TEST_F(BoundedRun, LeavesNothingBehindWhenTerminated) { expectNothingLeftBehind(SIGTERM); }
+
+TEST_F(BoundedRun, WritesWhatItCameToWhenTheTimeIsOver) {
+  const fs::path out = folder_ / "out";
+  const int status = statusOf(start({(folder_ / "long.yaml").string(), "--out", out.string(),
+                                     "--method", "layered", "--max-seconds", "0.2"}));
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  const std::string told = err();
+  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
+  EXPECT_NE(told.find("--max-seconds is over at steps[0].load increment "), std::string::npos) << told;
+  const std::string rows = readText(out / "increments.csv");
+  const auto lines = std::count(rows.begin(), rows.end(), '\n');
+  EXPECT_GT(lines, 1);
+  EXPECT_LT(lines, 10001);
+}
+
+TEST_F(BoundedRun, RefusesATimeThatIsNone) {
+  for (const char* seconds : {"0", "-1", "nan", "inf", "1e300", "soon"}) {
+    const fs::path out = folder_ / "out";
+    const int status = statusOf(start({(folder_ / "long.yaml").string(), "--out", out.string(),
+                                       "--max-seconds", seconds}));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << seconds;
+    EXPECT_EQ(err(), std::string("simulate: --max-seconds = ") + seconds +
+                         ": must be a number above 0 and at most 1e+09\n");
+    EXPECT_FALSE(fs::exists(out));
+  }
+}
+
+}  // namespace
+}  // namespace robot_tissue
