@@ -123,5 +123,32 @@ TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   }
 }
 
+// Scenes that once crashed, hung or took minutes (test/data/repro/README.md).
+TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {
+  int scenes = 0;
+  for (const auto& entry : fs::directory_iterator(ROBOT_TISSUE_SOURCE_DIR "/test/data/repro")) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++scenes;
+    const fs::path out = folder_ / entry.path().stem();
+    const int status = statusOf(start({entry.path().string(), "--out", out.string(), "--quiet"}));
+    ASSERT_TRUE(WIFEXITED(status)) << entry.path() << ": signal " << WTERMSIG(status);
+    const int code = WEXITSTATUS(status);
+    EXPECT_TRUE(code == 0 || code == 2 || code == 3) << entry.path() << ": " << code << err();
+    const std::string name = entry.path().stem().string();
+    const bool has_bad_mesh = name.rfind("ply", 0) == 0 || name.rfind("glb", 0) == 0;
+    EXPECT_TRUE(!has_bad_mesh || code == 2) << name << ": " << code;
+  }
+  EXPECT_GE(scenes, 13);
+}
+
+// Cases of a seed, as many as a minute has time for: a failed one can be run again by its number.
+TEST_F(BoundedRun, EndsForMutatedScenes) {
+  const std::string command = "/usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR
+                              "/scripts/mutate_scenes --simulate " SIMULATE_PATH
+                              " --seed 1 --cases 1000 --seconds 60";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
 }  // namespace
 }  // namespace robot_tissue
