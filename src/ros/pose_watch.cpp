@@ -34,10 +34,11 @@ PoseWatch::PoseWatch(tf2_ros::Buffer& buffer, const ToolPoses& poses, double rat
       on_pose_(std::move(on_pose)),
       pace_(rate_hz) {
   connection_ = buffer_._addTransformsChangedListener([this] { onTransforms(); });
-  feed_ = std::make_unique<TransformFeed>(buffer_, at_once_, [this] {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    noticeTime();
-  });
+  const auto time_went_back = [this, jumps = 0]() mutable {
+    const int before = std::exchange(jumps, timeJumps());
+    return jumps != before;
+  };
+  feed_ = std::make_unique<TransformFeed>(buffer_, at_once_, time_went_back);
 }
 
 PoseWatch::~PoseWatch() {

@@ -4,6 +4,7 @@
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
+#include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/ros/tissue_node.h"
 
 namespace robot_tissue {
@@ -115,7 +116,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
 
 bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
   try {
-    requireName(request.name);
+    requirePatchName(request.name);
     if (isTool(request.name)) {
       pushTool(request, response);
     } else {

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <tf2/exceptions.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "robot_tissue/scene/value_text.h"
@@ -10,14 +11,15 @@
 namespace robot_tissue {
 namespace {
 
-constexpr unsigned kQueue = 100;      // messages, as tf2_ros has it
-constexpr double kWarnPeriod = 10.0;  // s
+constexpr unsigned kQueue = 100;  // messages, as tf2_ros has it
+const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
+const ros::WallDuration kWarnPeriod(10.0);
 
 }  // namespace
 
 TransformFeed::TransformFeed(tf2_ros::Buffer& buffer, ros::CallbackQueueInterface& queue,
-                             std::function<void()> on_message)
-    : buffer_(buffer), on_message_(std::move(on_message)) {
+                             std::function<bool()> time_went_back)
+    : buffer_(buffer), time_went_back_(std::move(time_went_back)) {
   ros::NodeHandle node;
   node.setCallbackQueue(&queue);
   const auto subscribe = [&](const char* topic, bool is_static) {
@@ -33,30 +35,45 @@ TransformFeed::TransformFeed(tf2_ros::Buffer& buffer, ros::CallbackQueueInterfac
 }
 
 void TransformFeed::take(const tf2_msgs::TFMessage& message, bool is_static) {
-  on_message_();
+  if (time_went_back_()) newest_.clear();
+  warnOfAhead();
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    if (!is_static && isAhead(transform)) continue;
+    if (!is_static && !hasPlace(transform)) continue;
     try {
       buffer_.setTransform(transform, "/tf", is_static);
     } catch (const tf2::TransformException& error) {
-      ROS_WARN_STREAM_THROTTLE(kWarnPeriod, "/tf: " << onOneLine(error.what()));
+      ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << onOneLine(error.what()));
     }
   }
 }
 
-// Before there is a time, all are.
-bool TransformFeed::isAhead(const geometry_msgs::TransformStamped& transform) const {
-  const ros::Time now = ros::Time::now();
-  if (now.isZero()) return true;
-  const double ahead = (transform.header.stamp - now).toSec();
-  const double most = buffer_.getCacheLength().toSec();
-  if (ahead <= most) return false;
-  ROS_WARN_STREAM_THROTTLE(kWarnPeriod, "/tf: the transform of '"
-                                            << shortText(transform.child_frame_id) << "' is "
-                                            << numberText(ahead)
-                                            << " s ahead of now and left out; allowed: at most "
-                                            << numberText(most) << " s, that the buffer holds");
+// Before there is a time, none has.
+bool TransformFeed::hasPlace(const geometry_msgs::TransformStamped& transform) {
+  const ros::Time now = ros::Time::now(), stamp = transform.header.stamp;
+  if (now.isZero()) return false;
+  if (stamp - now > buffer_.getCacheLength()) {
+    if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
+    return false;
+  }
+  ros::Time& newest = newest_[transform.child_frame_id];
+  if (newest - stamp > buffer_.getCacheLength()) return false;
+  newest = std::max(newest, stamp);
   return true;
+}
+
+void TransformFeed::warnOfAhead() {
+  if (!ahead_) return;
+  const ros::WallTime now = ros::WallTime::now();
+  const ros::Duration ahead = ahead_->stamp - ros::Time::now(), most = buffer_.getCacheLength();
+  if (ahead > most && now - ahead_->seen < kPatience) return;
+  if (ahead > most && now - warned_ > kWarnPeriod) {
+    warned_ = now;
+    ROS_WARN_STREAM("/tf: the transform of '"
+                    << shortText(ahead_->frame) << "' is " << numberText(ahead.toSec())
+                    << " s ahead of now and left out; allowed: at most "
+                    << numberText(most.toSec()) << " s, that the buffer holds");
+  }
+  ahead_.reset();
 }
 
 }  // namespace robot_tissue

@@ -143,20 +143,23 @@ class NodeTest : public ::testing::Test {
   }
 
   // Asks again while the node has had no time to bring the load on in full.
-  static ApplyLoad::Response applyLoad(const ApplyLoad::Request& request) {
+  ApplyLoad::Response applyLoad(const ApplyLoad::Request& request) {
     const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(kDeadline);
     ApplyLoad call;
     call.request = request;
-    do {
+    EXPECT_TRUE(ros::service::call("/tissue/apply_load", call));
+    while (isOnItsWay(call.response) && ros::WallTime::now() < end) {
+      follow();  // poses go on
       EXPECT_TRUE(ros::service::call("/tissue/apply_load", call));
-    } while (isOnItsWay(call.response) && ros::WallTime::now() < end);
+    }
     return call.response;
   }
 
   static bool isOnItsWay(const ApplyLoad::Response& response) {
-    const bool is_loading = response.message.find("on its way") != std::string::npos ||
-                            response.message.find("loaded; LATE") != std::string::npos;
-    return response.success && is_loading;
+    const auto says = [&](const char* text) {
+      return response.message.find(text) != std::string::npos;
+    };
+    return response.success && (says("on its way") || says("; LATE") || says("next good pose"));
   }
 
   // Of a tool: ~grasp and ~release.

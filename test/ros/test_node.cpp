@@ -28,7 +28,7 @@ class RunningNode : public NodeTest {
     EXPECT_GT(lowestOfTop(), kTop - depth - kOff);
   }
 
-  static ApplyLoad::Response load(const std::string& name, double low, double high, double down) {
+  ApplyLoad::Response load(const std::string& name, double low, double high, double down) {
     ApplyLoad::Request request;
     request.name = name;
     request.min.x = request.min.y = low;
@@ -39,7 +39,7 @@ class RunningNode : public NodeTest {
     return applyLoad(request);
   }
 
-  static ApplyLoad::Response release(const std::string& name) {
+  ApplyLoad::Response release(const std::string& name) {
     ApplyLoad::Request request;
     request.name = name;
     return applyLoad(request);

@@ -11,9 +11,6 @@ namespace robot_tissue {
 constexpr double kFarthestPoint = 1e6;  // m: beyond, a tool stands nowhere
 constexpr double kGreatestForce = 1e6;  // N
 
-// Names become namespaces of markers and words of messages, as in scenes.
-void requireName(const std::string& name);
-
 // No component beyond `most`, in this unit.
 void requireWithin(const Vec3& vector, double most, const std::string& unit,
                    const std::string& field);
