@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMostSteps = 100000.0;
 constexpr double kRounding = 1e-9;            // 5 steps of a fifth are 5, not 6
-constexpr double kTooFar = 2.0;               // steps that a patch went: the increment is made anew
+constexpr double kTooFar = 2.0;               // steps that a patch goes at once: one spacing
 constexpr double kMostGrowth = 2.0;           // of an increment beside the one before
 constexpr double kLeastOfFirst = 1.0 / 16.0;  // of the first increment: none is smaller
 
@@ -107,15 +107,37 @@ SolveReport Tissue::climb(const std::vector<Ramp>& ramps, int increments,
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
-    report = goTo(ramps, static_cast<double>(increment) / increments);
+    report = goInSteps(ramps, increment, increments);
     worst = std::max(worst, report.status);
+    const bool stopped = report.status == SolveStatus::kLate && isLoading();
     if (on_increment) on_increment(increment, increments, report);
-    if (increment < increments && stopsOnTheWay(ramps)) {
+    if (stopped || (increment < increments && stopsOnTheWay(ramps))) {
       worst = std::max(worst, SolveStatus::kLate);
       break;
     }
   }
   report.status = worst;
+  return report;
+}
+
+// An increment that would turn cells over, were only the patch to move, is walked in the method's
+// own steps: in one go the shape would be that of no way there.
+SolveReport Tissue::goInSteps(const std::vector<Ramp>& ramps, int increment, int increments) {
+  const double steps = method_->findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
+  const int parts = steps > kTooFar ? wholeParts(steps) : 1;
+  SolveReport report;
+  for (int part = 1; part <= parts; ++part) {
+    const SolveReport earlier = report;
+    report = goTo(ramps, (increment - 1 + static_cast<double>(part) / parts) / increments);
+    report.status = std::max(report.status, earlier.status);
+    report.iterations += earlier.iterations;
+    report.wall_ms += earlier.wall_ms;
+    last_report_ = report;
+    if (part < parts && stopsOnTheWay(ramps)) {
+      report.status = last_report_.status;
+      break;
+    }
+  }
   return report;
 }
 

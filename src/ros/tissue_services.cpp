@@ -4,8 +4,8 @@
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
-#include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/ros/tissue_node.h"
+#include "robot_tissue/scene/patch_name.h"
 
 namespace robot_tissue {
 namespace {

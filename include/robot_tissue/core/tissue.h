@@ -164,6 +164,7 @@ class Tissue {
   SolveReport climbByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
   SolveReport climb(const std::vector<Ramp>& ramps, int increments,
                     const OnIncrement& on_increment);
+  SolveReport goInSteps(const std::vector<Ramp>& ramps, int increment, int increments);
   SolveReport goTo(const std::vector<Ramp>& ramps, double share);
   double stepsGone(const std::vector<Ramp>& ramps, const std::vector<Vec3>& before) const;
   Vec3 patchForce(const LoadingPatch& patch) const;
