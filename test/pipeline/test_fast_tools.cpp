@@ -141,6 +141,8 @@ TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
   while (pipeline.step(down).too_fast && updates < 200) ++updates;
   EXPECT_LT(updates, 200);
   EXPECT_TRUE(pipeline.report().lost);
+  for (int late = 0; pipeline.report().late && late < 2000; ++late) pipeline.step(down);
+  EXPECT_TRUE(pipeline.report().lost);
   EXPECT_FALSE(pipeline.step(down).changed);
 }
 

@@ -70,9 +70,9 @@ TEST(ToolSteps, AFarWayInOneIncrementIsWalkedAll) {
 
 TEST(ToolSteps, AWayOfTooManyLoadStepsIsRefused) {
   const std::string message = refusalOf(block() + kSphere + "steps:\n" +
-                                        placed("probe", sphereAt(-1000.0), sphereAt(0.0), 1));
+                                        placed("probe", sphereAt(-900.0), sphereAt(0.0), 1));
   EXPECT_EQ(message.rfind("steps[0].move: ", 0), 0U) << message;
-  EXPECT_NE(message.find("500000 load steps of 0.002 m"), std::string::npos) << message;
+  EXPECT_NE(message.find("450000 load steps of 0.002 m"), std::string::npos) << message;
   EXPECT_NE(message.find("at most 100000"), std::string::npos) << message;
 }
 
@@ -159,10 +159,13 @@ TEST(ToolSteps, JawsThatMeetAreNamedOnceAStep) {
                " opening: 0.01}, to: {xyz: [0.05, 0.05, 0.2], opening: " + opening +
                "}, increments: 4}\n");
   };
-  EXPECT_TRUE(closed_to("0.0045").remarks.empty());
-  const RunResult in_each_other = closed_to("0.0");
-  EXPECT_TRUE(hasRemark(in_each_other, "steps[0].move: ", "the jaws of 'forceps'"));
-  EXPECT_EQ(in_each_other.remarks.size(), 1U);
+  const auto overlaps = [](const RunResult& result) {
+    return std::count_if(result.remarks.begin(), result.remarks.end(), [](const std::string& said) {
+      return said.rfind("steps[0].move: the jaws of 'forceps'", 0) == 0;
+    });
+  };
+  EXPECT_EQ(overlaps(closed_to("0.0045")), 0);
+  EXPECT_EQ(overlaps(closed_to("0.0")), 1);
 }
 
 TEST(ToolSteps, ToolsThatNoStepPlacesPlayNoPart) {
