@@ -13,7 +13,6 @@ constexpr std::size_t kMostCheckpoints = 64;
 constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is none
 constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
 constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
-constexpr double kRounding = 1e-6;       // of a load step: too little for one of its own
 constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
 
 RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
@@ -102,7 +101,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
   while (gone < steps) {
     const double free = freeSteps(came(), pose);
     const double stride = std::max(longest, free);
-    const bool whole = gone + stride < steps - kRounding;
+    const bool whole = gone + stride < steps;
     if (!whole && any_rigid_) break;
     const double there = whole ? gone + stride : steps;
     const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
