@@ -161,7 +161,8 @@ TEST(ToolSteps, JawsThatMeetAreNamedOnceAStep) {
   };
   const auto overlaps = [](const RunResult& result) {
     return std::count_if(result.remarks.begin(), result.remarks.end(), [](const std::string& said) {
-      return said.rfind("steps[0].move: the jaws of 'forceps'", 0) == 0;
+      return said.rfind("steps[0].move: ", 0) == 0 &&
+             said.find("the jaws of 'forceps'") != std::string::npos;
     });
   };
   EXPECT_EQ(overlaps(closed_to("0.0045")), 0);
