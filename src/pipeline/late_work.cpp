@@ -1,4 +1,5 @@
 // Pipeline: what a call has no time for, and how it is carried on.
+#include <algorithm>
 #include <cmath>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -33,7 +34,7 @@ const StepReport& Pipeline::carryOn() {
 
 // A solve without a bound gives up, too.
 void Pipeline::countLate() {
-  late_iterations_ += tissue_.isLoading() ? 0 : tissue_.lastReport().iterations;
+  late_iterations_ += tissue_.isLoading() ? 0 : std::max(1, tissue_.lastReport().iterations);
   gave_up_ = late_iterations_ > kMostLateIterations;
 }
 
