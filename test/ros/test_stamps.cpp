@@ -83,8 +83,8 @@ TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
   ASSERT_TRUE(falls_behind(-kClear));
   ASSERT_TRUE(arrives(-kClear));
   EXPECT_EQ(wrench_->wrench.force.z, 0.0);
-  EXPECT_GT(wrenches_, 100);
-  EXPECT_GT(arrays_, 2);
+  EXPECT_GT(wrenches_, 2);
+  EXPECT_GT(arrays_, 0);
 }
 
 }  // namespace
