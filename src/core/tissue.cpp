@@ -56,6 +56,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
     : lattice_(tissue),
       state_(lattice_.restState()),
       model_(makeModel(tissue, lattice_)),
+      solver_(solver),
       method_(makeMethod(solver, lattice_, *model_)),
       has_gravity_(!tissue.gravity.isZero()),
       max_ms_(solver.max_ms) {
@@ -139,6 +140,14 @@ void Tissue::restore(const Shape& shape) {
   deformSurface();
 }
 
+void Tissue::solveAside(bool aside) {
+  if (aside == is_aside_) return;
+  is_aside_ = aside;
+  if (!method_->remembers()) return;
+  if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
+  std::swap(method_, other_method_);
+}
+
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
   CutReport report;
@@ -163,6 +172,8 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
 
 void Tissue::reset() {
   const bool was_cut = state_.springs_cut > 0;
+  solveAside(false);
+  other_method_.reset();
   method_->forget();
   kept_.reset();
   state_ = lattice_.restState();

@@ -336,6 +336,10 @@ std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
   return last_pose_ ? farFrom(*last_pose_, driven(pose)) : std::vector<std::size_t>();
 }
 
+double Pipeline::freeStepsTo(const RobotPose& pose) const {
+  return last_pose_ ? freeSteps(*last_pose_, driven(pose)) : 0.0;
+}
+
 // Tools that jump, but for those that pass the tissue by.
 std::vector<std::size_t> Pipeline::farFrom(const RobotPose& from, const RobotPose& goal) const {
   std::vector<std::size_t> far;

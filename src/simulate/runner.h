@@ -16,6 +16,14 @@ class Runner {
 
  private:
   struct TimeIsOver {};
+  // Of a tool, straight on, in equal load steps.
+  struct Way {
+    std::size_t tool = 0;
+    MoveStep::Place from;
+    MoveStep::Place to;
+    int steps = 1;
+    int gone = 0;  // of them
+  };
   // What the tools' updates since the last row came to.
   struct Updates {
     bool any = false;
@@ -40,7 +48,9 @@ class Runner {
   void perform(const PushStep& step);
   void perform(const GraspStep& step);
   void appear(std::size_t tool, const MoveStep::Place& place);
-  int incrementsOf(const MoveStep& step, double load_steps) const;
+  int loadSteps(double steps) const;
+  void walkTo(Way& way, double share);
+  void goTo(const Way& way, double share);
   void endPush(std::size_t tool);
   void follow();
   void followPushes();

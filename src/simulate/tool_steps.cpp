@@ -9,7 +9,8 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kMostLoadSteps = 100000.0;  // of one move
+constexpr double kMostLoadSteps = 100000.0;                      // of one move
+constexpr double kLongestFree = Pipeline::kMostLoadSteps / 2.0;  // load steps: far from a jump
 constexpr int kMostUpdates = 50;             // until all pushed tools have met their forces
 constexpr double kMetForce = 0.01;           // of the force: it is met
 constexpr double kRounding = 1e-9;           // 5 steps of a fifth are 5, not 6
@@ -23,31 +24,50 @@ void Runner::perform(const MoveStep& step) {
     remark("tool '" + step.tool + "' is moved, which ends its push");
   }
   if (step.from) appear(tool, *step.from);
-  const MoveStep::Place from = *tools_.of(tool);
+  Way way{tool, *tools_.of(tool), step.to};
   tools_.put(tool, step.to);
-  const double load_steps = pipeline_.stepsTo(tools_.pose());
-  const int increments = incrementsOf(step, load_steps);
-  const double longest = Pipeline::kMostLoadSteps / 2.0;
-  const int updates = std::max(1, static_cast<int>(std::ceil(load_steps / increments / longest)));
+  way.steps = loadSteps(pipeline_.stepsTo(tools_.pose()));
+  const int increments = step.increments.value_or(way.steps);
   for (int increment = 1; increment <= increments; ++increment) {
-    for (int i = 1; i <= updates; ++i) {
-      const double share = (increment - 1 + static_cast<double>(i) / updates) / increments;
-      tools_.put(tool, between(from, step.to, share));
-      follow();
+    const double share = static_cast<double>(increment) / increments;
+    walkTo(way, share);
+    const bool is_between = way.gone + kRounding < share * way.steps;
+    if (is_between) {
+      pipeline_.beginTrial();
+      goTo(way, share);
     }
     keep(SolveReport(), increment, increments);
+    if (is_between) pipeline_.undoTrial();
   }
   remarkHolds();
 }
 
-int Runner::incrementsOf(const MoveStep& step, double load_steps) const {
-  if (!(load_steps <= kMostLoadSteps)) {
-    throw InputError("the way takes " + numberText(std::ceil(load_steps)) + " load steps of " +
+int Runner::loadSteps(double steps) const {
+  if (!(steps <= kMostLoadSteps)) {
+    throw InputError("the way takes " + numberText(std::ceil(steps)) + " load steps of " +
                      numberText(pipeline_.tissue().stepLength()) +
                      " m or less, must take at most " + numberText(kMostLoadSteps) +
                      ", so a shorter way");
   }
-  return step.increments.value_or(std::max(1, static_cast<int>(std::ceil(load_steps - kRounding))));
+  return std::max(1, static_cast<int>(std::ceil(steps - kRounding)));
+}
+
+// What slips hangs on the way to it: whole load steps, where nothing is near several at once, whose
+// ends are the same whatever the increments.
+void Runner::walkTo(Way& way, double share) {
+  while (way.gone < way.steps) {
+    tools_.put(way.tool, way.to);
+    const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), kLongestFree);
+    const int next = std::min(way.gone + std::max(1, static_cast<int>(free)), way.steps);
+    if (next > share * way.steps + kRounding) return;
+    goTo(way, static_cast<double>(next) / way.steps);
+    way.gone = next;
+  }
+}
+
+void Runner::goTo(const Way& way, double share) {
+  tools_.put(way.tool, between(way.from, way.to, share));
+  follow();
 }
 
 // Without a way to there. Where it stands it does not appear anew.

@@ -59,6 +59,27 @@ TEST(ToolSteps, WithoutIncrementsAMoveHasOneALoadStep) {
   EXPECT_EQ(result.increments.size(), 5U);  // of a fifth of the spacing
 }
 
+// A box that slips, its edges in folds: a way of 20 mm in load steps of 2 mm.
+RunResult draggedIn(int increments) {
+  return run(block() +
+             "tools: [{name: probe, friction: 0.3, shapes: [{type: box, size: [0.02, 0.02, 0.04]}]}]"
+             "\nsteps:\n" +
+             placed("probe", {0.041, 0.0483, 0.09}, {0.041, 0.0483, 0.06}, 2) +
+             moved("probe", {0.061, 0.0483, 0.06}, increments) +
+             moved("probe", {0.061, 0.0533, 0.06}, 2));
+}
+
+TEST(ToolSteps, WhatSlipsEndsAlikeInAnyNumberOfIncrements) {
+  const RunResult one = draggedIn(1);
+  for (const int increments : {3, 10, 14}) {
+    const RunResult more = draggedIn(increments);
+    EXPECT_EQ(rowsOf(more, 1, "probe").back().force, rowsOf(one, 1, "probe").back().force);
+    EXPECT_EQ(more.displacement, one.displacement) << increments << " increments";
+    EXPECT_TRUE(more.allOk());
+  }
+  EXPECT_GT(std::abs(one.tools.back().force.x()), 0.1);
+}
+
 TEST(ToolSteps, AFarWayInOneIncrementIsWalkedAll) {
   const RunResult result =
       run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-3.0), sphereAt(0.003), 1));

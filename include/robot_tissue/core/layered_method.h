@@ -23,6 +23,7 @@ class LayeredMethod : public SolverMethod {
   void beginStep(const LatticeState&) override { course_->beginStep(); }
   void limitWays(std::vector<double> longest) override;
   void forget() override { course_->forget(); }
+  bool remembers() const override { return true; }
   const GridBox* visited() const override { return course_->visited(); }
   Vec3 forceLeft() override { return course_->forceLeft(); }
   bool staysFinite() const override { return true; }

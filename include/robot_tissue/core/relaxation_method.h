@@ -35,6 +35,7 @@ class RelaxationMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) final;
   void forget() override;
+  bool remembers() const override { return true; }
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;

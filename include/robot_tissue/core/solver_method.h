@@ -31,6 +31,8 @@ class SolverMethod {
 
   // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
   virtual void forget() {}
+  // Whether there is anything to be dropped.
+  virtual bool remembers() const { return false; }
 
   // Grid points among which the last solve moved nodes one by one, of lattices of which it moves
   // the others as a lattice of a greater spacing has them; null where it moves all one by one.

@@ -122,6 +122,8 @@ class Tissue {
     return {displacements(), state_.cells, patches_, named_patches_, last_report_, is_late_};
   }
   void restore(const Shape& shape);
+  // While true, solves teach the method nothing that later ones hang on.
+  void solveAside(bool aside);
   // Severs the springs that cross the polygon in the deformed shape, then balances.
   CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape, bit for bit; cuts mended, loads gone.
@@ -174,7 +176,10 @@ class Tissue {
   LatticeState state_;
   mutable Displacements kept_;  // of state_; null: nobody asked since it changed
   std::unique_ptr<TissueModel> model_;
+  SolverConfig solver_;
   std::unique_ptr<SolverMethod> method_;
+  std::unique_ptr<SolverMethod> other_method_;  // aside or, while it is aside, not; null: not needed
+  bool is_aside_ = false;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
   unsigned surface_version_ = 0;

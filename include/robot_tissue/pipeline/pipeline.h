@@ -14,6 +14,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -109,6 +110,11 @@ class Pipeline {
   static constexpr int kMostLoadSteps = 400;
   // The tools that such a jump to the pose takes.
   std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
+  // Load steps of the way to the pose before any tool on it can touch.
+  double freeStepsTo(const RobotPose& pose) const;
+  // Steps between these calls are undone, and nothing that follows hangs on them.
+  void beginTrial();
+  void undoTrial();
   // Time that a step, or one of the calls below, may take (s). Then it begins no further solve, the
   // rest of the way and of the loads is left to the next step, and so is a tool that would have to
   // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
@@ -179,6 +185,8 @@ class Pipeline {
     std::vector<Jaws> jaws;
     std::vector<double> depths;
   };
+  // All that the next step hangs on.
+  struct Mark;
   // Of a link: in the box a vertex goes so far at once (m) and no farther.
   struct Surroundings {
     Box box;
@@ -354,6 +362,7 @@ class Pipeline {
   double left_inside_ = 0.0;    // depth of the deepest of them, after the last solve (m)
   std::vector<double> depths_;  // likewise, in each link by the nearest way out (m)
   StepReport report_;
+  std::shared_ptr<const Mark> trial_from_;  // null: none is under way
 };
 
 }  // namespace robot_tissue
