@@ -178,8 +178,7 @@ bool Pipeline::advance(const RobotPose& pose, bool insists) {
       return false;
     }
     if (!any_rigid_) break;
-    const ContactSet left = contactsAt(pose, tissue_.state().displacement);
-    if (deepest(left) <= kDeepEnough * tissue_.lattice().spacing()) break;
+    if (deepestInRigid(pose) <= kDeepEnough * tissue_.lattice().spacing()) break;
     unfinished_ = round + 1 < kRigidRounds && isOutOfTime();
     if (unfinished_) break;
   }
@@ -204,7 +203,9 @@ bool Pipeline::settlesFrom(const Checkpoint& good, bool insists) {
 
 void Pipeline::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(report_.solve_ms);
-  tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
+  const SolveReport solved =
+      tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
+  if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
   report_.changed = true;
 }
 
@@ -249,6 +250,15 @@ bool Pipeline::isUnsettled() const {
 
 bool Pipeline::isRigid(int tool) const {
   return at(tool) < tools_.size() && tools_[at(tool)].patch == ToolConfig::Patch::kRigid;
+}
+
+// How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
+double Pipeline::deepestInRigid(const RobotPose& pose) {
+  double deepest = 0.0;
+  for (const Contact& contact : contactsAt(pose, tissue_.state().displacement).contacts) {
+    if (isRigid(contact.tool)) deepest = std::max(deepest, contact.depth_m);
+  }
+  return deepest;
 }
 
 // Nodes under a tool with a rigid patch go out of it.

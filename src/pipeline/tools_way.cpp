@@ -13,6 +13,7 @@ constexpr std::size_t kMostCheckpoints = 64;
 constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is none
 constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
 constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
+constexpr int kMostInVain = 3000;        // cycles that did not converge: no whole load step since
 constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
 
 RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
@@ -97,6 +98,7 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
   }
   const double steps = stepsBetween(start, pose);
   double gone = 0.0, longest = 1.0;
+  cycles_in_vain_ = 0;
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
     const double free = freeSteps(came(), pose);
@@ -108,14 +110,17 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
     const bool is_short = std::min(longest, there - gone) <= kShortest;
     const bool followed = advance(on_the_way, is_short);
     if (!followed) {
-      if (is_short) {
+      const bool is_hopeless = cycles_in_vain_ > kMostInVain;
+      if (is_short || is_hopeless) {
         report_.lost = true;
-        dead_end_ = DeadEnd{came(), on_the_way};
+        const double next = std::min(gone + kShortest, there);
+        dead_end_ = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
         return came();
       }
       longest = kShortest;
     }
     if (followed) {
+      if (longest == 1.0) cycles_in_vain_ = 0;
       gone = there;
       longest = std::min(1.0, 2.0 * longest);
     }

@@ -104,7 +104,8 @@ TEST_F(BoundedRun, WritesWhatItCameToWhenTheTimeIsOver) {
   EXPECT_EQ(WEXITSTATUS(status), 3);
   const std::string told = err();
   EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
-  EXPECT_NE(told.find("--max-seconds is over at steps[0].load increment "), std::string::npos) << told;
+  EXPECT_NE(told.find("--max-seconds is over at steps[0].load increment "), std::string::npos)
+      << told;
   const std::string rows = readText(out / "increments.csv");
   const auto lines = std::count(rows.begin(), rows.end(), '\n');
   EXPECT_GT(lines, 1);
@@ -114,8 +115,8 @@ TEST_F(BoundedRun, WritesWhatItCameToWhenTheTimeIsOver) {
 TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   for (const char* seconds : {"0", "-1", "nan", "inf", "1e300", "soon"}) {
     const fs::path out = folder_ / "out";
-    const int status = statusOf(start({(folder_ / "long.yaml").string(), "--out", out.string(),
-                                       "--max-seconds", seconds}));
+    const int status = statusOf(
+        start({(folder_ / "long.yaml").string(), "--out", out.string(), "--max-seconds", seconds}));
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << seconds;
     EXPECT_EQ(err(), std::string("simulate: --max-seconds = ") + seconds +
                          ": must be a number above 0 and at most 1e+09\n");
@@ -143,9 +144,9 @@ TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {
 
 // Cases of a seed, as many as a minute has time for: a failed one can be run again by its number.
 TEST_F(BoundedRun, EndsForMutatedScenes) {
-  const std::string command = "/usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR
-                              "/scripts/mutate_scenes --simulate " SIMULATE_PATH
-                              " --seed 1 --cases 1000 --seconds 60";
+  const std::string command =
+      "/usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR "/scripts/mutate_scenes --simulate " SIMULATE_PATH
+      " --seed 1 --cases 1000 --seconds 60";
   const int status = std::system(command.c_str());
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }

@@ -233,6 +233,7 @@ class Pipeline {
   void stepTo(const RobotPose& goal, const RobotPose& pose);
   std::vector<LoadingPatch> patchesOfTools() const;
   void pushRigid(const RobotPose& pose);
+  double deepestInRigid(const RobotPose& pose);
   bool isRigid(int tool) const;
   bool anyToolIn(const std::vector<LoadingPatch>& patches) const;
   void touch();
@@ -352,6 +353,7 @@ class Pipeline {
   double budget_s_ = std::numeric_limits<double>::infinity();
   std::optional<Deadline> end_;      // of all calls
   Deadline deadline_;                // of the call under way
+  int cycles_in_vain_ = 0;  // of solves that did not converge, since the last whole load step
   std::optional<DeadEnd> dead_end_;  // none: the tissue has changed since
   int late_iterations_ = 0;          // of the method, where the tools stand
   bool gave_up_ = false;             // there
