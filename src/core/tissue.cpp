@@ -10,6 +10,7 @@
 #include "robot_tissue/core/mesh_surface.h"
 #include "robot_tissue/core/registry.h"
 #include "robot_tissue/core/split_cells.h"
+#include "round_gain.h"
 
 namespace robot_tissue {
 namespace {
@@ -18,37 +19,8 @@ constexpr double kToolStep = 0.2;      // of the spacing
 constexpr int kContactRounds = 16;     // in which the shape is what was solved for
 constexpr int kMostRounds = 200;       // with those that are cut short
 constexpr int kMostIterations = 1500;  // of the rounds of one load step
-constexpr int kMostIdle = 300;         // cycles, in rounds that led neither nearer nor farther
-constexpr int kIdleRound = 12;         // cycles that a round counts for at least
-constexpr double kNearer = 0.7;        // of the least error: a round led nearer to balance
-constexpr double kFarther = 1.1;       // of the farthest way: it led on, as where tissue slips
 constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
 constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
-
-// Whether the rounds of a load step still gain, by error or by way.
-class Gain {
- public:
-  explicit Gain(Tissue::Displacements start) : start_(std::move(start)) {}
-
-  void note(const SolveReport& report, const std::vector<Vec3>& now, bool whole) {
-    double way = 0.0;
-    for (std::size_t node = 0; node < now.size(); ++node) {
-      way += (now[node] - (*start_)[node]).squaredNorm();
-    }
-    const bool gains = whole || report.error_estimate < kNearer * least_ ||
-                       way > kFarther * kFarther * farthest_;
-    idle_ = gains ? 0 : idle_ + std::max(report.iterations, kIdleRound);
-    least_ = std::min(least_, report.error_estimate);
-    farthest_ = std::max(farthest_, way);
-  }
-  bool isOver() const { return idle_ > kMostIdle; }
-
- private:
-  Tissue::Displacements start_;
-  double least_ = std::numeric_limits<double>::infinity();
-  double farthest_ = 0.0;  // squared (m^2)
-  int idle_ = 0;
-};
 
 }  // namespace
 
@@ -249,7 +221,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (!contact_rounds_.renew) return solveOnce(disturbed);
   Displacements before = displacements();
-  Gain gain(before);
+  RoundGain gain(before);
   SolveReport report = solveOnce(disturbed);
   SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t kMostCheckpoints = 64;
 constexpr double kStandsStill = 1e-3;    // of the spacing: a motion that is none
-constexpr double kShareOfTool = 0.25;    // of a link's thickness: its longest step
 constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
 constexpr int kMostInVain = 3000;        // cycles that did not converge: no whole load step since
 constexpr double kFarAway = 1e6;         // m: where a tool is that stands nowhere
@@ -28,15 +27,6 @@ RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
     pose.translation() = start.translation() + share * (end.translation() - start.translation());
   }
   return between;
-}
-
-// Infinite where one is empty.
-double distance(const Box& a, const Box& b) {
-  if ((a.min.array() > a.max.array()).any() || (b.min.array() > b.max.array()).any()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const Vec3 apart = (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(Vec3::Zero());
-  return apart.norm();
 }
 
 }  // namespace
@@ -75,11 +65,8 @@ bool Pipeline::leadsNowhere(const RobotPose& from, const RobotPose& to) const {
   return stepsBetween(dead_end_->to, shortest) < 0.5 * kShortest;
 }
 
-// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
-// or in time. Tools that pass the tissue by take none.
-RobotPose Pipeline::walk(const RobotPose& pose) {
-  RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
-  asked_ = pose;
+// Tools that pass the tissue by are where they go at once. False: others have a way to go.
+bool Pipeline::letPass(RobotPose& start, const RobotPose& pose) const {
   bool all_pass = !any_rigid_;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     if (passesBy(tool, start, pose)) {
@@ -88,7 +75,15 @@ RobotPose Pipeline::walk(const RobotPose& pose) {
       all_pass = false;
     }
   }
-  if (all_pass) {
+  return all_pass;
+}
+
+// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
+// or in time. Tools that pass the tissue by take none.
+RobotPose Pipeline::walk(const RobotPose& pose) {
+  RobotPose start = any_rigid_ ? checkpoints_.back().pose : *last_pose_;
+  asked_ = pose;
+  if (letPass(start, pose)) {
     passTo(pose);
     return pose;
   }
@@ -326,90 +321,6 @@ std::optional<StillPose> Pipeline::stillPose() const {
   }
   return StillPose(std::move(of_tools), std::move(reach),
                    kStandsStill * tissue_.lattice().spacing());
-}
-
-// Longest step of a link (m): no thin one is through what it meets.
-double Pipeline::stepOf(std::size_t link) const {
-  return std::min(tissue_.stepLength(), kShareOfTool * finder_.thickness(link));
-}
-
-double Pipeline::stepsTo(const RobotPose& pose) const {
-  return last_pose_ ? stepsBetween(*last_pose_, driven(pose)) : 0.0;
-}
-
-std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
-  return last_pose_ ? farFrom(*last_pose_, driven(pose)) : std::vector<std::size_t>();
-}
-
-double Pipeline::freeStepsTo(const RobotPose& pose) const {
-  return last_pose_ ? freeSteps(*last_pose_, driven(pose)) : 0.0;
-}
-
-// Tools that jump, but for those that pass the tissue by.
-std::vector<std::size_t> Pipeline::farFrom(const RobotPose& from, const RobotPose& goal) const {
-  std::vector<std::size_t> far;
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    const RobotPose alone = withTool(tool, goal, from);
-    if (stepsBetween(from, alone) > kMostLoadSteps && !passesBy(tool, from, goal)) {
-      far.push_back(tool);
-    }
-  }
-  return far;
-}
-
-double Pipeline::stepsBetween(const RobotPose& from, const RobotPose& to) const {
-  double steps = 0.0;
-  for (std::size_t link = 0; link < to.links.size(); ++link) {
-    const double way = longestWay(from.links[link], to.links[link], finder_.reach(link));
-    steps = std::max(steps, way / stepOf(link));
-  }
-  return steps;
-}
-
-// Steps that every link on its way may go from here before it can touch.
-double Pipeline::freeSteps(const RobotPose& from, const RobotPose& to) const {
-  double steps = std::numeric_limits<double>::infinity();
-  for (std::size_t link = 0; link < first_link_[tools_.size()]; ++link) {
-    if (longestWay(from.links[link], to.links[link], finder_.reach(link)) == 0.0) continue;
-    const Box box = finder_.bounds(link, from.links[link]);
-    steps = std::min(steps, distance(box, tissue_.bounds()) / stepOf(link));
-  }
-  return steps;
-}
-
-bool Pipeline::touchesTissue(std::size_t tool) const {
-  const auto is_of_tool = [&](const auto& touch) { return at(touch.tool) == tool; };
-  const auto& touches = contacts_.touches();
-  const auto& patches = tissue_.patches();
-  return patches_.holds(static_cast<int>(tool)) ||
-         std::any_of(touches.begin(), touches.end(), is_of_tool) ||
-         std::any_of(patches.begin() + static_cast<std::ptrdiff_t>(tissue_.namedPatches()),
-                     patches.end(), [&](const auto& patch) { return patch.name == names_[tool]; });
-}
-
-// It touches and holds nothing, and on its way it neither comes near tissue nor has any between its
-// links. No point of a link is farther from both ends of its way than half of that.
-bool Pipeline::passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const {
-  if (touchesTissue(tool)) return false;
-  Box around;
-  around.min.setConstant(std::numeric_limits<double>::infinity());
-  around.max = -around.min;
-  for (std::size_t link = first_link_[tool]; link < first_link_[tool + 1]; ++link) {
-    const double way = longestWay(from.links[link], to.links[link], finder_.reach(link));
-    for (const RobotPose* pose : {&from, &to}) {
-      const Box box = finder_.bounds(link, pose->links[link]);
-      around.min = around.min.cwiseMin((box.min.array() - 0.5 * way).matrix());
-      around.max = around.max.cwiseMax((box.max.array() + 0.5 * way).matrix());
-    }
-  }
-  return distance(around, tissue_.bounds()) >= tissue_.lattice().spacing();
-}
-
-void Pipeline::passTo(const RobotPose& pose) {
-  pose_ = pose;
-  contacts_.pass(pose);
-  openJaws();
-  closeJaws();
 }
 
 }  // namespace robot_tissue

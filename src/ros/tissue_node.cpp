@@ -15,10 +15,10 @@ namespace robot_tissue {
 namespace {
 
 const ros::WallDuration kRobotLookUpPeriod(1.0);
-constexpr double kLongestUpdate = 0.1;  // s, without a budget of the solver
+constexpr double kLongestUpdate = 0.1;      // s, without a budget of the solver
 const ros::WallDuration kGrace(2.0);        // after a start or a jump of time
 const ros::WallDuration kClockPeriod(0.5);  // between looks for a clock
-constexpr double kWatchPeriod = 0.1;  // s, of the timer while nothing waits for it
+constexpr double kWatchPeriod = 0.1;        // s, of the timer while nothing waits for it
 
 }  // namespace
 
@@ -49,14 +49,12 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
                                      [this](const ros::TimerEvent&) { onTimer(); });
   if (!ros::Time::isSimTime()) return;
-  wall_timer_ = private_node_.createWallTimer(kClockPeriod,
-                                              [this](const ros::WallTimerEvent&) { onWallTimer(); });
+  wall_timer_ = private_node_.createWallTimer(
+      kClockPeriod, [this](const ros::WallTimerEvent&) { onWallTimer(); });
 }
 
 // In the thread that receives transforms.
-void TissueNode::onStill(const ros::Time& stamp) {
-  publisher_.publishStill(stamp);
-}
+void TissueNode::onStill(const ros::Time& stamp) { publisher_.publishStill(stamp); }
 
 void TissueNode::tick(bool seldom) {
   if (seldom == ticks_seldom_) return;

@@ -11,7 +11,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kMet = 0.95;               // of the force: the tissue answers with it
+constexpr double kMet = 0.95;  // of the force: the tissue answers with it
 
 std::string inQuotes(const std::string& name) { return "'" + shortText(name) + "'"; }
 
@@ -50,11 +50,10 @@ bool TissueNode::onGrasp(Tool::Request& request, Tool::Response& response) {
     if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
     const ToolReport& report = pipeline_.report().tools[tool];
     response.success = report.grasps;
-    response.message =
-        report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
-                      : "tool " + inQuotes(request.tool) + ": holds nothing: " +
-                            (report.holds_nothing.empty() ? "its jaws opened since"
-                                                          : report.holds_nothing);
+    response.message = report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
+                                     : "tool " + inQuotes(request.tool) + ": holds nothing: " +
+                                           (report.holds_nothing.empty() ? "its jaws opened since"
+                                                                         : report.holds_nothing);
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();

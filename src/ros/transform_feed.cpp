@@ -11,7 +11,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr unsigned kQueue = 100;  // messages, as tf2_ros has it
+constexpr unsigned kQueue = 100;         // messages, as tf2_ros has it
 const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
 const ros::WallDuration kWarnPeriod(10.0);
 
@@ -70,8 +70,8 @@ void TransformFeed::warnOfAhead() {
     warned_ = now;
     ROS_WARN_STREAM("/tf: the transform of '"
                     << shortText(ahead_->frame) << "' is " << numberText(ahead.toSec())
-                    << " s ahead of now and left out; allowed: at most "
-                    << numberText(most.toSec()) << " s, that the buffer holds");
+                    << " s ahead of now and left out; allowed: at most " << numberText(most.toSec())
+                    << " s, that the buffer holds");
   }
   ahead_.reset();
 }

@@ -19,16 +19,16 @@ std::optional<double> readSeconds(const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
   const std::optional<double> seconds = parseNumber(*text);
   if (seconds && *seconds > 0.0 && *seconds <= kMostSeconds) return seconds;
-  throw InputError("--max-seconds = " + onOneLine(*text) + ": must be a number above 0 and at most " +
-                   numberText(kMostSeconds));
+  throw InputError("--max-seconds = " + onOneLine(*text) +
+                   ": must be a number above 0 and at most " + numberText(kMostSeconds));
 }
 
 }  // namespace
 
 Arguments parseArguments(const std::vector<std::string>& arguments) {
-  const CommandLine line =
-      readCommandLine(arguments, {{"--out", "--method", "--tolerance", "--threads", "--max-seconds"},
-                                  {"--list-methods", "--list-models", "--quiet", "--help"}});
+  const CommandLine line = readCommandLine(
+      arguments, {{"--out", "--method", "--tolerance", "--threads", "--max-seconds"},
+                  {"--list-methods", "--list-models", "--quiet", "--help"}});
   Arguments parsed;
   parsed.scene = line.scene;
   parsed.out = line.value("--out").value_or("");

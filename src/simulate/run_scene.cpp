@@ -7,9 +7,9 @@
 namespace robot_tissue {
 
 bool RunResult::allOk() const {
-  return cut_off.empty() &&
-         std::all_of(increments.begin(), increments.end(),
-                     [](const auto& row) { return row.report.status == SolveStatus::kOk; });
+  return cut_off.empty() && std::all_of(increments.begin(), increments.end(), [](const auto& row) {
+           return row.report.status == SolveStatus::kOk;
+         });
 }
 
 RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step,

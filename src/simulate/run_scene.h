@@ -42,7 +42,7 @@ struct RunResult {
   std::vector<Vec3> displacement;  // per node (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
   std::vector<std::array<int, 3>> triangles;
-  std::string cut_off;  // where the time was over; empty: all was run
+  std::string cut_off;               // where the time was over; empty: all was run
   std::vector<std::string> remarks;  // lines the user should see, e.g. a tool that missed its force
 
   bool allOk() const;  // and all was run

@@ -55,8 +55,8 @@ RunResult Runner::run() {
   try {
     performAll();
   } catch (const TimeIsOver&) {
-    result_.cut_off = pathOf(scene_, step_) + " increment " +
-                      std::to_string(result_.increments.back().increment);
+    result_.cut_off =
+        pathOf(scene_, step_) + " increment " + std::to_string(result_.increments.back().increment);
   }
   keepShape();
   return std::move(result_);

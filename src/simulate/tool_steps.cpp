@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kMostLoadSteps = 100000.0;                      // of one move
 constexpr double kLongestFree = Pipeline::kMostLoadSteps / 2.0;  // load steps: far from a jump
-constexpr int kMostUpdates = 50;             // until all pushed tools have met their forces
-constexpr double kMetForce = 0.01;           // of the force: it is met
-constexpr double kRounding = 1e-9;           // 5 steps of a fifth are 5, not 6
+constexpr int kMostUpdates = 50;    // until all pushed tools have met their forces
+constexpr double kMetForce = 0.01;  // of the force: it is met
+constexpr double kRounding = 1e-9;  // 5 steps of a fifth are 5, not 6
 
 }  // namespace
 

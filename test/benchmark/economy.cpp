@@ -1,5 +1,6 @@
 // What an update costs, and what is held in memory, by what there is to do. Prints CSV, a row a
-// scene, for scripts/study economy; doc/economy.md reads it. Not a test: nothing here passes or fails.
+// scene, for scripts/study economy; doc/economy.md reads it. Not a test: nothing here passes or
+// fails.
 //
 //   economy SPACING        (m, of a block of 100 x 100 x 50 mm)
 //

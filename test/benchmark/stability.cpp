@@ -1,4 +1,5 @@
-// One rung of the stability ladder, one method, one line of CSV. scripts/study stability runs them all.
+// One rung of the stability ladder, one method, one line of CSV. scripts/study stability runs them
+// all.
 //   stability --list                     names and groups of the rungs
 //   stability RUNG METHOD [UPDATES]      UPDATES: of the random rungs, 10,000 unless said
 //   stability RUNG reference             what method `newton` measures in small increments

@@ -121,9 +121,8 @@ TEST_P(HingedJaws, ThatPressAndAreNotCloseEnoughSayWhy) {
   EXPECT_TRUE(says(pipeline_, "grasp.close_gap (0.0085 m)")) << toolOf(pipeline_).holds_nothing;
 }
 
-INSTANTIATE_TEST_SUITE_P(Shape, HingedJaws, ::testing::Bool(), [](const auto& row) {
-  return std::string(row.param ? "Mesh" : "Box");
-});
+INSTANTIATE_TEST_SUITE_P(Shape, HingedJaws, ::testing::Bool(),
+                         [](const auto& row) { return std::string(row.param ? "Mesh" : "Box"); });
 
 // Plates with their inner faces `gap` apart around the ridge's upper part.
 ToolGeometry plates() {

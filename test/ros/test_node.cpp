@@ -143,13 +143,14 @@ TEST_F(RunningNode, BadLoadsAreRefusedAndChangeNothing) {
   ASSERT_TRUE(load("punch", 0.04, 0.06, 0.003).success);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0025; }));
   const Points shape = markers_["surface"].points;
-  for (const auto& refused : {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
-                              load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
-                              load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY),
-                              load("far", 0.0, 0.01, 1.0), load("a,b", 0.0, 0.01, 0.001),
-                              load("two\nlines", 0.0, 0.01, 0.001), load("wide", -1e300, 0.01, 0.001),
-                              load(std::string(1000000, 'x'), 0.0, 0.01, 0.001),
-                              release(std::string(1000000, 'x')), load("deep", 0.0, 0.01, 1e300)}) {
+  for (const auto& refused :
+       {load("", 0.01, 0.02, 0.003), load("upside_down", 0.06, 0.04, 0.003),
+        load("nowhere", 5.0, 6.0, 0.003), load("overlap", 0.05, 0.07, 0.003),
+        load("probe", 0.0, 0.01, 0.003), load("endless", 0.0, 0.01, INFINITY),
+        load("far", 0.0, 0.01, 1.0), load("a,b", 0.0, 0.01, 0.001),
+        load("two\nlines", 0.0, 0.01, 0.001), load("wide", -1e300, 0.01, 0.001),
+        load(std::string(1000000, 'x'), 0.0, 0.01, 0.001), release(std::string(1000000, 'x')),
+        load("deep", 0.0, 0.01, 1e300)}) {
     EXPECT_FALSE(refused.success);
     EXPECT_FALSE(refused.message.empty());
     EXPECT_LT(refused.message.size(), 300U);

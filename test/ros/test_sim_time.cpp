@@ -132,7 +132,8 @@ TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
   sendPose(now_ + ros::Duration(3600.0));
   ASSERT_TRUE(tickUntil([this] { return warnsOf("ahead of now"); }));
   depth_ = 0.004;
-  EXPECT_TRUE(tickUntil([this] { return state_->status == "OK" && wrench_->wrench.force.z < -0.1; }));
+  EXPECT_TRUE(
+      tickUntil([this] { return state_->status == "OK" && wrench_->wrench.force.z < -0.1; }));
   EXPECT_LT(wrench_->header.stamp, now_ + ros::Duration(1.0));
 }
 

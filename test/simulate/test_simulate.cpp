@@ -305,7 +305,8 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("block.yaml --out out --method magic",
                 "--method = magic: must be one of layered, newton, paper, vbd, "
                 "xpbd, explicit");
-  expectRefused("block.yaml --out out --tolerance 1", "--tolerance = 1: must be a number from 1e-09 to 0.5");
+  expectRefused("block.yaml --out out --tolerance 1",
+                "--tolerance = 1: must be a number from 1e-09 to 0.5");
   expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
   expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
   expectRefused("none.yaml --out out", "none.yaml: No such file");

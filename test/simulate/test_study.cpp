@@ -1,4 +1,5 @@
-// The study speed_accuracy goes on after a kill at any point: no finished run is lost or done again.
+// The study speed_accuracy goes on after a kill at any point: no finished run is lost or done
+// again.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/stat.h>

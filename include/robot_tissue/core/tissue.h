@@ -178,7 +178,8 @@ class Tissue {
   std::unique_ptr<TissueModel> model_;
   SolverConfig solver_;
   std::unique_ptr<SolverMethod> method_;
-  std::unique_ptr<SolverMethod> other_method_;  // aside or, while it is aside, not; null: not needed
+  std::unique_ptr<SolverMethod>
+      other_method_;  // aside or, while it is aside, not; null: not needed
   bool is_aside_ = false;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
@@ -194,7 +195,7 @@ class Tissue {
   std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
   bool is_late_ = false;  // likewise
-  double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
+  double max_ms_ = 0.0;   // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
   ContactRounds contact_rounds_;
 };

@@ -42,23 +42,23 @@ struct ToolReport {
   // the touches or, where these cancel out, that of the hardest. Jaws press from two sides: of a
   // grasper, of the first jaw that touches or holds.
   Vec3 normal = Vec3::Zero();
-  double max_penetration = 0.0;        // deepest point of the tool inside the surface (m)
+  double max_penetration = 0.0;  // deepest point of the tool inside the surface (m)
   bool grasps = false;
   // A grasper's jaws touch each other or are inside one another, and were not always: those that
   // are never apart have a hinge in common.
   bool jaws_overlap = false;
   std::optional<double> jaw_gap;  // of a grasper, where tissue is between its jaws or held (m)
-  std::string holds_nothing;      // of a grasper with closed jaws, or told to grasp: why; else empty
-  Vec3 offset = Vec3::Zero();  // of a tool that a force drives, from its pose, tissue frame (m)
+  std::string holds_nothing;      // of a grasper that is closed, or told to grasp: why; else empty
+  Vec3 offset = Vec3::Zero();     // of a tool that a force drives, from its pose, tissue frame (m)
 };
 
 // Lists of tools are of their numbers, each once.
 struct StepReport {
-  bool changed = false;             // false: the shape is as it was
-  bool too_fast = false;            // the tools moved further than could be followed in time
-  bool lost = false;                // no shape could follow the tools: the last good one stays
-  bool late = false;                // it ran out of its time before the shape was in balance
-  bool gave_up = false;             // late again and again where the tools stand: carried on no more
+  bool changed = false;   // false: the shape is as it was
+  bool too_fast = false;  // the tools moved further than could be followed in time
+  bool lost = false;      // no shape could follow the tools: the last good one stays
+  bool late = false;      // it ran out of its time before the shape was in balance
+  bool gave_up = false;   // late again and again where the tools stand: it ends
   // Where too_fast or lost: tools not yet at their pose. Those that are nowhere near the tissue on
   // their way always are.
   std::vector<std::size_t> behind;
@@ -163,7 +163,7 @@ class Pipeline {
     enum class Loss { kClosedBefore, kReleased, kTorn };
     State state = State::kOpen;
     Loss loss = Loss::kClosedBefore;
-    std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where they hold, in each's frame (m)
+    std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where, in each's frame (m)
     bool asked = false;                                       // to grasp, in vain
     bool let_go = false;  // told so since the last step, in which they hold nothing anew
     bool were_apart = false;
@@ -282,6 +282,7 @@ class Pipeline {
   std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& from, const RobotPose& to) const;
+  bool letPass(RobotPose& start, const RobotPose& pose) const;
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
   bool touchesTissue(std::size_t tool) const;
   bool passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const;
@@ -351,9 +352,9 @@ class Pipeline {
   std::optional<RobotPose> last_pose_;
   std::vector<Checkpoint> checkpoints_;
   double budget_s_ = std::numeric_limits<double>::infinity();
-  std::optional<Deadline> end_;      // of all calls
-  Deadline deadline_;                // of the call under way
-  int cycles_in_vain_ = 0;  // of solves that did not converge, since the last whole load step
+  std::optional<Deadline> end_;  // of all calls
+  Deadline deadline_;            // of the call under way
+  int cycles_in_vain_ = 0;       // of solves that did not converge, since the last whole load step
   std::optional<DeadEnd> dead_end_;  // none: the tissue has changed since
   int late_iterations_ = 0;          // of the method, where the tools stand
   bool gave_up_ = false;             // there

@@ -95,7 +95,7 @@ class TissueNode {
   ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
   ros::Timer timer_;
   ros::WallTimer wall_timer_;  // in simulated time, until there is some
-  PoseWatch watch_;  // the first to go: it calls into the others
+  PoseWatch watch_;            // the first to go: it calls into the others
 };
 
 }  // namespace robot_tissue
