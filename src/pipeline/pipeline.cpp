@@ -346,6 +346,7 @@ CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
 }
 
 void Pipeline::reset() {
+  trial_from_.reset();
   patches_.clear();
   contacts_.clear();
   for (Jaws& jaws : jaws_) jaws.let_go = false;

@@ -61,12 +61,12 @@ TEST(ToolSteps, WithoutIncrementsAMoveHasOneALoadStep) {
 
 // A box that slips, its edges in folds: a way of 20 mm in load steps of 2 mm.
 RunResult draggedIn(int increments) {
-  return run(
-      block() +
-      "tools: [{name: probe, friction: 0.3, shapes: [{type: box, size: [0.02, 0.02, 0.04]}]}]"
-      "\nsteps:\n" +
-      placed("probe", {0.041, 0.0483, 0.09}, {0.041, 0.0483, 0.06}, 2) +
-      moved("probe", {0.061, 0.0483, 0.06}, increments) + moved("probe", {0.061, 0.0533, 0.06}, 2));
+  return run(block() +
+             "tools:\n  - {name: probe, friction: 0.3,"
+             " shapes: [{type: box, size: [0.02, 0.02, 0.04]}]}\nsteps:\n" +
+             placed("probe", {0.041, 0.0483, 0.09}, {0.041, 0.0483, 0.06}, 2) +
+             moved("probe", {0.061, 0.0483, 0.06}, increments) +
+             moved("probe", {0.061, 0.0533, 0.06}, 2));
 }
 
 TEST(ToolSteps, WhatSlipsEndsAlikeInAnyNumberOfIncrements) {

@@ -178,8 +178,7 @@ class Tissue {
   std::unique_ptr<TissueModel> model_;
   SolverConfig solver_;
   std::unique_ptr<SolverMethod> method_;
-  std::unique_ptr<SolverMethod>
-      other_method_;  // aside or, while it is aside, not; null: not needed
+  std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
