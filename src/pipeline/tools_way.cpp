@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "box_distance.h"
 #include "robot_tissue/pipeline/pipeline.h"
 #include "tool_list.h"
 

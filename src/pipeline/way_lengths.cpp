@@ -2,21 +2,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "box_distance.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr double kShareOfTool = 0.25;  // of a link's thickness: its longest step
-
-// Infinite where one is empty.
-double distance(const Box& a, const Box& b) {
-  if ((a.min.array() > a.max.array()).any() || (b.min.array() > b.max.array()).any()) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const Vec3 apart = (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(Vec3::Zero());
-  return apart.norm();
-}
 
 }  // namespace
 
