@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from studies.common import (DATA, IMAGES, PACKAGE, add_programs, program, progress, pyplot,
-                            rows_of, worst, write_rows)
+from studies.common import (DATA, IMAGES, PACKAGE, add_plot, add_programs, program, progress,
+                            pyplot, rows_of, worst, write_rows)
 
 REFERENCE = PACKAGE / "test/data/reference"
 TABLE = DATA / "accuracy.csv"
@@ -230,7 +230,7 @@ def add_arguments(parser):
     parser.add_argument("--only", help="only runs whose key, joined by /, holds this text")
     parser.add_argument("--again", action="store_true", help="also runs that are in the table")
     parser.add_argument("--placements", action="store_true", help="patches at random places")
-    parser.add_argument("--plot", action="store_true", help="draw only")
+    add_plot(parser)
 
 
 def run(options):

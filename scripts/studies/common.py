@@ -56,6 +56,10 @@ def add_programs(parser):
                         help="where the built programs are; default: the checkout's build")
 
 
+def add_plot(parser):
+    parser.add_argument("--plot", action="store_true", help="measure nothing: draw and print only")
+
+
 def program(name, folder=None):
     """A built program, in the folder or where the checkout builds."""
     folders = [folder] if folder else [PACKAGE / build for build in BUILDS]

@@ -13,8 +13,8 @@ import subprocess
 import sys
 from collections import namedtuple
 
-from studies.common import (DATA, IMAGES, add_programs, numbers, percentile, program, progress,
-                            pyplot, rows_of, write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, percentile, program,
+                            progress, pyplot, rows_of, write_rows)
 
 
 TOOLS = ["sphere", "cylinder_upright", "cylinder_lying", "box_face", "box_edge", "box_corner",
@@ -267,7 +267,7 @@ def add_arguments(parser):
     add_programs(parser)
     parser.add_argument("--only", metavar="NAME", help="only studies whose name holds this text: " +
                         ", ".join(study.name for study in STUDIES))
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
 
 
 def run(options):

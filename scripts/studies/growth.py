@@ -12,8 +12,8 @@ import io
 import statistics
 import subprocess
 
-from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
-                            write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, program, progress, pyplot,
+                            rows_of, write_rows)
 
 TABLE = DATA / "growth.csv"
 PLOT = IMAGES / "growth.png"
@@ -109,7 +109,7 @@ def tell():
 
 def add_arguments(parser):
     add_programs(parser)
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--repeats", type=int, default=5, help="of a job in a round (5)")
 

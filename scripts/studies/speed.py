@@ -13,8 +13,8 @@ import statistics
 import subprocess
 from pathlib import Path
 
-from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
-                            write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, program, progress, pyplot,
+                            rows_of, write_rows)
 
 TABLE = DATA / "speed.csv"
 PLOT = IMAGES / "speed.png"
@@ -87,7 +87,7 @@ def tell(rows):
 
 def add_arguments(parser):
     add_programs(parser)
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
     parser.add_argument("--cache", type=Path, default=Path("/tmp/robot_tissue_speed"))
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--spacings", type=float, nargs="+", default=[0.01, 0.005, 0.0025])

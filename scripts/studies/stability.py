@@ -15,8 +15,8 @@ import signal
 import subprocess
 import sys
 
-from studies.common import (DATA, IMAGES, add_programs, commit, program, progress, pyplot, rows_of,
-                            write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, commit, program, progress, pyplot,
+                            rows_of, write_rows)
 
 TABLE = DATA / "stability.csv"
 IMAGE = IMAGES / "stability.png"
@@ -201,7 +201,7 @@ def add_arguments(parser):
     parser.add_argument("--only", metavar="TEXT", help="only rungs whose name holds this text")
     parser.add_argument("--again", action="store_true", help="also what is in the table")
     parser.add_argument("--updates", type=int, default=10000, help="of the random rungs")
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
 
 
 def run(options):

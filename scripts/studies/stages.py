@@ -18,8 +18,8 @@ import subprocess
 import sys
 import tempfile
 
-from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
-                            write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, program, progress, pyplot,
+                            rows_of, write_rows)
 
 TABLE = DATA / "stages.csv"
 PLOT = IMAGES / "stages.png"
@@ -154,7 +154,7 @@ def tell():
 
 def add_arguments(parser):
     add_programs(parser)
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--samples", type=int, default=5000, help="a second (5000)")
 

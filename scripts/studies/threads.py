@@ -17,8 +17,8 @@ import time
 
 
 from studies import growth
-from studies.common import (DATA, IMAGES, add_programs, program, progress, pyplot, rows_of,
-                            write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, program, progress, pyplot,
+                            rows_of, write_rows)
 
 TABLE = DATA / "threads.csv"
 PLOT = IMAGES / "threads.png"
@@ -135,7 +135,7 @@ def tell():
 
 def add_arguments(parser):
     add_programs(parser)
-    parser.add_argument("--plot", action="store_true", help="draw and print only")
+    add_plot(parser)
     parser.add_argument("--anew", action="store_true", help="quiet rounds of the table, too")
     parser.add_argument("--rounds", type=int, default=7)
 

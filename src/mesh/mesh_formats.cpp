@@ -91,14 +91,17 @@ class Ears {
 
 }  // namespace
 
+void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh) {
+  if (mesh.triangles.size() + triangles <= kMostTriangles) return;
+  throw InputError("has more than " + std::to_string(kMostTriangles) + " triangles");
+}
+
 void appendPolygon(const std::vector<int>& corners, TriangleMesh& mesh) {
   if (corners.size() < 3) return;  // a point or an edge
   if (corners.size() > kMostCorners) {
     throw InputError("a face has more than " + std::to_string(kMostCorners) + " corners");
   }
-  if (mesh.triangles.size() + corners.size() - 2 > kMostTriangles) {
-    throw InputError("has more than " + std::to_string(kMostTriangles) + " triangles");
-  }
+  requireRoomFor(corners.size() - 2, mesh);
   Ears(corners, mesh).cut();
 }
 

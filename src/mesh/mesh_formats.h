@@ -22,6 +22,9 @@ TriangleMesh readObj(const std::string& bytes);
 // COLLADA: the geometries of its scene, placed by its nodes. Unit and up axis count for nothing.
 TriangleMesh readDae(const std::string& bytes);
 
+// Throws where so many triangles more are too many.
+void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh);
+
 // Appends the triangles of a polygon of three corners or more, convex or not.
 void appendPolygon(const std::vector<int>& corners, TriangleMesh& mesh);
 

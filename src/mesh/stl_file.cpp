@@ -26,9 +26,7 @@ double realAt(const char* bytes) {
 }
 
 void appendTriangle(const std::array<Vec3, 3>& corners, TriangleMesh& mesh) {
-  if (mesh.triangles.size() >= kMostTriangles) {
-    throw InputError("has more than " + std::to_string(kMostTriangles) + " triangles");
-  }
+  requireRoomFor(1, mesh);
   const int first = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
   mesh.triangles.push_back({first, first + 1, first + 2});

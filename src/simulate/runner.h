@@ -50,7 +50,7 @@ class Runner {
   void appear(std::size_t tool, const MoveStep::Place& place);
   int loadSteps(double steps) const;
   void walkTo(Way& way, double share);
-  void goTo(const Way& way, double share);
+  void place(const Way& way, double share);
   void endPush(std::size_t tool);
   void follow();
   void followPushes();

@@ -34,7 +34,8 @@ void Runner::perform(const MoveStep& step) {
     const bool is_between = way.gone + kRounding < share * way.steps;
     if (is_between) {
       pipeline_.beginTrial();
-      goTo(way, share);
+      place(way, share);
+      follow();
     }
     keep(SolveReport(), increment, increments);
     if (is_between) pipeline_.undoTrial();
@@ -59,15 +60,16 @@ void Runner::walkTo(Way& way, double share) {
     tools_.put(way.tool, way.to);
     const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), kLongestFree);
     const int next = std::min(way.gone + std::max(1, static_cast<int>(free)), way.steps);
-    if (next > share * way.steps + kRounding) return;
-    goTo(way, static_cast<double>(next) / way.steps);
-    way.gone = next;
+    const bool is_beyond = next > share * way.steps + kRounding;
+    if (!is_beyond) way.gone = next;
+    place(way, static_cast<double>(way.gone) / way.steps);
+    if (is_beyond) return;
+    follow();
   }
 }
 
-void Runner::goTo(const Way& way, double share) {
+void Runner::place(const Way& way, double share) {
   tools_.put(way.tool, between(way.from, way.to, share));
-  follow();
 }
 
 // Without a way to there. Where it stands it does not appear anew.
