@@ -177,6 +177,9 @@ bool LatticeLevels<Real>::isFinite() const {
       sum += dotOf(values.data(), values.data(), level.count());
     }
   }
+  for (const auto& values : levels_.front().force) {
+    sum += dotOf(values.data(), values.data(), levels_.front().count());
+  }
   for (const GroupVector& vector : levels_.front().firm.motion) sum += vector.squaredNorm();
   return std::isfinite(sum);
 }

@@ -171,9 +171,9 @@ bool Pipeline::advance(const RobotPose& pose, bool insists) {
     const std::vector<LoadingPatch>& before = tissue_.patches();
     if (!anyToolIn(patches) && !anyToolIn(before)) break;
     if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
-    if (!any_rigid_) good.shape = tissue_.shape();
+    if (round == 0) good.shape = tissue_.shape();
     follow(std::move(patches));  // loading patches -> solve
-    if (!any_rigid_ && !settlesFrom(good, insists)) {
+    if (any_rigid_ ? leaptFrom(good) : !settlesFrom(good, insists)) {
       goBackTo(good);
       return false;
     }
@@ -209,8 +209,9 @@ void Pipeline::follow(std::vector<LoadingPatch> patches) {
   report_.changed = true;
 }
 
-// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
-bool Pipeline::isLost(const Checkpoint& good) const {
+// No load step takes tissue that is held so far.
+bool Pipeline::leaptFrom(const Checkpoint& good) const {
+  if (tissue_.isUntouched()) return false;
   const std::vector<Vec3>& now = tissue_.state().displacement;
   const std::vector<Vec3>& before = *good.shape.displacement;
   double farthest = 0.0;
@@ -221,7 +222,12 @@ bool Pipeline::isLost(const Checkpoint& good) const {
     }
   }
   const double leap = kMostLeap * tissue_.lattice().spacing();
-  if (farthest > leap * leap && !tissue_.isUntouched()) return true;
+  return farthest > leap * leap;
+}
+
+// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
+bool Pipeline::isLost(const Checkpoint& good) const {
+  if (leaptFrom(good)) return true;
   if (tissue_.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
   return wentThrough(good) || ToolContacts::pushesAbsurdly(tissue_);
 }

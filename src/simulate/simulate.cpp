@@ -75,14 +75,12 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const Scene scene = loadScene(arguments.scene, arguments.overrides);
   OutputFolder folder(arguments.out,
                       {"nodes.csv", "patches.csv", "increments.csv", "tools.csv", "surface.stl"});
-  if (!arguments.quiet) {
-    for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';
-  }
   const bool progress = terminal && !arguments.quiet;
   const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
   const RunResult result = runNamed(scene, arguments.scene, on_row, deadline);
   write(result, folder);
-  if (!arguments.quiet) {
+  if (!arguments.quiet) {  // a refusal is told alone
+    for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';
     for (const std::string& remark : result.remarks) err << "simulate: " << remark << '\n';
     tellNotOk(result, err);
   }

@@ -339,6 +339,17 @@ TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
   EXPECT_EQ(program("block.yaml --out out --threads 2").err, "");
 }
 
+TEST_F(Simulate, ARefusalInTheRunIsToldWithoutRemarks) {
+  std::string scene = kInvertingScene;
+  scene.replace(scene.find("steps:"), 6, R"(
+solver: {method: paper, threads: 4}
+tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.015, 0.015, 0.01]}]}]
+steps:
+  - move: {tool: plate, from: {xyz: [0.02, 0.02, 0.05]}, to: {xyz: [0.02, 0.02, 0.024]}})");
+  write("held.yaml", scene);
+  expectRefused("held.yaml --out out", "shares nodes");
+}
+
 TEST_F(Simulate, SolvesTheElasticModelExactly) {
   std::string scene = kScene;
   const std::string place = "  material: {";

@@ -217,6 +217,30 @@ TEST(ToolSteps, TheScenesProbePressesDragsAndLeaves) {
   EXPECT_EQ(greatestDisplacement(result), 0.0);
 }
 
+// Two fifths of a turn in coarse tissue squeeze cells inside out.
+TEST(ToolSteps, ARigidPlateThatTurnsInCoarseTissueThrowsNoneOfItAway) {
+  const RunResult result = run(R"(tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.08, 0.08, 0.04]}
+  spacing: 0.02
+  material: {young_modulus: 10000.0, poisson_ratio: 0.3}
+  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]
+solver: {tolerance: 0.05}
+tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.03, 0.03, 0.004]}]}]
+steps:
+  - move:
+      tool: plate
+      from: {xyz: [0.0254, 0.013, 0.0961], rpy: [-0.0733, 2.94175, -2.54172]}
+      to: {xyz: [0.088, 0.0149, 0.01], rpy: [2.92041, -1.74761, -2.3065]}
+      increments: 3
+)");
+  EXPECT_FALSE(result.allOk());
+  EXPECT_LT(greatestDisplacement(result), 0.2);
+  for (const IncrementRow& row : result.increments) {
+    EXPECT_TRUE(std::isfinite(row.report.residual)) << row.increment;
+  }
+  for (const ToolRow& row : result.tools) EXPECT_TRUE(row.force.allFinite()) << row.increment;
+}
+
 TEST(ToolSteps, RemarksGoToStderrUnlessQuiet) {
   namespace fs = std::filesystem;
   std::string pattern = (fs::temp_directory_path() / "tool_steps_XXXXXX").string();

@@ -224,6 +224,7 @@ class Pipeline {
   bool advance(const RobotPose& pose, bool insists = true);
   bool settlesFrom(const Checkpoint& good, bool insists);
   void follow(std::vector<LoadingPatch> patches);
+  bool leaptFrom(const Checkpoint& good) const;
   bool isLost(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
   double throughAt(std::size_t link) const;
