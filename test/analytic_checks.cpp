@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "robot_tissue/core/elastic_model.h"
-#include "robot_tissue/core/material.h"
-#include "robot_tissue/core/registry.h"
+#include "config/material.h"
+#include "material/elastic_model.h"
 #include "robot_tissue/core/tissue.h"
+#include "tissue/registry.h"
 
 namespace robot_tissue {
 namespace {

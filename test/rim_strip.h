@@ -16,10 +16,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "robot_tissue/core/elastic_cell.h"
-#include "robot_tissue/core/material.h"
-#include "robot_tissue/core/rim_law.h"
-#include "robot_tissue/core/sparse_factor.h"
+#include "config/material.h"
+#include "loads/rim_law.h"
+#include "material/elastic_cell.h"
+#include "solvers/newton/sparse_factor.h"
 
 namespace robot_tissue {
 

@@ -32,19 +32,19 @@ HEAP = ("memory of the heap", r"malloc|free|_int_|calloc|realloc|unlink_chunk")
 STAGES = [
     ("the tools' way", UPDATE),
     ("bookkeeping of contact",
-     r"ToolContacts::|Pipeline::(contact|longest|meet|patchesOf|touches|track)|"
+     r"SlidingContacts::|Pipeline::(contact|longest|meet|patchesOf|touches|track)|"
      r"Tissue::(solve|limitWays|goBack|putToolPatches)"),
-    ("contact search", r"ContactFinder::|LinkContacts::|TriangleTree"),
+    ("contact search", r"ContactFinder::|LinkContacts::|AabbTree"),
     ("surface, volume, inverted cells",
      r"Tissue::(deformSurface|describeShape|volumeRatio)\n|robot_tissue::deform\n"),
     ("sums, search and errors of the solve",
-     r"CourseIn<\w+>::|LatticeLevels<\w+>::|LayeredCourse|LayeredMethod::|PatchHold::"),
-    ("finest lattice: patches, steps", r"LatticeLevel<\w+>::|FirmNodes<\w+>::|::stepAlong\n"),
-    ("finest lattice: forces of cells", r"LevelCells<\w+>::(find|add|finish)"),
-    ("coarse lattices: beyond the part", r"LatticeLevels<\w+>::\w+Beyond\n"),
-    ("coarse lattices: smooth motion", r"LatticeLevels<\w+>::findSmoothMotion\n"),
+     r"FasCgSolver<\w+>::|GridHierarchy<\w+>::|MultigridSolver|LayeredMethod::|DofConstraints::"),
+    ("finest lattice: patches, steps", r"GridLevel<\w+>::|ConstrainedNodes<\w+>::|::stepAlong\n"),
+    ("finest lattice: forces of cells", r"CellOperator<\w+>::(find|add|finish)"),
+    ("coarse lattices: beyond the part", r"GridHierarchy<\w+>::\w+Beyond\n"),
+    ("coarse lattices: smooth motion", r"GridHierarchy<\w+>::findSmoothMotion\n"),
     ("parts opened, patches bound, shape written",
-     r"LatticeLevels<\w+>::(open|bind|renew|setDisplacement|writeTo)"),
+     r"GridHierarchy<\w+>::(open|bind|renew|setDisplacement|writeTo)"),
     ("reports", r"Pipeline::describeTools"),
     HEAP,
 ]

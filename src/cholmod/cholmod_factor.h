@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "robot_tissue/core/sparse_factor.h"
+#include "solvers/newton/sparse_factor.h"
 
 namespace robot_tissue {
 

@@ -53,7 +53,7 @@ void requireLinks(const RobotPose& pose, std::size_t links) {
 // moved to the deformed one.
 class SurfaceTree {
  public:
-  const TriangleTree& of(const Surface& surface, const std::vector<Vec3>& vertices) {
+  const AabbTree& of(const Surface& surface, const std::vector<Vec3>& vertices) {
     if (!tree_ || surface.rest != rest_ || surface.triangles != triangles_) {
       rest_ = surface.rest;
       triangles_ = surface.triangles;
@@ -70,7 +70,7 @@ class SurfaceTree {
  private:
   std::vector<Vec3> rest_, vertices_;
   std::vector<MeshTriangle> triangles_;
-  std::optional<TriangleTree> tree_;
+  std::optional<AabbTree> tree_;
 };
 
 }  // namespace
@@ -215,7 +215,7 @@ double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
     impl_->contacts.find(here, 0, 0, surface, vertices, 0.0, found);
     for (const Contact& contact : found.contacts) deepest = std::max(deepest, contact.depth_m);
   }
-  const TriangleTree& tree = impl_->surface_tree.of(surface, vertices);
+  const AabbTree& tree = impl_->surface_tree.of(surface, vertices);
   for (std::size_t i = 0; i < here.size(); ++i) {
     deepest = deepestInside(here[i], impl_->links[link].surface_points[i], tree, deepest);
   }

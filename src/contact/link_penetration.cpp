@@ -104,11 +104,11 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
 }
 
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleTree& surface, double known) {
+                     const AabbTree& surface, double known) {
   const double infinity = std::numeric_limits<double>::infinity();
   const Box& box = surface.bounds();
   double deepest = known;
-  TriangleTree::Nearest foot;
+  AabbTree::Nearest foot;
   Vec3 place = Vec3::Zero();
   const auto isDeeper = [&](const Vec3& point, double least) {
     const bool in_box =

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "robot_tissue/core/disjoint_sets.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
@@ -106,19 +106,16 @@ std::vector<std::size_t> connectedParts(const std::vector<Slit>& slits, const To
     }
   }
   std::sort(slits_of_edges.begin(), slits_of_edges.end());
-  std::vector<std::size_t> part(slits.size());
-  std::iota(part.begin(), part.end(), std::size_t{0});
-  const auto root = [&](std::size_t slit) {
-    while (part[slit] != slit) slit = part[slit] = part[part[slit]];
-    return slit;
-  };
+  DisjointSets sets(slits.size());
   for (std::size_t i = 1; i < slits_of_edges.size(); ++i) {
     if (slits_of_edges[i].first != slits_of_edges[i - 1].first) continue;
-    const auto [low, high] =
-        std::minmax({root(slits_of_edges[i].second), root(slits_of_edges[i - 1].second)});
-    part[high] = low;
+    sets.join(static_cast<int>(slits_of_edges[i].second),
+              static_cast<int>(slits_of_edges[i - 1].second));
   }
-  for (std::size_t& number : part) number = root(number);
+  std::vector<std::size_t> part;
+  for (std::size_t i = 0; i < slits.size(); ++i) {
+    part.push_back(at(sets.lowest(static_cast<int>(i))));
+  }
   return part;
 }
 

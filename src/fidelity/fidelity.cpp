@@ -5,11 +5,11 @@
 #include <iterator>
 #include <ostream>
 
-#include "climb.h"
 #include "fidelity_arguments.h"
 #include "probe.h"
 #include "report_text.h"
-#include "robot_tissue/scene/scene_gate.h"
+#include "resolution_sweep.h"
+#include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "simulate.h"
 #include "write_scene.h"
@@ -90,12 +90,13 @@ int run(const FidelityArguments& arguments, std::ostream& out, std::ostream& err
   const Scene scene = readScene(arguments, err);
   requireWritable("--write", arguments.write);
   requireWritable("--csv", arguments.csv);
-  ClimbOptions options;
+  SweepOptions options;
   options.method = arguments.method;
   options.way_an_update = arguments.way_an_update;
   options.seconds = arguments.seconds;
   const bool progress = terminal && !arguments.quiet;
-  const std::vector<Trial> trials = climbed(scene, options, progress ? progressOn(err) : OnRung());
+  const std::vector<Trial> trials =
+      resolutionSweep(scene, options, progress ? progressOn(err) : OnRung());
   if (progress) err << "\r\x1b[K" << std::flush;
   try {
     return tell(arguments, assessed(trials), out);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "command_line.h"
-#include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/value_text.h"

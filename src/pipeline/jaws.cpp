@@ -76,7 +76,7 @@ std::optional<Pipeline::Pinch> Pipeline::narrowestPinch(std::size_t tool,
     if (!narrowest || pinch->gap < narrowest->gap) narrowest = pinch;
   };
   for (const Vec3& vertex : tissue_.vertices()) look(vertex);
-  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+  for (const SlidingContacts::ContactConstraint& touch : contacts_.touches()) {
     if (at(touch.tool) == tool) look(pointOf(touch.spring, tissue_.state().displacement));
   }
   return narrowest;
@@ -96,7 +96,7 @@ std::optional<double> Pipeline::gapAtTissue(std::size_t tool, const RobotPose& p
 }
 
 bool Pipeline::grasps(std::size_t tool) const {
-  const auto& seats = patches_.seats()[tool];
+  const auto& seats = patches_.attachments()[tool];
   return tools_[tool].role == ToolConfig::Role::kGrasper &&
          std::any_of(seats.begin(), seats.end(), [](const auto& s) { return s.second.grasped; });
 }
@@ -197,12 +197,12 @@ std::vector<int> Pipeline::nodesBetweenJaws(std::size_t tool, std::size_t jaw, d
         here->depth_m > there->depth_m || (here->depth_m == there->depth_m && jaw == first);
     if (nearer && between <= reach) nodes.push_back(node);
   }
-  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+  for (const SlidingContacts::ContactConstraint& touch : contacts_.touches()) {
     if (touch.link != static_cast<int>(jaw)) continue;
     if (touch.spring.multiplier <= 0.0) continue;
     for (const NodeWeight& carrier : touch.spring.carriers) nodes.push_back(carrier.node);
   }
-  const auto& seats = patches_.seats()[tool];
+  const auto& seats = patches_.attachments()[tool];
   for (const auto& [node, seat] : seats) {
     if (seat.link == static_cast<int>(jaw)) nodes.push_back(node);
   }

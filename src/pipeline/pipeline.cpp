@@ -45,10 +45,10 @@ Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
       contacts_({}, {}) {
   surface_version_ = tissue_.surfaceVersion();
   takeTools(tools);
-  tissue_.setContactRounds({[this] { return longestWays(); },
+  tissue_.setContactUpdate({[this] { return longestWays(); },
                             [this](const auto& before) { return contactShare(before); },
                             [this](auto& patches, bool whole, bool last) {
-                              return contactRound(patches, whole, last);
+                              return updateContacts(patches, whole, last);
                             }});
 }
 
@@ -67,12 +67,12 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
     first_link_.push_back(first_link_.back() + tool.links.size());
   }
   finder_ = ContactFinder(all);
-  patches_ = ToolPatches(tissue_.lattice(), names_);
+  patches_ = StickingContacts(tissue_.lattice(), names_);
   std::vector<double> thickness;
   for (std::size_t link = 0; link < finder_.linkCount(); ++link) {
     thickness.push_back(finder_.thickness(link));
   }
-  contacts_ = ToolContacts(friction, thickness);
+  contacts_ = SlidingContacts(friction, thickness);
   drives_.assign(tools.size(), {});
   jaws_.assign(tools.size(), {});
   unfinished_ = gave_up_ = false;
@@ -155,8 +155,8 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
 }
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
-// with a rigid patch; for the others the solver asks for the contacts itself (contactRound). False:
-// no shape could follow, all is as it was. `insists`: on a shape that did not converge, too.
+// with a rigid patch; for the others the solver asks for the contacts itself (updateContacts).
+// False: no shape could follow, all is as it was. `insists`: on a shape that did not converge, too.
 bool Pipeline::advance(const RobotPose& pose, bool insists) {
   ++report_.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
@@ -229,7 +229,7 @@ bool Pipeline::leaptFrom(const Checkpoint& good) const {
 bool Pipeline::isLost(const Checkpoint& good) const {
   if (leaptFrom(good)) return true;
   if (tissue_.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
-  return wentThrough(good) || ToolContacts::pushesAbsurdly(tissue_);
+  return wentThrough(good) || SlidingContacts::pushesAbsurdly(tissue_);
 }
 
 // Into what gives way, deeper than it was.

@@ -42,7 +42,7 @@ ToolReport Pipeline::describe(std::size_t tool) const {
     ++report.contacts;
   }
   const std::vector<Vec3>& displacement = tissue_.state().displacement;
-  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+  for (const SlidingContacts::ContactConstraint& touch : contacts_.touches()) {
     const double force = touch.spring.multiplier;
     if (touch.tool != index || force <= 0.0) continue;
     ++report.contacts;
@@ -69,7 +69,7 @@ ToolReport Pipeline::describe(std::size_t tool) const {
 
 Vec3 Pipeline::normalOf(std::size_t tool) const {
   std::map<int, std::vector<Vec3>> pushes;  // by link; as long as they are hard
-  for (const auto& [node, seat] : patches_.seats()[tool]) {
+  for (const auto& [node, seat] : patches_.attachments()[tool]) {
     const Pose& tissue_T_link = pose_.links[at(seat.link)];
     Vec3 push = tissue_T_link.linear() * seat.pushed;
     if (push.isZero(0.0)) {
@@ -79,7 +79,7 @@ Vec3 Pipeline::normalOf(std::size_t tool) const {
     }
     pushes[seat.link].push_back(push);
   }
-  for (const ToolContacts::Touch& touch : contacts_.touches()) {
+  for (const SlidingContacts::ContactConstraint& touch : contacts_.touches()) {
     const double force = touch.spring.multiplier;
     if (at(touch.tool) == tool && force > 0.0) {
       pushes[touch.link].push_back(force * touch.spring.normal);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "robot_tissue/scene/entry.h"
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {

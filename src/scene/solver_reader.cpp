@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 

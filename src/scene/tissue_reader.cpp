@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "robot_tissue/core/filled_grid.h"
-#include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 
 namespace robot_tissue {
 

@@ -6,7 +6,7 @@
 #include "arguments.h"
 #include "output_folder.h"
 #include "result_text.h"
-#include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/value_text.h"
 #include "run_scene.h"
 

@@ -20,7 +20,7 @@
 #include "command_line.h"
 #include "output_folder.h"
 #include "result_text.h"
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "run_scene.h"
 #include "simulate.h"

@@ -95,7 +95,7 @@ inline TouchSums touchesOf(const Tissue& tissue, const std::string& tool, const 
         ++sums.pushing;
         sums.normal += normal;
         sums.drag += drag;
-        if (drag > 0.999 * spring.most_drag) {
+        if (drag > 0.999 * spring.friction_bound) {
           sums.sliding_normal += normal;
           sums.sliding_drag += drag;
         }

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "../core/elastic_fixtures.h"
-#include "robot_tissue/core/cut.h"
+#include "cutting/cut.h"
 #include "robot_tissue/core/surface.h"
 
 using namespace robot_tissue;

@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/core/elastic_model.h"
-#include "robot_tissue/core/patch_rim.h"
-#include "robot_tissue/core/registry.h"
+#include "loads/patch_rim.h"
+#include "material/elastic_model.h"
 #include "robot_tissue/core/tissue.h"
-#include "robot_tissue/core/vbd_method.h"
+#include "solvers/baselines/vbd_method.h"
+#include "tissue/registry.h"
 
 namespace robot_tissue {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "robot_tissue/core/cut.h"
-#include "robot_tissue/core/patch_rim.h"
+#include "cutting/cut.h"
+#include "loads/patch_rim.h"
 
 namespace robot_tissue {
 

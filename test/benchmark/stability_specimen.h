@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/core/lattice.h"
-#include "robot_tissue/core/registry.h"
+#include "tissue/registry.h"
 
 namespace robot_tissue {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "material/six_spring_model.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/loading_patch.h"
-#include "robot_tissue/core/paper_method.h"
-#include "robot_tissue/core/six_spring_model.h"
+#include "solvers/paper/paper_method.h"
 
 namespace robot_tissue {
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "block_fixtures.h"
-#include "robot_tissue/core/elastic_model.h"
-#include "robot_tissue/core/newton_method.h"
+#include "material/elastic_model.h"
+#include "solvers/newton/newton_method.h"
 
 namespace robot_tissue {
 

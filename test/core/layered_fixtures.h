@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/layered_method.h"
-#include "robot_tissue/core/patch_rim.h"
+#include "loads/patch_rim.h"
+#include "solvers/multigrid/cycle/layered_method.h"
 
 namespace robot_tissue {
 

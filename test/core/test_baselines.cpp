@@ -5,7 +5,7 @@
 #include <string>
 
 #include "layered_fixtures.h"
-#include "robot_tissue/core/registry.h"
+#include "tissue/registry.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {
@@ -138,11 +138,11 @@ TEST_P(Baseline, SpringsInContactPushAndDrag) {
     spring.carriers = {{node, 0.7}, {next, 0.3}};
     spring.rest = 0.7 * lattice.restPosition(node) + 0.3 * lattice.restPosition(next);
     spring.normal = -Vec3::UnitZ();
-    spring.foot = spring.rest + 0.002 * spring.normal;
+    spring.plane_point = spring.rest + 0.002 * spring.normal;
     spring.anchor = spring.rest + Vec3(1e-3, 0.0, 0.0);
     spring.stiffness = 10.0 * pair.exact.model.nodeStiffness(pair.state, node).mean();
-    spring.drag_stiffness = spring.stiffness;
-    spring.most_drag = 0.02;
+    spring.friction_stiffness = spring.stiffness;
+    spring.friction_bound = 0.02;
     plane.contacts.push_back(spring);
   }
   pair.expectSame({plane});

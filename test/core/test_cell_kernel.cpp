@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/cell_kernel.h"
-#include "robot_tissue/core/elastic_cell.h"
-#include "robot_tissue/core/level_cells.h"
+#include "material/elastic_cell.h"
+#include "solvers/multigrid/level/cell_kernel.h"
+#include "solvers/multigrid/level/cell_operator.h"
 
 namespace robot_tissue {
 namespace {
@@ -43,7 +43,7 @@ struct Cells {
 // What goes in and out with the displacement: all nodes free, no load.
 template <typename Real>
 struct Around {
-  explicit Around(LevelCells<Real>& on)
+  explicit Around(CellOperator<Real>& on)
       : cells(on), free(at(on.count()), Real(0)), inverse(at(on.count()), Real(0)) {
     for (auto* field : {&load, &force}) {
       for (auto& values : *field) values.assign(at(on.count()), Real(0));
@@ -52,11 +52,11 @@ struct Around {
   void find(const Field<Real>& displacement, bool with_steps) {
     cells.findForces(loads(displacement), with_steps);
   }
-  typename LevelCells<Real>::Loads loads(const Field<Real>& displacement) {
+  typename CellOperator<Real>::Loads loads(const Field<Real>& displacement) {
     return {displacement, load, free, force, inverse};
   }
 
-  LevelCells<Real>& cells;
+  CellOperator<Real>& cells;
   Field<Real> load, force;
   std::vector<Real> free, inverse;
 };
@@ -65,7 +65,7 @@ template <typename Real>
 class CellKernel : public testing::Test {
  protected:
   // Every node somewhere within `far` spacings of its rest, along each axis.
-  Field<Real> shaken(const LevelCells<Real>& cells, double far) const {
+  Field<Real> shaken(const CellOperator<Real>& cells, double far) const {
     Field<Real> field;
     Shaker shaker(7);
     for (int node = 0; node < cells.count(); ++node) {
@@ -78,7 +78,7 @@ class CellKernel : public testing::Test {
 
   void expectForcesOfEachCell(double far, double tolerance) {
     const Cells given;
-    LevelCells<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
+    CellOperator<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
     const Field<Real> moved = shaken(cells, far);
     Around<Real> around(cells);
     around.find(moved, true);
@@ -153,8 +153,8 @@ TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
   }
   ASSERT_EQ(standing.size(), 27U);
   const GridBox all = given.grid.whole();
-  LevelCells<TypeParam> cells(given.grid, 4, on_grid, {all, covered});
-  LevelCells<TypeParam> alone(given.grid, 4, standing, {all, all});
+  CellOperator<TypeParam> cells(given.grid, 4, on_grid, {all, covered});
+  CellOperator<TypeParam> alone(given.grid, 4, standing, {all, all});
   const Field<TypeParam> moved = this->shaken(cells, 0.1);
   Around<TypeParam> around(cells), around_alone(alone);
   cells.findForcesOfCovered(around.loads(moved));

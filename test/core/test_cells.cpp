@@ -4,9 +4,9 @@
 #include <numeric>
 
 #include "block_fixtures.h"
+#include "cutting/cut.h"
+#include "cutting/split_cells.h"
 #include "robot_tissue/core/cells.h"
-#include "robot_tissue/core/cut.h"
-#include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
 namespace {

@@ -16,8 +16,8 @@ constexpr double kDepth = 2e-3;  // of the plane below the top (m)
 struct Press {
   std::string name;
   double poisson_ratio = 0.45;
-  double most_drag = 0.0;   // N, of each spring
-  bool on_a_patch = false;  // some of the points are carried by a patch that a force moves
+  double friction_bound = 0.0;  // N, of each spring
+  bool on_a_patch = false;      // some of the points are carried by a patch that a force moves
 };
 
 TissueConfig configOf(const Press& press) {
@@ -25,7 +25,7 @@ TissueConfig configOf(const Press& press) {
 }
 
 // Of a plane that was pressed into the top and drawn sideways: points at nodes and between them.
-LoadingPatch planeOn(const Lattice& lattice, const TissueModel& model, double most_drag) {
+LoadingPatch planeOn(const Lattice& lattice, const TissueModel& model, double friction_bound) {
   LoadingPatch plane;
   plane.name = "plane";
   const LatticeState rest = lattice.restState();
@@ -37,11 +37,11 @@ LoadingPatch planeOn(const Lattice& lattice, const TissueModel& model, double mo
       spring.carriers = {{node, 1.0 - share}, {next, share}};
       spring.rest = (1.0 - share) * lattice.restPosition(node) + share * lattice.restPosition(next);
       spring.normal = -Vec3::UnitZ();
-      spring.foot = spring.rest + kDepth * spring.normal;
+      spring.plane_point = spring.rest + kDepth * spring.normal;
       spring.anchor = spring.rest + Vec3(1e-3, 0.0, 0.0);
       spring.stiffness = 10.0 * model.nodeStiffness(rest, node).mean();
-      spring.drag_stiffness = spring.stiffness;
-      spring.most_drag = most_drag;
+      spring.friction_stiffness = spring.stiffness;
+      spring.friction_bound = friction_bound;
       plane.contacts.push_back(spring);
     }
   }
@@ -58,7 +58,7 @@ std::vector<LoadingPatch> loadsOf(const Press& press, const Lattice& lattice,
     for (const int node : patch.nodes) patch.center += lattice.restPosition(node) / 9.0;
     loads.push_back(patch);
   }
-  loads.push_back(planeOn(lattice, model, press.most_drag));
+  loads.push_back(planeOn(lattice, model, press.friction_bound));
   return loads;
 }
 
@@ -161,7 +161,7 @@ TEST(SpringOnAFixedNode, IsPartOfWhatTheFixedNodesHold) {
   spring.carriers = {{lattice.node(0, 1, 0), 0.6}, {lattice.node(0, 1, 1), 0.4}};
   spring.rest = lattice.restPosition(lattice.node(0, 1, 0)) + 0.4 * kSpacing * Vec3::UnitZ();
   spring.normal = Vec3::UnitX();
-  spring.foot = spring.rest + 1e-3 * Vec3::UnitX();
+  spring.plane_point = spring.rest + 1e-3 * Vec3::UnitX();
   spring.stiffness = 100.0;
   tool.contacts = {spring};
   const SolveReport report = tissue.follow({tool}, {});

@@ -16,11 +16,11 @@ constexpr double kDragStiffness = 30.0;  // N/m
 
 struct Case {
   std::string name;
-  double gap = 0.0;         // m
-  double slip = 0.0;        // m, from the anchor
-  double multiplier = 0.0;  // N
-  double most_drag = 0.0;   // N
-  double drag = 0.0;        // N, at the anchor
+  double gap = 0.0;             // m
+  double slip = 0.0;            // m, from the anchor
+  double multiplier = 0.0;      // N
+  double friction_bound = 0.0;  // N
+  double friction_force = 0.0;  // N, at the anchor
 };
 
 // Three nodes carry the point; the plane slants.
@@ -33,13 +33,13 @@ class SpringInContact : public ::testing::TestWithParam<Case> {
     spring_.normal = Vec3(0.6, 0.0, -0.8);
     spring_.stiffness = kStiffness;
     spring_.multiplier = given.multiplier;
-    spring_.drag_stiffness = kDragStiffness;
-    spring_.most_drag = given.most_drag;
-    spring_.drag = given.drag * Vec3(0.8, 0.0, 0.6);
+    spring_.friction_stiffness = kDragStiffness;
+    spring_.friction_bound = given.friction_bound;
+    spring_.friction_force = given.friction_force * Vec3(0.8, 0.0, 0.6);
     displacement_ = {Vec3(1e-3, 2e-3, -1e-3), Vec3(5.0, 6.0, 7.0), Vec3(-2e-3, 1e-3, 1e-3),
                      Vec3(3e-3, -1e-3, 2e-3)};
     const Vec3 point = pointOf(spring_, displacement_);
-    spring_.foot = point - given.gap * spring_.normal + 0.01 * Vec3::UnitY();
+    spring_.plane_point = point - given.gap * spring_.normal + 0.01 * Vec3::UnitY();
     spring_.anchor = point - given.slip * Vec3(0.48, 0.8, 0.36) + 0.02 * spring_.normal;
   }
 
@@ -78,7 +78,7 @@ TEST_P(SpringInContact, DragLiesAcrossTheNormalAndIsNeverLongerThanItsBound) {
   for (int trial = 0; trial < 50; ++trial) {
     const Vec3 drag = dragOf(movedBy(shaker.displacement(0.02)));
     EXPECT_NEAR(drag.dot(spring_.normal), 0.0, 1e-15);
-    EXPECT_LE(drag.norm(), spring_.most_drag + 1e-15);
+    EXPECT_LE(drag.norm(), spring_.friction_bound + 1e-15);
   }
 }
 
@@ -168,8 +168,8 @@ TEST(ContactSpringsKinks, EnergyAndForceAreContinuous) {
   spring.normal = Vec3::UnitZ();
   spring.stiffness = kStiffness;
   spring.multiplier = 0.1;
-  spring.drag_stiffness = kDragStiffness;
-  spring.most_drag = 0.06;
+  spring.friction_stiffness = kDragStiffness;
+  spring.friction_bound = 0.06;
   const double opens = 0.1 / kStiffness, slides = 0.06 / kDragStiffness;
   constexpr double kHair = 1e-9;
   for (const auto& [kink, way] : {std::pair<Vec3, Vec3>{{0.5e-3, 0.0, opens}, Vec3::UnitZ()},

@@ -5,7 +5,8 @@
 #include <set>
 
 #include "block_fixtures.h"
-#include "robot_tissue/core/cut.h"
+#include "cutting/cut.h"
+#include "lattice/connectivity.h"
 
 namespace robot_tissue {
 namespace {

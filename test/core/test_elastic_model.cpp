@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "cutting/cut.h"
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/cut.h"
 
 namespace robot_tissue {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/equilibrium.h"
-#include "robot_tissue/core/patch_rim.h"
+#include "loads/patch_rim.h"
+#include "solvers/newton/equilibrium.h"
 
 namespace robot_tissue {
 namespace {
@@ -32,7 +32,7 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
     }
     for (const int node : patch.nodes) patch.center += lattice_.restPosition(node) / 9.0;
     shape_.patches.push_back(patch);
-    const Unknowns unknowns(lattice_, model_, shape_);
+    const DofMap unknowns(lattice_, model_, shape_);
     for (int node = 0; node < lattice_.nodeCount(); ++node) {
       if (!lattice_.isFixed(node))
         shape_.state.displacement[at(node)] = shaker_.displacement(0.1 * kSpacing);
@@ -51,7 +51,7 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
                                         {lattice_.node(0, j, 1), 0.3},
                                         {lattice_.node(0, j + 1, 2), 0.5}},
                                        j == 3 ? 2e-3 : -1e-3));
-      tool.contacts.back().most_drag = 0.1 * j;
+      tool.contacts.back().friction_bound = 0.1 * j;
       tool.contacts.back().multiplier = 0.01 * j;
     }
     if (GetParam().contact_on_patch) {
@@ -69,9 +69,9 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
     }
     spring.normal = Vec3(0.8, 0.36, -0.48);
     const Vec3 point = pointOf(spring, shape_.state.displacement);
-    spring.foot = point - gap * spring.normal;
+    spring.plane_point = point - gap * spring.normal;
     spring.stiffness = 200.0;
-    spring.drag_stiffness = 100.0;
+    spring.friction_stiffness = 100.0;
     spring.anchor = point + Vec3(-1e-3, 1e-3, 1e-3);
     return spring;
   }
@@ -79,13 +79,14 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
   static TissueConfig config() { return withFixedBottom(elasticBlockOf(4, 4, 2, 0.4)); }
   static Box box() { return {Vec3(0.009, 0.01, 0.02), Vec3(0.033, 0.03, 0.02)}; }
 
-  LoadedShape movedBy(const Unknowns& unknowns, const Eigen::VectorXd& step, double share) const {
-    LoadedShape moved = shape_;
+  ConstrainedState movedBy(const DofMap& unknowns, const Eigen::VectorXd& step,
+                           double share) const {
+    ConstrainedState moved = shape_;
     unknowns.move(moved, step, share);
     return moved;
   }
 
-  Eigen::VectorXd anyStep(const Unknowns& unknowns) {
+  Eigen::VectorXd anyStep(const DofMap& unknowns) {
     Eigen::VectorXd step(unknowns.count());
     for (int i = 0; i < step.size(); ++i) step[i] = shaker_.displacement(1.0).x();
     return step;
@@ -93,12 +94,12 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
 
   Lattice lattice_;
   ElasticModel model_;
-  LoadedShape shape_;
+  ConstrainedState shape_;
   Shaker shaker_{7};
 };
 
 TEST_P(ShakenBlock, UnbalancedForceIsThePotentialsSlope) {
-  const Unknowns unknowns(lattice_, model_, shape_);
+  const DofMap unknowns(lattice_, model_, shape_);
   const Eigen::VectorXd unbalanced = balanceOf(model_, unknowns, shape_).unbalanced;
   for (int trial = 0; trial < 5; ++trial) {
     const Eigen::VectorXd step = anyStep(unknowns);
@@ -111,9 +112,9 @@ TEST_P(ShakenBlock, UnbalancedForceIsThePotentialsSlope) {
 }
 
 TEST_P(ShakenBlock, MatrixIsTheUnbalancedForcesSlope) {
-  const Unknowns unknowns(lattice_, model_, shape_);
+  const DofMap unknowns(lattice_, model_, shape_);
   const std::vector<Vec3> unmoved(shape_.state.displacement.size(), Vec3::Zero());
-  const Curvature curvature = curvatureOf(model_, unknowns, shape_, unmoved, false);
+  const TangentStiffness curvature = tangentStiffnessOf(model_, unknowns, shape_, unmoved, false);
   const Eigen::MatrixXd lower(curvature.matrix);
   const Eigen::MatrixXd matrix = lower.selfadjointView<Eigen::Lower>();
   for (int trial = 0; trial < 5; ++trial) {

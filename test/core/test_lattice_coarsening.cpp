@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "robot_tissue/core/lattice_coarsening.h"
+#include "solvers/multigrid/level/lattice_coarsening.h"
 
 namespace robot_tissue {
 namespace {

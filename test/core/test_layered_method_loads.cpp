@@ -1,8 +1,8 @@
 // Method `layered` under all kinds of loads, against method `newton`.
 #include <gtest/gtest.h>
 
+#include "cutting/cut.h"
 #include "layered_fixtures.h"
-#include "robot_tissue/core/cut.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {

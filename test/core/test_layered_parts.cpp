@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "layered_fixtures.h"
-#include "robot_tissue/core/level_source.h"
+#include "solvers/multigrid/hierarchy/level_source.h"
 
 namespace robot_tissue {
 namespace {

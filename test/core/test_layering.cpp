@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -45,17 +48,24 @@ std::vector<fs::path> filesIn(const std::string& folder) {
   return files;
 }
 
+std::vector<Include> includesOf(const fs::path& path) {
+  std::vector<Include> includes;
+  std::ifstream file(path);
+  EXPECT_TRUE(file.good()) << path;
+  for (std::string line; std::getline(file, line);) {
+    const std::string header = includedBy(line);
+    if (!header.empty()) includes.push_back({path.string(), header});
+  }
+  return includes;
+}
+
 std::vector<Include> includesIn(const std::string& folder) {
   std::vector<Include> includes;
   const std::vector<fs::path> files = filesIn(folder);
   EXPECT_FALSE(files.empty()) << "no source in " << folder;
   for (const fs::path& path : files) {
-    std::ifstream file(path);
-    EXPECT_TRUE(file.good()) << path;
-    for (std::string line; std::getline(file, line);) {
-      const std::string header = includedBy(line);
-      if (!header.empty()) includes.push_back({path.string(), header});
-    }
+    const std::vector<Include> found = includesOf(path);
+    includes.insert(includes.end(), found.begin(), found.end());
   }
   EXPECT_FALSE(includes.empty()) << "no #include in " << folder;
   return includes;
@@ -94,6 +104,121 @@ void expectNone(const std::string& folder, const std::vector<std::string>& forbi
   }
 }
 
+// A room of core and the rooms that it may include.
+struct Room {
+  std::string name;
+  std::set<std::string> uses;
+  std::set<std::string> files;  // "robot_tissue/core/types.h", "simd/workers.h"
+
+  bool operator==(const Room& other) const { return name == other.name && uses == other.uses; }
+};
+
+std::string textOf(const std::string& file) {
+  std::ifstream stream(fs::path(ROBOT_TISSUE_SOURCE_DIR) / file);
+  EXPECT_TRUE(stream.good()) << file;
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// From the calls robot_tissue_room(NAME USES ... PUBLIC ... FILES ... VECTOR_LOOPS ...).
+std::vector<Room> roomsOfTheBuild() {
+  std::vector<Room> rooms;
+  const std::string text = textOf("src/core/rooms.cmake");
+  const std::string call = "robot_tissue_room(";
+  for (std::size_t at = text.find(call); at != std::string::npos; at = text.find(call, at)) {
+    at += call.size();
+    std::istringstream words(text.substr(at, text.find(')', at) - at));
+    Room room;
+    words >> room.name;
+    std::string list;
+    for (std::string word; words >> word;) {
+      if (word == "USES" || word == "PUBLIC" || word == "FILES" || word == "VECTOR_LOOPS") {
+        list = word;
+      } else if (list == "USES") {
+        room.uses.insert(word);
+      } else {
+        room.files.insert((list == "PUBLIC" ? "robot_tissue/core" : room.name) + "/" + word);
+      }
+    }
+    rooms.push_back(room);
+  }
+  return rooms;
+}
+
+// From the table of doc/architecture.md: | room | what it holds | uses |.
+std::vector<Room> roomsOfThePage() {
+  std::vector<Room> rooms;
+  std::istringstream lines(textOf("doc/architecture.md"));
+  std::string line;
+  while (std::getline(lines, line) && line != "| room | what it holds | uses |") continue;
+  std::getline(lines, line);  // |---|
+  while (std::getline(lines, line) && startsWith(line, "| ")) {
+    std::vector<std::string> cells;
+    std::istringstream row(line.substr(2));
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+    Room room;
+    std::istringstream(cells.at(0)) >> room.name;
+    std::string uses = cells.at(2);
+    std::replace(uses.begin(), uses.end(), ',', ' ');
+    std::istringstream names(uses);
+    for (std::string name; names >> name;) room.uses.insert(name);
+    rooms.push_back(room);
+  }
+  return rooms;
+}
+
+// The room whose file a header is; empty: none's.
+std::string roomOf(const std::string& header, const std::vector<Room>& rooms) {
+  for (const Room& room : rooms) {
+    if (room.files.count(header) > 0) return room.name;
+  }
+  return "";
+}
+
+TEST(Layering, ThePageHasTheTableOfRooms) {
+  const std::vector<Room> rooms = roomsOfTheBuild();
+  ASSERT_GT(rooms.size(), 10U);
+  EXPECT_EQ(rooms, roomsOfThePage()) << "doc/architecture.md, src/core/rooms.cmake";
+}
+
+TEST(Layering, ARoomUsesRoomsBeforeIt) {
+  std::set<std::string> before;
+  for (const Room& room : roomsOfTheBuild()) {
+    for (const std::string& used : room.uses) {
+      EXPECT_EQ(before.count(used), 1U) << room.name << " uses " << used;
+    }
+    before.insert(room.name);
+  }
+}
+
+TEST(Layering, ARoomIncludesTheRoomsOfItsRow) {
+  const std::vector<Room> rooms = roomsOfTheBuild();
+  for (const Room& room : rooms) {
+    std::set<std::string> included;
+    for (const std::string& file : room.files) {
+      const std::string folder = startsWith(file, "robot_tissue/") ? "include/" : "src/core/";
+      for (const Include& include :
+           includesOf(fs::path(ROBOT_TISSUE_SOURCE_DIR) / (folder + file))) {
+        if (isStandard(include.header) || startsWith(include.header, "Eigen/")) continue;
+        const std::string used = roomOf(include.header, rooms);
+        if (used.empty()) continue;  // CoreStandsOnEigenAlone
+        if (used != room.name) included.insert(used);
+        EXPECT_TRUE(used == room.name || room.uses.count(used) > 0)
+            << include.file << " includes " << include.header << " of room " << used;
+      }
+    }
+    EXPECT_EQ(included, room.uses) << "the row of room " << room.name << " names more";
+  }
+}
+
+TEST(Layering, EveryFileOfCoreIsInOneRoom) {
+  const std::vector<Room> rooms = roomsOfTheBuild();
+  std::size_t there = 0, listed = 0;
+  for (const char* folder : {"include/robot_tissue/core", "src/core"})
+    there += filesIn(folder).size();
+  for (const Room& room : rooms) listed += room.files.size();
+  EXPECT_EQ(there, listed);
+}
+
 TEST(Layering, IncludeLinesAreRead) {
   EXPECT_EQ(includedBy("#include <vector>"), "vector");
   EXPECT_EQ(includedBy("  #  include \"robot_tissue/core/types.h\"  // why"),
@@ -104,9 +229,15 @@ TEST(Layering, IncludeLinesAreRead) {
 }
 
 TEST(Layering, CoreStandsOnEigenAlone) {
-  for (const char* folder : {"include/robot_tissue/core", "src/core"}) {
-    expectOnly(folder, {"Eigen/", "robot_tissue/core/"});
-    expectNone(folder, {"CholmodSupport", "cholmod"});
+  expectOnly("include/robot_tissue/core", {"Eigen/", "robot_tissue/core/"});
+  std::vector<std::string> allowed = {"Eigen/", "robot_tissue/core/"};
+  for (const Room& room : roomsOfTheBuild()) allowed.push_back(room.name + "/");
+  expectOnly("src/core", allowed);
+}
+
+TEST(Layering, CouplingStandsOnCore) {
+  for (const char* folder : {"include/robot_tissue/coupling", "src/coupling"}) {
+    expectOnly(folder, {"Eigen/", "robot_tissue/core/", "robot_tissue/coupling/"});
   }
 }
 
@@ -130,16 +261,16 @@ TEST(Layering, ContactKeepsItsLibrariesBehindItsHeaders) {
                              "robot_tissue/mesh/", "robot_tissue/contact/"});
 }
 
-TEST(Layering, PipelineJoinsCoreAndContact) {
+TEST(Layering, PipelineJoinsCoreContactAndCoupling) {
   for (const char* folder : {"include/robot_tissue/pipeline", "src/pipeline"}) {
-    expectOnly(folder,
-               {"Eigen/", "robot_tissue/core/", "robot_tissue/contact/", "robot_tissue/pipeline/"});
+    expectOnly(folder, {"Eigen/", "robot_tissue/core/", "robot_tissue/contact/",
+                        "robot_tissue/coupling/", "robot_tissue/pipeline/"});
   }
 }
 
-TEST(Layering, RosKnowsNeitherFclNorTheSolversInsides) {
+TEST(Layering, RosKnowsNoFcl) {
   for (const char* folder : {"include/robot_tissue/ros", "src/ros"}) {
-    expectNone(folder, {"fcl/", "paper_method.h", "six_spring_model.h", "solver_method.h"});
+    expectNone(folder, {"fcl/"});
   }
 }
 

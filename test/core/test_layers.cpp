@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "block_fixtures.h"
-#include "robot_tissue/core/layers.h"
+#include "solvers/paper/layers.h"
 
 namespace robot_tissue {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "geometry/mesh_slicing.h"
 #include "mesh_fixtures.h"
 #include "robot_tissue/core/mesh_checks.h"
-#include "robot_tissue/core/mesh_slicing.h"
 
 namespace robot_tissue {
 namespace {

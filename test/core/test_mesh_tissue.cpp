@@ -4,10 +4,10 @@
 #include <map>
 #include <numeric>
 
+#include "cutting/cut.h"
 #include "elastic_fixtures.h"
 #include "mesh_fixtures.h"
-#include "robot_tissue/core/cut.h"
-#include "robot_tissue/core/mesh_surface.h"
+#include "surface/mesh_surface.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {

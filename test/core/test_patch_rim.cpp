@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "cutting/cut.h"
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/cut.h"
-#include "robot_tissue/core/patch_rim.h"
-#include "robot_tissue/core/rim_law.h"
+#include "loads/patch_rim.h"
+#include "loads/rim_law.h"
 
 namespace robot_tissue {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "../rim_strip.h"
-#include "robot_tissue/core/rim_law.h"
+#include "loads/rim_law.h"
 
 namespace robot_tissue {
 namespace {

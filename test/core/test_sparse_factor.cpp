@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/sparse_factor.h"
+#include "solvers/newton/sparse_factor.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {

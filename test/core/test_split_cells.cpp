@@ -7,9 +7,9 @@
 #include <numeric>
 #include <set>
 
+#include "cutting/cut.h"
+#include "cutting/split_cells.h"
 #include "elastic_fixtures.h"
-#include "robot_tissue/core/cut.h"
-#include "robot_tissue/core/split_cells.h"
 
 namespace robot_tissue {
 namespace {
@@ -257,7 +257,7 @@ TEST(Ghosts, OfFixedNodesAreFixedWhereTheirPartHoldsOn) {
 TEST(Ghosts, PieceCutOffTheFixedNodesIsFree) {
   ElasticBlock block(withFixedBottom(elasticBlockOf(2, 2, 3, 0.45)));
   cut(block, across(2, 0.5));
-  const Unknowns unknowns(block.lattice, block.model, {block.state, {}});
+  const DofMap unknowns(block.lattice, block.model, {block.state, {}});
   const auto nodes = static_cast<int>(block.state.displacement.size());
   EXPECT_EQ(unknowns.count(), 3 * (nodes - 9));
   expectSound(block, 12.0);

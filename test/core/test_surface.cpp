@@ -6,7 +6,7 @@
 #include <set>
 
 #include "block_fixtures.h"
-#include "robot_tissue/core/cut.h"
+#include "cutting/cut.h"
 #include "robot_tissue/core/surface.h"
 
 namespace robot_tissue {

@@ -1,4 +1,4 @@
-// Tissues, load steps and snapshots that the tests of Tissue and ToolPatches share.
+// Tissues, load steps and snapshots that the tests of Tissue and StickingContacts share.
 #pragma once
 
 #include <gtest/gtest.h>

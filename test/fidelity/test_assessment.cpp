@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "assessment.h"
-#include "climb.h"
 #include "reference_cases.h"
+#include "resolution_sweep.h"
 
 namespace robot_tissue {
 namespace {
@@ -114,9 +114,9 @@ TEST(Assessment, TheEstimateIsNearTheErrorAgainstFiniteElements) {
     scene.tissue = referenceTissue(reference, 0.005);
     scene.steps = {referenceLoad(reference)};
     scene.solver.tolerance = 0.001;
-    ClimbOptions options;
+    SweepOptions options;
     options.coarser = options.finer = 1;
-    const Assessment found = assessed(climbed(scene, options, {}));
+    const Assessment found = assessed(resolutionSweep(scene, options, {}));
     ASSERT_EQ(found.lattices, 3);
     for (const Assessed& row : found.rows) {
       if (row.rung.spacing != 0.005 || row.rung.tolerance != 0.001) continue;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/core/registry.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {

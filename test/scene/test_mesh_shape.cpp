@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "../core/mesh_fixtures.h"
+#include "geometry/mesh_slicing.h"
 #include "mesh_files.h"
 #include "robot_tissue/core/mesh_checks.h"
-#include "robot_tissue/core/mesh_slicing.h"
 #include "robot_tissue/scene/readers.h"
 
 namespace robot_tissue {

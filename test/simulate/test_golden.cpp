@@ -26,7 +26,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 #include "run_scene.h"
 
 namespace robot_tissue {
@@ -132,7 +132,7 @@ std::vector<fs::path> scenes() {
   return files;
 }
 
-// As the loader chooses among the clones of core/vector_clones.h.
+// As the loader chooses among the clones of core/simd/vector_clones.h.
 std::string kernels() {
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
   __builtin_cpu_init();

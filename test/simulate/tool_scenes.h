@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 #include "run_scene.h"
 
 namespace robot_tissue {

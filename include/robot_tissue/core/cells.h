@@ -1,11 +1,11 @@
 // The cells between the nodes, that carry the material: 8 corners, 12 springs each. Corner c sits
 // at the cell's lowest node plus (c & 1, c >> 1 & 1, c >> 2 & 1) spacings.
 //
-// A cut may split a cell (core/split_cells.h). Its parts are cells again, with 8 corners each;
-// where a part lost a corner, a ghost stands in for the node (Molino, Bao, Fedkiw 2004, "A virtual
-// node algorithm for changing mesh topology during simulation"). Ghosts are nodes that the lattice
-// does not know: numbered from Lattice::nodeCount() on, with a displacement of their own, without
-// springs.
+// A cut may split a cell (core/cutting/split_cells.h). Its parts are cells again, with 8 corners
+// each; where a part lost a corner, a ghost stands in for the node (Molino, Bao, Fedkiw 2004, "A
+// virtual node algorithm for changing mesh topology during simulation"). Ghosts are nodes that the
+// lattice does not know: numbered from Lattice::nodeCount() on, with a displacement of their own,
+// without springs.
 #pragma once
 
 #include <array>

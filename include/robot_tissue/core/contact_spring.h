@@ -1,15 +1,15 @@
 // A point of the surface that a tool may push: a spring that never pulls, with friction (own; the
-// augmented Lagrangian of Simo and Laursen 1992, with Tresca's bound on the drag).
+// augmented Lagrangian of Simo and Laursen 1992, with Tresca's bound on friction).
 //
 //   point of the surface    x = sum of weight * (rest + displacement) over its carriers
-//   gap                     g = n . (x - foot)
+//   gap                     g = n . (x - plane_point)
 //   normal force            f = max(0, multiplier - k g)
-//   drag                    t = drag - k_t (1 - n n^T) (x - anchor), cut to most_drag in length
+//   friction                t = t_0 - k_t (1 - n n^T) (x - anchor), cut to friction_bound
 //   force on the tissue     f n + t, at x
 //
-// Between solves the multiplier takes f and most_drag the friction's share of f: then the gap goes
-// to zero whatever k is, and the drag obeys Coulomb's law. In a solve both are constant, so that
-// the spring has an energy, convex in x.
+// Between solves the multiplier takes f and friction_bound the friction's share of f: then the gap
+// goes to zero whatever k is, and friction obeys Coulomb's law. In a solve both are constant, so
+// that the spring has an energy, convex in x.
 #pragma once
 
 #include <vector>
@@ -19,16 +19,16 @@
 namespace robot_tissue {
 
 struct ContactSpring {
-  std::vector<NodeWeight> carriers;  // weights sum to 1
-  Vec3 rest = Vec3::Zero();          // of the point (m)
-  Vec3 normal = Vec3::Zero();        // unit, from the tool into the tissue
-  Vec3 foot = Vec3::Zero();          // a point of the tool's surface (m)
-  double stiffness = 0.0;            // k (N/m)
-  double multiplier = 0.0;           // N
-  Vec3 anchor = Vec3::Zero();        // where the point would be, did it stick (m)
-  Vec3 drag = Vec3::Zero();          // across the normal, when it was at the anchor (N)
-  double drag_stiffness = 0.0;       // k_t (N/m)
-  double most_drag = 0.0;            // N; 0: slides freely
+  std::vector<NodeWeight> carriers;    // weights sum to 1
+  Vec3 rest = Vec3::Zero();            // of the point (m)
+  Vec3 normal = Vec3::Zero();          // unit, from the tool into the tissue
+  Vec3 plane_point = Vec3::Zero();     // a point of the tool's surface (m)
+  double stiffness = 0.0;              // k (N/m)
+  double multiplier = 0.0;             // N
+  Vec3 anchor = Vec3::Zero();          // where the point would be, did it stick (m)
+  Vec3 friction_force = Vec3::Zero();  // t_0: across the normal, when it was at the anchor (N)
+  double friction_stiffness = 0.0;     // k_t (N/m)
+  double friction_bound = 0.0;         // N; 0: slides freely
 };
 
 // Deformed place of the point (m).

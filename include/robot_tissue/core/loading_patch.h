@@ -13,7 +13,8 @@ namespace robot_tissue {
 class Lattice;
 struct LatticeState;
 
-// Joins a node at the rim of a patch to it (core/patch_rim.h); the patch's other nodes are hard.
+// Joins a node at the rim of a patch to it (core/loads/patch_rim.h); the patch's other nodes are
+// hard.
 struct RimSpring {
   int node = 0;
   Vec3 stiffness = Vec3::Zero();  // along the patch's own x, y, z, which turn with it (N/m)

@@ -13,6 +13,7 @@
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/solve_report.h"
 #include "robot_tissue/core/surface.h"
 
 namespace robot_tissue {
@@ -70,7 +71,7 @@ class Tissue {
   Vec3 nodePosition(int node) const;     // deformed (m)
 
   // What is asked after each solve while tools touch.
-  struct ContactRounds {
+  struct ContactUpdate {
     // Per vertex of the surface: how far it may go at once from where it is (m); empty: anywhere.
     std::function<std::vector<double>()> longest;
     // Share of the way from these displacements to the present ones that may be gone at once: the
@@ -81,7 +82,7 @@ class Tissue {
     // and in balance. `last`: there is no next time, the patches are not put in.
     std::function<bool(std::vector<LoadingPatch>& of_tools, bool whole, bool last)> renew;
   };
-  void setContactRounds(ContactRounds rounds) { contact_rounds_ = std::move(rounds); }
+  void setContactUpdate(ContactUpdate rounds) { contact_update_ = std::move(rounds); }
 
   // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
   // one solve at least, with one cycle of the method. Loads stop on their way then, to be carried
@@ -159,13 +160,13 @@ class Tissue {
   void dropDue(const std::string& name);
   Ramp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
   const LoadingPatch* standingPatch(const std::string& name) const;
-  // tissue_climb.cpp; reports are the last increment's, with the worst status of all.
+  // load_stepping.cpp; reports are the last increment's, with the worst status of all.
   bool stopsOnTheWay(const std::vector<Ramp>& ramps);
   double foreseenSteps(const std::vector<Ramp>& ramps) const;
   int foreseenIncrements(const std::vector<Ramp>& ramps) const;
-  SolveReport climbByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
-  SolveReport climb(const std::vector<Ramp>& ramps, int increments,
-                    const OnIncrement& on_increment);
+  SolveReport stepLoadsByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
+  SolveReport stepLoads(const std::vector<Ramp>& ramps, int increments,
+                        const OnIncrement& on_increment);
   SolveReport goInSteps(const std::vector<Ramp>& ramps, int increment, int increments);
   SolveReport goTo(const std::vector<Ramp>& ramps, double share);
   double stepsGone(const std::vector<Ramp>& ramps, const std::vector<Vec3>& before) const;
@@ -196,7 +197,7 @@ class Tissue {
   bool is_late_ = false;  // likewise
   double max_ms_ = 0.0;   // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
-  ContactRounds contact_rounds_;
+  ContactUpdate contact_update_;
 };
 
 }  // namespace robot_tissue

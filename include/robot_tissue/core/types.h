@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ using Pose = Eigen::Isometry3d;
 
 // Index of a node, spring or vertex as containers want it.
 constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// A mask of axes has bit 1 << axis.
+constexpr std::uint8_t kAllAxes = 7;
 
 // The matrix M with M w = v x w.
 inline Eigen::Matrix3d crossMatrix(const Vec3& v) {

@@ -24,8 +24,8 @@
 #include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
-#include "robot_tissue/core/tool_contacts.h"
-#include "robot_tissue/core/tool_patches.h"
+#include "robot_tissue/coupling/sliding_contacts.h"
+#include "robot_tissue/coupling/sticking_contacts.h"
 #include "robot_tissue/pipeline/still_pose.h"
 
 namespace robot_tissue {
@@ -180,8 +180,8 @@ class Pipeline {
   struct Checkpoint {
     RobotPose pose;
     Tissue::Shape shape;
-    ToolPatches::Seats seats;
-    ToolContacts contacts;
+    StickingContacts::Attachments attachments;
+    SlidingContacts contacts;
     std::vector<Jaws> jaws;
     std::vector<double> depths;
   };
@@ -245,13 +245,13 @@ class Pipeline {
   void finish();
   void countLate();
 
-  // contact_rounds.cpp
+  // contact_update.cpp
   std::vector<Surroundings> surroundings() const;
   std::vector<double> longestWays();
   double contactShare(const std::vector<Vec3>& before);
   double shareOutside(double share) const;
   std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
-  bool contactRound(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
+  bool updateContacts(std::vector<LoadingPatch>& of_tools, bool whole, bool last);
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
   void meet(const RobotPose& pose);
@@ -261,7 +261,7 @@ class Pipeline {
   bool wouldTouchAtRest(const RobotPose& pose);
   std::vector<LoadingPatch> lastTouches() const;
 
-  // tools_way.cpp
+  // tool_substeps.cpp
   static bool isAway(const Pose& pose);
   RobotPose walk(const RobotPose& pose);
   RobotPose complete(const RobotPose& pose) const;
@@ -290,7 +290,7 @@ class Pipeline {
   void passTo(const RobotPose& pose);
   double stepOf(std::size_t link) const;
 
-  // tool_exits.cpp
+  // initial_overlap.cpp
   static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);
   ContactSet overlapOf(const Links& links, const RobotPose& pose) const;
   std::optional<Vec3> middleBeneath(const Links& links, const RobotPose& pose) const;
@@ -299,8 +299,8 @@ class Pipeline {
   std::vector<Vec3> waysOut(const Links& links, const RobotPose& pose) const;
   std::optional<int> stepsOut(const Links& links, const RobotPose& pose, const Vec3& way,
                               int most) const;
-  bool drawOut(const Links& links, RobotPose& pose) const;
-  void drawOut(std::size_t tool, RobotPose& pose);
+  bool resolveOverlap(const Links& links, RobotPose& pose) const;
+  void resolveOverlap(std::size_t tool, RobotPose& pose);
   void unhook(RobotPose& pose);
   void leaveReleased(RobotPose& pose);
   void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
@@ -342,8 +342,8 @@ class Pipeline {
   std::vector<std::string> names_;       // of tools and supports
   std::vector<std::size_t> first_link_;  // per tool and support, and the end
   ContactFinder finder_;                 // of tools and supports
-  ToolPatches patches_;
-  ToolContacts contacts_;
+  StickingContacts patches_;
+  SlidingContacts contacts_;
   std::vector<Drive> drives_;
   std::vector<Jaws> jaws_;  // per tool
   bool any_rigid_ = false;

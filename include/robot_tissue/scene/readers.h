@@ -12,7 +12,7 @@
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/ranges.h"
-#include "robot_tissue/scene/scene_gate.h"
+#include "robot_tissue/scene/scene_parser.h"
 
 namespace robot_tissue {
 

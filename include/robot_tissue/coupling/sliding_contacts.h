@@ -1,0 +1,109 @@
+// Contacts -> springs in contact, for tools along which the tissue slides (own).
+//
+// A touch is a point of the surface near a link: a vertex, or a point of a triangle where the link
+// is deeper than at its vertices. It is pushed out of a plane at the foot of the link's surface
+// that is nearest to it. So that the foot does not jump where a link has edges, or is thin, it is
+// sought from the touch's probe: the point a little way above its plane. A load step begins with
+// ride() and meet(), looks at the shape after each solve with update() until that says the contact
+// is settled, and ends with commit(). In: contacts (tissue frame, normals from the tool into the
+// tissue), poses of the links. Out: the springs of each tool. Points that held nodes carry, but for
+// a tenth of their weight, are never taken.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/contact_spring.h"
+#include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/tissue.h"
+
+namespace robot_tissue {
+
+class SlidingContacts {
+ public:
+  static constexpr std::uint8_t kGrasped = 2;
+
+  struct ContactConstraint {
+    int tool = 0;
+    int link = 0;
+    int vertex = -1;  // of the surface; -1: a point of a triangle
+    int triangle = 0;
+    Vec3 barycentric = Vec3::Zero();
+    ContactSpring spring;
+    Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
+    Vec3 since_normal = Vec3::Zero();    // then, in the link's frame
+    double off = 0.0;                    // of the link, in the last update (m); < 0: in it
+    bool found = false;                  // in the last update
+  };
+
+  SlidingContacts() = default;  // of no tools
+  // Coulomb's friction of each tool (a negative one: the tool is not this class's), thickness of
+  // each link (m).
+  SlidingContacts(std::vector<double> friction, std::vector<double> thickness);
+
+  // Whether a point with these carriers can be pushed; `held` as in meet().
+  static bool givesWay(const std::vector<NodeWeight>& carriers,
+                       const std::vector<std::uint8_t>& held);
+
+  // The links go to where they are now, and planes and anchors with them.
+  void ride(const RobotPose& pose, const Tissue& tissue);
+
+  // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
+  // kGrasped: a tool has it, and what hangs on such a node is not pushed.
+  void meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
+            const std::vector<std::uint8_t>& held);
+
+  // Of the shape that was solved for (`whole`) or is on the way to it. `tracked`: one a touch,
+  // where its probe is; none when the link is out of reach. False: something changed, solve again.
+  bool update(const std::vector<std::optional<Contact>>& tracked, const ContactSet& found,
+              const RobotPose& pose, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+              bool whole = true);
+
+  // From here on tissue and links stick, or slip anew. Forgets touches that the tools have left.
+  void commit(const RobotPose& pose, const Tissue& tissue);
+
+  // As commit(), when no tool touches and the tissue is as it was then.
+  void pass(const RobotPose& pose);
+
+  void clear();
+  void clear(int tool);
+
+  // Whether a spring in contact pushes as hard, in the tissue's last solve, as no tissue does.
+  static bool pushesAbsurdly(const Tissue& tissue);
+  const std::vector<ContactConstraint>& touches() const { return touches_; }
+  // Whether the tool pushes, did at the last commit, or would in a solve.
+  bool pushes(int tool, const Tissue& tissue) const;
+  std::vector<ContactSpring> springsOf(int tool) const;
+
+ private:
+  using Held = std::vector<std::uint8_t>;
+
+  double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
+  void stickFirst(const Tissue& tissue);
+  double fineness(int link, double spacing) const;
+  ContactConstraint* find(const Contact& contact, const Surface& surface);
+  void add(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
+  void put(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
+           ContactConstraint& touch);
+  bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
+             ContactConstraint& touch);
+  bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
+  static void carry(const Tissue& tissue, const Held& held, ContactConstraint& touch);
+  bool updateMultipliers(const Tissue& tissue);
+  void pressHarder(const Tissue& tissue);
+  void forgetLost(const Held& held);
+  void anchor(const RobotPose& pose, ContactConstraint& touch) const;
+  Vec3 frictionRatioAround(const ContactConstraint& touch) const;
+
+  std::vector<double> friction_;
+  std::vector<double> thickness_;
+  std::vector<double> pressed_;               // per tool: its normal forces in the last update (N)
+  int cut_rounds_ = 0;                        // in a row, that ended on the way to balance
+  std::vector<ContactConstraint> touches_;    // in the order in which they were found
+  std::vector<Pose> since_links_;             // at the last commit
+  Tissue::Displacements since_displacement_;  // likewise (m)
+};
+
+}  // namespace robot_tissue

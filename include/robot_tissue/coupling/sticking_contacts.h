@@ -1,0 +1,115 @@
+// Contacts -> loading patches (own; the paper takes the loading area as given).
+//
+// The hard part of a tool's patch, for tools with rigid patches and for graspers.
+// Rigid: a node that a contact pushed out of the tool rides on it from then on, as part of one hard
+// piece, and so sticks sideways. It leaves the patch when the tool has lifted it above the
+// surface's rest place, when it is on the near side of its rest place and the tissue pulls it away
+// from the tool, or when nothing around it touches the tool. Grasped: nodes ride on a jaw until
+// they are let go. In: contacts of tools with rigid patches (tissue frame, normals from the tool
+// into the tissue), poses of the links. Out: one patch a tool that has nodes, displacements from
+// rest (m). Fixed nodes and the nodes of named loads are never taken.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/tissue.h"
+#include "robot_tissue/coupling/sliding_contacts.h"
+
+namespace robot_tissue {
+
+class StickingContacts {
+ public:
+  StickingContacts(const Lattice& lattice, std::vector<std::string> tool_names);
+
+  // Moves the patches with their tools; nodes that the tool has left stay behind.
+  void ride(const RobotPose& pose, const Tissue& tissue);
+  // Lets go of the nodes that carry no contact.
+  void keepTouching(const ContactSet& contacts, const Tissue& tissue);
+  // Moves the nodes under the contacts until each contact's depth is gone.
+  void pushOut(const ContactSet& contacts, const Tissue& tissue, const RobotPose& pose);
+  // Grasped: the nodes ride on the link from where they are.
+  void hold(int tool, int link, const Pose& tissue_T_link, const std::vector<int>& nodes,
+            const Tissue& tissue);
+  void letGo(int tool);
+  bool holds(int tool) const;
+
+  // Where a node sits on a link, that link's frame.
+  struct Attachment {
+    int link = 0;  // index into RobotPose::links
+    bool grasped = false;
+    Vec3 point = Vec3::Zero();
+    Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
+  };
+  using Attachments =
+      std::vector<std::map<int, Attachment>>;  // per tool: node -> seat; ordered, so repeatable
+
+  // Lets go of every node.
+  void clear();
+  // All that is to be kept of the patches to come back to them.
+  const Attachments& attachments() const { return attachments_; }
+  // With the tissue in the shape that it had.
+  void restore(const Attachments& attachments, const Tissue& tissue);
+
+  bool empty() const;
+  // The tool's patch; without nodes when it holds none.
+  LoadingPatch loadingPatch(int tool) const;
+  // Nodes that left a patch in the last ride.
+  const std::vector<int>& left() const { return left_; }
+  // The tissue's displacements (m), with the patches where they are now.
+  std::vector<Vec3> displacement(const Tissue& tissue) const;
+  std::vector<int> nodes(int tool) const;
+  // Sum of the ways out of the tool over its nodes (m, tissue frame).
+  Vec3 pushed(int tool, const RobotPose& pose) const;
+  // Per node, not 0 = it does not give way: fixed, hard in a named load by displacement, or in one
+  // of these patches; kGrasped: it moves with a grasper.
+  static constexpr std::uint8_t kGrasped = SlidingContacts::kGrasped;
+  std::vector<std::uint8_t> heldNodes(const Tissue& tissue) const;
+
+ private:
+  // A free node that carries a contact's point.
+  struct Carrier {
+    int node = 0;
+    double weight = 0.0;
+    double mobility = 1.0;
+  };
+  struct Push {
+    const Contact* contact = nullptr;
+    std::vector<Carrier> support;
+    double row_sum = 0.0;     // how much all contacts together move this one's point
+    double multiplier = 0.0;  // m; > 0: the contact pushes
+  };
+
+  std::vector<Carrier> supportOf(const Contact& contact, const Surface& surface) const;
+  void scale(std::vector<Push>& pushes) const;
+  double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
+  static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
+  void attach(int node, std::size_t tool, int link, const Vec3& moved, const Tissue& tissue,
+              const RobotPose& pose);
+  const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue) const;
+  void holdNamedLoads(const Tissue& tissue);
+  void findOutwardNormals(const Tissue& tissue);
+  bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue);
+
+  const Lattice* lattice_;  // a pointer, so that patches can be assigned
+  std::vector<std::string> names_;
+  Attachments attachments_;
+  std::map<int, Vec3> places_;            // displacement of nodes with a seat (m)
+  std::shared_ptr<const CellSet> cells_;  // of the tissue in the last ride
+  std::vector<std::uint8_t> taken_;       // per node: fixed, or in a named load
+  // Looked up once for each set of cells.
+  mutable std::shared_ptr<const CellSet> fixed_of_;
+  mutable std::vector<std::uint8_t> fixed_;
+  std::vector<int> left_;
+  // Per node: normal of the surface it carries, at rest; zero inside. Found when it is asked for.
+  std::vector<Vec3> outward_;
+  unsigned surface_version_ = 0;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,25 @@
+// Cutting (own; the paper names it as future work): a polygon swept by a blade severs the springs
+// that cross it in the deformed shape.
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+
+namespace robot_tissue {
+
+// Springs, not yet severed, that cross the polygon (3 or more corners in order, m, tissue frame).
+// A node on the polygon's plane, within a thousandth of the spacing, counts as on the side that
+// the normal points to (right-handed along the corners), so that each spring is cut once or not.
+// Throws InputError: fewer than 3 corners, not finite, no area, or further from a plane than half
+// a spacing.
+std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
+                               const std::vector<Vec3>& corners);
+
+// Severs the springs, none of which is severed yet, and the cells with them; new ghosts are put
+// behind the other nodes of state.displacement.
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
+           SplitCells split = SplitCells::kLost);
+
+}  // namespace robot_tissue

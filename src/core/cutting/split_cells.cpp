@@ -1,0 +1,190 @@
+#include "cutting/split_cells.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "robot_tissue/core/disjoint_sets.h"
+
+namespace robot_tissue {
+namespace {
+
+using Parts = std::array<int, kCorners>;
+
+bool isWhole(const Parts& parts) {
+  return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
+}
+
+int lowestOwn(const Cell& cell) {
+  int corner = 0;
+  while (!cell.owns(corner)) ++corner;
+  return corner;
+}
+
+// Gives the parts' lost corners their nodes. A lost corner has the number (nodes of the lattice) +
+// 8 * cell + corner until then, so that a set that holds a node of the lattice becomes that node.
+class GhostMaker {
+ public:
+  GhostMaker(const Lattice& lattice, const CellSet& before, std::vector<Cell> cells)
+      : lattice_(lattice),
+        before_(before),
+        cells_(std::move(cells)),
+        same_(at(lattice.nodeCount()) + kCorners * cells_.size()),
+        ghosts_(before.ghosts()) {}
+
+  std::shared_ptr<const CellSet> make() {
+    for (std::size_t index = 0; index < cells_.size(); ++index) {
+      if (cells_[index].isPart()) joinToNeighbors(index);
+    }
+    for (Ghost& ghost : ghosts_) ghost.fixed = false;
+    ghost_of_.assign(kCorners * cells_.size(), -1);
+    taken_.assign(ghosts_.size(), 0);
+    for (std::size_t index = 0; index < cells_.size(); ++index) {
+      if (cells_[index].isPart()) number(index);
+    }
+    return std::make_shared<const CellSet>(std::move(cells_), lattice_.nodeCount(),
+                                           std::move(ghosts_));
+  }
+
+ private:
+  int numberOf(std::size_t index, int corner) const {
+    const Cell& cell = cells_[index];
+    if (cell.owns(corner)) return cell.nodes[at(corner)];
+    return lattice_.nodeCount() + kCorners * static_cast<int>(index) + corner;
+  }
+
+  void joinToNeighbors(std::size_t index) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int side : {0, 1}) {
+        const Cell& whole = lattice_.cells()[at(cells_[index].place)];
+        std::array<int, 3> beside = lattice_.gridIndex(whole.nodes.front());
+        beside[at(axis)] += side == 1 ? 1 : -1;
+        const int place = lattice_.cellAt(beside);
+        if (place < 0) continue;
+        const auto before = [](const Cell& cell, int other) { return cell.place < other; };
+        auto other = std::lower_bound(cells_.begin(), cells_.end(), place, before);
+        for (; other != cells_.end() && other->place == place; ++other) {
+          joinAcross(index, static_cast<std::size_t>(other - cells_.begin()), axis, side);
+        }
+      }
+    }
+  }
+
+  void joinAcross(std::size_t index, std::size_t other, int axis, int side) {
+    std::array<int, 4> face{};
+    std::size_t count = 0;
+    bool common = false;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if ((corner >> axis & 1) != side) continue;
+      face[count++] = corner;
+      common = common || (cells_[index].owns(corner) && cells_[other].owns(corner ^ 1 << axis));
+    }
+    if (!common) return;
+    for (const int corner : face) {
+      same_.join(numberOf(index, corner), numberOf(other, corner ^ 1 << axis));
+    }
+  }
+
+  void number(std::size_t index) {
+    Cell& cell = cells_[index];
+    const auto originals = lattice_.cells()[at(cell.place)].nodes;
+    bool holds_fixed = false;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      holds_fixed = holds_fixed || (cell.owns(corner) && lattice_.isFixed(originals[at(corner)]));
+    }
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (cell.owns(corner)) continue;
+      const int lowest = same_.lowest(numberOf(index, corner));
+      const int original = originals[at(corner)];
+      cell.nodes[at(corner)] = original;
+      if (lowest < lattice_.nodeCount()) continue;
+      int& ghost = ghost_of_[at(lowest - lattice_.nodeCount())];
+      if (ghost < 0) ghost = ghostFor(cell, corner, original);
+      cell.nodes[at(corner)] = lattice_.nodeCount() + ghost;
+      if (holds_fixed && lattice_.isFixed(original)) ghosts_[at(ghost)].fixed = true;
+    }
+  }
+
+  // The ghost that stood there already, if no other set has taken it; else a new one.
+  int ghostFor(const Cell& part, int corner, int original) {
+    const Cell* earlier = before_.owner(part.place, lowestOwn(part));
+    const int node = earlier != nullptr ? earlier->nodes[at(corner)] : original;
+    if (before_.isGhost(node)) {
+      const int known = node - lattice_.nodeCount();
+      if (taken_[at(known)] == 0) {
+        taken_[at(known)] = 1;
+        return known;
+      }
+    }
+    ghosts_.push_back({original, false});
+    return static_cast<int>(ghosts_.size()) - 1;
+  }
+
+  const Lattice& lattice_;
+  const CellSet& before_;
+  std::vector<Cell> cells_;
+  DisjointSets same_;
+  std::vector<Ghost> ghosts_;
+  std::vector<int> ghost_of_;  // per lost corner that stands for its set, -1 = none yet
+  std::vector<char> taken_;    // per ghost that was there before
+};
+
+}  // namespace
+
+std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
+                                    const std::array<int, kCorners>& corners) {
+  std::array<int, kCorners> parts{};
+  if (state.springs_cut == 0) return parts;
+  for (int corner = 0; corner < kCorners; ++corner) parts[at(corner)] = corner;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (corner >> axis & 1) continue;
+      const int other = corner | 1 << axis;
+      if (state.severed[at(lattice.springOf(corners[at(corner)], 2 * axis + 1))] != 0) continue;
+      const int from = std::max(parts[at(corner)], parts[at(other)]);
+      const int to = std::min(parts[at(corner)], parts[at(other)]);
+      std::replace(parts.begin(), parts.end(), from, to);
+    }
+  }
+  return parts;
+}
+
+std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
+                                         SplitCells split) {
+  std::vector<Cell> left;
+  for (const Cell& cell : lattice.cells()) {
+    const Parts parts = cellParts(lattice, state, cell.nodes);
+    if (isWhole(parts)) {
+      left.push_back(cell);
+      continue;
+    }
+    if (split == SplitCells::kLost) continue;
+    for (int part = 0; part < kCorners; ++part) {
+      if (parts[at(part)] != part) continue;
+      Cell parted = cell;
+      parted.own = 0;
+      for (int corner = part; corner < kCorners; ++corner) {
+        if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
+      }
+      parted.share *= static_cast<double>(std::count(parts.begin(), parts.end(), part)) / kCorners;
+      left.push_back(parted);
+    }
+  }
+  return GhostMaker(lattice, *state.cells, std::move(left)).make();
+}
+
+std::vector<Vec3> carriedOver(const CellSet& from, const std::vector<Vec3>& displacement,
+                              const CellSet& to) {
+  std::vector<Vec3> carried(displacement.begin(), displacement.begin() + to.latticeNodeCount());
+  carried.resize(at(to.nodeCount()), Vec3::Zero());
+  for (const Cell& part : to.all()) {
+    if (!part.isPart()) continue;
+    const Cell* earlier = from.owner(part.place, lowestOwn(part));
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      if (!to.isGhost(part.nodes[corner]) || earlier == nullptr) continue;
+      carried[at(part.nodes[corner])] = displacement[at(earlier->nodes[corner])];
+    }
+  }
+  return carried;
+}
+
+}  // namespace robot_tissue

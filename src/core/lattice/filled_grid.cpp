@@ -1,0 +1,41 @@
+#include "robot_tissue/core/filled_grid.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "geometry/mesh_slicing.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kLeastShare = 1e-3;
+
+Grid gridOf(const Box& shape, double spacing) {
+  const Vec3 extent = shape.max - shape.min;
+  if (!spacingFits(extent, spacing)) {
+    std::ostringstream line;
+    line << "tissue.spacing: " << spacing << ": the shape is " << extent.x() << " x " << extent.y()
+         << " x " << extent.z() << " m; allowed: a whole number of spacings along each axis";
+    throw InputError(line.str());
+  }
+  return Grid(shape, spacing);
+}
+
+}  // namespace
+
+FilledGrid filledGrid(const TissueConfig& config) {
+  if (config.mesh == nullptr) {
+    const Grid grid = gridOf(config.shape, config.spacing);
+    return {grid, std::vector<double>(at(grid.cellCount()), 1.0)};
+  }
+  const Grid whole = gridAround(*config.mesh, config.spacing);
+  MeshCells cells = sliced(*config.mesh, whole);
+  for (std::size_t cell = 0; cell < cells.filled.size(); ++cell) {
+    double& filled = cells.filled[cell];
+    filled = cells.occupied[cell] != 0 ? std::max(filled, kLeastShare) : 0.0;
+  }
+  return {Grid(whole, std::move(cells.occupied)), std::move(cells.filled)};
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,187 @@
+#include "robot_tissue/core/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/material.h"
+#include "lattice/connectivity.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kAxes = 4;  // numbers of axes that an end leaves room for
+
+// What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any
+// cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
+class SpringStiffness {
+ public:
+  void add(const Material& material, double spacing, double share) {
+    if (material.spring_stiffness) {
+      sum_ += *material.spring_stiffness;
+      ++constants_;
+    } else {
+      sum_ += share * material.young_modulus * spacing / 4.0;
+    }
+  }
+  double value() const { return constants_ > 0 ? sum_ / constants_ : sum_; }
+
+ private:
+  double sum_ = 0.0;
+  int constants_ = 0;
+};
+
+}  // namespace
+
+Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config)) {}
+
+Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
+  placeNodes(tissue.filled);
+  placeCells(tissue.filled);
+  placeSprings();
+  weigh(config);
+  fix(config.fixed);
+}
+
+// A node for every grid point that is a corner of a cell.
+void Lattice::placeNodes(const std::vector<double>& filled) {
+  node_at_.assign(at(size()[0] * size()[1] * size()[2]), -1);
+  for (int cell = 0; cell < grid_.cellCount(); ++cell) {
+    if (filled[at(cell)] <= 0.0) continue;
+    for (const int point : grid_.cornersOf(cell)) node_at_[at(point)] = 0;
+  }
+  index_of_.reserve(node_at_.size() -
+                    at(static_cast<int>(std::count(node_at_.begin(), node_at_.end(), -1))));
+  int count = 0;
+  for (std::size_t point = 0; point < node_at_.size(); ++point) {
+    if (node_at_[point] < 0) continue;
+    node_at_[point] = count++;
+    const int row = static_cast<int>(point) / size()[0];
+    index_of_.push_back({static_cast<int>(point) % size()[0], row % size()[1], row / size()[1]});
+  }
+}
+
+void Lattice::placeCells(const std::vector<double>& filled) {
+  std::vector<Cell> cells;
+  for (int number = 0; number < grid_.cellCount(); ++number) {
+    if (filled[at(number)] <= 0.0) continue;
+    Cell cell;
+    cell.place = static_cast<int>(cells.size());
+    cell.share = filled[at(number)];
+    const auto points = grid_.cornersOf(number);
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      cell.nodes[corner] = node_at_[at(points[corner])];
+    }
+    cells.push_back(cell);
+  }
+  cells.shrink_to_fit();
+  cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
+}
+
+// One along every edge of a cell.
+void Lattice::placeSprings() {
+  std::array<int, kNeighbors> none{};
+  none.fill(-1);
+  springs_of_node_.assign(index_of_.size(), none);
+  lower_ends_.reserve(3 * index_of_.size());
+  for (int node = 0; node < nodeCount(); ++node) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (auto cell = cells_->first(node); cell != cells_->last(node); ++cell) {
+        if (cell->corner >> axis & 1) continue;
+        const int upper = cells()[at(cell->cell)].nodes[at(cell->corner | 1 << axis)];
+        const int spring = static_cast<int>(lower_ends_.size());
+        lower_ends_.push_back(kAxes * node + axis);
+        springs_of_node_[at(node)][at(2 * axis + 1)] = spring;
+        springs_of_node_[at(upper)][at(2 * axis)] = spring;
+        break;
+      }
+    }
+  }
+}
+
+// Masses of the nodes and stiffnesses of the springs, from the cells around them.
+void Lattice::weigh(const TissueConfig& config) {
+  mass_.assign(index_of_.size(), 0.0);
+  std::vector<SpringStiffness> stiffness(lower_ends_.size());
+  const double corner_volume = std::pow(spacing(), 3) / kCorners;
+  for (const Cell& cell : cells()) {
+    const Material& material = materialAt(config, cellCenter(cell));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cell.nodes[at(corner)];
+      mass_[at(node)] += cell.share * material.density * corner_volume;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1) continue;
+        stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share);
+      }
+    }
+  }
+  spring_stiffness_.reserve(stiffness.size());
+  for (const SpringStiffness& each : stiffness) spring_stiffness_.push_back(each.value());
+}
+
+void Lattice::fix(const std::vector<Box>& boxes) {
+  fixed_.assign(index_of_.size(), 0);
+  for (std::size_t box = 0; box < boxes.size(); ++box) {
+    const std::vector<int> nodes = nodesIn(boxes[box]);
+    if (nodes.empty()) {
+      throw InputError("tissue.fixed[" + std::to_string(box) +
+                       "]: no node in this box; allowed: a box that holds one node or more");
+    }
+    for (const int node : nodes) fixed_[at(node)] = 1;
+  }
+}
+
+Vec3 Lattice::restPosition(int node) const {
+  const auto& index = index_of_[at(node)];
+  return grid_.shape().min + spacing() * Vec3(index[0], index[1], index[2]);
+}
+
+int Lattice::cellAt(const std::array<int, 3>& index) const {
+  const int lowest = node(index[0], index[1], index[2]);
+  if (lowest < 0) return -1;
+  const auto* found = std::find_if(cells_->first(lowest), cells_->last(lowest),
+                                   [](const auto& cell) { return cell.corner == 0; });
+  return found == cells_->last(lowest) ? -1 : found->cell;
+}
+
+Vec3 Lattice::cellCenter(const Cell& cell) const {
+  return restPosition(cell.nodes.front()) + Vec3::Constant(0.5 * spacing());
+}
+
+int Lattice::neighbor(int node, int direction) const {
+  if (springOf(node, direction) < 0) return -1;
+  std::array<int, 3> index = gridIndex(node);
+  index[at(direction / 2)] += direction % 2 == 1 ? 1 : -1;
+  return this->node(index[0], index[1], index[2]);
+}
+
+std::size_t SpringList::size() const { return lattice_.lower_ends_.size(); }
+
+Spring SpringList::operator[](std::size_t index) const {
+  const int end = lattice_.lower_ends_[index];
+  const int node = end / kAxes, axis = end % kAxes;
+  return {node, lattice_.neighbor(node, 2 * axis + 1), axis, lattice_.spring_stiffness_[index]};
+}
+
+std::vector<int> Lattice::nodesIn(const Box& box) const {
+  const NodeRange range = grid_.nodesIn(box);
+  std::vector<int> nodes;
+  for (int k = range.first[2]; k <= range.last[2]; ++k) {
+    for (int j = range.first[1]; j <= range.last[1]; ++j) {
+      for (int i = range.first[0]; i <= range.last[0]; ++i) {
+        if (node(i, j, k) >= 0) nodes.push_back(node(i, j, k));
+      }
+    }
+  }
+  return nodes;
+}
+
+LatticeState Lattice::restState() const {
+  LatticeState state;
+  state.displacement.assign(index_of_.size(), Vec3::Zero());
+  state.cells = cells_;
+  state.severed.assign(lower_ends_.size(), 0);
+  state.pieces = countPieces(*this, state);
+  return state;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,80 @@
+#include "robot_tissue/core/contact_spring.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+double pressAt(const ContactSpring& spring, const Vec3& point) {
+  const double gap = spring.normal.dot(point - spring.plane_point);
+  return std::max(0.0, spring.multiplier - spring.stiffness * gap);
+}
+
+// The drag before it is cut (N).
+Vec3 trialFriction(const ContactSpring& spring, const Vec3& point) {
+  const Vec3 slip = point - spring.anchor;
+  return spring.friction_force -
+         spring.friction_stiffness * (slip - spring.normal.dot(slip) * spring.normal);
+}
+
+}  // namespace
+
+Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  Vec3 point = spring.rest;
+  for (const NodeWeight& carrier : spring.carriers) {
+    point += carrier.weight * displacement[at(carrier.node)];
+  }
+  return point;
+}
+
+double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return spring.normal.dot(pointOf(spring, displacement) - spring.plane_point);
+}
+
+double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return pressAt(spring, pointOf(spring, displacement));
+}
+
+Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return forceAt(spring, pointOf(spring, displacement));
+}
+
+Vec3 forceAt(const ContactSpring& spring, const Vec3& point) {
+  Vec3 force = pressAt(spring, point) * spring.normal;
+  if (spring.friction_bound <= 0.0) return force;
+  const Vec3 trial = trialFriction(spring, point);
+  const double length = trial.norm();
+  return force +
+         (length > spring.friction_bound ? Vec3(spring.friction_bound / length * trial) : trial);
+}
+
+double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  const double normal_force = normalForceOf(spring, displacement);
+  const double energy = 0.5 * normal_force * normal_force / spring.stiffness;
+  if (spring.friction_bound <= 0.0) return energy;
+  const double length = trialFriction(spring, pointOf(spring, displacement)).norm();
+  const double most = spring.friction_bound;
+  const double of_friction = length <= most ? 0.5 * length * length : most * (length - 0.5 * most);
+  return energy + of_friction / spring.friction_stiffness;
+}
+
+Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return stiffnessAt(spring, pointOf(spring, displacement));
+}
+
+Eigen::Matrix3d stiffnessAt(const ContactSpring& spring, const Vec3& point) {
+  const Eigen::Matrix3d along = spring.normal * spring.normal.transpose();
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  if (pressAt(spring, point) > 0.0) stiffness += spring.stiffness * along;
+  if (spring.friction_bound <= 0.0) return stiffness;
+  const Vec3 trial = trialFriction(spring, point);
+  const double length = trial.norm();
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - along;
+  if (length <= spring.friction_bound) return stiffness + spring.friction_stiffness * across;
+  const double share = spring.friction_bound / length;
+  return stiffness + spring.friction_stiffness * share *
+                         (across - trial * trial.transpose() / (length * length));
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,51 @@
+#include "loads/rim_law.h"
+
+#include <limits>
+
+namespace robot_tissue {
+namespace {
+
+struct Measured {
+  double poisson_ratio;
+  RimMode across;
+  RimMode normal;
+};
+
+// rim_shift and rim_stiffness of doc/data/rim_strip.csv, cells "limit".
+constexpr Measured kMeasured[] = {
+    {0.25, {0.241, 4.41}, {0.155, 6.18}},  {0.30, {0.243, 4.63}, {0.148, 6.74}},
+    {0.35, {0.247, 4.86}, {0.141, 7.42}},  {0.40, {0.255, 5.10}, {0.135, 8.24}},
+    {0.45, {0.271, 5.34}, {0.128, 9.22}},  {0.47, {0.282, 5.42}, {0.127, 9.65}},
+    {0.49, {0.300, 5.48}, {0.126, 10.08}},
+};
+constexpr RimMode kAlong = {0.204, 3.54};  // shear alone: the same for all ratios
+
+RimMode between(const RimMode& low, const RimMode& high, double share) {
+  return {low.shift + share * (high.shift - low.shift),
+          low.stiffness + share * (high.stiffness - low.stiffness)};
+}
+
+}  // namespace
+
+RimLaw rimLaw(double poisson_ratio) {
+  const Measured* low = kMeasured;
+  for (const Measured& high : kMeasured) {
+    if (poisson_ratio <= high.poisson_ratio) {
+      const double width = high.poisson_ratio - low->poisson_ratio;
+      const double share = width > 0.0 ? (poisson_ratio - low->poisson_ratio) / width : 0.0;
+      return {kAlong, between(low->across, high.across, share),
+              between(low->normal, high.normal, share)};
+    }
+    low = &high;
+  }
+  return {kAlong, low->across, low->normal};
+}
+
+double rimStiffness(const RimMode& mode, double depth) {
+  if (depth >= mode.shift) return std::numeric_limits<double>::infinity();
+  if (depth <= mode.shift - 1.0) return 0.0;
+  return mode.stiffness * (depth + 1.0 - mode.shift) / (1.0 - mode.shift) * mode.shift /
+         (mode.shift - depth);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,192 @@
+#include "material/elastic_cell.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "material/elastic_law.h"
+
+namespace robot_tissue {
+namespace {
+
+// Corners at the far ends of the three face diagonals and of the body diagonal from `corner`.
+std::array<int, 4> acrossDiagonals(int corner) {
+  return {corner ^ 3, corner ^ 5, corner ^ 6, corner ^ 7};
+}
+
+double signOf(int corner, int axis) { return (corner >> axis & 1) != 0 ? 1.0 : -1.0; }
+
+// F is the mean of the four edges a direction, over h.
+std::array<Vec3, kCorners> meanWeights(double spacing) {
+  std::array<Vec3, kCorners> weights;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    weights[at(corner)] = Vec3(signOf(corner, 0), signOf(corner, 1), signOf(corner, 2)) / 4.0;
+    weights[at(corner)] /= spacing;
+  }
+  return weights;
+}
+
+// F is made of the three edges at one corner, over h.
+std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
+  std::array<Vec3, kCorners> weights;
+  weights.fill(Vec3::Zero());
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = signOf(corner, axis) / spacing;
+    weights[at(corner)][axis] = share;
+    weights[at(corner ^ 1 << axis)][axis] = -share;
+  }
+  return weights;
+}
+
+}  // namespace
+
+ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement)
+    : moduli_(moduli), spacing_(spacing), volume_(spacing * spacing * spacing) {
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const Vec3 rest(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    position_[at(corner)] = spacing * rest + displacement[at(corner)];
+  }
+  mean_ = determinantOf(meanWeights(spacing));
+  const double share = 1.0 / (12.0 * spacing * spacing);
+  invariant_ = 0.0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    Vec3 pull = Vec3::Zero();
+    for (const int other : acrossDiagonals(corner)) {
+      const Vec3 diagonal = position_[at(corner)] - position_[at(other)];
+      pull += diagonal;
+      invariant_ += 0.5 * share * diagonal.squaredNorm();  // each diagonal is met at both ends
+    }
+    invariant_slope_[at(corner)] = share * pull;
+  }
+  stiffening_ = stiffening();
+  volume_term_ = volumeTerm();
+  findSqueezedCorners();
+}
+
+ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight) const {
+  Determinant determinant;
+  determinant.weight = weight;
+  Eigen::Matrix3d& gradient = determinant.gradient;
+  gradient.setZero();
+  for (int corner = 0; corner < kCorners; ++corner) {
+    gradient += position_[at(corner)] * weight[at(corner)].transpose();
+  }
+  Eigen::Matrix3d cofactors;
+  cofactors.col(0) = gradient.col(1).cross(gradient.col(2));
+  cofactors.col(1) = gradient.col(2).cross(gradient.col(0));
+  cofactors.col(2) = gradient.col(0).cross(gradient.col(1));
+  determinant.value = gradient.col(0).dot(cofactors.col(0));
+  for (int corner = 0; corner < kCorners; ++corner) {
+    determinant.slope[at(corner)] = cofactors * weight[at(corner)];
+  }
+  return determinant;
+}
+
+void ElasticCell::findSqueezedCorners() {
+  for (int corner = 0; corner < kCorners; ++corner) {
+    Eigen::Matrix3d edges;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 outwards = position_[at(corner)] - position_[at(corner ^ 1 << axis)];
+      edges.col(axis) = signOf(corner, axis) / spacing_ * outwards;
+    }
+    // Written so that a shape that is no number is not squeezed.
+    if (!(edges.determinant() < elastic_law::kSqueezed)) continue;
+    squeezed_[at(squeezed_count_++)] = determinantOf(cornerWeights(corner, spacing_));
+  }
+}
+
+ElasticCell::Curve ElasticCell::stiffening() const {
+  const double from = std::max(mean_.value, elastic_law::kFlattest);
+  Curve curve;
+  curve.value = moduli_.shear * std::pow(from, -2.0 / 3.0);
+  curve.slope = -2.0 / 3.0 * curve.value / from;
+  curve.curvature = -5.0 / 3.0 * curve.slope / from;
+  const double beyond = mean_.value - from;
+  curve.value += beyond * (curve.slope + 0.5 * beyond * curve.curvature);
+  curve.slope += beyond * curve.curvature;
+  return curve;
+}
+
+ElasticCell::Curve ElasticCell::volumeTerm() const {
+  const Curve& a = stiffening_;
+  const double change = mean_.value - 1.0;
+  Curve curve;
+  curve.value = 0.5 * (a.value * invariant_ - 3.0 * moduli_.shear + moduli_.bulk * change * change);
+  curve.slope = 0.5 * a.slope * invariant_ + moduli_.bulk * change;
+  curve.curvature = 0.5 * a.curvature * invariant_ + moduli_.bulk;
+  return curve;
+}
+
+ElasticCell::Curve ElasticCell::barrier(const Determinant& edges) const {
+  const double depth = (elastic_law::kSqueezed - edges.value) /
+                       elastic_law::kSqueezed;  // 1 where the corner is flat
+  const double height = elastic_law::kBarrier * moduli_.shear / kCorners;
+  Curve curve;
+  curve.value = height * depth * depth * depth;
+  curve.slope = -3.0 * height * depth * depth / elastic_law::kSqueezed;
+  curve.curvature = 6.0 * height * depth / (elastic_law::kSqueezed * elastic_law::kSqueezed);
+  return curve;
+}
+
+double ElasticCell::energy() const {
+  double density = volume_term_.value;
+  for (int i = 0; i < squeezed_count_; ++i) density += barrier(squeezed_[at(i)]).value;
+  return volume_ * density;
+}
+
+Vec3 ElasticCell::gradient(int corner) const {
+  const std::size_t c = at(corner);
+  Vec3 density = stiffening_.value * invariant_slope_[c] + volume_term_.slope * mean_.slope[c];
+  for (int i = 0; i < squeezed_count_; ++i) {
+    density += barrier(squeezed_[at(i)]).slope * squeezed_[at(i)].slope[c];
+  }
+  return volume_ * density;
+}
+
+Eigen::Matrix3d ElasticCell::block(int corner) const {
+  const std::size_t c = at(corner);
+  const Curve& a = stiffening_;
+  const Vec3& l = invariant_slope_[c];
+  const Vec3& j = mean_.slope[c];
+  Eigen::Matrix3d density = a.slope * (l * j.transpose() + j * l.transpose());
+  density += volume_term_.curvature * j * j.transpose();
+  density.diagonal().array() += a.value / (3.0 * spacing_ * spacing_);
+  for (int i = 0; i < squeezed_count_; ++i) {
+    const Vec3& slope = squeezed_[at(i)].slope[c];
+    density += barrier(squeezed_[at(i)]).curvature * slope * slope.transpose();
+  }
+  return volume_ * density;
+}
+
+CellHessian ElasticCell::hessian() const {
+  using Column = Eigen::Matrix<double, 3 * kCorners, 1>;
+  CellHessian density = CellHessian::Zero();
+  // A determinant D of F = sum of x_i w_i^T: d2D/dx_i dx_j = -[F (w_i x w_j)]x.
+  const auto add = [&density](const Curve& curve, const Determinant& determinant) {
+    const Eigen::Map<const Column> slope(determinant.slope.front().data());
+    density += curve.curvature * slope * slope.transpose();
+    for (int i = 0; i < kCorners; ++i) {
+      for (int j = 0; j < kCorners; ++j) {
+        const Vec3 normal = determinant.weight[at(i)].cross(determinant.weight[at(j)]);
+        density.block<3, 3>(3 * i, 3 * j) -=
+            curve.slope * crossMatrix(determinant.gradient * normal);
+      }
+    }
+  };
+  const Curve& a = stiffening_;
+  add(volume_term_, mean_);
+  const Eigen::Map<const Column> l(invariant_slope_.front().data());
+  const Eigen::Map<const Column> j(mean_.slope.front().data());
+  density += a.slope * (l * j.transpose() + j * l.transpose());
+  const double share = a.value / (12.0 * spacing_ * spacing_);
+  for (int corner = 0; corner < kCorners; ++corner) {
+    density.block<3, 3>(3 * corner, 3 * corner).diagonal().array() += 4.0 * share;
+    for (const int other : acrossDiagonals(corner)) {
+      density.block<3, 3>(3 * corner, 3 * other).diagonal().array() -= share;
+    }
+  }
+  for (int i = 0; i < squeezed_count_; ++i) add(barrier(squeezed_[at(i)]), squeezed_[at(i)]);
+  return volume_ * density;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,167 @@
+#include "material/elastic_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/material.h"
+#include "material/cell_modes.h"
+
+namespace robot_tissue {
+
+ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config) : lattice_(lattice) {
+  const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
+  std::vector<const Material*> materials;
+  kinds_.reserve(lattice.cells().size());
+  for (const Cell& cell : lattice.cells()) {
+    const Material& material = materialAt(config, lattice.cellCenter(cell));
+    const auto found = std::find(materials.begin(), materials.end(), &material);
+    kinds_.push_back(static_cast<std::uint16_t>(found - materials.begin()));
+    if (found != materials.end()) continue;
+    materials.push_back(&material);
+    substances_.push_back({moduliOf(material), material.density * corner_volume * config.gravity});
+  }
+}
+
+// A cell that is filled in part answers in part.
+Moduli ElasticModel::cellModuli(const Cell& cell) const {
+  const Moduli& full = substanceOf(cell).moduli;
+  return {cell.share * full.shear, cell.share * full.bulk};
+}
+
+Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
+  return cell.share * substanceOf(cell).corner_weight;
+}
+
+ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
+  ElasticCell::Corners displacement;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
+  }
+  return {cellModuli(cell), lattice_.spacing(), displacement};
+}
+
+Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  Vec3 force = Vec3::Zero();
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    const Cell& cell = cells.all()[at(met->cell)];
+    force += cornerWeight(cell) - shaped(state, cell).gradient(met->corner);
+  }
+  return force;
+}
+
+// The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis.
+Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  double stiffness = 0.0;
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    const Moduli moduli = cellModuli(cells.all()[at(met->cell)]);
+    const double third = moduli.shear / 3.0;
+    stiffness += lattice_.spacing() * (third + (moduli.bulk + third) / 16.0);
+  }
+  return Vec3::Constant(stiffness);
+}
+
+Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  Moduli sum;
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    const Moduli cell = cellModuli(cells.all()[at(met->cell)]);
+    sum.shear += cell.shear / 4.0;
+    sum.bulk += cell.bulk / 4.0;
+  }
+  return sum;
+}
+
+Eigen::Matrix3d ElasticModel::nodeBlock(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    block += shaped(state, cells.all()[at(met->cell)]).block(met->corner);
+  }
+  return block;
+}
+
+double ElasticModel::energy(const LatticeState& state) const {
+  double energy = 0.0;
+  for (const Cell& cell : state.cells->all()) {
+    energy += shaped(state, cell).energy();
+    Vec3 moved = Vec3::Zero();
+    for (const int node : cell.nodes) moved += state.displacement[at(node)];
+    energy -= cornerWeight(cell).dot(moved);
+  }
+  return energy;
+}
+
+std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
+  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
+  for (const Cell& cell : state.cells->all()) {
+    const ElasticCell shape = shaped(state, cell);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      forces[at(cell.nodes[at(corner)])] += cornerWeight(cell) - shape.gradient(corner);
+    }
+  }
+  return forces;
+}
+
+NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const {
+  const CellSet& cells = *state.cells;
+  NodeBalance balance;
+  for (auto first = cells.first(node); first != cells.last(node);) {
+    const auto end = std::min(cells.last(node), first + CellModes::kMost);
+    CellModes modes(lattice_.spacing());
+    for (auto met = first; met != end; ++met) {
+      const Cell& cell = cells.all()[at(met->cell)];
+      balance.force += cornerWeight(cell);
+      modes.add(cellModuli(cell), cell.nodes, met->corner, state.displacement);
+    }
+    modes.solve();
+    balance.force -= modes.gradient();
+    balance.block += modes.block();
+    for (auto met = first; met != end; ++met) {
+      if (modes.suffices(static_cast<int>(met - first))) continue;
+      const ElasticCell squeezed = shaped(state, cells.all()[at(met->cell)]);
+      balance.force -= squeezed.gradient(met->corner);
+      balance.block += squeezed.block(met->corner);
+    }
+    first = end;
+  }
+  return balance;
+}
+
+void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& cells,
+                             std::vector<Vec3>& forces) const {
+  for (std::size_t first = 0; first < cells.size(); first += CellModes::kMost) {
+    const std::size_t end = std::min(cells.size(), first + CellModes::kMost);
+    CellModes modes(lattice_.spacing());
+    for (std::size_t i = first; i < end; ++i) {
+      const Cell& cell = state.cells->all()[at(cells[i])];
+      modes.add(cellModuli(cell), cell.nodes, 0, state.displacement);
+    }
+    modes.solve();
+    modes.findGradients();
+    for (std::size_t i = first; i < end; ++i) {
+      const Cell& cell = state.cells->all()[at(cells[i])];
+      const Vec3 weight = cornerWeight(cell);
+      const int lane = static_cast<int>(i - first);
+      for (int corner = 0; corner < kCorners; ++corner) {
+        forces[at(cell.nodes[at(corner)])] += weight - modes.gradient(lane, corner);
+      }
+      if (modes.suffices(lane)) continue;
+      const ElasticCell squeezed = shaped(state, cell);
+      for (int corner = 0; corner < kCorners; ++corner) {
+        forces[at(cell.nodes[at(corner)])] -= squeezed.gradient(corner);
+      }
+    }
+  }
+}
+
+CellHessian ElasticModel::cellHessian(const LatticeState& state, int cell) const {
+  return shaped(state, state.cells->all()[at(cell)]).hessian();
+}
+
+void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& visit) const {
+  for (const Cell& cell : state.cells->all()) visit(cell.nodes, shaped(state, cell).hessian());
+}
+
+}  // namespace robot_tissue

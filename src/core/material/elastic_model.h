@@ -1,0 +1,55 @@
+// Model `elastic`: an isotropic material with moduli in Pa, a cell of the lattice at a time
+// (core/material/elastic_cell.h, doc/model.md).
+//
+// Cells are LatticeState::cells; ghosts are nodes like others.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "material/elastic_cell.h"
+#include "material/energy_model.h"
+#include "robot_tissue/core/lattice.h"
+
+namespace robot_tissue {
+
+class ElasticModel : public EnergyModel {
+ public:
+  // The lattice, made of the same config, must outlive the model.
+  ElasticModel(const Lattice& lattice, const TissueConfig& config);
+
+  SplitCells splitCells() const override { return SplitCells::kParted; }
+  Vec3 nodeForce(const LatticeState& state, int node) const override;
+  Vec3 nodeStiffness(const LatticeState& state, int node) const override;
+  Moduli moduliAt(const LatticeState& state, int node) const override;
+  double energy(const LatticeState& state) const override;
+  std::vector<Vec3> nodeForces(const LatticeState& state) const override;
+  NodeBalance nodeBalance(const LatticeState& state, int node) const override;
+  void addForces(const LatticeState& state, const std::vector<int>& cells,
+                 std::vector<Vec3>& forces) const override;
+  CellHessian cellHessian(const LatticeState& state, int cell) const override;
+  void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
+
+  // Second derivative of the energy in this node alone (N/m).
+  Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
+
+  ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
+  Moduli cellModuli(const Cell& cell) const;  // Pa, of what the cell is filled with
+  Vec3 cornerWeight(const Cell& cell) const;  // gravity on an eighth of it (N)
+
+ private:
+  struct Substance {
+    Moduli moduli;
+    Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
+  };
+  const Substance& substanceOf(const Cell& cell) const {
+    return substances_[kinds_[at(cell.place)]];
+  }
+
+  const Lattice& lattice_;
+  std::vector<Substance> substances_;
+  std::vector<std::uint16_t> kinds_;  // per cell of the lattice, into substances_
+};
+
+}  // namespace robot_tissue

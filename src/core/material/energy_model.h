@@ -1,0 +1,47 @@
+// A model that derives from an energy: what a method needs that minimizes it.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "material/tissue_model.h"
+#include "robot_tissue/core/cells.h"
+
+namespace robot_tissue {
+
+// Second derivative of a cell's energy (N/m): rows and columns 3 * corner + axis.
+using CellHessian = Eigen::Matrix<double, 3 * kCorners, 3 * kCorners>;
+
+// Of one node that moves alone.
+struct NodeBalance {
+  Vec3 force = Vec3::Zero();                        // on it (N)
+  Eigen::Matrix3d block = Eigen::Matrix3d::Zero();  // second derivative of the energy in it (N/m)
+};
+
+class EnergyModel : public TissueModel {
+ public:
+  // Of the shape, zero at rest (J); that of gravity included.
+  virtual double energy(const LatticeState& state) const = 0;
+
+  // nodeForce of every node at once (N): minus the energy's gradient.
+  virtual std::vector<Vec3> nodeForces(const LatticeState& state) const = 0;
+
+  virtual NodeBalance nodeBalance(const LatticeState& state, int node) const = 0;
+
+  // Adds the forces of the cells (indices into state.cells->all()) on their nodes (N).
+  virtual void addForces(const LatticeState& state, const std::vector<int>& cells,
+                         std::vector<Vec3>& forces) const = 0;
+
+  // Second derivative of one cell (index into state.cells->all()).
+  virtual CellHessian cellHessian(const LatticeState& state, int cell) const = 0;
+
+  // Calls `visit` with the corners and the second derivative of every cell that has energy, in a
+  // fixed order. Their sum is the energy's second derivative.
+  using VisitHessian =
+      std::function<void(const std::array<int, kCorners>& corners, const CellHessian& hessian)>;
+  virtual void visitHessians(const LatticeState& state, const VisitHessian& visit) const = 0;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,51 @@
+#include "material/six_spring_model.h"
+
+namespace robot_tissue {
+namespace {
+
+// Two nodes closer than this share of the spacing have no direction of their own.
+constexpr double kShortest = 1e-9;
+
+}  // namespace
+
+SixSpringModel::SixSpringModel(const Lattice& lattice, const Vec3& gravity)
+    : lattice_(lattice), gravity_(gravity) {}
+
+// Force of one spring on the node: F = -k x (paper, section 4.3), x = length - rest length, along
+// the spring; a stretched spring pulls the node towards its neighbor.
+Vec3 SixSpringModel::springForce(const LatticeState& state, int node, int direction) const {
+  const int index = lattice_.springOf(node, direction);
+  if (index < 0 || state.severed[static_cast<std::size_t>(index)] != 0) return Vec3::Zero();
+  const Spring& spring = lattice_.springs()[static_cast<std::size_t>(index)];
+  const bool upwards = direction % 2 == 1;
+  const int other = upwards ? spring.b : spring.a;
+  const double rest_length = lattice_.spacing();
+  Vec3 rest = Vec3::Zero();
+  rest[spring.axis] = upwards ? rest_length : -rest_length;
+  const Vec3 to_other = rest + (state.displacement[static_cast<std::size_t>(other)] -
+                                state.displacement[static_cast<std::size_t>(node)]);
+  const double length = to_other.norm();
+  if (length < kShortest * rest_length) return -spring.stiffness * rest;
+  return spring.stiffness * (length - rest_length) / length * to_other;
+}
+
+// Springs of one axis are added first, so that the sum is the same in the lattice's mirror image,
+// to the last bit.
+Vec3 SixSpringModel::nodeForce(const LatticeState& state, int node) const {
+  const Vec3 along_x = springForce(state, node, 0) + springForce(state, node, 1);
+  const Vec3 along_y = springForce(state, node, 2) + springForce(state, node, 3);
+  const Vec3 along_z = springForce(state, node, 4) + springForce(state, node, 5);
+  return (along_x + along_y) + along_z + lattice_.mass(node) * gravity_;
+}
+
+Vec3 SixSpringModel::nodeStiffness(const LatticeState& state, int node) const {
+  Vec3 stiffness = Vec3::Zero();
+  for (int direction = 0; direction < kNeighbors; ++direction) {
+    const int index = lattice_.springOf(node, direction);
+    if (index < 0 || state.severed[static_cast<std::size_t>(index)] != 0) continue;
+    stiffness[direction / 2] += lattice_.springs()[static_cast<std::size_t>(index)].stiffness;
+  }
+  return stiffness;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,25 @@
+// The paper's springs: F = -k x along each spring (section 4.3), one to each of six neighbors.
+// It resists stretch of the springs only: rows and columns shear for nothing (doc/paper.md).
+#pragma once
+
+#include "material/tissue_model.h"
+#include "robot_tissue/core/lattice.h"
+
+namespace robot_tissue {
+
+class SixSpringModel : public TissueModel {
+ public:
+  // gravity in m/s^2; the lattice must outlive the model.
+  SixSpringModel(const Lattice& lattice, const Vec3& gravity);
+
+  Vec3 nodeForce(const LatticeState& state, int node) const override;
+  Vec3 nodeStiffness(const LatticeState& state, int node) const override;
+
+ private:
+  Vec3 springForce(const LatticeState& state, int node, int direction) const;
+
+  const Lattice& lattice_;
+  Vec3 gravity_;
+};
+
+}  // namespace robot_tissue

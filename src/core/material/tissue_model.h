@@ -1,0 +1,30 @@
+// What holds the nodes together: the force on a node for a given shape. Implementations are
+// constant after construction; the shape is an argument.
+#pragma once
+
+#include "config/material.h"
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+class TissueModel {
+ public:
+  virtual ~TissueModel() = default;
+
+  // Net force on the node (N, tissue frame), gravity included; zero in equilibrium.
+  virtual Vec3 nodeForce(const LatticeState& state, int node) const = 0;
+
+  // Stiffness against moving this node alone, at rest, along x, y and z (N/m); zero along an axis
+  // that nothing resists.
+  virtual Vec3 nodeStiffness(const LatticeState& state, int node) const = 0;
+
+  // A model of cells needs their parts; one of springs needs no ghosts, which have none.
+  virtual SplitCells splitCells() const { return SplitCells::kLost; }
+
+  // Moduli behind a node of the surface: a quarter of the sum over its cells, so the material's own
+  // where it meets four full ones. Zero where the model has none.
+  virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }
+};
+
+}  // namespace robot_tissue

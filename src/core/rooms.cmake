@@ -1,0 +1,74 @@
+# The rooms of core, from the lowest up, and what each may use: those before it. The test
+# Layering and doc/architecture.md have the same table.
+robot_tissue_room(base
+  PUBLIC contact_set.h deadline.h disjoint_sets.h grid_box.h robot_pose.h types.h)
+robot_tissue_room(simd
+  FILES field_kernel.cpp field_kernel.h lanes.h vector_clones.h workers.cpp workers.h)
+robot_tissue_room(geometry
+  USES base
+  PUBLIC grid.h mesh_checks.h triangle_mesh.h
+  FILES exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_pieces.cpp mesh_pieces.h
+    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp triangle_mesh.cpp)
+robot_tissue_room(config
+  USES base geometry
+  PUBLIC scene.h
+  FILES material.cpp material.h)
+robot_tissue_room(lattice
+  USES base geometry config
+  PUBLIC cells.h filled_grid.h lattice.h lattice_state.h
+  FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp)
+robot_tissue_room(cutting
+  USES base lattice
+  FILES cut.cpp cut.h split_cells.cpp split_cells.h)
+robot_tissue_room(surface
+  USES base geometry lattice cutting
+  PUBLIC surface.h
+  FILES cut_mesh_surface.cpp cut_mesh_surface.h mesh_surface.cpp mesh_surface.h surface.cpp)
+robot_tissue_room(material
+  USES base config lattice
+  FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
+    elastic_model.cpp elastic_model.h energy_model.h six_spring_model.cpp six_spring_model.h
+    tissue_model.h)
+robot_tissue_room(loads
+  USES base lattice material
+  PUBLIC contact_spring.h loading_patch.h solve_report.h
+  FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
+    dof_constraints.h loading_patch.cpp patch_rim.cpp patch_rim.h rim_law.cpp rim_law.h
+    solve_report.cpp)
+robot_tissue_room(solvers
+  USES base lattice loads
+  FILES solver_method.h)
+robot_tissue_room(solvers/multigrid/level
+  USES base simd lattice material loads
+  FILES cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h constrained_nodes.cpp
+    constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
+    skyline_cholesky.cpp skyline_cholesky.h woodbury_update.cpp woodbury_update.h)
+robot_tissue_room(solvers/multigrid/hierarchy
+  USES simd lattice material loads solvers/multigrid/level
+  FILES composite_grid.cpp composite_grid_vectors.cpp grid_hierarchy.cpp grid_hierarchy.h
+    grid_transfer.cpp grid_transfer.h level_constraints.cpp level_source.cpp level_source.h)
+robot_tissue_room(solvers/multigrid/cycle
+  USES simd lattice material loads solvers solvers/multigrid/hierarchy
+  FILES fas_cg_solver.cpp fas_cg_solver.h fas_cycle.cpp fas_error.cpp fas_layers.cpp
+    layered_method.cpp layered_method.h multigrid_solver.h)
+robot_tissue_room(solvers/newton
+  USES lattice material loads solvers
+  FILES dof_map.cpp dof_map.h equilibrium.cpp equilibrium.h newton_method.cpp newton_method.h
+    sparse_factor.cpp sparse_factor.h)
+robot_tissue_room(solvers/paper
+  USES lattice material loads solvers
+  FILES layers.cpp layers.h paper_method.cpp paper_method.h)
+robot_tissue_room(solvers/baselines/kernels
+  USES simd lattice material
+  FILES colored_layout.cpp colored_layout.h lane_corners.h lane_kernels.h lane_math.h
+  VECTOR_LOOPS force_kernels.cpp lane_sums.cpp vbd_kernels.cpp xpbd_kernels.cpp)
+robot_tissue_room(solvers/baselines
+  USES base simd material loads solvers solvers/baselines/kernels
+  FILES explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
+    relaxation_method.h soa_field.cpp soa_field.h vbd_method.cpp vbd_method.h xpbd_method.cpp
+    xpbd_method.h)
+robot_tissue_room(tissue
+  USES base config lattice cutting surface material loads solvers solvers/multigrid/cycle
+    solvers/newton solvers/paper solvers/baselines
+  PUBLIC method_names.h tissue.h
+  FILES load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp tissue_loads.cpp)

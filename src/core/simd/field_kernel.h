@@ -1,0 +1,82 @@
+// Loops over fields (core/solvers/multigrid/level/cell_operator.h) in vector instructions. Sums are
+// the same each time.
+#pragma once
+
+namespace robot_tissue {
+
+// whole = below + lower + load; force = whole where `free` is 1, 0 where it is 0.
+void sumForces(const float* below, const float* lower, const float* load, const float* free,
+               float* whole, float* force, int count);
+void sumForces(const double* below, const double* lower, const double* load, const double* free,
+               double* whole, double* force, int count);
+
+// stiffness = below + lower; inverse = free / stiffness; `free` is 1 only where there is some.
+void invertStiffness(const float* below, const float* lower, const float* free, float* stiffness,
+                     float* inverse, int count);
+void invertStiffness(const double* below, const double* lower, const double* free,
+                     double* stiffness, double* inverse, int count);
+
+// Where `free` is 1: adds to the load what makes the force the wanted one.
+void fasRightHandSide(const float* wanted, const float* free, float* load, float* force, int count);
+void fasRightHandSide(const double* wanted, const double* free, double* load, double* force,
+                      int count);
+
+// Likewise, to what makes it differ from the known part of it by the wanted.
+void fasRightHandSideBeside(const float* wanted, const float* known, const float* free, float* load,
+                            float* force, int count);
+void fasRightHandSideBeside(const double* wanted, const double* known, const double* free,
+                            double* load, double* force, int count);
+
+// way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
+void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
+               float* way, float* displacement, int count);
+void stepAlong(const double* inverse, const double* force, double keep, double share,
+               double longest, double* way, double* displacement, int count);
+
+// to += share * motion where `free` is 1.
+void addWhereFree(const float* motion, const float* free, float share, float* to, int count);
+void addWhereFree(const double* motion, const double* free, double share, double* to, int count);
+
+// to += share * other.
+void addShare(const float* other, float share, float* to, int count);
+void addShare(const double* other, double share, double* to, int count);
+
+// difference = share * (a - b).
+void subtract(const float* a, const float* b, float share, float* difference, int count);
+void subtract(const double* a, const double* b, double share, double* difference, int count);
+
+void meanOf(const float* a, const float* b, float* mean, int count);
+void meanOf(const double* a, const double* b, double* mean, int count);
+
+// Of a row of coarse nodes, 1 + (count - 1) / 2 or one more: the nodes between them.
+void prolongRow(const float* coarse, float* fine, int count);
+void prolongRow(const double* coarse, double* fine, int count);
+
+// coarse_i = fine_2i + (fine_2i-1 + fine_2i+1) / 2. `fine` begins one before, and ends one after.
+void restrictRow(const float* fine, float* coarse, int count);
+void restrictRow(const double* fine, double* coarse, int count);
+
+// coarse_i = fine_2i / 2.
+void injectRow(const float* fine, float* coarse, int count);
+void injectRow(const double* fine, double* coarse, int count);
+
+// Sum of the products.
+double dotOf(const float* a, const float* b, int count);
+double dotOf(const double* a, const double* b, int count);
+
+// Sum of the squares of the products.
+double squaredProduct(const float* a, const float* b, int count);
+double squaredProduct(const double* a, const double* b, int count);
+
+// Sum of the squares of the differences.
+double squaredDistance(const float* a, const float* b, int count);
+double squaredDistance(const double* a, const double* b, int count);
+
+double sumOf(const float* values, int count);
+double sumOf(const double* values, int count);
+
+// In size.
+double greatestOf(const float* values, int count);
+double greatestOf(const double* values, int count);
+
+}  // namespace robot_tissue

@@ -1,0 +1,170 @@
+#include "solvers/baselines/explicit_method.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/baselines/soa_field.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kStart = 0, kVelocity = 2, kLastForce = 3;  // spare arrays of the field
+constexpr int kSoftness = 4;                              // the first of three
+constexpr int kWeighings = 16;                            // steps from one to the next
+constexpr double kMostStep = 0.25;                        // of a node in one step, in spacings
+constexpr int kPowers = 12;                               // iterations for the greatest eigenvalue
+constexpr double kProbe = 1e-2;                           // their motion, in spacings
+constexpr double kMargin = 1.15;                          // they find a little less
+constexpr double kCare = 1.5;
+
+}  // namespace
+
+ExplicitMethod::ExplicitMethod(const Lattice& lattice, const ElasticModel& model,
+                               const RelaxationOptions& options)
+    : RelaxationMethod(lattice, model, options) {}
+
+void ExplicitMethod::forget() {
+  RelaxationMethod::forget();
+  cells_.reset();
+}
+
+void ExplicitMethod::begin(int care) {
+  patch_steps_.assign(shape_.patches.size(), {});
+  contact_stiffness_.assign(shape_.state.displacement.size(), 0.0);
+  for (const LoadingPatch& patch : shape_.patches) {
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) {
+        contact_stiffness_[at(carrier.node)] +=
+            std::abs(carrier.weight) * (spring.stiffness + spring.friction_stiffness);
+      }
+    }
+  }
+  weigh();
+  if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
+  cells_ = shape_.state.cells;
+  held_ = hold_.dirichletMask();
+  if (care > 0) fastest_ *= kCare;
+  findForces();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float* velocity = field_->spare(kVelocity)[axis];
+    std::fill(velocity, velocity + field_->size(), 0.0F);
+    const float* force = field_->force()[axis];
+    std::copy(force, force + field_->size(), field_->spare(kLastForce)[axis]);
+  }
+  slowest_ = fastest_;
+  steps_ = 0;
+}
+
+void ExplicitMethod::iterate() {
+  if (steps_ % kWeighings == 0 && steps_ > 0) weigh();
+  if (steps_ > 0) findForces();
+  ++steps_;
+  const double share = std::sqrt(slowest_ / fastest_);
+  const double keep = std::pow((1.0 - share) / (1.0 + share), 2);
+  const double push = 4.0 / (fastest_ * std::pow(1.0 + share, 2));
+  const double most = kMostStep * lattice_.spacing() / field_->unit();
+  QuotientSums sums;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    roll(static_cast<float>(keep), static_cast<float>(push), static_cast<float>(most),
+         field_->size(), field_->force()[axis], field_->spare(kSoftness)[0], field_->free()[axis],
+         field_->spare(kLastForce)[axis], field_->spare(kVelocity)[axis], field_->moved()[axis],
+         sums);
+  }
+  rollPatches(keep, push);
+  if (sums.mass > 0.0 && sums.work > 0.0) {
+    slowest_ = std::min(sums.work / sums.mass, fastest_);
+  }
+}
+
+void ExplicitMethod::rollPatches(double keep, double push) {
+  for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
+    if (!byForce(shape_.patches[index])) continue;
+    const Motion::OfPatch answer = patchAnswer(index);
+    Motion::OfPatch& step = patch_steps_[index];
+    step.shift = keep * step.shift + push * answer.shift;
+    step.turn = keep * step.turn + push * answer.turn;
+    movePatchBy(index, step);
+  }
+}
+
+// A node's mass is a bound of its stiffness in the present shape; the time step is one.
+void ExplicitMethod::weigh() {
+  float* softness = field_->spare(kSoftness)[0];
+  field_->giveWatched(shape_.state);
+  field_->findSoftness(softness);
+  for (const int node : field_->oddNodes()) {
+    NodeBalance balance = model_.nodeBalance(shape_.state, node);
+    hold_.addSprings(shape_, node, balance);
+    const double stiffness =
+        balance.block.cwiseAbs().rowwise().sum().maxCoeff() + contact_stiffness_[at(node)];
+    softness[field_->slotOf(node)] =
+        stiffness > 0.0 ? static_cast<float>(field_->stiffnessUnit() / stiffness) : 0.0F;
+  }
+}
+
+// By powers of the linearized motion, from a rough one; the shape is as before then.
+void ExplicitMethod::findFastest() {
+  const int size = field_->size();
+  const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
+  findForces();
+  std::uint32_t random = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::copy(field_->moved()[axis], field_->moved()[axis] + size, field_->spare(kStart)[axis]);
+    std::copy(field_->force()[axis], field_->force()[axis] + size, field_->spare(kLastForce)[axis]);
+    for (int slot = 0; slot < size; ++slot) {
+      random = 1664525U * random + 1013904223U;
+      const float sign = (random >> 31U) != 0 ? probe : -probe;
+      field_->spare(kVelocity)[axis][slot] = sign * field_->free()[axis][slot];
+    }
+  }
+  for (int power = 0; power < kPowers; ++power) {
+    const double eigenvalue = takePower();
+    if (eigenvalue <= 0.0) break;
+    fastest_ = kMargin * eigenvalue;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* start = field_->spare(kStart)[axis];
+    std::copy(start, start + size, field_->moved()[axis]);
+  }
+}
+
+// From a motion to what its forces would do at once; by how much that is more, 0 = nothing.
+double ExplicitMethod::takePower() {
+  const int size = field_->size();
+  const float* softness = field_->spare(kSoftness)[0];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int slot = 0; slot < size; ++slot) {
+      field_->moved()[axis][slot] =
+          field_->spare(kStart)[axis][slot] + field_->spare(kVelocity)[axis][slot];
+    }
+  }
+  findForces();
+  double before = 0.0, after = 0.0;
+  float greatest = 0.0F;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int slot = 0; slot < size; ++slot) {
+      if (softness[slot] <= 0.0F) continue;
+      float& motion = field_->spare(kVelocity)[axis][slot];
+      before += static_cast<double>(motion * motion / softness[slot]);
+      const float answer = field_->spare(kLastForce)[axis][slot] - field_->force()[axis][slot];
+      motion = softness[slot] * answer * field_->free()[axis][slot];
+      after += static_cast<double>(motion * motion / softness[slot]);
+      greatest = std::max(greatest, std::abs(motion));
+    }
+  }
+  if (!(before > 0.0 && after > 0.0)) return 0.0;
+  const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
+  for (float* motions : field_->spare(kVelocity)) {
+    for (int slot = 0; slot < size; ++slot) motions[slot] *= probe / greatest;
+  }
+  return std::sqrt(after / before);
+}
+
+// The damping is critical for what the motion shows; what is slower dies out more slowly.
+double ExplicitMethod::shrinkage() const {
+  const double slowest = std::sqrt(slowestWave() / fastest_);
+  const double share = slowest * std::min(1.0, slowest / std::sqrt(slowest_ / fastest_));
+  return std::max((1.0 - share) / (1.0 + share), 0.5);
+}
+
+}  // namespace robot_tissue

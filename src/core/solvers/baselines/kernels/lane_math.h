@@ -1,0 +1,113 @@
+// What the kernels of lane_kernels.h share: one cell of model `elastic` in one lane. Written so
+// that loops over lanes become vector instructions.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "material/elastic_law.h"
+#include "simd/vector_clones.h"
+#include "solvers/baselines/kernels/colored_layout.h"
+
+namespace robot_tissue {
+
+constexpr float kFlattest = static_cast<float>(elastic_law::kFlattest);
+constexpr float kThird = 1.0F / 3.0F;
+constexpr float kSqueezed = static_cast<float>(elastic_law::kSqueezed);
+constexpr float kBarrier = static_cast<float>(elastic_law::kBarrier / kCorners);
+using Lane = float[kLanes];
+
+// Sums and differences of a cell's corners, but for the sum of all.
+struct Modes {
+  float x, y, z, xy, xz, yz, xyz;
+};
+
+ROBOT_TISSUE_INLINE Modes modesOf(float c0, float c1, float c2, float c3, float c4, float c5,
+                                  float c6, float c7) {
+  const float s01 = c0 + c1, d01 = c0 - c1, s23 = c2 + c3, d23 = c2 - c3;
+  const float s45 = c4 + c5, d45 = c4 - c5, s67 = c6 + c7, d67 = c6 - c7;
+  const float ss0 = s01 + s23, sd0 = s01 - s23, ds0 = d01 + d23, dd0 = d01 - d23;
+  const float ss1 = s45 + s67, sd1 = s45 - s67, ds1 = d45 + d67, dd1 = d45 - d67;
+  return {ds0 + ds1, sd0 + sd1, ss0 - ss1, dd0 + dd1, ds0 - ds1, sd0 - sd1, dd0 - dd1};
+}
+
+ROBOT_TISSUE_INLINE Modes cellModes(const float* x, const int* k, int i) {
+  return modesOf(x[i], x[k[1] + i], x[k[2] + i], x[k[3] + i], x[k[4] + i], x[k[5] + i], x[k[6] + i],
+                 x[k[7] + i]);
+}
+
+// 1 / 3 and 1 / 9 of what bends and twists, beside the squares of what strains.
+ROBOT_TISSUE_INLINE float bendingOf(const Modes& m) {
+  return (2.0F * (m.xy * m.xy + m.xz * m.xz + m.yz * m.yz) + m.xyz * m.xyz) * kThird;
+}
+
+// x^(-1/3), x > 0: a guess within 4 % from the exponent, then Newton's method.
+ROBOT_TISSUE_INLINE float inverseCubeRoot(float x) {
+  std::int32_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  bits = static_cast<std::int32_t>(1.41996e9F - kThird * static_cast<float>(bits));
+  float root;
+  std::memcpy(&root, &bits, sizeof root);
+  const float third = kThird * x;
+  root *= 4.0F / 3.0F - third * root * root * root;
+  root *= 4.0F / 3.0F - third * root * root * root;
+  root *= 4.0F / 3.0F - third * root * root * root;
+  return root;
+}
+
+// a(J), a' and a'' / a', with the Taylor form below kFlattest.
+struct Stiffening {
+  float a, slope, curvature;
+};
+
+ROBOT_TISSUE_INLINE Stiffening stiffeningOf(float shear, float volume) {
+  const float from = volume > kFlattest ? volume : kFlattest;
+  const float root = inverseCubeRoot(from);
+  const float inverse = root * root * root;
+  const float a = shear * root * root;
+  const float slope = -2.0F / 3.0F * a * inverse;
+  const float curvature = -5.0F / 3.0F * slope * inverse;
+  const float beyond = volume - from;
+  return {a + beyond * (slope + 0.5F * beyond * curvature), slope + beyond * curvature, curvature};
+}
+
+ROBOT_TISSUE_INLINE float invariantOf(const Modes& x, const Modes& y, const Modes& z) {
+  return x.x * x.x + x.y * x.y + x.z * x.z + y.x * y.x + y.y * y.y + y.z * y.z + z.x * z.x +
+         z.y * z.y + z.z * z.z + bendingOf(x) + bendingOf(y) + bendingOf(z);
+}
+
+struct Vector {
+  float x, y, z;
+};
+
+ROBOT_TISSUE_INLINE Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+ROBOT_TISSUE_INLINE float dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Derivatives of the barrier's density by the determinant of a corner's edges.
+struct Barrier {
+  float slope, curvature;
+};
+
+ROBOT_TISSUE_INLINE Barrier barrierOf(float shear, float spanned) {
+  const float depth = spanned < kSqueezed ? (kSqueezed - spanned) / kSqueezed : 0.0F;
+  const float height = kBarrier * shear;
+  return {-3.0F * height / kSqueezed * depth * depth,
+          6.0F * height / (kSqueezed * kSqueezed) * depth};
+}
+
+// Edge of a cell along an axis, over its length at rest: between corners that are seen as `near`
+// and `far`.
+ROBOT_TISSUE_INLINE Vector edgeOf(const float* const at[3], int near, int far, float side,
+                                  const Vector& rest, int i) {
+  const float by = 4.0F * side;
+  return {by * (at[0][near + i] - at[0][far + i]) + rest.x,
+          by * (at[1][near + i] - at[1][far + i]) + rest.y,
+          by * (at[2][near + i] - at[2][far + i]) + rest.z};
+}
+
+}  // namespace robot_tissue

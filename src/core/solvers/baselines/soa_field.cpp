@@ -1,0 +1,380 @@
+#include "solvers/baselines/soa_field.h"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "material/elastic_law.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr float kSqueezed = static_cast<float>(elastic_law::kSqueezed);
+constexpr float kSoonSqueezed = 0.4F;  // may be so when looked at again
+// Of the colors: of all orders one of those whose over-relaxed sweeps converge fastest (over waves
+// in an endless lattice at rest; doc/baselines.md).
+constexpr int kOrder[kColors] = {0, 1, 7, 2, 5, 3, 6, 4};
+constexpr int kArrays = 3 * (5 + SoaField::kSpares) + 4;
+constexpr std::size_t kAlignment = 4096;
+// Blocks between arrays beyond whole pages: what stands in the same place of several arrays must
+// not fall on the same lines of the cache.
+constexpr int kApart = 5;
+
+bool isLane(const CellSet& cells, const Cell& cell) {
+  return !cell.isPart() && std::none_of(cell.nodes.begin(), cell.nodes.end(),
+                                        [&](int node) { return cells.isGhost(node); });
+}
+
+}  // namespace
+
+SoaField::SoaField(const Lattice& lattice, const ElasticModel& model)
+    : lattice_(lattice), model_(model), grid_(lattice), unit_(4.0 * lattice.spacing()) {
+  for (const Cell& cell : lattice.cells()) {
+    const Moduli moduli = model.cellModuli(cell);
+    modulus_ = std::max({modulus_, moduli.shear, moduli.bulk});
+  }
+  force_unit_ = modulus_ * lattice.spacing() * lattice.spacing() / 4.0;
+}
+
+void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_hold) {
+  std::vector<int> loads = patch_hold.carriers();
+  loads.insert(loads.end(), patch_hold.touched().begin(), patch_hold.touched().end());
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) loads.push_back(spring.node);
+    loads.push_back(-1);
+  }
+  const bool same_cells = cells_ == shape.state.cells;
+  const bool same = same_cells && held_ == patch_hold.dirichletMask() && loads_ == loads;
+  if (!same_cells) layOut(shape);
+  if (!same) hold(shape, patch_hold);
+  held_ = patch_hold.dirichletMask();
+  loads_ = std::move(loads);
+  take(shape.state, all_);
+  if (same) {
+    takeRims(shape);
+  } else {
+    sortOut(shape, patch_hold);
+  }
+  findSqueezed();
+}
+
+void SoaField::allocate() {
+  constexpr int kPage = static_cast<int>(kAlignment / sizeof(float));
+  const int pitch = (size_ + kPage - 1) / kPage * kPage + kApart * kLanes;
+  const std::size_t bytes = sizeof(float) * at(pitch) * at(kArrays);
+  buffer_.reset(static_cast<float*>(
+      std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment)));
+  if (buffer_ == nullptr) throw std::bad_alloc();
+  float* next = buffer_.get();
+  std::fill(next, next + at(pitch) * at(kArrays), 0.0F);
+  const auto take_array = [&](float*& array) {
+    array = next;
+    next += pitch;
+  };
+  for (Arrays* arrays : {&moved_, &load_, &free_, &lane_free_, &force_}) {
+    for (float*& array : *arrays) take_array(array);
+  }
+  for (float** array : {&shear_, &bulk_, &compliance_, &tightest_}) take_array(*array);
+  for (Arrays& arrays : spare_) {
+    for (float*& array : arrays) take_array(array);
+  }
+}
+
+void SoaField::layOut(const ConstrainedState& shape) {
+  cells_ = shape.state.cells;
+  size_ = grid_.slotCount(static_cast<int>(cells_->ghosts().size()));
+  allocate();
+  slots_.clear();
+  for (int node = 0; node < cells_->nodeCount(); ++node) {
+    slots_.push_back(cells_->isGhost(node) ? grid_.ghostSlot(node - cells_->latticeNodeCount())
+                                           : grid_.slotAt(lattice_.gridIndex(node)));
+    const double stiffness = model_.nodeStiffness(shape.state, node).mean();
+    if (stiffness > 0.0) {
+      compliance_[slots_.back()] = static_cast<float>(stiffnessUnit() / stiffness);
+    }
+  }
+  lane_cells_.clear();
+  odd_cells_.clear();
+  for (std::size_t index = 0; index < cells_->all().size(); ++index) {
+    const bool lane = isLane(*cells_, cells_->all()[index]);
+    (lane ? lane_cells_ : odd_cells_).push_back(static_cast<int>(index));
+  }
+  squeezed_cells_.assign(at(size_ / kLanes), 0);
+  squeezed_nodes_.assign(at(size_ / kLanes), 0);
+  all_.resize(slots_.size());
+  for (std::size_t node = 0; node < all_.size(); ++node) all_[node] = static_cast<int>(node);
+  scratch_.assign(slots_.size(), Vec3::Zero());
+  springs_of_block_.assign(at(size_ / kLanes), -1);
+}
+
+void SoaField::hold(const ConstrainedState& shape, const DofConstraints& patch_hold) {
+  movable_.clear();
+  for (std::size_t node = 0; node < slots_.size(); ++node) {
+    const std::uint8_t held = patch_hold.dirichletMask()[node];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      free_[axis][slots_[node]] = (held >> axis & 1) != 0 ? 0.0F : 1.0F;
+    }
+    if (held != kAllAxes || patch_hold.carriers()[node] >= 0) {
+      movable_.push_back(static_cast<int>(node));
+    }
+  }
+  std::fill(springs_of_block_.begin(), springs_of_block_.end(), -1);
+  springs_.clear();
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) {
+      int& place = springs_of_block_[at(slotOf(spring.node) / kLanes)];
+      if (place >= 0) continue;
+      place = static_cast<int>(springs_.size());
+      springs_.emplace_back();
+    }
+  }
+}
+
+void SoaField::take(const LatticeState& state, const std::vector<int>& nodes) {
+  for (const int node : nodes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double moved = state.displacement[at(node)][static_cast<Eigen::Index>(axis)];
+      moved_[axis][slotOf(node)] = static_cast<float>(moved / unit_);
+    }
+  }
+}
+
+void SoaField::give(const std::vector<int>& nodes, LatticeState& state) const {
+  for (const int node : nodes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (free_[axis][slotOf(node)] == 0.0F) continue;
+      state.displacement[at(node)][static_cast<Eigen::Index>(axis)] =
+          unit_ * static_cast<double>(moved_[axis][slotOf(node)]);
+    }
+  }
+}
+
+// Springs to anchors: a stiffness and a constant force.
+void SoaField::takeRims(const ConstrainedState& shape) {
+  const double stiffness_unit = stiffnessUnit();
+  for (SoaSprings& springs : springs_) springs = SoaSprings();
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) {
+      const Vec3 weight = weight_[at(spring.node)];
+      for (int axis = 0; axis < 3; ++axis) {
+        load_[at(axis)][slotOf(spring.node)] = static_cast<float>(weight[axis] / force_unit_);
+      }
+    }
+  }
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) {
+      const int slot = slotOf(spring.node);
+      SoaSprings& springs = springs_[at(springs_of_block_[at(slot / kLanes)])];
+      const Eigen::Matrix3d stiffness = stiffnessOf(patch, spring);
+      const Vec3 load = stiffness * spring.anchor / force_unit_;
+      for (int axis = 0; axis < 3; ++axis) {
+        load_[at(axis)][slot] += static_cast<float>(load[axis]);
+        springs.of[axis][slot % kLanes] +=
+            static_cast<float>(stiffness(axis, axis) / stiffness_unit);
+      }
+      springs.of[3][slot % kLanes] += static_cast<float>(stiffness(0, 1) / stiffness_unit);
+      springs.of[4][slot % kLanes] += static_cast<float>(stiffness(0, 2) / stiffness_unit);
+      springs.of[5][slot % kLanes] += static_cast<float>(stiffness(1, 2) / stiffness_unit);
+    }
+  }
+}
+
+bool SoaField::findSqueezed() {
+  const SoaArrays arrays = lanes(free_);
+  bool unexpected = false;
+  std::fill(squeezed_nodes_.begin(), squeezed_nodes_.end(), 0);
+  for (int color = 0; color < kColors; ++color) {
+    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
+    for (const int block : cell_blocks_[at(color)]) {
+      squeezeOfBlock(arrays, above, block, tightest_);
+      const auto tightest = std::min_element(tightest_ + block, tightest_ + block + kLanes);
+      std::uint8_t& squeezed = squeezed_cells_[at(block / kLanes)];
+      unexpected = unexpected || (squeezed == 0 && *tightest < kSqueezed);
+      squeezed = *tightest < kSoonSqueezed ? 1 : 0;
+      if (squeezed == 0) continue;
+      for (const int corner : above.corner) {
+        squeezed_nodes_[at((block + corner) / kLanes)] = 1;
+        squeezed_nodes_[at((block + corner + kLanes - 1) / kLanes)] = 1;
+      }
+    }
+  }
+  return unexpected;
+}
+
+// Which cells and nodes lanes do, and which not.
+void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patch_hold) {
+  std::vector<std::uint8_t> has_cell(at(size_), 0), has_node(at(size_), 0);
+  std::vector<std::uint8_t> odd(slots_.size(), 0);
+  std::fill(scratch_.begin(), scratch_.end(), Vec3::Zero());
+  for (const int index : lane_cells_) {
+    const Cell& cell = cells_->all()[at(index)];
+    const int slot = slotOf(cell.nodes[0]);
+    const Moduli moduli = model_.cellModuli(cell);
+    shear_[slot] = static_cast<float>(moduli.shear / modulus_);
+    bulk_[slot] = static_cast<float>(moduli.bulk / modulus_);
+    has_cell[at(slot)] = 1;
+    const Vec3 weight = model_.cornerWeight(cell);
+    for (const int node : cell.nodes) scratch_[at(node)] += weight;
+  }
+  for (const int index : odd_cells_) {
+    for (const int node : cells_->all()[at(index)].nodes) odd[at(node)] = 1;
+  }
+  for (const int node : patch_hold.touched()) odd[at(node)] = 1;
+  odd_nodes_.clear();
+  weight_ = scratch_;
+  for (std::size_t node = 0; node < slots_.size(); ++node) {
+    const int slot = slots_[node];
+    const bool lane = odd[node] == 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double weight = scratch_[node][static_cast<Eigen::Index>(axis)];
+      load_[axis][slot] = static_cast<float>(weight / force_unit_);
+      lane_free_[axis][slot] = lane ? free_[axis][slot] : 0.0F;
+    }
+    if (patch_hold.dirichletMask()[node] == kAllAxes) continue;
+    if (lane) has_node[at(slot)] = 1;
+    if (!lane) odd_nodes_.push_back(static_cast<int>(node));
+  }
+  for (int color = 0; color < kColors; ++color) {
+    cell_blocks_[at(color)] = blocksWith(has_cell, color);
+    node_blocks_[at(color)] = blocksWith(has_node, color);
+  }
+  takeRims(shape);
+  watch(shape, patch_hold);
+}
+
+std::vector<int> SoaField::blocksWith(const std::vector<std::uint8_t>& slots, int color) const {
+  std::vector<int> blocks;
+  for (int block = grid_.firstBlock(color); block < grid_.lastBlock(color); block += kLanes) {
+    const auto first = slots.begin() + block;
+    if (std::any_of(first, first + kLanes, [](std::uint8_t has) { return has != 0; })) {
+      blocks.push_back(block);
+    }
+  }
+  return blocks;
+}
+
+void SoaField::watch(const ConstrainedState& shape, const DofConstraints& patch_hold) {
+  std::vector<std::uint8_t> watched(slots_.size(), 0);
+  const auto look_around = [&](int node) {
+    watched[at(node)] = 1;
+    for (auto met = cells_->first(node); met != cells_->last(node); ++met) {
+      for (const int other : cells_->all()[at(met->cell)].nodes) watched[at(other)] = 1;
+    }
+  };
+  for (const int node : odd_nodes_) look_around(node);
+  for (const int index : odd_cells_) {
+    for (const int node : cells_->all()[at(index)].nodes) watched[at(node)] = 1;
+  }
+  for (std::size_t patch = 0; patch < shape.patches.size(); ++patch) {
+    for (const ContactSpring& spring : shape.patches[patch].contacts) {
+      for (const NodeWeight& carrier : spring.carriers) watched[at(carrier.node)] = 1;
+    }
+    if (!byForce(shape.patches[patch])) continue;
+    for (const int node : patch_hold.hardOf(patch)) look_around(node);
+    for (const RimSpring& spring : shape.patches[patch].rim) watched[at(spring.node)] = 1;
+  }
+  watched_.clear();
+  for (std::size_t node = 0; node < watched.size(); ++node) {
+    if (watched[node] != 0) watched_.push_back(static_cast<int>(node));
+  }
+}
+
+SoaArrays SoaField::lanes(const Arrays& free) const {
+  SoaArrays lanes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lanes.moved[axis] = moved_[axis];
+    lanes.load[axis] = load_[axis];
+    lanes.free[axis] = free[axis];
+  }
+  lanes.shear = shear_;
+  lanes.bulk = bulk_;
+  return lanes;
+}
+
+void SoaField::relax(float relaxation, float most) {
+  const SoaArrays arrays = lanes(lane_free_);
+  for (const int color : kOrder) {
+    for (const int block : node_blocks_[at(color)]) {
+      const int springs = springs_of_block_[at(block / kLanes)];
+      relaxBlock(arrays, grid_.around(color), block, springs < 0 ? nullptr : &springs_[at(springs)],
+                 squeezed_nodes_[at(block / kLanes)] != 0, relaxation, most);
+    }
+  }
+}
+
+void SoaField::findSoftness(float* softness) const {
+  const SoaArrays arrays = lanes(lane_free_);
+  for (int color = 0; color < kColors; ++color) {
+    for (const int block : node_blocks_[at(color)]) {
+      const int springs = springs_of_block_[at(block / kLanes)];
+      softnessOfBlock(arrays, grid_.around(color), block,
+                      springs < 0 ? nullptr : &springs_[at(springs)],
+                      squeezed_nodes_[at(block / kLanes)] != 0, softness);
+    }
+  }
+}
+
+void SoaField::project(const Arrays& mobility) {
+  const SoaArrays arrays = lanes(free_);
+  for (int color = 0; color < kColors; ++color) {
+    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
+    for (const int block : cell_blocks_[at(color)]) {
+      projectBlock(arrays, mobility.data(), above, block, squeezed_cells_[at(block / kLanes)] != 0);
+    }
+  }
+}
+
+void SoaField::findForces(const LatticeState& state) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::copy(load_[axis], load_[axis] + size_, force_[axis]);
+  }
+  for (std::size_t block = 0; block < springs_of_block_.size(); ++block) {
+    const int springs = springs_of_block_[block];
+    if (springs < 0) continue;
+    addSpringForces(lanes(free_), springs_[at(springs)], static_cast<int>(block) * kLanes,
+                    force_.data());
+  }
+  const SoaArrays arrays = lanes(free_);
+  for (int color = 0; color < kColors; ++color) {
+    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
+    for (const int block : cell_blocks_[at(color)]) {
+      addForcesOfBlock(arrays, above, block, squeezed_cells_[at(block / kLanes)] != 0,
+                       force_.data());
+    }
+  }
+  if (odd_cells_.empty()) return;
+  for (const int node : watched_) scratch_[at(node)].setZero();
+  model_.addForces(state, odd_cells_, scratch_);
+  for (const int node : watched_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      force_[at(axis)][slotOf(node)] += static_cast<float>(scratch_[at(node)][axis] / force_unit_);
+    }
+  }
+}
+
+Vec3 SoaField::forceOn(int node) const {
+  const int slot = slotOf(node);
+  return force_unit_ * Vec3(static_cast<double>(force_[0][slot]),
+                            static_cast<double>(force_[1][slot]),
+                            static_cast<double>(force_[2][slot]));
+}
+
+void SoaField::addForce(int node, const Vec3& force) {
+  for (int axis = 0; axis < 3; ++axis) {
+    force_[at(axis)][slotOf(node)] += static_cast<float>(force[axis] / force_unit_);
+  }
+}
+
+double SoaField::restStiffness(int node) const {
+  const double compliance = static_cast<double>(compliance_[slotOf(node)]);
+  return compliance > 0.0 ? stiffnessUnit() / compliance : 0.0;
+}
+
+void SoaField::giveAll(int node, LatticeState& state) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    state.displacement[at(node)][static_cast<Eigen::Index>(axis)] =
+        unit_ * static_cast<double>(moved_[axis][slotOf(node)]);
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,202 @@
+#include "solvers/baselines/xpbd_method.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simd/field_kernel.h"
+#include "solvers/baselines/soa_field.h"
+
+namespace robot_tissue {
+namespace {
+
+// Spare arrays of the field: the shape before the step, mobilities, the shape when the step was
+// last shortened.
+constexpr int kBefore = 2, kMobility = 3, kShortened = 4;
+constexpr double kFirstStretch = 8.0;  // first of stretch_, over the tolerance
+constexpr double kMostStretch = 0.3;
+constexpr double kLeastStretch = 1e-4;
+constexpr double kShorter = 0.25;  // of stretch_, from one to the next
+constexpr double kSettled = 0.2;   // of the way since then: what is left before the next
+
+}  // namespace
+
+XpbdMethod::XpbdMethod(const Lattice& lattice, const ElasticModel& model,
+                       const RelaxationOptions& options)
+    : RelaxationMethod(lattice, model, options) {}
+
+void XpbdMethod::begin(int care) {
+  refinements_ = 0;
+  weight_.assign(shape_.state.displacement.size(), Vec3::Zero());
+  for (const Cell& cell : shape_.state.cells->all()) {
+    const Vec3 weight = model_.cornerWeight(cell);
+    for (const int node : cell.nodes) weight_[at(node)] += weight;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* now = field_->moved()[axis];
+    std::copy(now, now + field_->size(), field_->spare(kBefore)[axis]);
+  }
+  takeStep(std::pow(kShorter, care) * std::min(kFirstStretch * options_.tolerance, kMostStretch));
+}
+
+// Critical damping of the slowest wave.
+void XpbdMethod::takeStep(double stretch) {
+  stretch_ = stretch;
+  sweeps_ = 0;
+  offered_ = false;
+  const double share = std::sqrt(stretch * slowestWave());
+  keep_ = std::pow((1.0 - share) / (1.0 + share), 2);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float* mobility = field_->spare(kMobility)[axis];
+    const float* now = field_->moved()[axis];
+    for (int slot = 0; slot < field_->size(); ++slot) {
+      mobility[slot] =
+          static_cast<float>(stretch) * field_->compliance()[slot] * field_->free()[axis][slot];
+    }
+    std::copy(now, now + field_->size(), field_->spare(kShortened)[axis]);
+  }
+}
+
+void XpbdMethod::iterate() {
+  coast();
+  pushPatches();
+  field_->project(field_->spare(kMobility));
+  projectOddCells();
+  projectRims();
+  projectContacts();
+}
+
+// Where nodes go by themselves.
+void XpbdMethod::coast() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    robot_tissue::coast(static_cast<float>(keep_), field_->size(), field_->free()[axis],
+                        field_->spare(kBefore)[axis], field_->moved()[axis]);
+  }
+  for (std::size_t node = 0; node < weight_.size(); ++node) {
+    if (!weight_[node].isZero(0.0)) push(static_cast<int>(node), weight_[node], 1.0);
+  }
+}
+
+// They have no mass: to where they balance between the nodes around them.
+void XpbdMethod::pushPatches() {
+  for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
+    if (!byForce(shape_.patches[index])) continue;
+    field_->giveWatched(shape_.state);
+    patch_forces_[index] = hold_.forceOn(shape_, index);
+    movePatchBy(index, patchAnswer(index));
+  }
+}
+
+// A constraint sqrt(2 E) moves a node by its force times mobility, over 1 + (sum of mobility x
+// force^2) / 2 E.
+void XpbdMethod::projectOddCells() {
+  for (const int index : field_->oddCells()) {
+    const Cell& cell = shape_.state.cells->all()[at(index)];
+    for (const int node : cell.nodes) field_->giveAll(node, shape_.state);
+    const ElasticCell shaped = model_.shaped(shape_.state, cell);
+    const double energy = shaped.energy();
+    if (!(energy > 0.0)) continue;
+    std::array<Vec3, kCorners> forces;
+    double answer = 0.0;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      forces[at(corner)] = -shaped.gradient(corner);
+      answer += mobilityOf(cell.nodes[at(corner)]).dot(forces[at(corner)].cwiseAbs2());
+    }
+    const double share = 1.0 / (1.0 + answer / (2.0 * energy));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      push(cell.nodes[at(corner)], forces[at(corner)], share);
+    }
+  }
+}
+
+void XpbdMethod::projectRims() {
+  for (const LoadingPatch& patch : shape_.patches) {
+    for (const RimSpring& spring : patch.rim) {
+      field_->giveAll(spring.node, shape_.state);
+      const Vec3 stretch = spring.anchor - shape_.state.displacement[at(spring.node)];
+      const Vec3 force = stiffnessOf(patch, spring) * stretch;
+      const double energy = 0.5 * force.dot(stretch);
+      if (!(energy > 0.0)) continue;
+      const double answer = mobilityOf(spring.node).dot(force.cwiseAbs2());
+      push(spring.node, force, 1.0 / (1.0 + answer / (2.0 * energy)));
+    }
+  }
+}
+
+void XpbdMethod::projectContacts() {
+  for (const LoadingPatch& patch : shape_.patches) {
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) {
+        field_->giveAll(carrier.node, shape_.state);
+      }
+      const double energy = energyOf(spring, shape_.state.displacement);
+      if (!(energy > 0.0)) continue;
+      const Vec3 force = forceOf(spring, shape_.state.displacement);
+      double answer = 0.0;
+      for (const NodeWeight& carrier : spring.carriers) {
+        const Vec3 share = carrier.weight * force;
+        answer += mobilityOf(carrier.node).dot(share.cwiseAbs2());
+      }
+      const double share = 1.0 / (1.0 + answer / (2.0 * energy));
+      for (const NodeWeight& carrier : spring.carriers) {
+        push(carrier.node, carrier.weight * force, share);
+      }
+    }
+  }
+}
+
+// Per axis (m/N).
+Vec3 XpbdMethod::mobilityOf(int node) const {
+  Vec3 mobility;
+  for (int axis = 0; axis < 3; ++axis) {
+    mobility[axis] = static_cast<double>(field_->spare(kMobility)[at(axis)][field_->slotOf(node)]);
+  }
+  return mobility / field_->stiffnessUnit();
+}
+
+void XpbdMethod::push(int node, const Vec3& force, double share) {
+  const Vec3 motion = share / field_->unit() * mobilityOf(node).cwiseProduct(force);
+  for (int axis = 0; axis < 3; ++axis) {
+    field_->moved()[at(axis)][field_->slotOf(node)] += static_cast<float>(motion[axis]);
+  }
+}
+
+// If forces are too far from balance where this said it was near enough, it is asked again.
+// The bias is taken to be in proportion to the square of the step. Nothing is judged before the
+// slowest wave had the time to move.
+bool XpbdMethod::settles(double& to_go) {
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    squared +=
+        squaredDistance(field_->moved()[axis], field_->spare(kShortened)[axis], field_->size());
+  }
+  const double way = field_->unit() * std::sqrt(squared);
+  const double still = to_go;
+  sweeps_ += stride();
+  const double allowed = options_.tolerance * movedLength();
+  if (refinements_ == 0) {
+    to_go = std::numeric_limits<double>::infinity();
+  } else {
+    to_go += (way + still) * kShorter / (1.0 - kShorter);
+  }
+  if (sweeps_ * std::sqrt(stretch_ * slowestWave()) < 1.0) return false;
+  const bool near = to_go <= allowed;
+  if (near && !offered_) {
+    offered_ = true;
+    return true;
+  }
+  if ((!near && still > kSettled * std::max(way, allowed)) || stretch_ <= kLeastStretch) {
+    return false;
+  }
+  ++refinements_;
+  takeStep(kShorter * stretch_);
+  return false;
+}
+
+// What critical damping leaves.
+double XpbdMethod::shrinkage() const {
+  const double share = std::sqrt(stretch_ * slowestWave());
+  return (1.0 - share) / (1.0 + share);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,41 @@
+// The paper's layers and patches, iterated to the equilibrium (own; doc/model.md): smooth motions
+// from coarser lattices, rough ones from a smoother on the tissue's own (MultigridSolver).
+//
+// error_estimate: length (L2) of the motion that the coarse lattices and each node's stiffness say
+// is left, over that of the free nodes' displacement.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "loads/dof_constraints.h"
+#include "solvers/multigrid/cycle/multigrid_solver.h"
+#include "solvers/solver_method.h"
+
+namespace robot_tissue {
+
+class LayeredMethod : public SolverMethod {
+ public:
+  LayeredMethod(const Lattice& lattice, const ElasticModel& model, const LayeredOptions& options);
+
+  SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
+                    LatticeState& state) override;
+  void beginStep(const LatticeState&) override { solver_->beginStep(); }
+  void limitWays(std::vector<double> longest) override;
+  void forget() override { solver_->forget(); }
+  bool remembers() const override { return true; }
+  const GridBox* visited() const override { return solver_->visited(); }
+  Vec3 forceLeft() override { return solver_->forceLeft(); }
+  bool staysFinite() const override { return true; }
+  bool findsEquilibrium() const override { return true; }
+  void limitTime(double ms) override { options_.max_ms = ms; }
+  double patchStep() const override;
+
+ private:
+  const Lattice& lattice_;
+  LayeredOptions options_;
+  DofConstraints hold_;
+  std::unique_ptr<MultigridSolver> solver_;
+};
+
+}  // namespace robot_tissue

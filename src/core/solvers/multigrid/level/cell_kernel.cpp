@@ -1,0 +1,426 @@
+#include "solvers/multigrid/level/cell_kernel.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "material/elastic_cell.h"
+#include "material/elastic_law.h"
+#include "simd/vector_clones.h"
+
+// Vectors longer than the processor's are passed between functions that are all inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace robot_tissue {
+namespace {
+
+template <typename Real>
+struct Vector;
+
+template <>
+struct Vector<float> {
+  static constexpr int kSize = 16;
+  typedef float Lanes __attribute__((vector_size(64)));
+  typedef std::int32_t Bits __attribute__((vector_size(64)));
+  static constexpr std::int32_t kCubeRoot = 0x54a21d2a;  // see inverseCubeRoot
+  static constexpr int kHalvings = 12;
+  static constexpr int kRefinements = 3;
+};
+
+template <>
+struct Vector<double> {
+  static constexpr int kSize = 8;
+  typedef double Lanes __attribute__((vector_size(64)));
+  typedef std::int64_t Bits __attribute__((vector_size(64)));
+  static constexpr std::int64_t kCubeRoot = 0x553f0a3d70a3d70a;
+  static constexpr int kHalvings = 20;
+  static constexpr int kRefinements = 4;
+};
+
+template <typename Real>
+using Lanes = typename Vector<Real>::Lanes;
+
+template <typename Real>
+ROBOT_TISSUE_INLINE Lanes<Real> all(Real x) {
+  return Lanes<Real>{} + x;
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE Lanes<Real> load(const Real* from) {
+  Lanes<Real> x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void subtract(const Lanes<Real>& x, Real* from) {
+  const Lanes<Real> left = load(from) - x;
+  std::memcpy(from, &left, sizeof left);
+}
+
+template <typename L>
+ROBOT_TISSUE_INLINE L greater(const L& a, const L& b) {
+  return a > b ? a : b;
+}
+
+// Whether any lane is true.
+template <typename Mask>
+ROBOT_TISSUE_INLINE bool any(const Mask& mask) {
+  std::uint64_t words[8];
+  std::memcpy(words, &mask, sizeof words);
+  return (words[0] | words[1] | words[2] | words[3] | words[4] | words[5] | words[6] | words[7]) !=
+         0;
+}
+
+// x^(-1/3), x > 0: a guess within some percent from the exponent (a third is a quarter, a
+// sixteenth,
+// ...), then Newton's method.
+template <typename Real>
+ROBOT_TISSUE_INLINE Lanes<Real> inverseCubeRoot(const Lanes<Real>& x) {
+  using Bits = typename Vector<Real>::Bits;
+  const Bits bits_of_x = __builtin_bit_cast(Bits, x);
+  Bits bits = Bits{} + Vector<Real>::kCubeRoot;
+  for (int shift = 2; shift <= Vector<Real>::kHalvings; shift += 2) bits -= bits_of_x >> shift;
+  Lanes<Real> root = __builtin_bit_cast(Lanes<Real>, bits);
+  const Lanes<Real> third = x * Real(1.0 / 3.0);
+  for (int i = 0; i < Vector<Real>::kRefinements; ++i) {
+    root *= Real(4.0 / 3.0) - third * root * root * root;
+  }
+  return root;
+}
+
+// A block of cells: displacements of the corners, then their modes / 4, then the forces. Near rest
+// all is told by what is off it, so that nothing is lost to rounding: F = 1 + H, He_a = -M_a / 4.
+template <typename Real>
+struct Block {
+  using L = Lanes<Real>;
+
+  L mode[kCorners][3];
+  L shear, bulk;
+  L cofactor[3][3];     // of F, less 1, by axes
+  L invariant, volume;  // I1 - 3, J - 1
+  L slight;             // bounds how far all corners are from rest
+  L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
+  L stiffness;
+  L parts{};  // bulk where the volumes of a cell's parts are held
+  bool has_parts = false;
+
+  // Sums and differences along one axis after another. Twice gives eight times what was.
+  ROBOT_TISSUE_INLINE void transform() {
+#pragma GCC unroll 3
+    for (int bit = 1; bit < kCorners; bit <<= 1) {
+#pragma GCC unroll 8
+      for (int k = 0; k < kCorners; ++k) {
+        if ((k & bit) != 0) continue;
+#pragma GCC unroll 3
+        for (int axis = 0; axis < 3; ++axis) {
+          const L low = mode[k][axis], high = mode[k | bit][axis];
+          mode[k][axis] = low + high;
+          mode[k | bit][axis] = low - high;
+        }
+      }
+    }
+  }
+
+  ROBOT_TISSUE_INLINE void measure() {
+    slight = invariant = L{};
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+#pragma GCC unroll 7
+      for (int s = 1; s < kCorners; ++s) mode[s][axis] *= Real(0.25);
+      const L bent = mode[3][axis] * mode[3][axis] + mode[5][axis] * mode[5][axis] +
+                     mode[6][axis] * mode[6][axis];
+      const L twisted = mode[7][axis] * mode[7][axis];
+      const L strained = mode[1][axis] * mode[1][axis] + mode[2][axis] * mode[2][axis] +
+                         mode[4][axis] * mode[4][axis];
+      slight += strained + Real(6.0) * bent + Real(9.0) * twisted;
+      invariant += strained + (bent + bent + twisted) * Real(1.0 / 3.0);
+    }
+    invariant -= Real(2.0) * (mode[1][0] + mode[2][1] + mode[4][2]);
+#pragma GCC unroll 3
+    for (int a0 = 0; a0 < 3; ++a0) {
+      const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
+      const L(&mb)[3] = mode[1 << b];
+      const L(&mc)[3] = mode[1 << c];
+      cofactor[a0][a0] = mb[b] * mc[c] - mb[c] * mc[b] - mb[b] - mc[c];
+      cofactor[a0][b] = mb[c] * mc[a0] - mb[a0] * mc[c] + mb[a0];
+      cofactor[a0][c] = mb[a0] * mc[b] - mb[b] * mc[a0] + mc[a0];
+    }
+    volume = cofactor[0][0] - mode[1][0] - mode[1][0] * cofactor[0][0] -
+             mode[1][1] * cofactor[0][1] - mode[1][2] * cofactor[0][2];
+  }
+
+  // Below kFlattest a(J) goes on as its quadratic form.
+  template <bool kWithStiffness>
+  ROBOT_TISSUE_INLINE void stiffen() {
+    const L all_of_it = volume + Real(1.0);
+    const L from = greater(all_of_it, all<Real>(Real(elastic_law::kFlattest)));
+    const L beyond = all_of_it - from;
+    const L root = inverseCubeRoot<Real>(from);
+    const L inverse = root * root * root;
+    const L value = shear * root * root;
+    const L slope = Real(-2.0 / 3.0) * value * inverse;
+    const L curvature = Real(-5.0 / 3.0) * slope * inverse;
+    a = value + beyond * (slope + Real(0.5) * beyond * curvature);
+    const L near_rest = value * inverse * (volume - invariant * Real(1.0 / 3.0));
+    const L flat = a + Real(0.5) * (slope + beyond * curvature) * (invariant + Real(3.0));
+    pressure = (beyond < Real(0.0) ? flat : near_rest) + bulk * volume;
+    if constexpr (kWithStiffness) {
+      const L steepest = greater(greater(square(0), square(1)), square(2));
+      stiffness = a * Real(1.0 / 3.0) + (Real(0.5) * curvature * (invariant + Real(3.0)) + bulk) *
+                                            steepest * Real(1.0 / 16.0);
+    }
+  }
+
+  ROBOT_TISSUE_INLINE L square(int along) const {
+    const L whole = cofactor[along][along] + Real(1.0);
+    const int b = (along + 1) % 3, c = (along + 2) % 3;
+    return whole * whole + cofactor[along][b] * cofactor[along][b] +
+           cofactor[along][c] * cofactor[along][c];
+  }
+
+  ROBOT_TISSUE_INLINE void scale() {
+    const L one = a * Real(0.25), two = a * Real(0.5 / 3.0), three = a * Real(0.25 / 3.0);
+    const L push = Real(0.25) * pressure, pull = one - push;
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      mode[0][axis] = L{};
+      mode[1][axis] = one * mode[1][axis] + pull * cofactor[0][axis];
+      mode[2][axis] = one * mode[2][axis] + pull * cofactor[1][axis];
+      mode[4][axis] = one * mode[4][axis] + pull * cofactor[2][axis];
+      mode[1 << axis][axis] -= push;
+      mode[3][axis] *= two;
+      mode[5][axis] *= two;
+      mode[6][axis] *= two;
+      mode[7][axis] *= three;
+    }
+  }
+
+  // What the volumes of the eight parts of a cell, were it split, differ by: the energy of the
+  // finer lattice that a coarse one stands for holds each of them.
+  ROBOT_TISSUE_INLINE void addParts(L (&push)[kCorners][3]) {
+    const auto product = [](const L(&x)[3], const L(&y)[3]) {
+      return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+    };
+    L whole[3][3];
+    for (int along = 0; along < 3; ++along) {
+      for (int axis = 0; axis < 3; ++axis) {
+        whole[along][axis] = cofactor[along][axis] + Real(along == axis ? 1.0 : 0.0);
+      }
+    }
+    const L firm = parts * Real(1.0 / 16.0), firmer = parts * Real(1.0 / 64.0);
+    const L x = firm * (product(whole[1], mode[3]) + product(whole[2], mode[5]));
+    const L y = firm * (product(whole[0], mode[3]) + product(whole[2], mode[6]));
+    const L z = firm * (product(whole[0], mode[5]) + product(whole[1], mode[6]));
+    const L xy = firmer * product(whole[2], mode[7]);
+    const L xz = firmer * product(whole[1], mode[7]);
+    const L yz = firmer * product(whole[0], mode[7]);
+    for (int axis = 0; axis < 3; ++axis) {
+      push[3][axis] += x * whole[1][axis] + y * whole[0][axis];
+      push[5][axis] += x * whole[2][axis] + z * whole[0][axis];
+      push[6][axis] += y * whole[2][axis] + z * whole[1][axis];
+      push[7][axis] += yz * whole[0][axis] + xz * whole[1][axis] + xy * whole[2][axis];
+    }
+  }
+  // Adds the barrier's part to `push` on the modes. The edge at a corner along an axis is the mean
+  // edge plus the modes that change sign along it.
+  template <bool kWithStiffness>
+  ROBOT_TISSUE_INLINE void addBarrier(L (&push)[kCorners][3]) {
+    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Real x = (corner & 1) != 0 ? Real(-1) : Real(1);
+      const Real y = (corner & 2) != 0 ? Real(-1) : Real(1);
+      const Real z = (corner & 4) != 0 ? Real(-1) : Real(1);
+      L edge[3][3], across[3][3];
+      for (int axis = 0; axis < 3; ++axis) {
+        edge[0][axis] =
+            mode[1][axis] + y * mode[3][axis] + z * mode[5][axis] + y * z * mode[7][axis];
+        edge[1][axis] =
+            mode[2][axis] + x * mode[3][axis] + z * mode[6][axis] + x * z * mode[7][axis];
+        edge[2][axis] =
+            mode[4][axis] + x * mode[5][axis] + y * mode[6][axis] + x * y * mode[7][axis];
+        edge[axis][axis] -= Real(1.0);
+      }
+      for (int along = 0; along < 3; ++along) {
+        const auto& b = edge[(along + 1) % 3];
+        const auto& c = edge[(along + 2) % 3];
+        for (int axis = 0; axis < 3; ++axis) {
+          const int v = (axis + 1) % 3, w = (axis + 2) % 3;
+          across[along][axis] = b[w] * c[v] - b[v] * c[w];
+        }
+      }
+      const L determinant =
+          edge[0][0] * across[0][0] + edge[0][1] * across[0][1] + edge[0][2] * across[0][2];
+      const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
+      const L height = shear * Real(elastic_law::kBarrier / kCorners);
+      const L slope = height * depth * depth * Real(-3.0 * 0.25 / kSqueezed);
+      for (int axis = 0; axis < 3; ++axis) {
+        const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
+                along_z = slope * across[2][axis];
+        push[1][axis] += along_x;
+        push[2][axis] += along_y;
+        push[4][axis] += along_z;
+        push[3][axis] += y * along_x + x * along_y;
+        push[5][axis] += z * along_x + x * along_z;
+        push[6][axis] += z * along_y + y * along_z;
+        push[7][axis] += y * z * along_x + x * z * along_y + x * y * along_z;
+      }
+      if constexpr (kWithStiffness) {
+        L widest = L{};
+        for (const auto& area : across) {
+          widest = greater(widest, area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        }
+        stiffness += height * depth * widest * Real(3.0 * 6.0 / (kSqueezed * kSqueezed));
+      }
+    }
+  }
+
+  // From the corners' displacements to the energy's gradients in them.
+  template <bool kWithStiffness>
+  ROBOT_TISSUE_INLINE void solve() {
+    transform();
+    measure();
+    stiffen<kWithStiffness>();
+    // |G - 1|^2 of a corner's edges G below which det G > kSqueezed, as then no singular value is
+    // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
+    // its two parts.
+    constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
+    const bool squeezed = any((slight > kSlight) & (shear > Real(0)));
+    L push[kCorners][3];
+    const bool more = squeezed || has_parts;
+    if (more) {
+      for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
+      if (squeezed) addBarrier<kWithStiffness>(push);
+      if (has_parts) addParts(push);
+    }
+    scale();
+    if (more) {
+      for (int s = 1; s < kCorners; ++s) {
+        for (int axis = 0; axis < 3; ++axis) mode[s][axis] += push[s][axis];
+      }
+    }
+    transform();
+  }
+};
+
+template <typename Real>
+ROBOT_TISSUE_INLINE int offsetOf(const CellGrid<Real>& grid, int corner) {
+  return (corner & 1) + (corner >> 1 & 1) * grid.row + (corner >> 2 & 1) * grid.plane;
+}
+
+// 1 in the lanes whose bit is set, else 0.
+template <typename Real>
+ROBOT_TISSUE_INLINE Lanes<Real> onesOf(unsigned bits) {
+  typename Vector<Real>::Bits lanes{};
+  for (int lane = 0; lane < Vector<Real>::kSize; ++lane) lanes[lane] = bits >> lane & 1U;
+  return __builtin_convertvector(lanes, Lanes<Real>);
+}
+
+template <typename Real, bool kWithStiffness>
+ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, const CellBlock& of, int lane) {
+  constexpr unsigned kAll = (1U << Vector<Real>::kSize) - 1U;
+  const unsigned cells = of.cells >> lane & kAll, standing = of.standing >> lane & kAll;
+  const int first = of.first + lane;
+  Block<Real> block;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const int node = first + offsetOf(grid, corner);
+    for (int axis = 0; axis < 3; ++axis) {
+      block.mode[corner][axis] = load(grid.displacement[axis] + node);
+    }
+  }
+  block.shear = load(grid.shear + first);
+  block.bulk = load(grid.bulk + first);
+  if (cells != kAll) {
+    block.shear *= onesOf<Real>(cells);
+    block.bulk *= onesOf<Real>(cells);
+  }
+  block.has_parts = standing != 0;
+  if (block.has_parts) block.parts = block.bulk * onesOf<Real>(standing);
+  block.template solve<kWithStiffness>();
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
+    const bool low = corner < kCorners / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      subtract(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + sum);
+    }
+    if constexpr (kWithStiffness) {
+      subtract<Real>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
+    }
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<Real>& grid, const CellBlock* blocks,
+                                      int count) {
+  for (int block = 0; block < count; ++block) {
+    for (int lane = 0; lane < kLanes; lane += Vector<Real>::kSize) {
+      if (grid.lower_stiffness != nullptr) {
+        addBlock<Real, true>(grid, blocks[block], lane);
+      } else {
+        addBlock<Real, false>(grid, blocks[block], lane);
+      }
+    }
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<Real>& grid, const LooseCell<Real>* cells,
+                                       int count) {
+  Block<Real> block;
+  block.shear = block.bulk = Lanes<Real>{};
+  for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = Lanes<Real>{};
+  for (int cell = 0; cell < count; ++cell) {
+    block.shear[cell] = cells[cell].shear;
+    block.bulk[cell] = cells[cell].bulk;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        block.mode[corner][axis][cell] = grid.displacement[at(axis)][cells[cell].nodes[at(corner)]];
+      }
+    }
+  }
+  block.has_parts = grid.loose_stand;
+  block.parts = block.bulk;
+  block.template solve<true>();
+  for (int cell = 0; cell < count; ++cell) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int sum = cells[cell].sums[at(corner)];
+      for (int axis = 0; axis < 3; ++axis) {
+        grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
+      }
+      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[sum] += block.stiffness[cell];
+    }
+  }
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<Real>& grid, const LooseCell<Real>* cells,
+                                     int count) {
+  constexpr int kSize = Vector<Real>::kSize;
+  for (int cell = 0; cell < count; cell += kSize) {
+    addLooseBlock(grid, cells + cell, std::min(kSize, count - cell));
+  }
+}
+
+}  // namespace
+
+ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks,
+                                   int count) {
+  addAllBlocks(grid, blocks, count);
+}
+
+ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks,
+                                   int count) {
+  addAllBlocks(grid, blocks, count);
+}
+
+ROBOT_TISSUE_CLONES void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells,
+                                  int count) {
+  addAllLoose(grid, cells, count);
+}
+
+ROBOT_TISSUE_CLONES void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells,
+                                  int count) {
+  addAllLoose(grid, cells, count);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,67 @@
+// Forces of the cells of model `elastic` (core/material/elastic_cell.h), many at a time: the same
+// numbers, barrier included, in the lanes of vector instructions (own). One program runs on any
+// processor of its kind: which instructions it has is asked when the program starts.
+//
+// All lengths are in lattice spacings h, moduli in any unit E0, forces in E0 h^2.
+//
+// With the modes of the trilinear cell, M_s = sum over its corners k of (-1)^(bits in k and s) x_k,
+//
+//   F e_a = -M_a / 4,   I1 = sum over s of w_s |M_s|^2 / 16
+//
+// with w_s = 1, 2/3, 1/3 for modes of one, two, three axes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "robot_tissue/core/cells.h"
+#include "simd/lanes.h"
+
+namespace robot_tissue {
+
+constexpr std::uint16_t kAllLanes = 0xffff;
+
+// Cells first .. first + kLanes - 1, bits from the lowest on.
+struct CellBlock {
+  int first = 0;
+  std::uint16_t cells = kAllLanes;  // those that count
+  std::uint16_t standing = 0;       // for eight finer ones each, whose volumes they hold too
+};
+
+// Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
+// lowest node. Displacement and moduli reach kLanes beyond the highest node that a block touches.
+template <typename Real>
+struct CellGrid {
+  std::array<const Real*, 3> displacement;
+  const Real* shear;  // per cell, 0 where there is none
+  const Real* bulk;
+  int row;           // from a node to the next along y
+  int plane;         // and along z
+  bool loose_stand;  // loose cells, as blocks may
+  // Sums of a plane of cells, from node `origin` on: on their lower and on their upper four
+  // corners.
+  int origin;
+  std::array<Real*, 3> lower, upper;
+  // Bounds of the nodes' stiffness against moving alone (E0 h), likewise; may be null.
+  Real* lower_stiffness;
+  Real* upper_stiffness;
+};
+
+// Adds the forces of the blocks' cells.
+void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks, int count);
+void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks, int count);
+
+// A cell anywhere.
+template <typename Real>
+struct LooseCell {
+  std::array<int, kCorners> nodes{};
+  std::array<int, kCorners> sums{};  // where the sums on them are
+  Real shear = 0;
+  Real bulk = 0;
+};
+
+// Adds the forces of the cells to `lower`.
+void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int count);
+void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count);
+
+}  // namespace robot_tissue

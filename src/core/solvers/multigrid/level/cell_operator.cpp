@@ -1,0 +1,229 @@
+#include "solvers/multigrid/level/cell_operator.h"
+
+#include <algorithm>
+
+#include "simd/field_kernel.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kWorthSharing =
+    8000;  // nodes that are visited: with fewer, threads wait more than work
+
+}  // namespace
+
+template <typename Real>
+CellOperator<Real>::CellOperator(const LevelGrid& grid, int beside,
+                                 const std::vector<LevelCell>& cells, const LevelPart& part)
+    : grid_(grid), count_((grid.beside + beside + kLanes - 1) / kLanes * kLanes), part_(part) {
+  for (auto& values : whole) values.assign(at(count_), Real(0));
+  for (auto* values : {&stiffness, &shear_, &bulk_}) values->assign(at(count_), Real(0));
+  makeSums(1);
+  beside_places_.assign(at(count_ - grid.beside), {});
+  place(cells);
+  findBlocks();
+}
+
+template <typename Real>
+void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
+  for (const LevelCell& cell : cells) {
+    const int lowest = grid_.index(cell.place[0], cell.place[1], cell.place[2]);
+    bool regular = true;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const std::array<int, 3> offset = {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
+      const int node = cell.nodes[at(corner)];
+      if (node >= grid_.beside) {
+        auto& there = beside_places_[at(node - grid_.beside)];
+        for (std::size_t axis = 0; axis < 3; ++axis) there[axis] = cell.place[axis] + offset[axis];
+      }
+      regular = regular && node == lowest + grid_.index(offset[0], offset[1], offset[2]);
+    }
+    const Real shear = static_cast<Real>(cell.shear), bulk = static_cast<Real>(cell.bulk);
+    if (regular) {
+      shear_[at(lowest)] += shear;
+      bulk_[at(lowest)] += bulk;
+    } else {
+      loose_.push_back({cell.nodes, {}, shear, bulk});
+      loose_nodes_.insert(loose_nodes_.end(), cell.nodes.begin(), cell.nodes.end());
+    }
+  }
+  std::sort(loose_nodes_.begin(), loose_nodes_.end());
+  loose_nodes_.erase(std::unique(loose_nodes_.begin(), loose_nodes_.end()), loose_nodes_.end());
+  for (auto& sums : loose_sums_) sums.assign(loose_nodes_.size(), Real(0));
+  for (LooseCell<Real>& cell : loose_) {
+    for (std::size_t corner = 0; corner < cell.nodes.size(); ++corner) {
+      const auto found =
+          std::lower_bound(loose_nodes_.begin(), loose_nodes_.end(), cell.nodes[corner]);
+      cell.sums[corner] = static_cast<int>(found - loose_nodes_.begin());
+    }
+  }
+}
+
+template <typename Real>
+void CellOperator<Real>::findBlocks() {
+  const GridBox& covered = part_.covered;
+  const auto stands = [&covered](const std::array<int, 3>& cell) {
+    bool all = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all = all && cell[axis] + 1 >= covered.low[axis] && cell[axis] <= covered.high[axis];
+    }
+    return all && !covered.isEmpty();
+  };
+  blocks_.assign(at(grid_.size[2]), {});
+  covered_blocks_.assign(at(grid_.size[2]), {});
+  for (int k = 0; k < grid_.size[2]; ++k) {
+    for (int first = k * grid_.plane; first < (k + 1) * grid_.plane; first += kLanes) {
+      CellBlock block{first, 0, 0};
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (!(shear_[at(first + lane)] > Real(0))) continue;
+        const auto bit = static_cast<std::uint16_t>(1U << lane);
+        block.cells |= bit;
+        if (stands(grid_.placeOf(first + lane))) block.standing |= bit;
+      }
+      if (block.standing != 0) {
+        covered_blocks_[at(k)].push_back({first, block.standing, block.standing});
+      }
+      if (block.cells == 0) continue;
+      block.cells = kAllLanes;
+      blocks_[at(k)].push_back(block);
+    }
+  }
+}
+
+template <typename Real>
+void CellOperator<Real>::makeSums(int threads) {
+  sums_.resize(at(threads));
+  const std::size_t entries = at(grid_.plane + grid_.row + 1 + kLanes);
+  for (Sums& each : sums_) {
+    for (auto* sums : {&each.below, &each.lower, &each.upper}) {
+      for (auto& values : *sums) values.assign(entries, Real(0));
+    }
+  }
+}
+
+template <typename Real>
+void CellOperator<Real>::share(Workers& workers) {
+  workers_ = &workers;
+  makeSums(workers.count());
+}
+
+template <typename Real>
+void CellOperator<Real>::findForces(const Loads& loads, bool with_steps) {
+  findForces(loads, with_steps, blocks_);
+}
+
+template <typename Real>
+void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
+  findForces(loads, false, covered_blocks_);
+}
+
+// Threads take planes that lie together; the plane of cells between two shares is summed by both.
+template <typename Real>
+void CellOperator<Real>::findForces(const Loads& loads, bool with_steps, const Blocks& blocks) {
+  const int planes = grid_.size[2];
+  if (workers_ == nullptr || grid_.plane * planes < kWorthSharing) {
+    findPlanes(loads, with_steps, blocks, 0, planes, sums_.front());
+  } else {
+    const int threads = workers_->count();
+    workers_->run([&](int part) {
+      findPlanes(loads, with_steps, blocks, planes * part / threads, planes * (part + 1) / threads,
+                 sums_[at(part)]);
+    });
+  }
+  finishBeside(loads, with_steps);
+}
+
+template <typename Real>
+CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
+  CellGrid<Real> cells{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cells.displacement[axis] = loads.displacement[axis].data();
+  }
+  cells.shear = shear_.data();
+  cells.bulk = bulk_.data();
+  cells.row = grid_.row;
+  cells.plane = grid_.plane;
+  cells.loose_stand = !part_.covered.isEmpty();
+  return cells;
+}
+
+// Planes of nodes first .. end - 1, each as soon as both planes of cells at it are done, while all
+// is near at hand. What is found on a plane does not hang on where the planes begin.
+template <typename Real>
+void CellOperator<Real>::findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks,
+                                    int first, int end, Sums& sums) {
+  if (first >= end) return;
+  if (first > 0) {
+    addPlane(loads, with_steps, blocks[at(first - 1)], first - 1, sums);
+  } else {
+    for (auto& values : sums.upper) std::fill(values.begin(), values.end(), Real(0));
+  }
+  for (int plane = first; plane < end; ++plane) {
+    sums.below.swap(sums.upper);
+    addPlane(loads, with_steps, blocks[at(plane)], plane, sums);
+    finishPlane(loads, with_steps, plane, sums);
+  }
+}
+
+template <typename Real>
+void CellOperator<Real>::addPlane(const Loads& loads, bool with_steps,
+                                  const std::vector<CellBlock>& blocks, int plane,
+                                  Sums& sums) const {
+  for (auto* both : {&sums.lower, &sums.upper}) {
+    for (auto& values : *both) std::fill(values.begin(), values.end(), Real(0));
+  }
+  CellGrid<Real> cells = gridOf(loads);
+  cells.origin = plane * grid_.plane;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cells.lower[axis] = sums.lower[axis].data();
+    cells.upper[axis] = sums.upper[axis].data();
+  }
+  if (with_steps) {
+    cells.lower_stiffness = sums.lower[3].data();
+    cells.upper_stiffness = sums.upper[3].data();
+  }
+  addBlocks(cells, blocks.data(), static_cast<int>(blocks.size()));
+}
+
+template <typename Real>
+void CellOperator<Real>::finishPlane(const Loads& loads, bool with_steps, int plane,
+                                     const Sums& sums) {
+  const int first = plane * grid_.plane;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sumForces(sums.below[axis].data(), sums.lower[axis].data(),
+              loads.right_hand_side[axis].data() + first, loads.free.data() + first,
+              whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
+  }
+  if (!with_steps) return;
+  invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
+                  stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
+}
+
+// Nodes beside the grid, and those on it that loose cells have.
+template <typename Real>
+void CellOperator<Real>::finishBeside(const Loads& loads, bool with_steps) {
+  if (loose_.empty()) return;
+  for (auto& sums : loose_sums_) std::fill(sums.begin(), sums.end(), Real(0));
+  CellGrid<Real> cells = gridOf(loads);
+  for (std::size_t axis = 0; axis < 3; ++axis) cells.lower[axis] = loose_sums_[axis].data();
+  if (with_steps) cells.lower_stiffness = loose_sums_[3].data();
+  addLoose(cells, loose_.data(), static_cast<int>(loose_.size()));
+  for (std::size_t i = 0; i < loose_nodes_.size(); ++i) {
+    const std::size_t node = at(loose_nodes_[i]);
+    const bool is_free = loads.free[node] != Real(0), is_beside = loose_nodes_[i] >= grid_.beside;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (is_beside) whole[axis][node] = loads.right_hand_side[axis][node];
+      whole[axis][node] += loose_sums_[axis][i];
+      loads.force[axis][node] = is_free ? whole[axis][node] : Real(0);
+    }
+    if (!with_steps) continue;
+    if (is_beside) stiffness[node] = Real(0);
+    stiffness[node] += loose_sums_[3][i];
+    loads.inverse[node] = is_free ? Real(1) / stiffness[node] : Real(0);
+  }
+}
+
+template class CellOperator<float>;
+template class CellOperator<double>;
+
+}  // namespace robot_tissue

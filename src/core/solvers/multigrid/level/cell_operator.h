@@ -1,0 +1,97 @@
+// The cells of one lattice of several (core/solvers/multigrid/level/grid_level.h): where they
+// are, and their forces.
+//
+// Lengths are in the level's own spacing h, moduli in E0, forces in E0 h^2, stiffness in E0 h.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "simd/workers.h"
+#include "solvers/multigrid/level/cell_kernel.h"
+#include "solvers/multigrid/level/lattice_coarsening.h"
+
+namespace robot_tissue {
+
+// One value a node along x, y and z.
+template <typename Real>
+using Field = std::array<std::vector<Real>, 3>;
+
+// What a level is for.
+struct LevelPart {
+  GridBox free;     // nodes that may move; the others stay, and count as balanced
+  GridBox covered;  // by a finer level: cells with a corner in it stand for eight finer ones each
+};
+
+template <typename Real>
+class CellOperator {
+ public:
+  // With `beside` nodes beside the grid.
+  CellOperator(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
+               const LevelPart& part);
+
+  const LevelGrid& grid() const { return grid_; }
+  int count() const { return count_; }  // entries of a field
+  std::array<int, 3> placeOf(int node) const {
+    return node < grid_.beside ? grid_.placeOf(node) : beside_places_[at(node - grid_.beside)];
+  }
+
+  const LevelPart& part() const { return part_; }
+
+  // All that cells and the load do to the nodes: `whole`, and `force`, the same where `free` is 1,
+  // else 0. With steps also bounds of the nodes' stiffness and their inverses where free.
+  struct Loads {
+    const Field<Real>& displacement;
+    const Field<Real>& right_hand_side;
+    const std::vector<Real>& free;
+    Field<Real>& force;
+    std::vector<Real>& inverse;
+  };
+  void findForces(const Loads& loads, bool with_steps);
+  // Of the cells that stand for finer ones alone, and of the load.
+  void findForcesOfCovered(const Loads& loads);
+  // In these threads from now on, with the same results.
+  void share(Workers& workers);
+  Field<Real> whole;
+  std::vector<Real> stiffness;
+
+ private:
+  // Forces and stiffness that planes of cells sum up on planes of nodes: a plane of cells on its
+  // lower and upper nodes, the one before on those same lower ones.
+  struct Sums {
+    std::array<std::vector<Real>, 4> below, lower, upper;
+  };
+
+  using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
+
+  void place(const std::vector<LevelCell>& cells);
+  void findBlocks();
+  void makeSums(int threads);
+  void findForces(const Loads& loads, bool with_steps, const Blocks& blocks);
+  void findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks, int first, int end,
+                  Sums& sums);
+  CellGrid<Real> gridOf(const Loads& loads) const;
+  void addPlane(const Loads& loads, bool with_steps, const std::vector<CellBlock>& blocks,
+                int plane, Sums& sums) const;
+  void finishPlane(const Loads& loads, bool with_steps, int plane, const Sums& sums);
+  void finishBeside(const Loads& loads, bool with_steps);
+
+  LevelGrid grid_;
+  int count_ = 0;
+  std::vector<Real> shear_, bulk_;
+  std::vector<LooseCell<Real>> loose_;
+  std::vector<int> loose_nodes_;                 // of loose cells
+  std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness
+  std::vector<std::array<int, 3>> beside_places_;
+  LevelPart part_;
+  Blocks blocks_;
+  Blocks covered_blocks_;  // of cells that stand for finer ones
+  Workers* workers_ = nullptr;
+  std::vector<Sums> sums_;  // per thread
+};
+
+extern template class CellOperator<float>;
+extern template class CellOperator<double>;
+
+}  // namespace robot_tissue

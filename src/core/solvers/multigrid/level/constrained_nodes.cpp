@@ -1,0 +1,356 @@
+#include "solvers/multigrid/level/constrained_nodes.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kBothEnds = 2.0;  // weights of a spring to a group, summed
+constexpr double kNoStiffness = 1e-12;
+
+using Jacobian = Eigen::Matrix<double, 3, 6>;
+
+Jacobian jacobianAt(const Vec3& arm, bool turns) {
+  Jacobian jacobian = Jacobian::Zero();
+  jacobian.leftCols<3>().setIdentity();
+  if (turns) jacobian.rightCols<3>() = -crossMatrix(arm);
+  return jacobian;
+}
+
+// Of a spring in contact, along its normal.
+double stiffnessAlong(const LevelSpring& spring) {
+  const Vec3& normal = spring.contact->normal;
+  return normal.dot(spring.stiffness * normal);
+}
+
+// To no more than `longest` in any component.
+template <typename Vector>
+void cut(Vector& vector, double longest) {
+  const double greatest = vector.cwiseAbs().maxCoeff();
+  if (greatest > longest) vector *= longest / greatest;
+}
+
+}  // namespace
+
+Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion) {
+  const Vec3 shift = motion.head<3>();
+  if (!turns) return shift;
+  const Vec3 turn = motion.tail<3>();
+  return shift + turn.cross(arm);
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::setUnits(double spacing, double modulus) {
+  spacing_ = spacing;
+  modulus_ = modulus;
+}
+
+template <typename Real>
+int ConstrainedNodes<Real>::indexOf(int node) const {
+  const auto before = [](const ConstrainedNode& constrained, int other) {
+    return constrained.node < other;
+  };
+  const auto found = std::lower_bound(all_.begin(), all_.end(), node, before);
+  return static_cast<int>(found - all_.begin());
+}
+
+template <typename Real>
+std::vector<int> ConstrainedNodes<Real>::nodes() const {
+  std::vector<int> nodes;
+  for (const ConstrainedNode& constrained : all_) nodes.push_back(constrained.node);
+  return nodes;
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
+  std::vector<int> nodes;
+  for (const LevelSpring& spring : springs) {
+    for (const LevelSpring::Carrier& carrier : spring.carriers) nodes.push_back(carrier.node);
+  }
+  for (const LevelGroup& group : groups) {
+    nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
+  }
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    if (held[node] != 0 && held[node] != 7) nodes.push_back(static_cast<int>(node));
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  all_.assign(nodes.size(), {});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    all_[i].node = nodes[i];
+    all_[i].held = held[at(nodes[i])];
+  }
+  for (LevelSpring& spring : springs) {
+    for (LevelSpring::Carrier& carrier : spring.carriers)
+      carrier.constrained = indexOf(carrier.node);
+  }
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
+      ConstrainedNode& constrained = all_[at(indexOf(groups[group].nodes[i]))];
+      constrained.group = static_cast<int>(group);
+      constrained.held = 7;
+      constrained.arm = groups[group].arms[i];
+    }
+  }
+  group_inverse_.assign(groups.size(), Matrix6::Zero());
+  for (auto* vectors : {&right_hand_side, &force, &motion, &group_way_}) {
+    vectors->assign(groups.size(), GroupVector::Zero());
+  }
+}
+
+template <typename Real>
+Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring,
+                                    const Field<Real>& displacement) const {
+  Vec3 mean = Vec3::Zero();
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    mean += carrier.weight * vectorAt(displacement, carrier.node);
+  }
+  if (spring.group >= 0) {
+    const std::size_t group = at(spring.group);
+    mean -= motionAt(spring.arm, groups[group].turns, motion[group]);
+  }
+  return mean;
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displacement,
+                                       bool with_steps) {
+  const Vec3 mean = meanOf(spring, displacement);
+  Vec3 on_nodes = Vec3::Zero();
+  bool joins = false;
+  if (spring.contact == nullptr) {
+    on_nodes = spring.stiffness * (spring.anchor - mean);
+  } else {
+    const Vec3 point = spring.contact->rest + spacing_ * mean;
+    on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
+    contact_force_ += on_nodes;
+    if (with_steps) {
+      spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
+      joins = isJoining(spring, point);
+    }
+  }
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    all_[at(carrier.constrained)].force += carrier.weight * on_nodes;
+  }
+  if (with_steps) addStiffness(spring, joins);
+  if (spring.group < 0) return;
+  const std::size_t group = at(spring.group);
+  force[group] -= jacobianAt(spring.arm, groups[group].turns).transpose() * on_nodes;
+}
+
+// By its weights' sum, so that no motion is stiffer than the step allows (l1-Jacobi: Baker,
+// Falgout, Kolev, Yang 2011); what joins nodes does so beside.
+template <typename Real>
+void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring, bool joins) {
+  Eigen::Matrix3d stiffness = spring.stiffness;
+  if (joins) {
+    const Vec3& normal = spring.contact->normal;
+    stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
+    join(spring);
+  }
+  const double ends = spring.group >= 0 ? kBothEnds : 1.0;
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    all_[at(carrier.constrained)].stiffness += ends * carrier.weight * stiffness;
+  }
+  if (spring.group < 0) return;
+  const std::size_t group = at(spring.group);
+  const Jacobian jacobian = jacobianAt(spring.arm, groups[group].turns);
+  group_stiffness_[group] += ends * jacobian.transpose() * stiffness * jacobian;
+}
+
+// A spring in contact that pushes, or would with its gap less by `soon_touches`.
+template <typename Real>
+bool ConstrainedNodes<Real>::isJoining(const LevelSpring& spring, const Vec3& point) const {
+  const ContactSpring& contact = *spring.contact;
+  const double gap = contact.normal.dot(point - contact.plane_point) - soon_touches * spacing_;
+  if (contact.multiplier - contact.stiffness * gap <= 0.0) return false;
+  return std::none_of(spring.carriers.begin(), spring.carriers.end(), [this](const auto& carrier) {
+    return all_[at(carrier.constrained)].group >= 0;
+  });
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::join(const LevelSpring& spring) {
+  joining_.emplace_back();
+  joining_.back().stiffness = spring.contact->stiffness / (modulus_ * spacing_);
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    Vec3 along = carrier.weight * spring.contact->normal;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((all_[at(carrier.constrained)].held >> axis & 1U) != 0) along[axis] = 0.0;
+    }
+    joining_.back().parts.push_back({carrier.constrained, along});
+  }
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
+                                        const Field<Real>& displacement, bool with_steps,
+                                        Field<Real>& forces) {
+  for (ConstrainedNode& constrained : all_) {
+    constrained.force = vectorAt(cells.whole, constrained.node);
+    if (!with_steps) continue;
+    const double stiffness = static_cast<double>(cells.stiffness[at(constrained.node)]);
+    constrained.stiffness = stiffness * Eigen::Matrix3d::Identity();
+  }
+  force = right_hand_side;
+  contact_force_.setZero();
+  if (with_steps) {
+    group_stiffness_.assign(groups.size(), Matrix6::Zero());
+    joining_.clear();
+  }
+  for (LevelSpring& spring : springs) addSpring(spring, displacement, with_steps);
+  for (ConstrainedNode& constrained : all_) {
+    if (constrained.group >= 0) {
+      const std::size_t group = at(constrained.group);
+      const Jacobian jacobian = jacobianAt(constrained.arm, groups[group].turns);
+      force[group] += jacobian.transpose() * constrained.force;
+      if (with_steps)
+        group_stiffness_[group] += jacobian.transpose() * constrained.stiffness * jacobian;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_held = (constrained.held >> axis & 1U) != 0;
+      forces[at(axis)][at(constrained.node)] =
+          is_held ? Real(0) : static_cast<Real>(constrained.force[axis]);
+    }
+    if (with_steps) invert(constrained);
+  }
+  if (!with_steps) return;
+  invertGroups();
+  std::vector<Eigen::Matrix3d> inverses;
+  for (const ConstrainedNode& constrained : all_) inverses.push_back(constrained.inverse);
+  joined_.join(std::move(joining_), inverses);
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::setForces(const Field<Real>& forces) {
+  for (ConstrainedNode& constrained : all_) constrained.force = vectorAt(forces, constrained.node);
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::invert(ConstrainedNode& constrained) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((constrained.held >> axis & 1U) == 0) continue;
+    constrained.stiffness.row(axis).setZero();
+    constrained.stiffness.col(axis).setZero();
+    constrained.stiffness(axis, axis) = 1.0;
+  }
+  constrained.inverse = constrained.stiffness.inverse();
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::invertGroups() {
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    Matrix6& stiffness = group_stiffness_[group];
+    const double scale = stiffness.diagonal().maxCoeff();
+    for (int axis = 0; axis < 6; ++axis) {
+      double& own = stiffness(axis, axis);
+      if (own <= kNoStiffness * scale) own = std::max(scale, 1.0);
+    }
+    group_inverse_[group] = stiffness.inverse();
+    if (!groups[group].turns) group_inverse_[group].template bottomRightCorner<3, 3>().setZero();
+  }
+}
+
+template <typename Real>
+const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
+  balancing_.clear();
+  for (const ConstrainedNode& constrained : all_) {
+    Vec3 free = constrained.force;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((constrained.held >> axis & 1U) != 0) free[axis] = 0.0;
+    }
+    balancing_.push_back(constrained.inverse * free);
+  }
+  joined_.apply(balancing_);
+  return balancing_;
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::calm() {
+  for (ConstrainedNode& constrained : all_) constrained.step.setZero();
+  for (GroupVector& step : group_way_) step.setZero();
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::step(double keep, double share, double longest,
+                                  Field<Real>& displacement) {
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    GroupVector& step = group_way_[group];
+    step = keep * step + share * group_inverse_[group] * force[group];
+    cut(step, longest);
+    motion[group] += step;
+  }
+  const std::vector<Vec3>& motions = balancing();
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    ConstrainedNode& constrained = all_[i];
+    if (constrained.group >= 0) {
+      const std::size_t group = at(constrained.group);
+      constrained.step = motionAt(constrained.arm, groups[group].turns, group_way_[group]);
+    } else {
+      constrained.step = keep * constrained.step + share * motions[i];
+      cut(constrained.step, longest);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      displacement[at(axis)][at(constrained.node)] += static_cast<Real>(constrained.step[axis]);
+    }
+  }
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::moveBy(const Field<Real>& step,
+                                    const std::vector<GroupVector>& of_groups, double share,
+                                    Field<Real>& displacement) {
+  for (const ConstrainedNode& constrained : all_) {
+    Vec3 moved = share * vectorAt(step, constrained.node);
+    if (constrained.group >= 0) {
+      const std::size_t group = at(constrained.group);
+      moved = share * motionAt(constrained.arm, groups[group].turns, of_groups[group]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_held = constrained.group < 0 && (constrained.held >> axis & 1U) != 0;
+      if (!is_held) displacement[at(axis)][at(constrained.node)] += static_cast<Real>(moved[axis]);
+    }
+  }
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    motion[group] += share * of_groups[group];
+  }
+}
+
+template <typename Real>
+double ConstrainedNodes<Real>::squaredLocalMotion() const {
+  double squared = 0.0;
+  const std::vector<Vec3>& motions = balancing();
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    if (all_[i].group < 0) squared += motions[i].squaredNorm();
+  }
+  std::vector<GroupVector> of_groups;
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    of_groups.push_back(group_inverse_[group] * force[group]);
+  }
+  return squared + squaredMotionOf(of_groups);
+}
+
+template <typename Real>
+double ConstrainedNodes<Real>::squaredMotionOf(const std::vector<GroupVector>& of_groups) const {
+  double squared = 0.0;
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    for (const Vec3& arm : groups[group].arms) {
+      squared += motionAt(arm, groups[group].turns, of_groups[group]).squaredNorm();
+    }
+  }
+  return squared;
+}
+
+template <typename Real>
+const Vec3* ConstrainedNodes<Real>::wholeForce(int node) const {
+  const std::size_t constrained = at(indexOf(node));
+  return constrained < all_.size() && all_[constrained].node == node ? &all_[constrained].force
+                                                                     : nullptr;
+}
+
+template class ConstrainedNodes<float>;
+template class ConstrainedNodes<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,127 @@
+// Nodes of a level that do not move like the others: those with springs, held in part, or hard in a
+// patch that a force moves (own). They are few; forces and steps in double precision.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "robot_tissue/core/contact_spring.h"
+#include "robot_tissue/core/types.h"
+#include "solvers/multigrid/level/cell_operator.h"
+#include "solvers/multigrid/level/woodbury_update.h"
+
+namespace robot_tissue {
+
+// Joins a weighted mean of nodes to a place, or to a group.
+struct LevelSpring {
+  struct Carrier {
+    int node = 0;
+    double weight = 0.0;
+    int constrained = 0;  // set by ConstrainedNodes
+  };
+  std::vector<Carrier> carriers;
+  int group = -1;                                       // whose motion counts with weight -1
+  Vec3 arm = Vec3::Zero();                              // of its end there, from the center
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // as it is now
+  Vec3 anchor = Vec3::Zero();                           // mean displacement without a force
+  const ContactSpring* contact = nullptr;               // whose law it has instead
+};
+
+// Nodes that move as one hard body: a shift and, where it turns, a turn about the center.
+struct LevelGroup {
+  std::vector<int> nodes;
+  std::vector<Vec3> arms;  // of the nodes, from the center
+  bool turns = false;
+};
+using GroupVector = Eigen::Matrix<double, 6, 1>;  // shift, turn; or force, moment
+
+// Motion of a point of a group by the group's.
+Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion);
+
+template <typename Real>
+Vec3 vectorAt(const Field<Real>& field, int node) {
+  return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
+          static_cast<double>(field[2][at(node)])};
+}
+
+template <typename Real>
+class ConstrainedNodes {
+ public:
+  std::vector<LevelSpring> springs;          // `bind` after a change of nodes
+  std::vector<LevelGroup> groups;            // likewise
+  std::vector<GroupVector> right_hand_side;  // on groups, besides
+  std::vector<GroupVector> force;            // on groups, unbalanced
+  std::vector<GroupVector> motion;           // of groups, since it was last set to zero
+
+  // A gap (spacings) at which springs in contact already count as stiff: 0 is quick, more keeps
+  // what is thrown into a tool out of it.
+  double soon_touches = 0.0;
+
+  // `held`: bits of axes, per node.
+  void bind(const std::vector<std::uint8_t>& held);
+  // Of the laws of contacts: the spacing (m) and E0 (Pa).
+  void setUnits(double spacing, double modulus);
+  std::vector<int> nodes() const;  // ascending
+
+  // Adds springs to what the cells found; puts the free components into `forces`.
+  void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, bool with_steps,
+                  Field<Real>& forces);
+  // Forces are these now.
+  void setForces(const Field<Real>& forces);
+  // way = keep * way + share * step that balances; displacement += way, cut to `longest`.
+  void step(double keep, double share, double longest, Field<Real>& displacement);
+  void calm();
+  void moveBy(const Field<Real>& step, const std::vector<GroupVector>& of_groups, double share,
+              Field<Real>& displacement);
+
+  double squaredLocalMotion() const;
+  // Of hard nodes, under such motions of their groups.
+  double squaredMotionOf(const std::vector<GroupVector>& of_groups) const;
+  // All but holds; null where the node is none of these.
+  const Vec3* wholeForce(int node) const;
+  bool isFree(int constrained, int axis) const {
+    return (all_[at(constrained)].held >> axis & 1U) == 0;
+  }
+  // Sum over the springs in contact, as last found.
+  const Vec3& contactForce() const { return contact_force_; }
+  // Mean displacement of what carries the spring, less the group's motion there.
+  Vec3 meanOf(const LevelSpring& spring, const Field<Real>& displacement) const;
+
+ private:
+  struct ConstrainedNode {
+    int node = 0;
+    int group = -1;
+    unsigned held = 0;
+    Vec3 arm = Vec3::Zero();
+    Vec3 force = Vec3::Zero();
+    Vec3 step = Vec3::Zero();
+    Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  };
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+  int indexOf(int node) const;
+  void addSpring(LevelSpring& spring, const Field<Real>& displacement, bool with_steps);
+  void addStiffness(const LevelSpring& spring, bool joins);
+  bool isJoining(const LevelSpring& spring, const Vec3& point) const;
+  void join(const LevelSpring& spring);
+  // Motions of the nodes that are in no group, per entry of all_; until it is called again.
+  const std::vector<Vec3>& balancing() const;
+  void invert(ConstrainedNode& constrained);
+  void invertGroups();
+
+  double spacing_ = 1.0, modulus_ = 1.0;
+  Vec3 contact_force_ = Vec3::Zero();
+  std::vector<ConstrainedNode> all_;
+  std::vector<WoodburyUpdate::Spring> joining_;  // springs in contact, along their normals
+  WoodburyUpdate joined_;
+  mutable std::vector<Vec3> balancing_;
+  std::vector<Matrix6> group_stiffness_, group_inverse_;
+  std::vector<GroupVector> group_way_;
+};
+
+extern template class ConstrainedNodes<float>;
+extern template class ConstrainedNodes<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,253 @@
+#include "solvers/multigrid/level/grid_level.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simd/field_kernel.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kProbes = 20;            // steps of the power method
+constexpr double kProbe = 1e-3;        // its motion, in spacings
+constexpr double kMargin = 1.1;        // on what it finds
+constexpr double kLongestStep = 0.25;  // of a node along an axis, in spacings
+
+}  // namespace
+
+template <typename Real>
+GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
+                           const LevelPart& part, double greatest_stiffness)
+    : cells_(grid, beside, cells, part) {
+  for (Field<Real>* field : {&displacement, &right_hand_side, &force, &step_along_}) {
+    for (auto& values : *field) values.assign(at(count()), Real(0));
+  }
+  for (auto* values : {&inverse_, &free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
+  held_.assign(at(count()), 0);
+  cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, true);
+  rest_stiffness_ = cells_.stiffness;
+  bind();
+  if (greatest_stiffness > 0.0) {
+    step_ = 1.0 / greatest_stiffness;
+  } else {
+    measureSteps();
+  }
+}
+
+// The power method from rest, its start any numbers that are the same each time.
+template <typename Real>
+void GridLevel<Real>::measureSteps() {
+  findForces(true);
+  std::uint32_t number = 1;
+  for (auto& values : displacement) {
+    for (std::size_t node = 0; node < values.size(); ++node) {
+      number = 1664525U * number + 1013904223U;
+      values[node] = free_[node] * (Real(number >> 8) / Real(1 << 24) - Real(0.5));
+    }
+  }
+  double greatest = 1.0;
+  for (int probe = 0; probe < kProbes; ++probe) {
+    double squared = 0.0;
+    for (const auto& values : displacement) {
+      squared += dotOf(values.data(), values.data(), count());
+    }
+    if (squared == 0.0) break;
+    const Real scale = static_cast<Real>(kProbe * std::sqrt(count() / squared));
+    for (auto& values : displacement) {
+      for (Real& value : values) value *= scale;
+    }
+    findForces(false);
+    double product = 0.0, length = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t node = 0; node < inverse_.size(); ++node) {
+        Real& moved = displacement[axis][node];
+        product -= static_cast<double>(moved * force[axis][node]);
+        length += static_cast<double>(rest_stiffness_[node] * moved * moved);
+        moved = -inverse_[node] * force[axis][node];
+      }
+    }
+    greatest = std::max(greatest, product / length);
+  }
+  step_ = 1.0 / (kMargin * greatest);
+  for (auto& values : displacement) std::fill(values.begin(), values.end(), Real(0));
+}
+
+template <typename Real>
+void GridLevel<Real>::freeAll() {
+  std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  constrained.springs.clear();
+  constrained.groups.clear();
+}
+
+template <typename Real>
+void GridLevel<Real>::bind() {
+  constrained.bind(held_);
+  findFree();
+}
+
+template <typename Real>
+void GridLevel<Real>::findFree() {
+  std::fill(free_.begin(), free_.end(), Real(0));
+  interface_.clear();
+  const GridBox& free = part().free;
+  const auto look = [&](int node, const std::array<int, 3>& place) {
+    if (held_[at(node)] != 0 || !exists(node)) return;
+    if (free.has(place)) {
+      free_[at(node)] = Real(1);
+    } else {
+      interface_.push_back(node);
+    }
+  };
+  const GridBox all = grid().whole();
+  for (int k = 0; k <= all.high[2]; ++k) {
+    for (int j = 0; j <= all.high[1]; ++j) {
+      for (int i = 0; i <= all.high[0]; ++i) look(grid().index(i, j, k), {i, j, k});
+    }
+  }
+  for (int node = grid().beside; node < count(); ++node) look(node, placeOf(node));
+  for (const int node : constrained.nodes()) free_[at(node)] = Real(0);
+}
+
+template <typename Real>
+void GridLevel<Real>::showInterface() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int node : interface_) force[axis][at(node)] = cells_.whole[axis][at(node)];
+  }
+}
+
+template <typename Real>
+void GridLevel<Real>::hideInterface() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int node : interface_) force[axis][at(node)] = Real(0);
+  }
+}
+
+template <typename Real>
+void GridLevel<Real>::findForces(bool with_steps) {
+  cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, with_steps);
+  constrained.findForces(cells_, displacement, with_steps, force);
+}
+
+// Chebyshev's polynomials of the fourth kind, that smooth whatever is rough (Lottes 2022).
+template <typename Real>
+void GridLevel<Real>::smooth(int steps, bool forces_at_end) {
+  calm();
+  for (int k = 1; k <= steps; ++k) {
+    const double keep = k == 1 ? 0.0 : (2.0 * k - 3.0) / (2.0 * k + 1.0);
+    const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      stepAlong(inverse_.data(), force[axis].data(), static_cast<Real>(keep),
+                static_cast<Real>(share), static_cast<Real>(kLongestStep), step_along_[axis].data(),
+                displacement[axis].data(), count());
+    }
+    constrained.step(keep, share, kLongestStep, displacement);
+    if (k < steps) findForces(false);
+  }
+  if (forces_at_end) findForces(true);
+}
+
+template <typename Real>
+void GridLevel<Real>::calm() {
+  for (auto& values : step_along_) std::fill(values.begin(), values.end(), Real(0));
+  constrained.calm();
+}
+
+template <typename Real>
+void GridLevel<Real>::clearRightHandSide() {
+  for (auto& values : right_hand_side) std::fill(values.begin(), values.end(), Real(0));
+  std::fill(constrained.right_hand_side.begin(), constrained.right_hand_side.end(),
+            GroupVector::Zero());
+}
+
+template <typename Real>
+void GridLevel<Real>::setFasRightHandSide(const Field<Real>& wanted,
+                                          const std::vector<GroupVector>& wanted_of_groups) {
+  clearRightHandSide();
+  const bool covers_all = part().covered == part().free;
+  if (!covers_all) {
+    cells_.findForcesOfCovered({displacement, right_hand_side, free_, force, inverse_});
+    of_covered_ = cells_.whole;
+  }
+  findForces(true);
+  if (covers_all) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fasRightHandSide(wanted[axis].data(), free_.data(), right_hand_side[axis].data(),
+                       force[axis].data(), count());
+    }
+  } else {
+    setFasRightHandSideBeside(wanted);
+  }
+  setFasRightHandSideOfConstrained(wanted, wanted_of_groups);
+}
+
+// In the covered part and on its rim, the cells of the finer level act in place of the covered
+// ones.
+template <typename Real>
+void GridLevel<Real>::setFasRightHandSideBeside(const Field<Real>& wanted) {
+  GridBox with_interface = part().covered;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    with_interface.low[axis] = std::max(with_interface.low[axis] - 1, 0);
+    with_interface.high[axis] = std::min(with_interface.high[axis] + 1, grid().size[axis] - 1);
+  }
+  const int length = with_interface.high[0] - with_interface.low[0] + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int k = with_interface.low[2]; k <= with_interface.high[2]; ++k) {
+      for (int j = with_interface.low[1]; j <= with_interface.high[1]; ++j) {
+        const int first = grid().index(with_interface.low[0], j, k);
+        fasRightHandSideBeside(wanted[axis].data() + first, of_covered_[axis].data() + first,
+                               free_.data() + first, right_hand_side[axis].data() + first,
+                               force[axis].data() + first, length);
+      }
+    }
+  }
+}
+
+template <typename Real>
+void GridLevel<Real>::setFasRightHandSideOfConstrained(
+    const Field<Real>& wanted, const std::vector<GroupVector>& wanted_of_groups) {
+  const std::vector<int> constrained_nodes = constrained.nodes();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < constrained_nodes.size(); ++i) {
+      const std::size_t node = at(constrained_nodes[i]);
+      if (!constrained.isFree(static_cast<int>(i), static_cast<int>(axis))) continue;
+      if (!part().covered.has(placeOf(constrained_nodes[i]))) continue;
+      right_hand_side[axis][node] = wanted[axis][node] - force[axis][node];
+      force[axis][node] = wanted[axis][node];
+    }
+  }
+  for (std::size_t group = 0; group < constrained.groups.size(); ++group) {
+    constrained.right_hand_side[group] = wanted_of_groups[group] - constrained.force[group];
+    constrained.force[group] = wanted_of_groups[group];
+  }
+  constrained.setForces(force);
+}
+
+template <typename Real>
+void GridLevel<Real>::moveBy(const Field<Real>& motion, const std::vector<GroupVector>& of_groups,
+                             double share) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addWhereFree(motion[axis].data(), free_.data(), static_cast<Real>(share),
+                 displacement[axis].data(), count());
+  }
+  constrained.moveBy(motion, of_groups, share, displacement);
+}
+
+template <typename Real>
+double GridLevel<Real>::squaredLocalMotion() const {
+  double squared = constrained.squaredLocalMotion();
+  for (const auto& values : force) {
+    squared += squaredProduct(inverse_.data(), values.data(), count());
+  }
+  return squared;
+}
+
+template <typename Real>
+Vec3 GridLevel<Real>::wholeForce(int node) const {
+  if (const Vec3* whole = constrained.wholeForce(node)) return *whole;
+  return vectorAt(cells_.whole, node);
+}
+
+template class GridLevel<float>;
+template class GridLevel<double>;
+
+}  // namespace robot_tissue

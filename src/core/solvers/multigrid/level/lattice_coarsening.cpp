@@ -1,0 +1,268 @@
+#include "solvers/multigrid/level/lattice_coarsening.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/core/disjoint_sets.h"
+#include "solvers/multigrid/level/cell_kernel.h"
+
+namespace robot_tissue {
+namespace {
+
+using Place = std::array<int, 3>;
+
+int padded(int entries) { return (entries + kLanes - 1) / kLanes * kLanes; }
+
+Place cornerOf(const Place& place, int corner) {
+  return {place[0] + (corner & 1), place[1] + (corner >> 1 & 1), place[2] + (corner >> 2 & 1)};
+}
+
+class Coarsener {
+ public:
+  Coarsener(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries)
+      : fine_(fine), cells_(cells), entries_(entries) {
+    Place size{};
+    for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = fine.size[axis] / 2 + 1;
+    result_.grid = LevelGrid(size);
+  }
+
+  Coarsening run() {
+    gatherPieces();
+    findNodes();
+    findCarriers();
+    findStarts();
+    return std::move(result_);
+  }
+
+ private:
+  // Fine cells by the coarse place they are in, then by the pieces in which they hang together.
+  void gatherPieces() {
+    std::vector<std::pair<int, int>> by_place;
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      const Place& place = cells_[cell].place;
+      by_place.emplace_back(result_.grid.index(place[0] / 2, place[1] / 2, place[2] / 2),
+                            static_cast<int>(cell));
+    }
+    std::sort(by_place.begin(), by_place.end());
+    piece_of_.assign(cells_.size(), -1);
+    for (std::size_t first = 0; first < by_place.size();) {
+      std::size_t end = first;
+      while (end < by_place.size() && by_place[end].first == by_place[first].first) ++end;
+      std::vector<int> group;
+      for (std::size_t i = first; i < end; ++i) group.push_back(by_place[i].second);
+      splitGroup(by_place[first].first, group);
+      first = end;
+    }
+  }
+
+  void splitGroup(int coarse_place, const std::vector<int>& group) {
+    DisjointSets sets(group.size());
+    for (std::size_t a = 0; a < group.size(); ++a) {
+      for (std::size_t b = a + 1; b < group.size(); ++b) {
+        const int left = static_cast<int>(a), right = static_cast<int>(b);
+        if (sets.lowest(left) != sets.lowest(right) && haveCommonNode(group[a], group[b])) {
+          sets.join(left, right);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      const int root = sets.lowest(static_cast<int>(i));
+      int& piece = piece_of_[at(group[i])];
+      if (root == static_cast<int>(i)) {
+        piece = static_cast<int>(result_.cells.size());
+        result_.cells.push_back({result_.grid.placeOf(coarse_place), {}, 0.0, 0.0});
+      } else {
+        piece = piece_of_[at(group[at(root)])];
+      }
+      LevelCell& coarse = result_.cells[at(piece)];
+      coarse.shear += cells_[at(group[i])].shear / kCorners;
+      coarse.bulk += cells_[at(group[i])].bulk / kCorners;
+    }
+  }
+
+  bool haveCommonNode(int a, int b) const {
+    const auto& left = cells_[at(a)].nodes;
+    const auto& right = cells_[at(b)].nodes;
+    return std::any_of(left.begin(), left.end(), [&](int node) {
+      return std::find(right.begin(), right.end(), node) != right.end();
+    });
+  }
+
+  // Pieces with a common fine node have the coarse nodes in common that lie at both.
+  void findNodes() {
+    pieces_at_.assign(at(entries_), {});
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      for (const int node : cells_[cell].nodes) {
+        std::vector<int>& pieces = pieces_at_[at(node)];
+        const int piece = piece_of_[cell];
+        if (std::find(pieces.begin(), pieces.end(), piece) == pieces.end()) pieces.push_back(piece);
+      }
+    }
+    DisjointSets corners(kCorners * result_.cells.size());
+    for (const std::vector<int>& pieces : pieces_at_) {
+      for (std::size_t other = 1; other < pieces.size(); ++other) {
+        for (std::size_t one = 0; one < other; ++one)
+          joinCorners(pieces[one], pieces[other], corners);
+      }
+    }
+    numberNodes(corners);
+  }
+
+  void joinCorners(int a, int b, DisjointSets& corners) const {
+    const Place& from = result_.cells[at(a)].place;
+    const Place& to = result_.cells[at(b)].place;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Place point = cornerOf(from, corner);
+      int other = 0;
+      bool common = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int offset = point[at(axis)] - to[at(axis)];
+        common = common && offset >= 0 && offset <= 1;
+        if (offset == 1) other |= 1 << axis;
+      }
+      if (common) corners.join(kCorners * a + corner, kCorners * b + other);
+    }
+  }
+
+  // The first at a grid point has the grid's entry, others stand beside.
+  void numberNodes(DisjointSets& corners) {
+    std::vector<std::uint8_t> taken(at(result_.grid.beside), 0);
+    std::vector<int> entry_of(kCorners * result_.cells.size(), -1);
+    for (std::size_t piece = 0; piece < result_.cells.size(); ++piece) {
+      LevelCell& cell = result_.cells[piece];
+      for (int corner = 0; corner < kCorners; ++corner) {
+        int& entry = entry_of[at(corners.lowest(kCorners * static_cast<int>(piece) + corner))];
+        if (entry < 0) {
+          const Place point = cornerOf(cell.place, corner);
+          const int on_grid = result_.grid.index(point[0], point[1], point[2]);
+          entry = taken[at(on_grid)] == 0 ? on_grid : result_.grid.beside + result_.nodes_beside++;
+          taken[at(on_grid)] = 1;
+          places_[entry] = point;
+        }
+        cell.nodes[at(corner)] = entry;
+      }
+    }
+  }
+
+  // A fine node is the mean of the corners of any coarse cell that has it.
+  void findCarriers() {
+    fine_places_.assign(at(entries_), {});
+    std::vector<int> cell_at(at(entries_), -1);
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      for (int corner = 0; corner < kCorners; ++corner) {
+        const int node = cells_[cell].nodes[at(corner)];
+        if (cell_at[at(node)] >= 0) continue;
+        cell_at[at(node)] = static_cast<int>(cell);
+        fine_places_[at(node)] = cornerOf(cells_[cell].place, corner);
+      }
+    }
+    for (int node = 0; node < entries_; ++node) {
+      if (cell_at[at(node)] < 0) continue;
+      const LevelCell& coarse = result_.cells[at(piece_of_[at(cell_at[at(node)])])];
+      NodeShares shares = sharesAround(result_.grid, fine_places_[at(node)]);
+      bool usual = node < fine_.beside;
+      for (NodeShare& share : shares) {
+        const Place point = result_.grid.placeOf(share.node);
+        int corner = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          if (point[at(axis)] > coarse.place[at(axis)]) corner |= 1 << axis;
+        }
+        usual = usual && coarse.nodes[at(corner)] == share.node;
+        share.node = coarse.nodes[at(corner)];
+      }
+      if (usual) continue;
+      result_.carried.push_back(node);
+      result_.carriers.emplace(node, std::move(shares));
+    }
+  }
+
+  void findStarts() {
+    std::unordered_map<int, NodeShares> around;
+    std::vector<int> order;
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      const LevelCell& coarse = result_.cells[at(piece_of_[cell])];
+      for (const int node : coarse.nodes) {
+        const Place& point = places_.at(node);
+        const Place twice = {2 * point[0], 2 * point[1], 2 * point[2]};
+        const int usual = isOnFineGrid(twice) ? fine_.index(twice[0], twice[1], twice[2]) : -1;
+        const bool is_usual = node < result_.grid.beside && usual >= 0 &&
+                              fine_places_[at(usual)] == twice && !pieces_at_[at(usual)].empty() &&
+                              result_.carriers.count(usual) == 0;
+        if (is_usual) continue;
+        if (around.count(node) == 0) order.push_back(node);
+        addAround(cells_[cell], twice, around[node]);
+      }
+    }
+    for (const int node : order) {
+      NodeShares& fine = around[node];
+      double sum = 0.0;
+      for (const NodeShare& share : fine) sum += share.weight;
+      for (NodeShare& share : fine) share.weight /= sum;
+      if (!fine.empty()) result_.starts.push_back({node, fine});
+    }
+  }
+
+  bool isOnFineGrid(const Place& place) const {
+    return place[0] < fine_.size[0] && place[1] < fine_.size[1] && place[2] < fine_.size[2];
+  }
+
+  // The node at the place alone, if there is one; else those next to it.
+  void addAround(const LevelCell& cell, const Place& twice, NodeShares& fine) const {
+    if (fine.size() == 1 && fine.front().weight == 1.0) return;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cell.nodes[at(corner)];
+      const Place& place = fine_places_[at(node)];
+      int apart = 0, furthest = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        apart += std::abs(place[axis] - twice[axis]);
+        furthest = std::max(furthest, std::abs(place[axis] - twice[axis]));
+      }
+      const auto same = [node](const NodeShare& share) { return share.node == node; };
+      if (furthest > 1 || std::any_of(fine.begin(), fine.end(), same)) continue;
+      if (apart == 0) {
+        fine = {{node, 1.0}};
+        return;
+      }
+      fine.push_back({node, std::pow(0.5, apart)});
+    }
+  }
+
+  const LevelGrid& fine_;
+  const std::vector<LevelCell>& cells_;
+  int entries_;
+  Coarsening result_;
+  std::vector<int> piece_of_;                // per fine cell: the coarse one
+  std::vector<std::vector<int>> pieces_at_;  // per fine node
+  std::vector<Place> fine_places_;           // per fine node
+  std::unordered_map<int, Place> places_;    // of coarse nodes
+};
+
+}  // namespace
+
+LevelGrid::LevelGrid(const std::array<int, 3>& points)
+    : size(points),
+      row(points[0]),
+      plane(padded(points[0] * points[1]) + kLanes),
+      beside(padded(plane * (points[2] + 1) + row + 1 + kLanes)) {}
+
+Coarsening coarsened(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries) {
+  return Coarsener(fine, cells, entries).run();
+}
+
+NodeShares sharesAround(const LevelGrid& coarse, const std::array<int, 3>& fine_place) {
+  NodeShares shares;
+  shares.reserve(kCorners);
+  shares.push_back({coarse.index(fine_place[0] / 2, fine_place[1] / 2, fine_place[2] / 2), 1.0});
+  const std::array<int, 3> strides = {1, coarse.row, coarse.plane};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (fine_place[axis] % 2 == 0) continue;
+    const std::size_t count = shares.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      shares[i].weight *= 0.5;
+      shares.push_back({shares[i].node + strides[axis], shares[i].weight});
+    }
+  }
+  return shares;
+}
+
+}  // namespace robot_tissue

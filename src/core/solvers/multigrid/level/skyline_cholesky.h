@@ -1,0 +1,34 @@
+// A symmetric, positive definite matrix that is zero before a column of each row, and its Cholesky
+// factor, which is zero there too (George and Liu 1981).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace robot_tissue {
+
+class SkylineCholesky {
+ public:
+  // Zero, with rows that begin at such columns, at most their own.
+  void reset(std::vector<int> first);
+  int rows() const { return static_cast<int>(first_.size()); }
+
+  // Of the lower triangle, in the envelope; until `factorize`.
+  double& at(int row, int column) { return rowOf(row)[column]; }
+
+  void factorize();
+  // In place, with the factor.
+  void solve(Eigen::VectorXd& vector) const;
+
+ private:
+  // So that column 0 would be there.
+  const double* rowOf(int row) const;
+  double* rowOf(int row);
+
+  std::vector<int> first_;
+  std::vector<std::ptrdiff_t> start_;  // of rows, in `values_`
+  std::vector<double> values_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,230 @@
+#include "solvers/newton/newton_method.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+// Added to the matrix's diagonal, in mean stiffnesses of a node: keeps pieces that nothing holds
+// from drifting with rounding errors. More where the matrix is not positive definite with it.
+constexpr double kHold = 1e-7;
+constexpr double kFirmestHold = 1e-2;
+constexpr double kFirmer = 100.0;
+
+constexpr double kRoundingForce = 1e-12;   // of a node's stiffness times the spacing
+constexpr double kRoundingEnergy = 1e-15;  // of the stiffness times the spacing squared, a node
+constexpr double kShareOfExpected = 1e-4;  // of the decrease that the slope promises
+constexpr int kHalvings = 30;
+
+}  // namespace
+
+NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
+                           const NewtonOptions& options)
+    : lattice_(lattice), model_(model), options_(options) {
+  const LatticeState rest = lattice.restState();
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    stiffness_ += model.nodeStiffness(rest, node).mean() / lattice.nodeCount();
+  }
+}
+
+SolveReport NewtonMethod::solve(std::vector<LoadingPatch>& patches, const std::vector<int>&,
+                                LatticeState& state) {
+  started_ = std::chrono::steady_clock::now();
+  factorized_ = false;
+  SolveReport report;
+  ConstrainedState shape{state, patches};
+  countUnknowns(shape);
+  carryPatches(shape);
+  takeBalance(balanceOf(model_, unknowns_, shape));
+  report.status = iterate(shape, report.iterations);
+  describe(shape, report);
+  state = std::move(shape.state);
+  patches = std::move(shape.patches);
+  report.wall_ms = elapsedMs();
+  return report;
+}
+
+double NewtonMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
+
+void NewtonMethod::countUnknowns(const ConstrainedState& shape) {
+  DofMap unknowns(lattice_, model_, shape);
+  std::vector<int> rims;
+  for (const LoadingPatch& patch : shape.patches) {
+    for (const RimSpring& spring : patch.rim) rims.push_back(spring.node);
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) rims.push_back(carrier.node);
+    }
+    rims.push_back(-1);
+  }
+  if (analyzed_ && unknowns == unknowns_ && rims == rims_ && shape.state.cells == cells_) return;
+  unknowns_ = std::move(unknowns);
+  rims_ = std::move(rims);
+  cells_ = shape.state.cells;
+  analyzed_ = false;
+}
+
+// Moves the patches by displacement to their places, and the nodes around them with them, as far
+// as the second derivative can tell; if that is worse than leaving the others behind, does so.
+void NewtonMethod::carryPatches(ConstrainedState& shape) {
+  std::vector<Vec3> moved(shape.state.displacement.size(), Vec3::Zero());
+  bool any = false;
+  ConstrainedState placed = shape;
+  for (const LoadingPatch& patch : shape.patches) {
+    if (byForce(patch)) continue;
+    any = any || !patch.rim.empty();
+    for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
+      const std::size_t node = at(patch.nodes[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (unknowns_.of(patch.nodes[i], axis) != DofMap::kHeld) continue;
+        moved[node][axis] = patch.displacement[i][axis] - shape.state.displacement[node][axis];
+        placed.state.displacement[node][axis] = patch.displacement[i][axis];
+        any = any || moved[node][axis] != 0.0;
+      }
+    }
+  }
+  if (!any) return;
+  const bool predicted = unknowns_.count() > 0 && factorize(shape, moved);
+  if (predicted) {
+    const Balance before = balanceOf(model_, unknowns_, shape);
+    const Eigen::VectorXd step = solveFor(before.unbalanced - carried_);
+    ConstrainedState carried = placed;
+    unknowns_.move(carried, step, capped(placed, step));
+    if (potentialOf(model_, carried) < potentialOf(model_, placed)) placed = std::move(carried);
+  }
+  shape = std::move(placed);
+}
+
+SolveStatus NewtonMethod::iterate(ConstrainedState& shape, int& iterations) {
+  const std::vector<Vec3> unmoved(shape.state.displacement.size(), Vec3::Zero());
+  for (iterations = 0; relative_ > options_.residual; ++iterations) {
+    if (iterations == options_.max_iterations) return SolveStatus::kUnconverged;
+    const bool is_over = options_.max_ms > 0.0 && elapsedMs() > options_.max_ms;
+    if (is_over && iterations > 0) return SolveStatus::kLate;
+    if (!factorize(shape, unmoved)) return SolveStatus::kUnconverged;
+    if (!search(solveFor(balance_.unbalanced), shape)) return SolveStatus::kUnconverged;
+  }
+  return SolveStatus::kOk;
+}
+
+// The second derivative, if it is positive definite; else that of each cell without its negative
+// curvatures, which makes any step lower the energy.
+bool NewtonMethod::factorize(const ConstrainedState& shape, const std::vector<Vec3>& moved) {
+  factorized_ = true;
+  for (const bool convex : {false, true}) {
+    TangentStiffness curvature = tangentStiffnessOf(model_, unknowns_, shape, moved, convex);
+    matrix_ = std::move(curvature.matrix);
+    carried_ = std::move(curvature.carried);
+    diagonal_shift_ = 0.0;
+    diagonalShift(kHold * stiffness_);
+    if (!analyzed_) factor_->analyze(matrix_);
+    analyzed_ = true;
+    if (factor_->factorize(matrix_)) return true;
+  }
+  while (diagonal_shift_ < kFirmestHold * stiffness_) {
+    diagonalShift(kFirmer * diagonal_shift_);
+    if (factor_->factorize(matrix_)) return true;
+  }
+  return false;
+}
+
+void NewtonMethod::diagonalShift(double stiffness) {
+  for (int unknown = 0; unknown < unknowns_.count(); ++unknown) {
+    matrix_.coeffRef(unknown, unknown) += stiffness - diagonal_shift_;
+  }
+  diagonal_shift_ = stiffness;
+}
+
+// One step of refinement takes most of what the hold holds back.
+Eigen::VectorXd NewtonMethod::solveFor(const Eigen::VectorXd& force) const {
+  const Eigen::VectorXd step = factor_->solve(force);
+  return step + diagonal_shift_ * factor_->solve(step);
+}
+
+// Goes along the step as far as the potential falls.
+bool NewtonMethod::search(const Eigen::VectorXd& step, ConstrainedState& shape) {
+  const double promised = balance_.unbalanced.dot(step);  // decrease a full step begins with (J)
+  if (!std::isfinite(promised)) return false;
+  double share = capped(shape, step);
+  for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
+    ConstrainedState trial = shape;
+    unknowns_.move(trial, step, share);
+    const Balance balance = balanceOf(model_, unknowns_, trial);
+    if (!improves(balance, share * promised)) continue;
+    shape = std::move(trial);
+    takeBalance(balance);
+    return true;
+  }
+  return false;
+}
+
+void NewtonMethod::takeBalance(const Balance& balance) {
+  balance_ = balance;
+  const double floor = kRoundingForce * stiffness_ * lattice_.spacing();
+  relative_ = balance.unbalanced.norm() / std::max(balance.holding, floor / options_.residual);
+}
+
+// Close to the equilibrium the potential changes by less than its rounding error: there the
+// unbalanced force decides.
+bool NewtonMethod::improves(const Balance& trial, double promised) const {
+  if (trial.potential <= balance_.potential - kShareOfExpected * promised) {
+    return std::isfinite(trial.unbalanced.norm());
+  }
+  const double rounding =
+      kRoundingEnergy * stiffness_ * std::pow(lattice_.spacing(), 2) * lattice_.nodeCount();
+  return trial.potential <= balance_.potential + rounding &&
+         trial.unbalanced.norm() < balance_.unbalanced.norm();
+}
+
+// Share of the step in which no node moves further than allowed.
+double NewtonMethod::capped(const ConstrainedState& shape, const Eigen::VectorXd& step) const {
+  ConstrainedState moved = shape;
+  unknowns_.move(moved, step, 1.0);
+  double longest = 0.0;
+  for (std::size_t node = 0; node < moved.state.displacement.size(); ++node) {
+    const Vec3 motion = moved.state.displacement[node] - shape.state.displacement[node];
+    longest = std::max(longest, motion.norm());
+  }
+  const double allowed = options_.node_step * lattice_.spacing();
+  return longest > allowed ? allowed / longest : 1.0;
+}
+
+void NewtonMethod::describe(const ConstrainedState& shape, SolveReport& report) {
+  report.residual = relative_;
+  const std::vector<Vec3>& displacement = shape.state.displacement;
+  std::vector<Vec3> forces = model_.nodeForces(shape.state);
+  for (const LoadingPatch& patch : shape.patches) addContactForces(patch, displacement, forces);
+  for (const LoadingPatch& patch : shape.patches) {
+    report.patches.push_back(answerOf(lattice_, shape.state, patch, onHardNodes(patch, forces)));
+  }
+  double moved_squared = 0.0;
+  for (int node = 0; node < static_cast<int>(displacement.size()); ++node) {
+    moved_squared += displacement[at(node)].squaredNorm();
+    bool solved = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      solved = solved || unknowns_.of(node, axis) != DofMap::kHeld;
+    }
+    if (solved) ++report.active_nodes;
+  }
+  if (moved_squared == 0.0 || balance_.unbalanced.isZero(0.0)) return;
+  if (!factorized_ && !factorize(shape, std::vector<Vec3>(displacement.size(), Vec3::Zero()))) {
+    report.status = SolveStatus::kUnconverged;
+    return;
+  }
+  ConstrainedState balanced = shape;
+  unknowns_.move(balanced, solveFor(balance_.unbalanced), 1.0);
+  double squared = 0.0;
+  for (std::size_t node = 0; node < displacement.size(); ++node) {
+    squared += (balanced.state.displacement[node] - displacement[node]).squaredNorm();
+  }
+  report.error_estimate = std::sqrt(squared / moved_squared);
+}
+
+double NewtonMethod::elapsedMs() const {
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - started_;
+  return elapsed.count();
+}
+
+}  // namespace robot_tissue

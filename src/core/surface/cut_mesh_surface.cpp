@@ -1,0 +1,278 @@
+#include "surface/cut_mesh_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "cutting/split_cells.h"
+#include "geometry/mesh_pieces.h"
+
+namespace robot_tissue {
+namespace {
+
+// Parts of the split cells with ghosts, also for a model that has none: then a ghost moves as the
+// own corners nearest to it of the parts that have it.
+class Parts {
+ public:
+  Parts(const Lattice& lattice, const LatticeState& state) : cells_(state.cells) {
+    if (cells_->all().size() >= lattice.cells().size()) return;
+    cells_ = cellsLeft(lattice, state, SplitCells::kParted);
+    replaceGhosts();
+  }
+
+  bool isSplit(int place) const { return cells_->owner(place, 0)->isPart(); }
+  const Cell& owner(int place, int corner) const { return *cells_->owner(place, corner); }
+
+  std::vector<NodeWeight> withoutGhosts(const std::vector<NodeWeight>& carriers) const {
+    if (stand_ins_.empty()) return carriers;
+    std::map<int, double> weights;
+    for (const NodeWeight& carrier : carriers) {
+      if (!cells_->isGhost(carrier.node)) {
+        weights[carrier.node] += carrier.weight;
+        continue;
+      }
+      const auto& nodes = stand_ins_[at(carrier.node - cells_->latticeNodeCount())].nodes;
+      for (const int node : nodes) {
+        weights[node] += carrier.weight / static_cast<double>(nodes.size());
+      }
+    }
+    std::vector<NodeWeight> own;
+    for (const auto& [node, weight] : weights) own.push_back({node, weight});
+    return own;
+  }
+
+ private:
+  struct StandIn {
+    int distance = kCorners;  // in springs
+    std::set<int> nodes;
+  };
+
+  void replaceGhosts() {
+    stand_ins_.resize(cells_->ghosts().size());
+    for (const Cell& cell : cells_->all()) {
+      for (int lost = 0; lost < kCorners; ++lost) {
+        if (!cells_->isGhost(cell.nodes[at(lost)])) continue;
+        StandIn& ghost = stand_ins_[at(cell.nodes[at(lost)] - cells_->latticeNodeCount())];
+        for (int corner = 0; corner < kCorners; ++corner) {
+          if (!cell.owns(corner)) continue;
+          const int apart = corner ^ lost;
+          const int distance = (apart & 1) + (apart >> 1 & 1) + (apart >> 2 & 1);
+          if (distance < ghost.distance) ghost = {distance, {}};
+          if (distance == ghost.distance) ghost.nodes.insert(cell.nodes[at(corner)]);
+        }
+      }
+    }
+  }
+
+  std::shared_ptr<const CellSet> cells_;
+  std::vector<StandIn> stand_ins_;  // per ghost; empty: ghosts move by themselves
+};
+
+class CutMeshBuilder {
+ public:
+  CutMeshBuilder(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh)
+      : lattice_(lattice), parts_(lattice, state), mesh_(mesh), pieces_(inSpacings(), cells()) {
+    findRegion();
+  }
+
+  Surface build() {
+    for (const MeshTriangle& triangle : mesh_.triangles) {
+      const bool near = isNear(triangle);
+      pieces_.add(triangle, near);
+      if (!near) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        cut_edges_.insert(std::minmax(triangle[i], triangle[(i + 1) % 3]));
+      }
+    }
+    for (const MeshTriangle& triangle : mesh_.triangles) {
+      if (!isNear(triangle)) addWhole(triangle);
+    }
+    for (const MeshPieces::Piece& piece : pieces_.pieces()) {
+      for (std::size_t i = 1; i + 1 < piece.outline.size(); ++i) {
+        add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, false);
+      }
+    }
+    for (const auto& octant : region_) {
+      for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
+    }
+    return std::move(surface_);
+  }
+
+ private:
+  std::array<int, 3> cells() const {
+    const auto& size = lattice_.size();
+    return {size[0] - 1, size[1] - 1, size[2] - 1};
+  }
+
+  std::vector<Vec3> inSpacings() const {
+    std::vector<Vec3> points;
+    for (const Vec3& vertex : mesh_.vertices) {
+      points.push_back((vertex - lattice_.bounds().min) / lattice_.spacing());
+    }
+    return points;
+  }
+
+  // The octants of split cells and of the cells around them.
+  void findRegion() {
+    for (const Cell& cell : lattice_.cells()) {
+      if (!parts_.isSplit(cell.place)) continue;
+      const auto& lowest = lattice_.gridIndex(cell.nodes.front());
+      HalfIndex from{}, to{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        from[axis] = std::max(0, 2 * lowest[axis] - 2);
+        to[axis] = std::min(2 * cells()[axis] - 1, 2 * lowest[axis] + 3);
+      }
+      for (int k = from[2]; k <= to[2]; ++k) {
+        for (int j = from[1]; j <= to[1]; ++j) {
+          for (int i = from[0]; i <= to[0]; ++i) region_.insert({i, j, k});
+        }
+      }
+    }
+  }
+
+  // Its box reaches into the region.
+  bool isNear(const MeshTriangle& triangle) const {
+    HalfIndex low = pieces_.octantOf(pieces_.vertex(triangle[0]));
+    HalfIndex high = low;
+    for (const int vertex : triangle) {
+      const HalfIndex octant = pieces_.octantOf(pieces_.vertex(vertex));
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], octant[axis]);
+        high[axis] = std::max(high[axis], octant[axis]);
+      }
+    }
+    for (int k = low[2]; k <= high[2]; ++k) {
+      for (int j = low[1]; j <= high[1]; ++j) {
+        for (int i = low[0]; i <= high[0]; ++i) {
+          if (region_.count({i, j, k}) != 0) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  // A triangle off the region, with the points that a neighbor's edges were cut at.
+  void addWhole(const MeshTriangle& triangle) {
+    std::vector<int> outline;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int from = triangle[i], to = triangle[(i + 1) % 3];
+      std::vector<int> points = {from, to};
+      if (cut_edges_.count(std::minmax(from, to)) != 0) points = pieces_.subdivided(from, to);
+      outline.insert(outline.end(), points.begin(), points.end() - 1);
+    }
+    if (outline.size() == 3) return addPlain({outline[0], outline[1], outline[2]});
+    const int middle = pieces_.addVertex(meanOf(outline));
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      addPlain({middle, outline[i], outline[(i + 1) % outline.size()]});
+    }
+  }
+
+  Vec3 meanOf(const std::vector<int>& points) const {
+    Vec3 sum = Vec3::Zero();
+    for (const int point : points) sum += pieces_.vertex(point);
+    return sum / static_cast<double>(points.size());
+  }
+
+  // Off the region a vertex hangs on whole cells, whatever its octant.
+  void addPlain(const MeshTriangle& triangle) {
+    MeshTriangle corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = vertex(triangle[i], pieces_.octantOf(pieces_.vertex(triangle[i])));
+    }
+    surface_.triangles.push_back(corners);
+    surface_.opened.push_back(0);
+  }
+
+  void add(const MeshTriangle& triangle, const HalfIndex& octant, bool opened) {
+    MeshTriangle corners{};
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(triangle[i], octant);
+    surface_.triangles.push_back(corners);
+    surface_.opened.push_back(opened ? 1 : 0);
+  }
+
+  // On the octant's upper face along the axis, one for each side. A fan from the middle has the
+  // given border, whatever its shape.
+  void addLids(const HalfIndex& octant, int axis) {
+    HalfIndex upper = octant;
+    ++upper[at(axis)];
+    const auto border = pieces_.lid(octant, axis);
+    const bool parted = std::any_of(border.begin(), border.end(), [&](const auto& segment) {
+      return holdOf(segment.first, octant).nodes != holdOf(segment.first, upper).nodes;
+    });
+    if (!parted) return;
+    std::vector<int> points;
+    for (const auto& segment : border) points.push_back(segment.first);
+    const int middle = pieces_.addVertex(meanOf(points));
+    for (const auto& [from, to] : border) {
+      add({middle, from, to}, octant, true);
+      add({middle, to, from}, upper, true);
+    }
+  }
+
+  struct Hold {
+    std::vector<NodeWeight> carriers;
+    std::vector<int> nodes;  // ascending
+  };
+
+  // What holds a point, as the material in the octant has it.
+  Hold holdOf(int point, const HalfIndex& octant) const {
+    const Vec3& place = pieces_.vertex(point);
+    const int cell = cellAround(lattice_, place);
+    Hold hold;
+    hold.carriers = carriersIn(lattice_, parts_.owner(cell, cornerOf(cell, octant)), place);
+    for (const NodeWeight& carrier : hold.carriers) hold.nodes.push_back(carrier.node);
+    std::sort(hold.nodes.begin(), hold.nodes.end());
+    return hold;
+  }
+
+  // The surface's vertex for a point. Where it hangs on the same nodes it is the same.
+  int vertex(int point, const HalfIndex& octant) {
+    const Hold hold = holdOf(point, octant);
+    const auto [known, is_new] = vertices_.try_emplace({point, hold.nodes}, 0);
+    if (is_new) {
+      known->second = static_cast<int>(surface_.rest.size());
+      surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
+                                  ? mesh_.vertices[at(point)]
+                                  : placed(pieces_.vertex(point)));
+      surface_.carriers.push_back(parts_.withoutGhosts(hold.carriers));
+      surface_.node.push_back(-1);
+    }
+    return known->second;
+  }
+
+  Vec3 placed(const Vec3& point) const {
+    return lattice_.bounds().min + lattice_.spacing() * point;
+  }
+
+  // The cell's corner at the node that the octant belongs to, or the nearest to that.
+  int cornerOf(int cell, const HalfIndex& octant) const {
+    const auto& lowest = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
+    int corner = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int node = (octant[at(axis)] + 1) / 2;
+      if (node > lowest[at(axis)]) corner |= 1 << axis;
+    }
+    return corner;
+  }
+
+  const Lattice& lattice_;
+  Parts parts_;
+  const TriangleMesh& mesh_;
+  MeshPieces pieces_;
+  std::set<HalfIndex> region_;
+  std::set<std::pair<int, int>> cut_edges_;
+  std::map<std::pair<int, std::vector<int>>, int> vertices_;  // point and its nodes
+  Surface surface_;
+};
+
+}  // namespace
+
+Surface cutMeshSurface(const Lattice& lattice, const LatticeState& state,
+                       const TriangleMesh& mesh) {
+  return CutMeshBuilder(lattice, state, mesh).build();
+}
+
+}  // namespace robot_tissue

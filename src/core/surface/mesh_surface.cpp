@@ -1,0 +1,83 @@
+#include "surface/mesh_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "surface/cut_mesh_surface.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kNoWeight = 1e-9;
+
+Vec3 inCell(const Lattice& lattice, const Cell& cell, const Vec3& point) {
+  const auto& lowest = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes.front());
+  return point - Vec3(lowest[0], lowest[1], lowest[2]);
+}
+
+Vec3 clamped(const Vec3& place) { return place.cwiseMax(0.0).cwiseMin(1.0); }
+
+}  // namespace
+
+int cellAround(const Lattice& lattice, const Vec3& point) {
+  std::array<int, 3> middle{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    middle[axis] = static_cast<int>(std::floor(point[static_cast<Eigen::Index>(axis)]));
+  }
+  int nearest = -1;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int k = middle[2] - 1; k <= middle[2] + 1; ++k) {
+    for (int j = middle[1] - 1; j <= middle[1] + 1; ++j) {
+      for (int i = middle[0] - 1; i <= middle[0] + 1; ++i) {
+        const int index = lattice.cellAt({i, j, k});
+        if (index < 0) continue;
+        const Cell& cell = lattice.cells()[at(index)];
+        const Vec3 place = inCell(lattice, cell, point);
+        const double distance = (place - clamped(place)).norm();
+        const bool as_near = nearest >= 0 && std::abs(distance - shortest) <= kNoWeight;
+        if (as_near ? cell.share > lattice.cells()[at(nearest)].share : distance < shortest) {
+          nearest = index;
+          shortest = distance;
+        }
+      }
+    }
+  }
+  if (nearest < 0)
+    throw InputError("surface: a vertex lies in no cell; allowed: the lattice's mesh");
+  return nearest;
+}
+
+std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point) {
+  const Vec3 place = clamped(inCell(lattice, cell, point));
+  std::vector<NodeWeight> carriers;
+  double sum = 0.0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      weight *= (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
+    }
+    if (weight <= kNoWeight) continue;
+    carriers.push_back({cell.nodes[at(corner)], weight});
+    sum += weight;
+  }
+  for (NodeWeight& carrier : carriers) carrier.weight /= sum;
+  return carriers;
+}
+
+Surface meshSurface(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh) {
+  if (state.springs_cut > 0) return cutMeshSurface(lattice, state, mesh);
+  Surface surface;
+  surface.rest = mesh.vertices;
+  surface.node.assign(mesh.vertices.size(), -1);
+  surface.triangles = mesh.triangles;
+  surface.opened.assign(mesh.triangles.size(), 0);
+  for (const Vec3& vertex : mesh.vertices) {
+    const Vec3 point = (vertex - lattice.bounds().min) / lattice.spacing();
+    const Cell& cell = lattice.cells()[at(cellAround(lattice, point))];
+    surface.carriers.push_back(carriersIn(lattice, cell, point));
+  }
+  return surface;
+}
+
+}  // namespace robot_tissue

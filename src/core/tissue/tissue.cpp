@@ -1,0 +1,385 @@
+#include "robot_tissue/core/tissue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "cutting/cut.h"
+#include "cutting/split_cells.h"
+#include "robot_tissue/core/cells.h"
+#include "surface/mesh_surface.h"
+#include "tissue/registry.h"
+#include "tissue/round_gain.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kToolStep = 0.2;      // of the spacing
+constexpr int kContactRounds = 16;     // in which the shape is what was solved for
+constexpr int kMostRounds = 200;       // with those that are cut short
+constexpr int kMostIterations = 1500;  // of the rounds of one load step
+constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
+constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
+
+}  // namespace
+
+Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
+    : lattice_(tissue),
+      state_(lattice_.restState()),
+      model_(makeModel(tissue, lattice_)),
+      solver_(solver),
+      method_(makeMethod(solver, lattice_, *model_)),
+      has_gravity_(!tissue.gravity.isZero()),
+      max_ms_(solver.max_ms) {
+  if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
+  rebuildSurface();
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    weight_ += lattice_.mass(node) * tissue.gravity;
+  }
+}
+
+Tissue::~Tissue() = default;
+
+Vec3 Tissue::nodeForce(int node) const { return model_->nodeForce(state_, node); }
+
+// Contacts are found anew after each step: what a tool meets on the way must not be far.
+double Tissue::stepLength() const {
+  return std::min(method_->patchStep(), kToolStep * lattice_.spacing());
+}
+
+Tissue::Displacements Tissue::displacements() const {
+  if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
+  return kept_;
+}
+
+SolveReport Tissue::settle() { return solve(freeNodes()); }
+
+Vec3 Tissue::weight() const { return weight_; }
+
+// What holds them: minus what the tissue, and springs in contact, do to them.
+Vec3 Tissue::forceOfFixedNodes() const {
+  if (method_->visited() != nullptr) return method_->forceLeft() - weight_ - forceOfPatches();
+  const CellSet& cells = *state_.cells;
+  Vec3 force = Vec3::Zero();
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (isFixed(lattice_, cells, node)) force -= nodeForce(node);
+  }
+  for (const LoadingPatch& patch : patches_) {
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) {
+        if (!isFixed(lattice_, cells, carrier.node)) continue;
+        force -= carrier.weight * robot_tissue::forceOf(spring, state_.displacement);
+      }
+    }
+  }
+  return force;
+}
+
+Vec3 Tissue::forceOfPatches() const {
+  Vec3 force = Vec3::Zero();
+  for (const PatchAnswer& answer : last_report_.patches) force += answer.force;
+  return force;
+}
+
+double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+
+SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
+                           const std::vector<int>& disturbed, bool lies) {
+  const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
+    return std::none_of(tool_patches.begin(), tool_patches.end(),
+                        [&](const LoadingPatch& now) { return now.name == earlier.name; });
+  });
+  putToolPatches(std::move(tool_patches));
+  const bool last_left = one_left && patches_.size() == named_patches_;
+  const bool from_rest = method_->findsEquilibrium() ? last_left && !lies : one_left;
+  if (from_rest) return solveFromRest();
+  const bool one_there = patches_.size() > named_patches_;
+  const SolveReport report = solve(disturbed);
+  // The tissue left the last tool behind in the solve.
+  const bool one_lost = one_there && patches_.size() == named_patches_;
+  return one_lost && method_->findsEquilibrium() && !lies ? solveFromRest() : report;
+}
+
+void Tissue::restore(const Shape& shape) {
+  kept_.reset();
+  state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
+  patches_ = shape.patches;
+  named_patches_ = shape.named_patches;
+  last_report_ = shape.report;
+  is_late_ = shape.is_late;
+  deformSurface();
+}
+
+void Tissue::solveAside(bool aside) {
+  if (aside == is_aside_) return;
+  is_aside_ = aside;
+  if (!method_->remembers()) return;
+  if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
+  std::swap(method_, other_method_);
+}
+
+CutReport Tissue::cut(const std::vector<Vec3>& corners) {
+  const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
+  CutReport report;
+  report.springs_cut = static_cast<int>(crossing.size());
+  report.pieces = state_.pieces;
+  report.solve = last_report_;
+  if (crossing.empty()) return report;
+  std::vector<int> disturbed;
+  for (const int spring : crossing) {
+    disturbed.push_back(lattice_.springs()[at(spring)].a);
+    disturbed.push_back(lattice_.springs()[at(spring)].b);
+  }
+  kept_.reset();
+  sever(lattice_, crossing, state_, model_->splitCells());
+  rebuildSurface();
+  deformSurface();
+  renewContacts();
+  report.pieces = state_.pieces;
+  report.solve = solve(disturbed);
+  return report;
+}
+
+void Tissue::reset() {
+  const bool was_cut = state_.springs_cut > 0;
+  solveAside(false);
+  other_method_.reset();
+  method_->forget();
+  kept_.reset();
+  state_ = lattice_.restState();
+  patches_.clear();
+  named_patches_ = 0;
+  due_.clear();
+  disturbed_.clear();
+  last_report_ = SolveReport();
+  is_late_ = false;
+  if (was_cut) rebuildSurface();
+  vertices_ = surface_.rest;
+  bounds_ = boundsOf(vertices_);
+}
+
+Vec3 Tissue::nodePosition(int node) const {
+  return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
+}
+
+std::vector<Vec3> Tissue::shownDisplacement() const {
+  std::vector<Vec3> shown = state_.displacement;
+  for (const LoadingPatch& patch : patches_) {
+    if (patch.rim.empty()) continue;
+    const std::vector<Vec3> own = ownDisplacement(patch, state_.displacement);
+    for (std::size_t i = 0; i < own.size(); ++i) shown[at(patch.nodes[i])] = own[i];
+  }
+  return shown;
+}
+
+// Where patches have rims their nodes are shown as their own (shownDisplacement).
+void Tissue::deformSurface() {
+  std::vector<std::pair<int, Vec3>> own;
+  for (const LoadingPatch& patch : patches_) {
+    if (patch.rim.empty()) continue;
+    const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
+    for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
+  }
+  const auto exchange = [&](std::pair<int, Vec3>& of_node) {
+    std::swap(state_.displacement[at(of_node.first)], of_node.second);
+  };
+  std::for_each(own.begin(), own.end(), exchange);
+  bounds_ = deform(surface_, state_.displacement, vertices_);
+  std::for_each(own.rbegin(), own.rend(), exchange);
+}
+
+// The surface is another one: touches are found anew where it is now.
+void Tissue::renewContacts() {
+  std::vector<LoadingPatch> of_tools;
+  if (contact_update_.renew && contact_update_.renew(of_tools, true, false)) {
+    putToolPatches(std::move(of_tools));
+  }
+}
+
+void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
+  patches_.erase(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patches_.end());
+  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
+}
+
+SolveReport Tissue::solve(const std::vector<int>& disturbed) {
+  if (disturbed_.empty()) {
+    disturbed_ = disturbed;
+  } else {
+    disturbed_.insert(disturbed_.end(), disturbed.begin(), disturbed.end());
+    std::sort(disturbed_.begin(), disturbed_.end());
+    disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
+  }
+  SolveReport report = solveInRounds(disturbed_);
+  if (!is_late_) disturbed_.clear();
+  last_report_.volume_ratio = report.volume_ratio = volumeRatio();
+  return report;
+}
+
+SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
+  method_->beginStep(state_);
+  if (!contact_update_.renew) return solveOnce(disturbed);
+  Displacements before = displacements();
+  RoundGain gain(before);
+  SolveReport report = solveOnce(disturbed);
+  SolveReport of_round = report;
+  std::vector<LoadingPatch> of_tools;
+  for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
+    const bool late = deadline_ && deadline_->isOver();
+    const bool hurried = deadline_ && report.status == SolveStatus::kLate;
+    const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
+    const bool whole = !goBack(*before) && solved;
+    if (whole) ++whole_rounds;
+    gain.note(of_round, state_.displacement, whole);
+    const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
+                      report.iterations > kMostIterations || gain.isOver() ||
+                      (!solved && !hurried && rounds > 1 && state_.displacement == *before);
+    const bool renewed = contact_update_.renew(of_tools, whole, last);
+    if (!renewed && (last || !hurried)) break;
+    if (late) {
+      is_late_ = true;
+      last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
+    }
+    if (last) break;
+    if (renewed) putToolPatches(std::move(of_tools));
+    before.reset();  // before the next copy
+    before = displacements();
+    const SolveReport earlier = report;
+    report = of_round = solveOnce({});
+    report.wall_ms += earlier.wall_ms;
+    report.iterations += earlier.iterations;
+    last_report_ = report;
+  }
+  return report;
+}
+
+// A node may go as far as the vertices that it carries.
+void Tissue::limitWays() {
+  if (!contact_update_.longest) return;
+  const std::vector<double> of_vertices = contact_update_.longest();
+  std::vector<double> of_nodes;
+  if (!of_vertices.empty()) {
+    of_nodes.assign(state_.displacement.size(), std::numeric_limits<double>::infinity());
+  }
+  for (std::size_t vertex = 0; vertex < of_vertices.size(); ++vertex) {
+    for (const NodeWeight& carrier : surface_.carriers[vertex]) {
+      double& longest = of_nodes[at(carrier.node)];
+      longest = std::min(longest, of_vertices[vertex]);
+    }
+  }
+  method_->limitWays(std::move(of_nodes));
+}
+
+// As far as the contacts allow. False: there is no need to.
+bool Tissue::goBack(const std::vector<Vec3>& before) {
+  const double share = contact_update_.share(before);
+  if (share >= 1.0) return false;
+  kept_.reset();
+  for (std::size_t node = 0; node < before.size(); ++node) {
+    state_.displacement[node] = before[node] + share * (state_.displacement[node] - before[node]);
+  }
+  deformSurface();
+  return true;
+}
+
+// Of the next solve; 0: no bound.
+double Tissue::mostMs() const {
+  if (!deadline_) return max_ms_;
+  const double left = std::max(kLeastMs, kShareOfTime * deadline_->leftMs());
+  if (!std::isfinite(left)) return max_ms_;
+  return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
+}
+
+SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
+  const bool may_fail = !method_->staysFinite();
+  const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
+  const std::vector<LoadingPatch> last_good_patches = patches_;
+  kept_.reset();
+  limitWays();
+  method_->limitTime(mostMs());
+  SolveReport report = method_->solve(patches_, disturbed, state_);
+  if (may_fail && !hasOnlyFiniteNumbers(report)) {
+    state_.displacement = last_good;
+    patches_ = last_good_patches;
+    report = SolveReport();
+    report.status = SolveStatus::kUnconverged;
+    report.patches.resize(patches_.size());
+  }
+  is_late_ = report.status == SolveStatus::kLate;
+  describeShape(report);
+  last_report_ = report;
+  return report;
+}
+
+// Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
+// holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
+SolveReport Tissue::solveFromRest() {
+  const std::vector<LoadingPatch> standing = patches_;
+  method_->forget();
+  kept_.reset();
+  std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
+  SolveReport report;
+  if (has_gravity_) {
+    const std::size_t named = std::exchange(named_patches_, 0);
+    patches_.clear();
+    report = settle();
+    patches_.insert(patches_.begin(), standing.begin(), standing.end());
+    named_patches_ = named;
+  }
+  std::vector<Ramp> ramps;
+  for (std::size_t patch = 0; patch < standing.size(); ++patch) {
+    ramps.push_back(makeRamp(standing[patch], nullptr));
+    ramps.back().patch = patch;
+    ramps.back().start.force.setZero();
+    patches_[patch] = ramps.back().start;
+  }
+  if (!ramps.empty()) {
+    report = stepLoadsByItself(ramps, {});
+  } else if (!has_gravity_) {
+    describeShape(report);
+    report.volume_ratio = volumeRatio();
+    last_report_ = report;
+    is_late_ = false;
+  }
+  return report;
+}
+
+bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
+  const auto finite = [](const Vec3& vector) { return vector.allFinite(); };
+  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
+         std::all_of(report.patches.begin(), report.patches.end(),
+                     [&](const PatchAnswer& patch) {
+                       return finite(patch.force) && finite(patch.displacement);
+                     }) &&
+         std::all_of(state_.displacement.begin(), state_.displacement.end(), finite);
+}
+
+double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
+
+void Tissue::describeShape(SolveReport& report) {
+  deformSurface();
+  const GridBox* visited = method_->visited();
+  report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
+                                             : countInvertedCells(lattice_, state_, *visited);
+  if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
+}
+
+void Tissue::rebuildSurface() {
+  surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
+                                     : meshSurface(lattice_, state_, mesh_);
+  ++surface_version_;
+  rest_volume_ = enclosedVolume(surface_, surface_.rest);
+  vertices_ = surface_.rest;
+  bounds_ = boundsOf(vertices_);
+}
+
+std::vector<int> Tissue::freeNodes() const {
+  std::vector<int> nodes;
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    if (!lattice_.isFixed(node)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,231 @@
+// Tissue: named loading patches and the way to their loads.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <unordered_map>
+#include <utility>
+
+#include "loads/patch_rim.h"
+#include "material/tissue_model.h"
+#include "robot_tissue/core/tissue.h"
+#include "solvers/solver_method.h"
+
+namespace robot_tissue {
+namespace {
+
+[[noreturn]] void refuse(const std::string& patch, const std::string& problem,
+                         const std::string& allowed) {
+  throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
+}
+
+}  // namespace
+
+void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
+  std::vector<LoadingPatch> targets;
+  for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
+  requireOwnNodes(targets);
+  std::vector<Ramp> ramps;
+  for (const LoadingPatch& target : targets) {
+    ramps.push_back(makeRamp(target, standingPatch(target.name)));
+  }
+  const int increments = step.increments.value_or(foreseenIncrements(ramps));
+  if (increments > most_increments) {
+    refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
+           "at most " + std::to_string(most_increments) + ", so a smaller load");
+  }
+  for (Ramp& ramp : ramps) {
+    dropDue(ramp.target.name);
+    ramp.patch = place(ramp.start);
+  }
+  leaveRimsToOwners();
+  if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
+  if (step.increments) {
+    stepLoads(ramps, increments, on_increment);
+  } else {
+    stepLoadsByItself(ramps, on_increment);
+  }
+}
+
+void Tissue::loadOn(const OnIncrement& on_increment) {
+  std::vector<Ramp> ramps;
+  for (const LoadingPatch& target : std::exchange(due_, {})) {
+    const LoadingPatch* standing = standingPatch(target.name);
+    if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
+  }
+  if (ramps.empty()) return;
+  for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
+  leaveRimsToOwners();
+  stepLoadsByItself(ramps, on_increment);
+}
+
+void Tissue::dropDue(const std::string& name) {
+  const auto is_it = [&](const LoadingPatch& target) { return target.name == name; };
+  due_.erase(std::remove_if(due_.begin(), due_.end(), is_it), due_.end());
+}
+
+SolveReport Tissue::release(const std::vector<std::string>& names) {
+  const auto named = [&](const std::string& name) {
+    const auto end = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+    return std::find_if(patches_.begin(), end,
+                        [&](const LoadingPatch& patch) { return patch.name == name; });
+  };
+  for (const std::string& name : names) {
+    if (named(name) == patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)) {
+      refuse(name, "no standing patch has this name", "the name of a patch that was loaded");
+    }
+  }
+  for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
+    patches_.erase(named(name));
+    --named_patches_;
+    dropDue(name);
+  }
+  const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
+  return unique ? solve(freeNodes()) : solveFromRest();
+}
+
+PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
+  for (std::size_t index = 0; index < std::min(named_patches_, report.patches.size()); ++index) {
+    if (patches_[index].name == name) return report.patches[index];
+  }
+  return {};
+}
+
+LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
+  LoadingPatch patch;
+  patch.name = config.name;
+  patch.nodes = lattice_.nodesIn(config.box);
+  if (patch.nodes.empty()) refuse(config.name, "no node in its box", "a box that holds a node");
+  if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
+                  [this](int node) { return lattice_.isFixed(node); })) {
+    refuse(config.name, "its box holds fixed nodes", "a box of free nodes");
+  }
+  if (method_->findsEquilibrium()) {
+    patch.rim = rimOf(lattice_, *model_, state_, config.box, patch.nodes);
+  }
+  if (config.force) {
+    patch.drive = LoadingPatch::Drive::kForce;
+    patch.force = *config.force;
+    if (config.turns && !method_->findsEquilibrium()) {
+      refuse(config.name, "turns: this method moves patches without turning them",
+             "turns false, or another method");
+    }
+    patch.turns = config.turns;
+    for (const int node : patch.nodes) {
+      patch.center += lattice_.restPosition(node) / static_cast<double>(patch.nodes.size());
+    }
+    return patch;
+  }
+  Vec3 displacement = Vec3::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& component = (*config.displacement)[axis];
+    patch.free_axis[axis] = !component;
+    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
+  }
+  patch.displacement.assign(patch.nodes.size(), displacement);
+  for (RimSpring& spring : patch.rim) {
+    spring.anchor = displacement;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
+    }
+  }
+  return patch;
+}
+
+// A node obeys one patch.
+void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
+  std::unordered_map<int, const LoadingPatch*> owners;
+  const auto claim = [&](const LoadingPatch& patch) {
+    for (const int node : patch.nodes) {
+      const LoadingPatch*& owner = owners[node];
+      if (owner != nullptr && owner->name != patch.name) {
+        refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
+               "patches without a common node");
+      }
+      owner = &patch;
+    }
+  };
+  for (const LoadingPatch& patch : patches_) {
+    const auto replaced = std::find_if(patches.begin(), patches.end(),
+                                       [&](const auto& other) { return other.name == patch.name; });
+    if (replaced == patches.end()) {
+      claim(patch);
+    } else if (replaced->nodes != patch.nodes) {
+      refuse(patch.name, "a patch of this name stands on other nodes",
+             "the same box, or a release");
+    }
+  }
+  std::set<std::string> names;
+  for (const LoadingPatch& patch : patches) {
+    if (!names.insert(patch.name).second) {
+      refuse(patch.name, "two patches of this load have this name", "a name for each patch");
+    }
+    claim(patch);
+  }
+}
+
+// Index of the patch among the standing ones; a new one comes after the other named ones, with no
+// load yet.
+std::size_t Tissue::place(const LoadingPatch& patch) {
+  for (std::size_t index = 0; index < named_patches_; ++index) {
+    if (patches_[index].name != patch.name) continue;
+    patches_[index] = patch;
+    return index;
+  }
+  patches_.insert(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patch);
+  return named_patches_++;
+}
+
+// Where a patch's rim reaches nodes of another one, these are the other's alone.
+void Tissue::leaveRimsToOwners() {
+  std::unordered_map<int, const LoadingPatch*> owners;
+  for (const LoadingPatch& patch : patches_) {
+    for (const int node : patch.nodes) owners[node] = &patch;
+  }
+  for (LoadingPatch& patch : patches_) {
+    const auto foreign = [&](const RimSpring& spring) {
+      const auto owner = owners.find(spring.node);
+      return owner != owners.end() && owner->second != &patch;
+    };
+    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
+  }
+}
+
+const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
+  for (std::size_t index = 0; index < named_patches_; ++index) {
+    if (patches_[index].name == name) return &patches_[index];
+  }
+  return nullptr;
+}
+
+// Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
+Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
+  Ramp ramp;
+  ramp.target = target;
+  ramp.start = target;
+  for (RimSpring& spring : ramp.start.rim) spring.anchor = state_.displacement[at(spring.node)];
+  ramp.start.place = PatchPlace();
+  if (standing != nullptr) {
+    for (RimSpring& spring : ramp.start.rim) {
+      for (const RimSpring& earlier : standing->rim) {
+        if (earlier.node == spring.node) spring.anchor = earlier.anchor;
+      }
+    }
+    if (standing->drive == target.drive) ramp.start.place = standing->place;
+  }
+  if (byForce(target)) {
+    ramp.start.force = patchForce(ramp.start);
+    return ramp;
+  }
+  ramp.start.displacement = ownDisplacement(ramp.start, state_.displacement);
+  return ramp;
+}
+
+Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
+  std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
+  for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
+  for (const LoadingPatch& other : patches_) addContactForces(other, state_.displacement, forces);
+  return robot_tissue::answerOf(lattice_, state_, patch, onHardNodes(patch, forces)).force;
+}
+
+}  // namespace robot_tissue

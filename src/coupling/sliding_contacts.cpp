@@ -1,0 +1,383 @@
+#include "robot_tissue/coupling/sliding_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kFirm = 10.0;         // spring over the tissue's stiffness at its point
+constexpr double kSettled = 0.03;      // of the spacing: a depth or gap that is none, at most
+constexpr double kCertain = 0.003;     // likewise, at least
+constexpr double kOfForce = 0.1;       // of its tool's normal force: what closing it may change
+constexpr double kLittle = 0.05;       // likewise: a touch that may push from afar
+constexpr double kFarOff = 0.3;        // of the spacing: a gap at which a vertex is forgotten
+constexpr double kSamePoint = 0.25;    // barycentric: a touch that has wandered
+constexpr double kWanders = 0.2;       // of the slack: deeper than a touch, a point takes its place
+constexpr double kMostPush = 0.2;      // of the spacing: a touch's depth, in one round
+constexpr double kMostTurn = 0.5;      // rad, of a touch's plane in a load step
+constexpr double kSameSide = 0.3;      // cosine: a normal that turns further has jumped
+constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
+constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at most
+constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
+constexpr double kMostSlip = 0.1;      // likewise, at most
+constexpr double kNoShare = 1e-9;      // of a corner in a touch's point
+constexpr int kWavers = 12;  // rounds cut short in a row: planes that turn to and fro stay then
+constexpr double kMostForce =
+    45.0;  // of a node's stiffness times the spacing: no tissue pushes so hard
+constexpr double kLeastFree = 0.1;  // of a point's weight on nodes that give way
+
+// Beyond which a touch's force is not taken on (N).
+double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
+  double stiffness = 0.0;
+  for (const NodeWeight& carrier : spring.carriers) {
+    stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
+  }
+  return kMostForce * stiffness * tissue.lattice().spacing();
+}
+
+// Where the point is to be pushed to; what is far in a tool comes out by and by.
+Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
+  const double most = kMostPush * tissue.lattice().spacing();
+  return contact.point + std::min(contact.depth_m, most) * contact.normal;
+}
+
+// The unit vector `to`, or one that is as far as `most` (rad) from `from` on the way to it.
+Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
+  const double cosine = std::min(1.0, std::max(-1.0, from.dot(to)));
+  const Vec3 across = to - cosine * from;
+  if (std::acos(cosine) <= most || across.norm() < 1e-9) return to;
+  return std::cos(most) * from + std::sin(most) * across.normalized();
+}
+
+}  // namespace
+
+SlidingContacts::SlidingContacts(std::vector<double> friction, std::vector<double> thickness)
+    : friction_(std::move(friction)),
+      thickness_(std::move(thickness)),
+      pressed_(friction_.size(), 0.0) {}
+
+// What is fine beside the spacing, and beside a thin link (m).
+double SlidingContacts::fineness(int link, double spacing) const {
+  return std::min(spacing, thickness_[at(link)]);
+}
+
+void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
+  if (since_links_.size() != pose.links.size() || !since_displacement_ ||
+      since_displacement_->size() != tissue.state().displacement.size()) {
+    commit(pose, tissue);
+  }
+  for (ContactConstraint& touch : touches_) {
+    const Pose moved = pose.links[at(touch.link)] * since_links_[at(touch.link)].inverse();
+    touch.spring.plane_point = moved * touch.spring.plane_point;
+    touch.spring.normal = moved.linear() * touch.spring.normal;
+    anchor(pose, touch);
+  }
+}
+
+// Where the point stuck at the last commit, gone with the link since. Its drag follows the normal
+// force: what one touch no longer carries its neighbors carry, and the drag with it.
+void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) const {
+  const Pose& link = pose.links[at(touch.link)];
+  const Pose moved = link * since_links_[at(touch.link)].inverse();
+  touch.spring.anchor = moved * pointOf(touch.spring, *since_displacement_);
+  const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.friction_ratio);
+  touch.spring.friction_force = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
+}
+
+void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
+                           const Held& held) {
+  for (ContactConstraint& touch : touches_) {
+    touch.found = true;  // its plane has come with the link
+    carry(tissue, held, touch);
+  }
+  for (const Contact& contact : contacts.contacts) {
+    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
+  }
+  forgetLost(held);
+  stickFirst(tissue);
+}
+
+// Nothing is known of the normal forces of a link that has only just met the tissue: its touches
+// stick in the first solve, so that the tissue does not slide off before it is held.
+void SlidingContacts::stickFirst(const Tissue& tissue) {
+  std::set<int> pushing;
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.spring.multiplier > 0.0) pushing.insert(touch.link);
+  }
+  for (ContactConstraint& touch : touches_) {
+    if (friction_[at(touch.tool)] <= 0.0 || pushing.count(touch.link) != 0) continue;
+    ContactSpring& spring = touch.spring;
+    spring.friction_stiffness = kFirmDrag / kFirm * spring.stiffness;
+    spring.friction_bound = kMostForce * spring.friction_stiffness * tissue.lattice().spacing();
+  }
+}
+
+bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
+                             const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
+                             const Held& held, bool whole) {
+  cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
+  const bool wavers = cut_rounds_ > kWavers;
+  bool settled = whole && updateMultipliers(tissue);
+  if (!whole) pressHarder(tissue);
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (wavers && touches_[i].found && tracked[i]) continue;
+    if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
+  }
+  for (const Contact& contact : found.contacts) {
+    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (!take(contact, pose, tissue, held)) settled = false;
+  }
+  forgetLost(held);
+  return settled;
+}
+
+// The plane where the touch is now. In one load step it turns only so far: what presses from
+// beyond an edge is to be found before the touch lets go. False: the touch is below the plane, or
+// pushed from afar.
+bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPose& pose,
+                            const Tissue& tissue, ContactConstraint& touch) {
+  ContactSpring& spring = touch.spring;
+  touch.found = contact.has_value();
+  if (!contact) return spring.multiplier <= 0.0;
+  touch.off = -contact->depth_m;
+  if (contact->normal.norm() > 0.5) {
+    const Vec3 since = pose.links[at(touch.link)].linear() * touch.since_normal;
+    spring.normal = turnedBy(since, contact->normal, kMostTurn);
+    spring.plane_point = planePointOf(*contact, tissue);
+  }
+  anchor(pose, touch);
+  const double gap = gapOf(spring, tissue.state().displacement);
+  const double slack = slackOf(touch, tissue);
+  return gap >= -slack && (gap <= slack || spring.multiplier <= kLittle * pressed_[at(touch.tool)]);
+}
+
+// A depth or gap that is none (m): the tissue would not push much harder or less without it.
+double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
+  const double stiffness = touch.spring.stiffness;
+  const double spacing = tissue.lattice().spacing();
+  const double slack =
+      stiffness > 0.0 ? kOfForce * kFirm * pressed_[at(touch.tool)] / stiffness : 0.0;
+  return std::min(std::max(slack, kCertain * spacing), kSettled * spacing);
+}
+
+// A point that was found in a link or near it: a new touch, or one of a triangle that has wandered.
+// False: it is to be pushed out.
+bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                           const Held& held) {
+  ContactConstraint* touch = find(contact, tissue.surface());
+  if (touch == nullptr) {
+    add(contact, pose, tissue, held);
+    return contact.depth_m <= slackOf(touches_.back(), tissue);
+  }
+  const double slack = slackOf(*touch, tissue);
+  if (touch->vertex >= 0 || -contact.depth_m >= touch->off - kWanders * slack) return true;
+  const bool same_side = touch->spring.normal.dot(contact.normal) >= kSameSide;
+  const bool deep = contact.depth_m > kSettled * tissue.lattice().spacing();
+  if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
+    add(contact, pose, tissue, held);
+    return false;
+  }
+  const Vec3 normal = touch->spring.normal, foot = touch->spring.plane_point;
+  const Vec3 since_normal = touch->since_normal;
+  put(contact, pose, tissue, held, *touch);
+  touch->since_normal = since_normal;
+  if (!same_side) {
+    touch->spring.normal = normal;
+    touch->spring.plane_point = foot;
+    anchor(pose, *touch);
+  }
+  return contact.depth_m <= slack;
+}
+
+// Multipliers and bounds of drag follow the forces. Whether the bounds stay about where they were.
+bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
+  const double spacing = tissue.lattice().spacing();
+  double drag_before = 0.0, drag_now = 0.0;
+  pressed_.assign(friction_.size(), 0.0);
+  for (ContactConstraint& touch : touches_) {
+    touch.found = false;
+    ContactSpring& spring = touch.spring;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    const double friction_bound = friction_[at(touch.tool)] * force;
+    pressed_[at(touch.tool)] += force;
+    drag_before += spring.friction_bound;
+    drag_now += friction_bound;
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+    spring.friction_bound = friction_bound;
+    const double fine = fineness(touch.link, spacing);
+    const double soft = kFirmDrag / kFirm * spring.stiffness;
+    spring.friction_stiffness = std::min(std::max(soft, friction_bound / (kMostSlip * fine)),
+                                         friction_bound / (kElasticSlip * fine));
+  }
+  return std::abs(drag_now - drag_before) <= kSameForce * drag_now;
+}
+
+// On the way to balance nothing is known of forces, but what went into a link is to come out of it.
+void SlidingContacts::pressHarder(const Tissue& tissue) {
+  for (ContactConstraint& touch : touches_) {
+    ContactSpring& spring = touch.spring;
+    if (gapOf(spring, tissue.state().displacement) >= -slackOf(touch, tissue)) continue;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+  }
+}
+
+bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
+  double free = 0.0;
+  for (const auto& [node, weight] : carriers) {
+    if (held[at(node)] == kGrasped) return false;
+    if (held[at(node)] == 0) free += weight;
+  }
+  return free >= kLeastFree;
+}
+
+void SlidingContacts::forgetLost(const Held& held) {
+  const auto lost = [&](const ContactConstraint& touch) {
+    return !touch.found || !givesWay(touch.spring.carriers, held);
+  };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
+}
+
+// A vertex is one touch; on a triangle it is the nearest one not far off.
+SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact,
+                                                          const Surface& surface) {
+  const int vertex = vertexAt(surface, contact.triangle, contact.barycentric);
+  ContactConstraint* nearest = nullptr;
+  double least = kSamePoint;
+  for (ContactConstraint& touch : touches_) {
+    if (touch.link != contact.link || touch.vertex != vertex) continue;
+    if (vertex >= 0) return &touch;
+    if (touch.triangle != contact.triangle) continue;
+    const double off = (touch.barycentric - contact.barycentric).cwiseAbs().maxCoeff();
+    if (off >= least) continue;
+    least = off;
+    nearest = &touch;
+  }
+  return nearest;
+}
+
+void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                          const Held& held) {
+  ContactConstraint touch;
+  touch.tool = contact.tool;
+  touch.link = contact.link;
+  touch.vertex = vertexAt(tissue.surface(), contact.triangle, contact.barycentric);
+  touch.spring.plane_point = contact.point;
+  touch.friction_ratio = frictionRatioAround(touch);
+  touches_.push_back(touch);
+  put(contact, pose, tissue, held, touches_.back());
+}
+
+// Of the nearest touch of the link that pushes; zero when none does.
+Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const {
+  Vec3 ratio = Vec3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (const ContactConstraint& other : touches_) {
+    const double off = (other.spring.plane_point - touch.spring.plane_point).norm();
+    if (other.link != touch.link || other.spring.multiplier <= 0.0 || off >= least) continue;
+    least = off;
+    ratio = other.friction_ratio;
+  }
+  return ratio;
+}
+
+void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
+                          const Held& held, ContactConstraint& touch) {
+  touch.found = true;
+  touch.off = -contact.depth_m;
+  touch.triangle = contact.triangle;
+  touch.barycentric = contact.barycentric;
+  carry(tissue, held, touch);
+  touch.spring.normal = contact.normal;
+  touch.spring.plane_point = planePointOf(contact, tissue);
+  touch.since_normal = pose.links[at(touch.link)].linear().transpose() * contact.normal;
+  anchor(pose, touch);
+}
+
+// The nodes that carry the point, and how firmly.
+void SlidingContacts::carry(const Tissue& tissue, const Held& held, ContactConstraint& touch) {
+  const Surface& surface = tissue.surface();
+  ContactSpring& spring = touch.spring;
+  const Vec3 shares = (touch.barycentric.array() < kNoShare).select(0.0, touch.barycentric);
+  spring.rest.setZero();
+  for (int corner = 0; corner < 3; ++corner) {
+    const int vertex = surface.triangles[at(touch.triangle)][at(corner)];
+    spring.rest += shares[corner] * surface.rest[at(vertex)];
+  }
+  spring.carriers = carriersAt(surface, touch.triangle, shares);
+  double compliance = 0.0;  // m/N
+  for (const auto& [node, weight] : spring.carriers) {
+    const double stiffness = tissue.nodeStiffness(node);
+    if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
+  }
+  spring.stiffness = compliance > 0.0 ? kFirm / compliance : 0.0;
+}
+
+void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
+  since_links_ = pose.links;
+  since_displacement_ = tissue.displacements();
+  cut_rounds_ = 0;
+  for (ContactConstraint& touch : touches_) {
+    const ContactSpring& spring = touch.spring;
+    const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.link)].linear().transpose();
+    touch.since_normal = link_R_tissue * spring.normal;
+    if (spring.multiplier <= 0.0) continue;
+    const double force = normalForceOf(spring, *since_displacement_);
+    const Vec3 drag = forceOf(spring, *since_displacement_) - force * spring.normal;
+    touch.friction_ratio = link_R_tissue * drag / spring.multiplier;
+  }
+  for (ContactConstraint& touch : touches_) {
+    if (touch.spring.multiplier <= 0.0) touch.friction_ratio = frictionRatioAround(touch);
+  }
+  const auto left = [&](const ContactConstraint& touch) {
+    if (touch.spring.multiplier > 0.0) return false;
+    const double far = touch.vertex >= 0 ? kFarOff * tissue.lattice().spacing() : 0.0;
+    return gapOf(touch.spring, *since_displacement_) > far;
+  };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
+}
+
+void SlidingContacts::pass(const RobotPose& pose) {
+  if (!since_links_.empty()) since_links_ = pose.links;
+}
+
+bool SlidingContacts::pushesAbsurdly(const Tissue& tissue) {
+  const auto is_absurd = [&](const ContactSpring& spring) {
+    return normalForceOf(spring, tissue.state().displacement) > mostForceOf(spring, tissue);
+  };
+  return std::any_of(tissue.patches().begin(), tissue.patches().end(), [&](const auto& patch) {
+    return std::any_of(patch.contacts.begin(), patch.contacts.end(), is_absurd);
+  });
+}
+
+void SlidingContacts::clear() {
+  touches_.clear();
+  since_links_.clear();
+}
+
+void SlidingContacts::clear(int tool) {
+  const auto its = [&](const ContactConstraint& touch) { return touch.tool == tool; };
+  touches_.erase(std::remove_if(touches_.begin(), touches_.end(), its), touches_.end());
+}
+
+bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const ContactConstraint& touch) {
+    return touch.tool == tool && (touch.spring.multiplier > 0.0 ||
+                                  normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
+  });
+}
+
+std::vector<ContactSpring> SlidingContacts::springsOf(int tool) const {
+  std::vector<ContactSpring> springs;
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.tool == tool) springs.push_back(touch.spring);
+  }
+  return springs;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,291 @@
+#include "robot_tissue/coupling/sticking_contacts.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kPushSweeps = 300;
+constexpr double kPushedOut = 1e-3;     // of the spacing
+constexpr double kHeldMobility = 0.05;  // of a node with a place on a tool; 1 for others
+
+}  // namespace
+
+StickingContacts::StickingContacts(const Lattice& lattice, std::vector<std::string> tool_names)
+    : lattice_(&lattice), names_(std::move(tool_names)), attachments_(names_.size()) {}
+
+void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
+  places_.clear();
+  cells_ = tissue.state().cells;
+  holdNamedLoads(tissue);
+  left_.clear();
+  for (std::size_t tool = 0; tool < attachments_.size(); ++tool) {
+    for (auto attachment = attachments_[tool].begin(); attachment != attachments_[tool].end();) {
+      const int node = attachment->first;
+      const Pose& tissue_T_link = pose.links[at(attachment->second.link)];
+      const Vec3 moved =
+          tissue_T_link * attachment->second.point - restPosition(*lattice_, *cells_, node);
+      const Vec3 way_out = tissue_T_link.linear() * attachment->second.pushed;
+      const bool leaves = !attachment->second.grasped && letsGo(node, moved, way_out, tissue);
+      if (taken_[at(node)] != 0 || leaves) {
+        left_.push_back(node);
+        attachment = attachments_[tool].erase(attachment);
+      } else {
+        places_[node] = moved;
+        ++attachment;
+      }
+    }
+  }
+}
+
+void StickingContacts::keepTouching(const ContactSet& contacts, const Tissue& tissue) {
+  std::vector<std::set<int>> touching(attachments_.size());
+  for (const Contact& contact : contacts.contacts) {
+    for (const Carrier& carrier : supportOf(contact, tissue.surface())) {
+      touching[at(contact.tool)].insert(carrier.node);
+    }
+  }
+  for (std::size_t tool = 0; tool < attachments_.size(); ++tool) {
+    for (auto attachment = attachments_[tool].begin(); attachment != attachments_[tool].end();) {
+      const int node = attachment->first;
+      if (attachment->second.grasped || touching[tool].count(node) != 0) {
+        ++attachment;
+        continue;
+      }
+      places_.erase(node);
+      left_.push_back(node);
+      attachment = attachments_[tool].erase(attachment);
+    }
+  }
+}
+
+// The smallest motion of the nodes that takes every contact's point out of its tool:
+//   minimize sum |du_n|^2 / mobility_n   subject to   normal_c . sum w_cn du_n >= depth_c,
+// by sweeps over the contacts' multipliers. All of a sweep look at the same shape, so that the
+// order of the contacts, and with it the side a symmetric press would start on, does not matter.
+void StickingContacts::pushOut(const ContactSet& contacts, const Tissue& tissue,
+                               const RobotPose& pose) {
+  std::vector<Push> pushes;
+  for (const Contact& contact : contacts.contacts) {
+    pushes.push_back({&contact, supportOf(contact, tissue.surface()), 0.0, 0.0});
+  }
+  scale(pushes);
+  std::map<int, Vec3> motion;
+  for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
+    const double deepest = deepen(pushes, motion);
+    motion = motionOf(pushes);
+    if (deepest <= kPushedOut * lattice_->spacing()) break;
+  }
+  std::map<int, const Contact*> pushed_by;
+  for (const Push& push : pushes) {
+    if (push.multiplier <= 0.0) continue;
+    for (const Carrier& carrier : push.support) {
+      pushed_by.emplace(carrier.node, push.contact);
+    }
+  }
+  for (const auto& [node, contact] : pushed_by) {
+    attach(node, at(contact->tool), contact->link, motion.at(node), tissue, pose);
+  }
+}
+
+// A node that sits on a tool, or is itself a point inside it, has its place there; those around it
+// give way.
+void StickingContacts::scale(std::vector<Push>& pushes) const {
+  std::set<int> held;
+  for (const auto& attachments : attachments_) {
+    for (const auto& [node, attachment] : attachments) held.insert(node);
+  }
+  for (const Push& push : pushes) {
+    if (push.support.size() == 1) held.insert(push.support.front().node);
+  }
+  std::map<int, double> shared;  // per node: sum of the contacts' weights
+  for (Push& push : pushes) {
+    for (Carrier& carrier : push.support) {
+      carrier.mobility = held.count(carrier.node) != 0 ? kHeldMobility : 1.0;
+      shared[carrier.node] += carrier.weight;
+    }
+  }
+  for (Push& push : pushes) {
+    for (const Carrier& carrier : push.support) {
+      push.row_sum += carrier.mobility * carrier.weight * shared[carrier.node];
+    }
+  }
+}
+
+// One sweep over the multipliers; returns the depth of the deepest contact before it (m).
+double StickingContacts::deepen(std::vector<Push>& pushes,
+                                const std::map<int, Vec3>& motion) const {
+  double deepest = 0.0;
+  for (Push& push : pushes) {
+    if (push.row_sum <= 0.0) continue;
+    double depth = push.contact->depth_m;
+    for (const Carrier& carrier : push.support) {
+      const auto moved = motion.find(carrier.node);
+      if (moved != motion.end()) depth -= carrier.weight * push.contact->normal.dot(moved->second);
+    }
+    deepest = std::max(deepest, depth);
+    push.multiplier = std::max(0.0, push.multiplier + depth / push.row_sum);
+  }
+  return deepest;
+}
+
+std::map<int, Vec3> StickingContacts::motionOf(const std::vector<Push>& pushes) {
+  std::map<int, Vec3> motion;
+  for (const Push& push : pushes) {
+    for (const Carrier& carrier : push.support) {
+      Vec3& moved = motion.emplace(carrier.node, Vec3::Zero()).first->second;
+      moved += carrier.mobility * carrier.weight * push.multiplier * push.contact->normal;
+    }
+  }
+  return motion;
+}
+
+bool StickingContacts::letsGo(int node, const Vec3& displacement, const Vec3& way_out,
+                              const Tissue& tissue) {
+  if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
+  if (outward_[at(node)].dot(displacement) > 0.0) return true;
+  return way_out.dot(displacement) < 0.0 && way_out.dot(tissue.nodeForce(node)) >= 0.0;
+}
+
+void StickingContacts::restore(const Attachments& attachments, const Tissue& tissue) {
+  attachments_ = attachments;
+  places_.clear();
+  for (const auto& of_tool : attachments_) {
+    for (const auto& [node, attachment] : of_tool)
+      places_[node] = tissue.state().displacement[at(node)];
+  }
+}
+
+std::vector<Vec3> StickingContacts::displacement(const Tissue& tissue) const {
+  std::vector<Vec3> displacement = tissue.state().displacement;
+  for (const auto& [node, place] : places_) displacement[at(node)] = place;
+  return displacement;
+}
+
+void StickingContacts::clear() {
+  for (auto& attachments : attachments_) attachments.clear();
+}
+
+bool StickingContacts::empty() const {
+  return std::all_of(attachments_.begin(), attachments_.end(),
+                     [](const auto& attachments) { return attachments.empty(); });
+}
+
+LoadingPatch StickingContacts::loadingPatch(int tool) const {
+  LoadingPatch patch;
+  patch.name = names_[at(tool)];
+  for (const auto& [node, attachment] : attachments_[at(tool)]) {
+    patch.nodes.push_back(node);
+    patch.displacement.push_back(places_.at(node));
+  }
+  return patch;
+}
+
+std::vector<int> StickingContacts::nodes(int tool) const {
+  std::vector<int> nodes;
+  for (const auto& [node, attachment] : attachments_[at(tool)]) nodes.push_back(node);
+  return nodes;
+}
+
+Vec3 StickingContacts::pushed(int tool, const RobotPose& pose) const {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [node, attachment] : attachments_[at(tool)]) {
+    sum += pose.links[at(attachment.link)].linear() * attachment.pushed;
+  }
+  return sum;
+}
+
+void StickingContacts::hold(int tool, int link, const Pose& tissue_T_link,
+                            const std::vector<int>& nodes, const Tissue& tissue) {
+  const Pose link_T_tissue = tissue_T_link.inverse();
+  const std::vector<std::uint8_t> held = heldNodes(tissue);
+  for (const int node : nodes) {
+    if (held[at(node)] != 0) continue;
+    Attachment& attachment = attachments_[at(tool)][node];
+    attachment.link = link;
+    attachment.grasped = true;
+    attachment.point = link_T_tissue * tissue.nodePosition(node);
+    places_[node] = tissue.state().displacement[at(node)];
+  }
+}
+
+void StickingContacts::letGo(int tool) { attachments_[at(tool)].clear(); }
+
+bool StickingContacts::holds(int tool) const { return !attachments_[at(tool)].empty(); }
+
+// Per node, 1 = fixed.
+const std::vector<std::uint8_t>& StickingContacts::fixedNodes(const Tissue& tissue) const {
+  const std::shared_ptr<const CellSet>& cells = tissue.state().cells;
+  if (fixed_of_ == cells) return fixed_;
+  fixed_of_ = cells;
+  fixed_.assign(at(cells->nodeCount()), 0);
+  for (int node = 0; node < cells->nodeCount(); ++node) {
+    if (isFixed(*lattice_, *cells, node)) fixed_[at(node)] = 1;
+  }
+  return fixed_;
+}
+
+std::vector<std::uint8_t> StickingContacts::heldNodes(const Tissue& tissue) const {
+  std::vector<std::uint8_t> held = fixedNodes(tissue);
+  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
+    if (byForce(tissue.patches()[patch])) continue;
+    for (const int node : hardNodes(tissue.patches()[patch])) held[at(node)] = 1;
+  }
+  for (const auto& attachments : attachments_) {
+    for (const auto& [node, attachment] : attachments)
+      held[at(node)] = attachment.grasped ? kGrasped : 1;
+  }
+  return held;
+}
+
+std::vector<StickingContacts::Carrier> StickingContacts::supportOf(const Contact& contact,
+                                                                   const Surface& surface) const {
+  std::vector<Carrier> support;
+  for (const auto& [node, weight] : carriersAt(surface, contact.triangle, contact.barycentric)) {
+    if (taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
+  }
+  return support;
+}
+
+// A node that another tool holds keeps that seat, at its new place.
+void StickingContacts::attach(int node, std::size_t tool, int link, const Vec3& moved,
+                              const Tissue& tissue, const RobotPose& pose) {
+  Vec3& place = places_.try_emplace(node, tissue.state().displacement[at(node)]).first->second;
+  place += moved;
+  for (std::size_t other = 0; other < attachments_.size(); ++other) {
+    const auto earlier = attachments_[other].find(node);
+    if (earlier == attachments_[other].end()) continue;
+    tool = other;
+    link = earlier->second.link;
+  }
+  const Pose tool_T_tissue = pose.links[at(link)].inverse();
+  Attachment& attachment = attachments_[tool][node];
+  attachment.link = link;
+  attachment.point = tool_T_tissue * Vec3(restPosition(*lattice_, *cells_, node) + place);
+  attachment.pushed += tool_T_tissue.linear() * moved;
+}
+
+void StickingContacts::findOutwardNormals(const Tissue& tissue) {
+  const Surface& surface = tissue.surface();
+  outward_.assign(tissue.state().displacement.size(), Vec3::Zero());
+  for (const auto& triangle : surface.triangles) {
+    const Vec3 area = doubleArea(surface.rest, triangle);
+    for (const int vertex : triangle) {
+      for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
+        outward_[at(carrier.node)] += carrier.weight * area;
+      }
+    }
+  }
+  surface_version_ = tissue.surfaceVersion();
+}
+
+void StickingContacts::holdNamedLoads(const Tissue& tissue) {
+  taken_ = fixedNodes(tissue);
+  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
+    for (const int node : tissue.patches()[patch].nodes) taken_[at(node)] = 1;
+  }
+}
+
+}  // namespace robot_tissue
