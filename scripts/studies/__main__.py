@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
-STUDIES = ["liver", "paper", "economy", "fidelity", "growth", "threads", "stages", "speed",
+STUDIES = ["rooms", "liver", "paper", "economy", "fidelity", "growth", "threads", "stages", "speed",
            "node", "still_node", "contact", "accuracy", "stability", "speed_accuracy"]
 
 

@@ -31,7 +31,7 @@ robot_tissue_room(material
     tissue_model.h)
 robot_tissue_room(loads
   USES base lattice material
-  PUBLIC contact_spring.h loading_patch.h solve_report.h
+  PUBLIC contact_spring.h contact_update.h loading_patch.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
     dof_constraints.h loading_patch.cpp patch_rim.cpp patch_rim.h rim_law.cpp rim_law.h
     solve_report.cpp)
@@ -71,4 +71,4 @@ robot_tissue_room(tissue
   USES base config lattice cutting surface material loads solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
-  FILES load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp tissue_loads.cpp)
+  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp tissue_loads.cpp)

@@ -55,7 +55,8 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
 
 }  // namespace
 
-SlidingContacts::SlidingContacts(std::vector<double> friction, std::vector<double> thickness)
+SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
+                                 std::vector<double> thickness)
     : friction_(std::move(friction)),
       thickness_(std::move(thickness)),
       pressed_(friction_.size(), 0.0) {}
@@ -95,7 +96,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
     carry(tissue, held, touch);
   }
   for (const Contact& contact : contacts.contacts) {
-    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (!friction_[at(contact.tool)]) continue;
     if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
   }
   forgetLost(held);
@@ -110,7 +111,7 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
     if (touch.spring.multiplier > 0.0) pushing.insert(touch.link);
   }
   for (ContactConstraint& touch : touches_) {
-    if (friction_[at(touch.tool)] <= 0.0 || pushing.count(touch.link) != 0) continue;
+    if (friction_[at(touch.tool)].value_or(0.0) <= 0.0 || pushing.count(touch.link) != 0) continue;
     ContactSpring& spring = touch.spring;
     spring.friction_stiffness = kFirmDrag / kFirm * spring.stiffness;
     spring.friction_bound = kMostForce * spring.friction_stiffness * tissue.lattice().spacing();
@@ -119,7 +120,8 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
 
 bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
                              const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
-                             const Held& held, bool whole) {
+                             const Held& held, ContactUpdate::Shape shape) {
+  const bool whole = shape == ContactUpdate::Shape::kSolved;
   cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
   const bool wavers = cut_rounds_ > kWavers;
   bool settled = whole && updateMultipliers(tissue);
@@ -129,7 +131,7 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
     if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
   }
   for (const Contact& contact : found.contacts) {
-    if (friction_[at(contact.tool)] < 0.0) continue;
+    if (!friction_[at(contact.tool)]) continue;
     if (!take(contact, pose, tissue, held)) settled = false;
   }
   forgetLost(held);
@@ -203,7 +205,7 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     touch.found = false;
     ContactSpring& spring = touch.spring;
     const double force = normalForceOf(spring, tissue.state().displacement);
-    const double friction_bound = friction_[at(touch.tool)] * force;
+    const double friction_bound = friction_[at(touch.tool)].value_or(0.0) * force;
     pressed_[at(touch.tool)] += force;
     drag_before += spring.friction_bound;
     drag_now += friction_bound;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ladder.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -25,7 +26,7 @@ class ResolutionSweep {
         spacings_(ladderSpacings(scene.tissue, options.coarser, options.finer)),
         begin_(Clock::now()) {
     // Solves exactly whatever the tolerance.
-    if (options.method != "newton") tolerances_ = kTolerances;
+    if (traitsOf(options.method).uses_tolerance) tolerances_ = kTolerances;
     const double own = scene.solver.tolerance;
     const bool tight = own <= kTolerances.back();
     const auto known = std::find(tolerances_.begin(), tolerances_.end(), own);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot_tissue/pipeline/pipeline.h"
+#include "pipeline_parts.h"
 #include "stopwatch.h"
 
 namespace robot_tissue {
@@ -14,64 +14,67 @@ constexpr int kMostLateIterations = 1500;  // where the tools stand: as many as 
 
 Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
-  Deadline& deadline = pipeline.deadline_;
-  deadline = Deadline(pipeline.budget_s_);
-  if (end && end->leftMs() < deadline.leftMs()) deadline = *end;
-  if (end || std::isfinite(pipeline.budget_s_)) pipeline.tissue_.setDeadline(deadline);
+  World& world = pipeline.world_;
+  world.deadline = Deadline(pipeline.budget_s_);
+  if (end && end->leftMs() < world.deadline.leftMs()) world.deadline = *end;
+  if (end || std::isfinite(pipeline.budget_s_)) world.tissue.setDeadline(world.deadline);
 }
+
+Pipeline::Bounded::~Bounded() { pipeline_.world_.tissue.setDeadline(pipeline_.end_); }
 
 const StepReport& Pipeline::carryOn() {
   beginReport();
-  if (!isLate()) return report_;
+  if (!isLate()) return world_.report;
   const Bounded bounded(*this);
-  if (tissue_.isLoading()) loadOn();
+  if (world_.tissue.isLoading()) loadOn();
   finish();
   countLate();
-  report_.late = isLate();
-  report_.gave_up = gave_up_;
-  return report_;
+  world_.report.late = isLate();
+  world_.report.gave_up = gave_up_;
+  return world_.report;
 }
 
 // A solve without a bound gives up, too.
 void Pipeline::countLate() {
-  late_iterations_ += tissue_.isLoading() ? 0 : std::max(1, tissue_.lastReport().iterations);
+  late_iterations_ +=
+      world_.tissue.isLoading() ? 0 : std::max(1, world_.tissue.lastReport().iterations);
   gave_up_ = late_iterations_ > kMostLateIterations;
 }
 
 bool Pipeline::isLate() const {
-  return tissue_.isLoading() || (!gave_up_ && (unfinished_ || tissue_.isLate()));
+  return world_.tissue.isLoading() || (!gave_up_ && (world_.unfinished || world_.tissue.isLate()));
 }
 
 bool Pipeline::hasArrived() const {
-  return last_pose_ && !isLate() && !report_.lost && toolsBehind().empty();
-}
-
-// Loads that there was no time for.
-void Pipeline::loadOn() {
-  const Stopwatch watch(report_.solve_ms);
-  tissue_.loadOn([&](int, int, const SolveReport&) {
-    contacts_.commit(pose_, tissue_);
-    contacts_.ride(pose_, tissue_);
-  });
-  contacts_.commit(pose_, tissue_);
-  report_.changed = true;
-  checkpoints_.clear();
-  if (last_pose_) checkIn(*last_pose_);
+  return world_.last_pose && !isLate() && !world_.report.lost &&
+         parts_->motion.toolsBehind().empty();
 }
 
 // What the last solve had no time for.
 void Pipeline::finish() {
-  unfinished_ = false;
-  if (anyToolIn(tissue_.patches())) {
-    report_.lost = !advance(last_pose_.value_or(pose_));
-    if (report_.lost) report_.behind = toolsBehind();
-  } else if (tissue_.isLate() && !tissue_.isLoading()) {
-    const Stopwatch watch(report_.solve_ms);
-    balance();
-    contacts_.commit(pose_, tissue_);
-    report_.changed = true;
+  world_.unfinished = false;
+  if (anyToolIn(world_.tissue.patches(), world_)) {
+    world_.report.lost = !parts_->load_step.advance(world_.last_pose.value_or(world_.pose));
+    if (world_.report.lost) world_.report.behind = parts_->motion.toolsBehind();
+  } else if (world_.tissue.isLate() && !world_.tissue.isLoading()) {
+    const Stopwatch watch(world_.report.solve_ms);
+    parts_->load_step.balance();
+    world_.sliding.commit(world_.pose, world_.tissue);
+    world_.report.changed = true;
   }
   describeTools();
+}
+
+// Loads that there was no time for.
+void Pipeline::loadOn() {
+  const Stopwatch watch(world_.report.solve_ms);
+  world_.tissue.loadOn([&](int, int, const SolveReport&) {
+    world_.sliding.commit(world_.pose, world_.tissue);
+    world_.sliding.ride(world_.pose, world_.tissue);
+  });
+  world_.sliding.commit(world_.pose, world_.tissue);
+  world_.report.changed = true;
+  parts_->motion.checkInAnew();
 }
 
 }  // namespace robot_tissue

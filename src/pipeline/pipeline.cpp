@@ -1,335 +1,136 @@
 #include "robot_tissue/pipeline/pipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "pipeline_parts.h"
 #include "stopwatch.h"
+#include "tool_reports.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
-constexpr int kRigidRounds = 6;    // nodes that the solve moved into a rigid tool go out again
-constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
-constexpr int kMoreSolves = 2;     // where one ended on its way
-constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
-constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
-constexpr double kMostLeap = 10.0;       // of the spacing, of a surface's node in a load step
-constexpr double kThrough = 0.25;        // of the spacing: how deep a link is that goes through
-constexpr double kThroughTool = 0.25;    // of the link's thickness, likewise, whichever is less
-
-ToolGeometry asTool(const SupportConfig& support) {
-  ToolGeometry tool;
-  tool.name = support.name;
-  tool.friction = support.friction;
-  tool.links.push_back({"", {support.shape}});
-  return tool;
-}
-
-std::vector<ToolGeometry> withSupports(std::vector<ToolGeometry> tools,
-                                       const std::vector<SupportConfig>& supports) {
-  for (const SupportConfig& support : supports) tools.push_back(asTool(support));
-  return tools;
-}
-
-}  // namespace
 
 Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
                    const std::vector<ToolGeometry>& tools,
                    const std::vector<SupportConfig>& supports)
-    : tissue_(tissue, solver),
-      supports_(supports),
-      finder_({}),
-      patches_(tissue_.lattice(), {}),
-      contacts_({}, {}) {
-  surface_version_ = tissue_.surfaceVersion();
+    : parts_(std::make_unique<Parts>(tissue, solver)), world_(parts_->world), supports_(supports) {
   takeTools(tools);
-  tissue_.setContactUpdate({[this] { return longestWays(); },
-                            [this](const auto& before) { return contactShare(before); },
-                            [this](auto& patches, bool whole, bool last) {
-                              return updateContacts(patches, whole, last);
-                            }});
+  world_.tissue.setContactUpdate(&parts_->contact_update);
 }
 
+Pipeline::~Pipeline() = default;
+
 void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
-  tools_ = tools;
-  names_.clear();
-  first_link_ = {0};
-  any_rigid_ = false;
-  std::vector<double> friction;
-  const std::vector<ToolGeometry> all = withSupports(tools, supports_);
-  for (const ToolGeometry& tool : all) {
-    const bool rigid = tool.patch == ToolConfig::Patch::kRigid;
-    any_rigid_ = any_rigid_ || rigid;
-    names_.push_back(tool.name);
-    friction.push_back(rigid ? -1.0 : tool.friction);
-    first_link_.push_back(first_link_.back() + tool.links.size());
-  }
-  finder_ = ContactFinder(all);
-  patches_ = StickingContacts(tissue_.lattice(), names_);
-  std::vector<double> thickness;
-  for (std::size_t link = 0; link < finder_.linkCount(); ++link) {
-    thickness.push_back(finder_.thickness(link));
-  }
-  contacts_ = SlidingContacts(friction, thickness);
-  drives_.assign(tools.size(), {});
-  jaws_.assign(tools.size(), {});
-  unfinished_ = gave_up_ = false;
+  world_.setTools(tools, supports_);
+  parts_->drive.setTools(tools.size());
+  parts_->grasping.setTools(tools.size());
+  gave_up_ = false;
   late_iterations_ = 0;
-  pose_ = complete({});
-  contacts_.commit(pose_, tissue_);
-  report_ = StepReport();
-  report_.tools.resize(tools.size());
 }
 
 void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
   takeTools(tools);
-  lieDown();
-  last_pose_.reset();
-  checkpoints_.clear();
+  parts_->load_step.lieDown();
+  world_.last_pose.reset();
+  parts_->motion.clearCheckpoints();
   touched_ = true;
 }
 
+Pose Pipeline::away() { return ToolSet::away(); }
+
+const std::vector<std::string>& Pipeline::toolWarnings() const { return world_.finder.warnings(); }
+
+const std::vector<ToolGeometry>& Pipeline::tools() const { return world_.tools.geometry(); }
+
+const Tissue& Pipeline::tissue() const { return world_.tissue; }
+
+const StepReport& Pipeline::report() const { return world_.report; }
+
+const std::optional<RobotPose>& Pipeline::pose() const { return world_.last_pose; }
+
+ForceBalance Pipeline::forceBalance() const { return forceBalanceOf(world_); }
+
 void Pipeline::setEnd(const Deadline& end) {
   end_ = end;
-  tissue_.setDeadline(end_);
+  world_.tissue.setDeadline(end_);
 }
 
 const StepReport& Pipeline::step(const RobotPose& pose) {
-  const RobotPose goal = driven(pose);
-  const bool stands = standsStill(goal) && !touched_;
-  const bool was_lost = stands && report_.lost;
-  const std::vector<std::size_t> behind = report_.behind;
+  const RobotPose goal = parts_->drive.driven(world_.tools.complete(pose), world_.tools);
+  const bool stands = parts_->motion.standsStill(goal) && !touched_;
+  const bool was_lost = stands && world_.report.lost;
+  const std::vector<std::size_t> behind = world_.report.behind;
   beginReport();
-  report_.lost = was_lost;
-  if (was_lost) report_.behind = behind;
-  if (stands && !isLate()) return report_;
+  world_.report.lost = was_lost;
+  if (was_lost) world_.report.behind = behind;
+  if (stands && !isLate()) return world_.report;
   const Bounded bounded(*this);
-  if (tissue_.isLoading()) loadOn();
+  if (world_.tissue.isLoading()) loadOn();
   if (stands) {
     finish();
     countLate();
   } else {
     late_iterations_ = 0;
     gave_up_ = false;
-    unfinished_ = false;
+    world_.unfinished = false;
     stepTo(goal, pose);
   }
-  report_.late = isLate();
-  report_.gave_up = gave_up_;
-  return report_;
+  world_.report.late = isLate();
+  world_.report.gave_up = gave_up_;
+  return world_.report;
 }
 
 void Pipeline::beginReport() {
-  report_.changed = touched_;
-  report_.too_fast = report_.lost = report_.late = false;
-  report_.gave_up = gave_up_;
-  for (auto* tools : {&report_.behind, &report_.jumped, &report_.were_inside, &report_.torn_off}) {
+  world_.report.changed = touched_;
+  world_.report.too_fast = world_.report.lost = world_.report.late = false;
+  world_.report.gave_up = gave_up_;
+  for (auto* tools : {&world_.report.behind, &world_.report.jumped, &world_.report.were_inside,
+                      &world_.report.torn_off}) {
     tools->clear();
   }
-  report_.contact_ms = report_.solve_ms = 0.0;
-  report_.substeps = 0;
+  world_.report.contact_ms = world_.report.solve_ms = 0.0;
+  world_.report.substeps = 0;
 }
 
 // goal: the pose, with the ways of tools that a force drives.
 void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
-  if (touched_) dead_end_.reset();
-  report_.changed = report_.changed || !tissue_.isUntouched();
+  if (touched_) world_.dead_end.reset();
+  world_.report.changed = world_.report.changed || !world_.tissue.isUntouched();
   RobotPose there = goal;  // but for tools that wait outside
-  if (!last_pose_ || checkpoints_.empty()) {
-    startAnew(there);
+  if (!world_.last_pose || !parts_->motion.hasCheckpoints()) {
+    parts_->motion.startAnew(there);
   } else {
-    comeAndGo(there);
+    parts_->motion.comeAndGo(there);
   }
-  goBackTo(there);
-  last_pose_ = walk(there);
-  if (report_.lost) leaveStuck(there);
-  if (report_.lost) leaveReleased(there);
-  unhook(there);
-  asked_ = goal;
-  touched_ = report_.too_fast || drive(pose);  // there is a way left to go
-  if (report_.too_fast || report_.lost) report_.behind = toolsBehind();
-  for (Jaws& jaws : jaws_) jaws.let_go = jaws.let_go && (report_.too_fast || report_.lost);
+  parts_->motion.goBackTo(there);
+  world_.last_pose = parts_->motion.walk(there);
+  if (world_.report.lost) parts_->motion.leaveStuck(there);
+  if (world_.report.lost) parts_->motion.leaveReleased(there);
+  parts_->motion.unhook(there);
+  world_.asked = goal;
+  touched_ = world_.report.too_fast || drive(pose);  // there is a way left to go
+  if (world_.report.too_fast || world_.report.lost) {
+    world_.report.behind = parts_->motion.toolsBehind();
+  } else {
+    parts_->grasping.forgetLetGo();
+  }
   describeTools();
-}
-
-// One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
-// with a rigid patch; for the others the solver asks for the contacts itself (updateContacts).
-// False: no shape could follow, all is as it was. `insists`: on a shape that did not converge, too.
-bool Pipeline::advance(const RobotPose& pose, bool insists) {
-  ++report_.substeps;
-  Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
-  pose_ = pose;
-  openJaws();
-  contacts_.ride(pose, tissue_);  // patches move with their tools
-  for (int round = 0; round < kRigidRounds; ++round) {
-    patches_.ride(pose, tissue_);
-    if (round == 0) meet(pose);
-    pushRigid(pose);  // robot pose -> contacts -> loading patches
-    std::vector<LoadingPatch> patches = patchesOfTools();
-    const std::vector<LoadingPatch>& before = tissue_.patches();
-    if (!anyToolIn(patches) && !anyToolIn(before)) break;
-    if (patches.empty() && wouldTouchAtRest(pose)) patches = lastTouches();
-    if (round == 0) good.shape = tissue_.shape();
-    follow(std::move(patches));  // loading patches -> solve
-    if (any_rigid_ ? leaptFrom(good) : !settlesFrom(good, insists)) {
-      goBackTo(good);
-      return false;
-    }
-    if (!any_rigid_) break;
-    if (deepestInRigid(pose) <= kDeepEnough * tissue_.lattice().spacing()) break;
-    unfinished_ = round + 1 < kRigidRounds && isOutOfTime();
-    if (unfinished_) break;
-  }
-  closeJaws();
-  contacts_.commit(pose, tissue_);
-  tearOff();
-  dead_end_.reset();
-  return true;
-}
-
-// Goes on where the solve ended on its way. False: no shape followed.
-bool Pipeline::settlesFrom(const Checkpoint& good, bool insists) {
-  for (int more = 0;; ++more) {
-    const bool converged = tissue_.lastReport().status != SolveStatus::kUnconverged;
-    if (isLost(good) || (!converged && !insists)) return false;
-    if (more == kMoreSolves || !isUnsettled()) return true;
-    unfinished_ = isOutOfTime();
-    if (unfinished_) return true;
-    follow(patchesOfTools());
-  }
-}
-
-void Pipeline::follow(std::vector<LoadingPatch> patches) {
-  const Stopwatch watch(report_.solve_ms);
-  const SolveReport solved =
-      tissue_.follow(std::move(patches), patches_.left(), !supports_.empty());
-  if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
-  report_.changed = true;
-}
-
-// No load step takes tissue that is held so far.
-bool Pipeline::leaptFrom(const Checkpoint& good) const {
-  if (tissue_.isUntouched()) return false;
-  const std::vector<Vec3>& now = tissue_.state().displacement;
-  const std::vector<Vec3>& before = *good.shape.displacement;
-  double farthest = 0.0;
-  for (const auto& carriers : tissue_.surface().carriers) {
-    for (const NodeWeight& carrier : carriers) {
-      const Vec3 way = now[at(carrier.node)] - before[at(carrier.node)];
-      farthest = std::max(farthest, way.squaredNorm());
-    }
-  }
-  const double leap = kMostLeap * tissue_.lattice().spacing();
-  return farthest > leap * leap;
-}
-
-// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
-bool Pipeline::isLost(const Checkpoint& good) const {
-  if (leaptFrom(good)) return true;
-  if (tissue_.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
-  return wentThrough(good) || SlidingContacts::pushesAbsurdly(tissue_);
-}
-
-// Into what gives way, deeper than it was.
-bool Pipeline::wentThrough(const Checkpoint& good) const {
-  for (std::size_t link = 0; link < first_link_[tools_.size()] && link < depths_.size(); ++link) {
-    const double before = link < good.depths.size() ? good.depths[link] : 0.0;
-    if (depths_[link] > std::max(throughAt(link), before)) return true;
-  }
-  return false;
-}
-
-// Deeper in the surface (m), a link is on its way to the other side of it.
-double Pipeline::throughAt(std::size_t link) const {
-  return std::min(kThrough * tissue_.lattice().spacing(), kThroughTool * finder_.thickness(link));
-}
-
-// The solve ended on its way, as where tissue slips far.
-bool Pipeline::isUnsettled() const {
-  if (left_inside_ > kTooDeep * tissue_.lattice().spacing()) return true;
-  if (tissue_.lastReport().status != SolveStatus::kUnconverged) return false;
-  const ForceBalance forces = forceBalance();
-  return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
-}
-
-bool Pipeline::isRigid(int tool) const {
-  return at(tool) < tools_.size() && tools_[at(tool)].patch == ToolConfig::Patch::kRigid;
-}
-
-// How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
-double Pipeline::deepestInRigid(const RobotPose& pose) {
-  double deepest = 0.0;
-  for (const Contact& contact : contactsAt(pose, tissue_.state().displacement).contacts) {
-    if (isRigid(contact.tool)) deepest = std::max(deepest, contact.depth_m);
-  }
-  return deepest;
-}
-
-// Nodes under a tool with a rigid patch go out of it.
-void Pipeline::pushRigid(const RobotPose& pose) {
-  if (!any_rigid_) return;
-  for (int pass = 0; pass < kPushPasses; ++pass) {
-    ContactSet contacts = contactsAt(pose, patches_.displacement(tissue_));
-    auto& all = contacts.contacts;
-    const double touches = kTouches * tissue_.lattice().spacing();
-    const auto is_others = [&](const Contact& contact) {
-      return !isRigid(contact.tool) || contact.depth_m < -touches;
-    };
-    all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
-    if (pass == 0) patches_.keepTouching(contacts, tissue_);
-    if (deepest(contacts) <= 0.0) return;
-    patches_.pushOut(contacts, tissue_, pose);
-  }
-}
-
-// Of each tool that holds or pushes, and of each support that is near.
-std::vector<LoadingPatch> Pipeline::patchesOfTools() const {
-  std::vector<LoadingPatch> patches;
-  for (std::size_t tool = 0; tool < names_.size(); ++tool) {
-    const int index = static_cast<int>(tool);
-    const bool may_push = tool >= tools_.size() || contacts_.pushes(index, tissue_);
-    const std::vector<ContactSpring> springs =
-        may_push ? contacts_.springsOf(index) : std::vector<ContactSpring>();
-    if (springs.empty() && !patches_.holds(index)) continue;
-    patches.push_back(patches_.loadingPatch(index));
-    patches.back().contacts = springs;
-  }
-  return patches;
-}
-
-// Supports are no tools: they alone disturb nothing.
-bool Pipeline::anyToolIn(const std::vector<LoadingPatch>& patches) const {
-  const auto end = names_.begin() + static_cast<std::ptrdiff_t>(tools_.size());
-  const std::size_t named = &patches == &tissue_.patches() ? tissue_.namedPatches() : 0;
-  return std::any_of(
-      patches.begin() + static_cast<std::ptrdiff_t>(named), patches.end(),
-      [&](const auto& patch) { return std::find(names_.begin(), end, patch.name) != end; });
 }
 
 SolveReport Pipeline::settle() {
   const Bounded bounded(*this);
-  const SolveReport report = balance();
+  const SolveReport report = parts_->load_step.balance();
   touch();
   return report;
-}
-
-SolveReport Pipeline::balance() {
-  contacts_.ride(pose_, tissue_);
-  patches_.ride(pose_, tissue_);
-  meet(pose_);
-  return tissue_.follow(patchesOfTools(), tissue_.freeNodes(), true);
 }
 
 void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
                     int most_increments) {
   const Bounded bounded(*this);
-  tissue_.load(
+  world_.tissue.load(
       step,
       [&](int increment, int increments, const SolveReport& report) {
-        contacts_.commit(pose_, tissue_);
-        contacts_.ride(pose_, tissue_);
+        world_.sliding.commit(world_.pose, world_.tissue);
+        world_.sliding.ride(world_.pose, world_.tissue);
         describeTools();
         if (on_increment) on_increment(increment, increments, report);
       },
@@ -339,31 +140,67 @@ void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_incremen
 
 SolveReport Pipeline::release(const std::vector<std::string>& names) {
   const Bounded bounded(*this);
-  const SolveReport report = tissue_.release(names);
+  const SolveReport report = world_.tissue.release(names);
   touch();
   return report;
 }
 
 CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
   const Bounded bounded(*this);
-  const CutReport report = tissue_.cut(corners);
+  const CutReport report = world_.tissue.cut(corners);
   touch();
   return report;
 }
 
+double Pipeline::stepsTo(const RobotPose& pose) const {
+  return world_.last_pose ? parts_->ways.stepsBetween(
+                                *world_.last_pose,
+                                parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+                          : 0.0;
+}
+
+std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
+  return world_.last_pose
+             ? parts_->ways.farFrom(*world_.last_pose,
+                                    parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+             : std::vector<std::size_t>();
+}
+
+double Pipeline::freeStepsTo(const RobotPose& pose) const {
+  return world_.last_pose ? parts_->ways.freeSteps(
+                                *world_.last_pose,
+                                parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+                          : 0.0;
+}
+
+std::optional<StillPose> Pipeline::stillPose() const {
+  const bool is_driven = parts_->drive.drivesAny();
+  if (!world_.last_pose || touched_ || isLate() || is_driven) return std::nullopt;
+  RobotPose of_tools = world_.asked;
+  of_tools.links.resize(world_.tools.linkCount());
+  std::vector<double> reach;
+  for (std::size_t link = 0; link < of_tools.links.size(); ++link) {
+    reach.push_back(world_.finder.reach(link));
+  }
+  return StillPose(std::move(of_tools), std::move(reach),
+                   kStandsStill * world_.tissue.lattice().spacing());
+}
+
 void Pipeline::reset() {
   trial_from_.reset();
-  patches_.clear();
-  contacts_.clear();
-  for (Jaws& jaws : jaws_) jaws.let_go = false;
-  for (std::size_t tool = 0; tool < tools_.size(); ++tool) forgetJaws(tool);
-  drives_.assign(tools_.size(), {});
-  tissue_.reset();
-  checkpoints_.clear();
-  last_pose_.reset();
-  pose_ = complete({});
-  contacts_.commit(pose_, tissue_);
-  unfinished_ = gave_up_ = false;
+  world_.sticking.clear();
+  world_.sliding.clear();
+  parts_->grasping.forgetLetGo();
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    parts_->grasping.forgetJaws(tool);
+  }
+  parts_->drive.setTools(world_.tools.size());
+  world_.tissue.reset();
+  parts_->motion.clearCheckpoints();
+  world_.last_pose.reset();
+  world_.pose = world_.tools.complete({});
+  world_.sliding.commit(world_.pose, world_.tissue);
+  world_.unfinished = gave_up_ = false;
   late_iterations_ = 0;
   touched_ = true;
   describeTools();
@@ -371,13 +208,69 @@ void Pipeline::reset() {
 
 // After the tissue changed by other means than the tools' motion.
 void Pipeline::touch() {
-  contacts_.commit(pose_, tissue_);
+  world_.sliding.commit(world_.pose, world_.tissue);
   touched_ = true;
   gave_up_ = false;
   late_iterations_ = 0;
-  checkpoints_.clear();
-  if (last_pose_) checkIn(*last_pose_);
+  parts_->motion.checkInAnew();
   describeTools();
+}
+
+void Pipeline::grasp(std::size_t tool) {
+  const std::string name = "tool '" + world_.tools.nameOf(tool) + "'";
+  if (world_.tools[tool].role != ToolConfig::Role::kGrasper) {
+    throw InputError(name + ": its role is push; allowed: a tool with the role grasper");
+  }
+  if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
+  if (!parts_->grasping.grasp(tool)) {
+    describeTools();
+    const std::string& why = world_.report.tools[tool].holds_nothing;
+    throw InputError(name + ": holds nothing: " +
+                     (why.empty() ? "its jaws stand nowhere or have no shapes" : why) +
+                     "; allowed: jaws around tissue");
+  }
+  touched_ = true;
+}
+
+void Pipeline::letGo(std::size_t tool) {
+  if (parts_->grasping.letGo(tool)) touched_ = true;
+}
+
+void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
+  if (force && !(force->norm() > 0.0 && force->allFinite())) {
+    throw InputError("tool '" + world_.tools.nameOf(tool) +
+                     "': the force is zero or not finite; allowed: a force");
+  }
+  parts_->drive.push(tool, force);
+  touched_ = true;
+}
+
+// True: a driven tool has a way left to go.
+bool Pipeline::drive(const RobotPose& pose) {
+  bool goes_on = false;
+  const StepReport& report = world_.report;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!parts_->drive.drives(tool)) continue;
+    const auto walk = [&] {
+      world_.last_pose =
+          parts_->motion.walk(parts_->drive.driven(world_.tools.complete(pose), world_.tools));
+      return !report.too_fast && !report.lost && !world_.deadline.isOver();
+    };
+    const bool on = parts_->drive.meetForce(
+        tool, {parts_->ways.stepOf(world_.tools.firstLink(tool)),
+               [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
+    goes_on = goes_on || on;
+  }
+  return goes_on;
+}
+
+void Pipeline::describeTools() {
+  const Stopwatch watch(world_.report.contact_ms);
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    ToolReport& report = world_.report.tools[tool];
+    report = describeTool(world_, parts_->grasping, tool);
+    report.offset = parts_->drive.offset(tool);
+  }
 }
 
 }  // namespace robot_tissue

@@ -1,12 +1,12 @@
 // Pipeline: steps that are undone.
-#include "robot_tissue/pipeline/pipeline.h"
+#include "pipeline_parts.h"
 
 namespace robot_tissue {
 
 struct Pipeline::Mark {
   Checkpoint now;
   std::vector<Checkpoint> checkpoints;
-  std::vector<Drive> drives;
+  ForceDrive drive;
   std::optional<RobotPose> last_pose;
   RobotPose asked;
   std::optional<DeadEnd> dead_end;
@@ -18,27 +18,28 @@ struct Pipeline::Mark {
 };
 
 void Pipeline::beginTrial() {
-  trial_from_ = std::make_shared<const Mark>(Mark{checkpoint(), checkpoints_, drives_, last_pose_,
-                                                  asked_, dead_end_, late_iterations_, gave_up_,
-                                                  unfinished_, touched_, report_});
-  tissue_.solveAside(true);
+  trial_from_ = std::make_shared<const Mark>(
+      Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
+           world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
+           world_.unfinished, touched_, world_.report});
+  world_.tissue.solveAside(true);
 }
 
 void Pipeline::undoTrial() {
   if (!trial_from_) return;
   const Mark& mark = *trial_from_;
-  tissue_.solveAside(false);
-  goBackTo(mark.now);
-  checkpoints_ = mark.checkpoints;
-  drives_ = mark.drives;
-  last_pose_ = mark.last_pose;
-  asked_ = mark.asked;
-  dead_end_ = mark.dead_end;
+  world_.tissue.solveAside(false);
+  parts_->load_step.goBackTo(mark.now);
+  parts_->motion.restore(mark.checkpoints);
+  parts_->drive = mark.drive;
+  world_.last_pose = mark.last_pose;
+  world_.asked = mark.asked;
+  world_.dead_end = mark.dead_end;
   late_iterations_ = mark.late_iterations;
   gave_up_ = mark.gave_up;
-  unfinished_ = mark.unfinished;
+  world_.unfinished = mark.unfinished;
   touched_ = mark.touched;
-  report_ = mark.report;
+  world_.report = mark.report;
   trial_from_.reset();
 }
 

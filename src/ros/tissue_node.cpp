@@ -35,11 +35,15 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   grace_end_ = ros::WallTime::now() + kGrace;
   const double budget_ms = parameters_.scene.solver.max_ms;
-  budget_s_ = budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate;
-  pipeline_.setBudget(budget_s_);
+  const double budget_s = budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate;
+  pipeline_.setBudget(budget_s);
   robotIsKnown();
   settleFromRest();
-  advertiseServices();
+  services_ = std::make_unique<TissueServices>(
+      private_node_, parameters_, pipeline_, publisher_, tool_poses_, budget_s,
+      TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
+                           [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
+                           [this] { follow(); }, [this] { settleFromRest(); }});
   diagnostics_.setHardwareID("none");
   rate_told_ = ros::WallTime::now();
   diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
@@ -56,11 +60,12 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
 // In the thread that receives transforms.
 void TissueNode::onStill(const ros::Time& stamp) { publisher_.publishStill(stamp); }
 
-void TissueNode::tick(bool seldom) {
-  if (seldom == ticks_seldom_) return;
-  ticks_seldom_ = seldom;
+void TissueNode::tick(Ticks ticks) {
+  if (ticks == ticks_) return;
+  ticks_ = ticks;
   const double period = 1.0 / parameters_.rate_hz;
-  timer_.setPeriod(ros::Duration(seldom ? std::max(period, kWatchPeriod) : period));
+  timer_.setPeriod(
+      ros::Duration(ticks == Ticks::kSeldom ? std::max(period, kWatchPeriod) : period));
 }
 
 // Timers of simulated time stand still without a clock.
@@ -93,16 +98,16 @@ void TissueNode::onTimer() {
   if (!robotIsKnown()) {
     report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
                             "' is not set: waiting for a URDF"});
-    return tick(!pipeline_.isLate());
+    return tick(pipeline_.isLate() ? Ticks::kAtRate : Ticks::kSeldom);
   }
   const PoseWatch::Seen seen = watch_.seen();
   if (seen.still > last_look_up_.stamp) tellStill(seen.still);
-  if (seen.any) return tick(true);
+  if (seen.any) return tick(Ticks::kSeldom);
   watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
   update(tool_poses_.lookUp(ros::Time::now()));
   const bool is_good = last_look_up_.status == PoseLookUp::Status::kOk;
   const bool has_time = !is_good || (isStill() && !publisher_.tellsWrenches());
-  tick(has_time && !pipeline_.isLate());
+  tick(has_time && !pipeline_.isLate() ? Ticks::kSeldom : Ticks::kAtRate);
 }
 
 // What goes out seldom, at a pose at which nothing was to do.

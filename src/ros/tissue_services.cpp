@@ -1,10 +1,11 @@
-// TissueNode's services: a request succeeds as a whole or leaves everything as it was.
+#include "robot_tissue/ros/tissue_services.h"
+
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
-#include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/scene/patch_name.h"
 
 namespace robot_tissue {
@@ -64,36 +65,43 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
 
 }  // namespace
 
-// What it asks for may be something to do at a pose at which there was nothing.
 template <class Request, class Response>
-ros::ServiceServer TissueNode::advertise(const std::string& name,
-                                         bool (TissueNode::*answer)(Request&, Response&)) {
+ros::ServiceServer TissueServices::advertise(ros::NodeHandle& private_node, const std::string& name,
+                                             bool (TissueServices::*answer)(Request&, Response&)) {
   const boost::function<bool(Request&, Response&)> wakes = [this, answer](Request& request,
                                                                           Response& response) {
-    watch_.standAt(std::nullopt);
+    node_.wake();
     return (this->*answer)(request, response);
   };
-  return private_node_.advertiseService(name, wakes);
+  return private_node.advertiseService(name, wakes);
 }
 
-void TissueNode::advertiseServices() {
-  reset_service_ = advertise("reset", &TissueNode::onReset);
-  cut_service_ = advertise("cut", &TissueNode::onCut);
-  load_service_ = advertise("apply_load", &TissueNode::onApplyLoad);
-  grasp_service_ = advertise("grasp", &TissueNode::onGrasp);
-  release_service_ = advertise("release", &TissueNode::onRelease);
+TissueServices::TissueServices(ros::NodeHandle& private_node, const NodeParameters& parameters,
+                               Pipeline& pipeline, TissuePublisher& publisher,
+                               const ToolPoses& tool_poses, double budget_s, Node node)
+    : parameters_(parameters),
+      pipeline_(pipeline),
+      publisher_(publisher),
+      tool_poses_(tool_poses),
+      budget_s_(budget_s),
+      node_(std::move(node)) {
+  reset_ = advertise(private_node, "reset", &TissueServices::onReset);
+  cut_ = advertise(private_node, "cut", &TissueServices::onCut);
+  load_ = advertise(private_node, "apply_load", &TissueServices::onApplyLoad);
+  grasp_ = advertise(private_node, "grasp", &TissueServices::onGrasp);
+  release_ = advertise(private_node, "release", &TissueServices::onRelease);
 }
 
-bool TissueNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+bool TissueServices::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   pipeline_.reset();
-  settleFromRest();
+  node_.settle_from_rest();
   publisher_.shapeChanged();
   response.success = true;
   response.message = "rest shape, no cuts, no loads";
   return true;
 }
 
-bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
+bool TissueServices::onCut(Cut::Request& request, Cut::Response& response) {
   try {
     const Pose tissue_T_blade = tool_poses_.frame(request.header.frame_id);
     std::vector<Vec3> corners = cornersOf(request);
@@ -114,7 +122,7 @@ bool TissueNode::onCut(Cut::Request& request, Cut::Response& response) {
   return true;
 }
 
-bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
+bool TissueServices::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response) {
   try {
     requirePatchName(request.name);
     if (isTool(request.name)) {
@@ -131,7 +139,7 @@ bool TissueNode::onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& r
   return true;
 }
 
-void TissueNode::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
+void TissueServices::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
   for (const SupportConfig& support : parameters_.scene.supports) {
     if (support.name != request.name) continue;
     throw InputError("name: '" + request.name + "' is a support; allowed: another name");

@@ -1,10 +1,9 @@
-// TissueNode's services that act on a tool: a request succeeds as a whole or leaves everything as
-// it was.
+// TissueServices: those that act on a tool.
 #include <string>
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
-#include "robot_tissue/ros/tissue_node.h"
+#include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_forces.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -23,7 +22,7 @@ std::string listed(const std::vector<ToolConfig>& tools) {
 
 }  // namespace
 
-bool TissueNode::isTool(const std::string& name) const {
+bool TissueServices::isTool(const std::string& name) const {
   for (const ToolConfig& tool : parameters_.scene.tools) {
     if (tool.name == name) return true;
   }
@@ -31,7 +30,7 @@ bool TissueNode::isTool(const std::string& name) const {
 }
 
 // Throws InputError.
-std::size_t TissueNode::toolIndex(const std::string& name) const {
+std::size_t TissueServices::toolIndex(const std::string& name) const {
   if (!isTool(name)) {
     throw InputError("tool: " + inQuotes(name) +
                      " is no tool; allowed: " + listed(parameters_.scene.tools));
@@ -43,11 +42,11 @@ std::size_t TissueNode::toolIndex(const std::string& name) const {
                    parameters_.robot_description_param + "' is set");
 }
 
-bool TissueNode::onGrasp(Tool::Request& request, Tool::Response& response) {
+bool TissueServices::onGrasp(Tool::Request& request, Tool::Response& response) {
   try {
     const std::size_t tool = toolIndex(request.tool);
     pipeline_.grasp(tool);
-    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
+    if (node_.has_pose()) node_.follow();
     const ToolReport& report = pipeline_.report().tools[tool];
     response.success = report.grasps;
     response.message = report.grasps ? std::to_string(report.nodes.size()) + " nodes are held"
@@ -57,12 +56,12 @@ bool TissueNode::onGrasp(Tool::Request& request, Tool::Response& response) {
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
-    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();  // tells why
+    if (node_.has_pose()) node_.follow();  // tells why
   }
   return true;
 }
 
-bool TissueNode::onRelease(Tool::Request& request, Tool::Response& response) {
+bool TissueServices::onRelease(Tool::Request& request, Tool::Response& response) {
   try {
     const std::size_t tool = toolIndex(request.tool);
     if (!pipeline_.report().tools[tool].grasps) {
@@ -70,7 +69,7 @@ bool TissueNode::onRelease(Tool::Request& request, Tool::Response& response) {
                        " holds nothing; allowed: a grasper that holds tissue");
     }
     pipeline_.letGo(tool);
-    if (last_look_up_.status == PoseLookUp::Status::kOk) follow();
+    if (node_.has_pose()) node_.follow();
     response.success = true;
     response.message = "let go";
   } catch (const InputError& error) {
@@ -81,7 +80,7 @@ bool TissueNode::onRelease(Tool::Request& request, Tool::Response& response) {
 }
 
 // A force drives the tool, or drives it no longer.
-void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
+void TissueServices::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response) {
   const std::size_t tool = toolIndex(request.name);
   if (!request.displacement.empty() || request.turns || request.force.size() > 1) {
     throw InputError(std::string(!request.displacement.empty() ? "displacement"
@@ -96,7 +95,7 @@ void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response
     requireWithin(*force, kGreatestForce, "N", "tool " + inQuotes(request.name) + ": force");
   }
   pipeline_.push(tool, force);
-  if (last_look_up_.status != PoseLookUp::Status::kOk) {
+  if (!node_.has_pose()) {
     response.message = "from the next good pose on";
     return;
   }
@@ -106,10 +105,10 @@ void TissueNode::pushTool(const ApplyLoad::Request& request, ApplyLoad::Response
 }
 
 // Until the tool stands, or the time of an update is over. Returns what became of it.
-std::string TissueNode::followPush(std::size_t tool, const Vec3& force) {
+std::string TissueServices::followPush(std::size_t tool, const Vec3& force) {
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(budget_s_);
   do {
-    follow();
+    node_.follow();
   } while (pipeline_.report().changed && ros::WallTime::now() < end);
   const ToolReport& report = pipeline_.report().tools[tool];
   if (pipeline_.report().changed) return "on its way";

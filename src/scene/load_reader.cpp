@@ -1,6 +1,7 @@
 // A load step: rigid patches, each on nodes of its own.
 #include <algorithm>
 
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
@@ -58,8 +59,9 @@ void readTurns(const Entry& entry, const SolverConfig& solver, PatchConfig& patc
   if (!entry.given()) return;
   patch.turns = entry.truth();
   if (patch.turns && !patch.force) entry.fail("the patch has a displacement, must have a force");
-  if (patch.turns && solver.method == "paper") {
-    entry.fail("method paper moves patches without turning them, must be false or left out");
+  if (patch.turns && !traitsOf(solver.method).turns_patches) {
+    entry.fail("method " + solver.method +
+               " moves patches without turning them, must be false or left out");
   }
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "robot_tissue/core/grid.h"
+#include "robot_tissue/core/method_names.h"
 
 namespace robot_tissue {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 // Measured with some reserve: lattice, springs, shape and surface, and the shapes kept along a
 // tool's way.
 constexpr double kBytesPerNode = 3000.0;
-// What newton's factor adds: by nested dissection it grows as n^(4/3) in three dimensions.
-constexpr double kFactorBytes = 1150.0;
 constexpr double kBytesPerGridCell = 40.0;
 constexpr double kBytesPerTriangle = 500.0;
 constexpr double kSpringsPerNode = 3.0;
@@ -103,7 +102,7 @@ double leftByLimits(const std::string& root) {
 }
 
 double factorBytes(double nodes, const std::string& method) {
-  return method == "newton" ? kFactorBytes * std::pow(nodes, 4.0 / 3.0) : 0.0;
+  return traitsOf(method).factor_bytes * std::pow(nodes, 4.0 / 3.0);
 }
 
 }  // namespace

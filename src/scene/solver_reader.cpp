@@ -35,13 +35,13 @@ SolverConfig readSolver(const Entry& entry, const std::string& model,
   }
   const Entry tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance");
   solver.tolerance = tolerance.numberOr(solver.tolerance, ranges::tolerance());
-  if (tolerance.given() && solver.method == "newton") {
-    remarks.push_back(tolerance.line("ignored, method newton solves exactly"));
+  if (tolerance.given() && !traitsOf(solver.method).uses_tolerance) {
+    remarks.push_back(tolerance.line("ignored, method " + solver.method + " solves exactly"));
   }
   solver.max_ms = map["max_ms"].numberOr(solver.max_ms, ranges::budget());
   const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
   solver.threads = threads.integerOr(solver.threads, 1, 256);
-  if (solver.threads > 1 && solver.method != "layered") {
+  if (solver.threads > 1 && !traitsOf(solver.method).uses_threads) {
     remarks.push_back(threads.line("ignored, method " + solver.method + " uses one thread"));
   }
   return solver;

@@ -24,7 +24,7 @@ TissueConfig softBlock() {
 }
 
 // Tool 0, link 0: solid above the plane through its origin. `patch` as the pipeline makes it.
-class PlaneOnABlock : public ::testing::Test {
+class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
  protected:
   PlaneOnABlock() { make(0.0); }
 
@@ -33,9 +33,7 @@ class PlaneOnABlock : public ::testing::Test {
     SolverConfig solver;
     solver.method = "newton";
     tissue_ = std::make_unique<Tissue>(softBlock(), solver);
-    tissue_->setContactUpdate(
-        {[] { return std::vector<double>(); }, [](const auto&) { return 1.0; },
-         [this](auto& patches, bool whole, bool last) { return round(patches, whole, last); }});
+    tissue_->setContactUpdate(this);
     held_.assign(at(tissue_->lattice().nodeCount()), 0);
     for (int node = 0; node < tissue_->lattice().nodeCount(); ++node) {
       held_[at(node)] = tissue_->lattice().isFixed(node) ? 1 : 0;
@@ -90,10 +88,12 @@ class PlaneOnABlock : public ::testing::Test {
     return patch;
   }
 
-  bool round(std::vector<LoadingPatch>& patches, bool whole, bool last) {
+  std::vector<double> longestWays() override { return {}; }
+  double shareOfWay(const std::vector<Vec3>&) override { return 1.0; }
+  bool renew(std::vector<LoadingPatch>& patches, Shape shape, Round round) override {
     ++rounds_;
-    const bool settled = contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, whole);
-    if (settled || last) return false;
+    const bool settled = contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, shape);
+    if (settled || round == Round::kLast) return false;
     patches = {patch()};
     return true;
   }
@@ -217,14 +217,14 @@ TEST_F(PlaneOnABlock, WhatGoesIntoItOnTheWayIsPressedOut) {
   press(0.002);
   const std::vector<ContactSpring> before = contacts_.springsOf(0);
   goTo(pose_.links[0].translation() - Vec3(0.0, 0.0, 0.001));
-  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
   const std::vector<ContactSpring> deeper = contacts_.springsOf(0);
-  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
   const std::vector<ContactSpring> still_deeper = contacts_.springsOf(0);
   goTo(pose_.links[0].translation() + Vec3(0.0, 0.0, 0.003));
-  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
   const std::vector<ContactSpring> off = contacts_.springsOf(0);
-  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, false);
+  contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
   const std::vector<ContactSpring> still_off = contacts_.springsOf(0);
   ASSERT_EQ(before.size(), still_off.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -361,24 +361,37 @@ TEST_F(PlaneOnABlock, SettledTouchesNeedNoFurtherRound) {
   EXPECT_EQ(rounds_, 1);
 }
 
+class ShortWays : public ContactUpdate {
+ public:
+  explicit ShortWays(const Tissue& tissue) : tissue_(tissue) {}
+
+  std::vector<double> longestWays() override {
+    return std::vector<double>(tissue_.vertices().size(), 0.02 * kSpacing);
+  }
+  double shareOfWay(const std::vector<Vec3>&) override { return 1.0; }
+  bool renew(std::vector<LoadingPatch>&, Shape shape, Round) override {
+    ++solves;
+    solved += shape == Shape::kSolved ? 1 : 0;
+    return shape != Shape::kSolved;
+  }
+
+  int solves = 0, solved = 0;
+
+ private:
+  const Tissue& tissue_;
+};
+
 // A solve ends where a vertex went farther than it may, and the next goes on from there.
 TEST(LimitedWays, TakeMoreSolvesToTheSameShape) {
   Tissue free(softBlock(), SolverConfig()), limited(softBlock(), SolverConfig());
-  int solves = 0, whole_ones = 0;
-  limited.setContactUpdate(
-      {[&] { return std::vector<double>(limited.vertices().size(), 0.02 * kSpacing); },
-       [](const auto&) { return 1.0; },
-       [&](auto&, bool whole, bool) {
-         ++solves;
-         whole_ones += whole ? 1 : 0;
-         return !whole;
-       }});
+  ShortWays ways(limited);
+  limited.setContactUpdate(&ways);
   const Box top{Vec3(-1.0, -1.0, 0.03 - 1e-6), Vec3(1.0, 1.0, 1.0)};
   const LoadStep load = loadOf({displacedPatch("top", top, Vec3(0.2 * kSpacing, 0.0, 0.0))}, 1);
   free.load(load);
   limited.load(load);
-  EXPECT_GT(solves, 2);
-  EXPECT_EQ(whole_ones, 2) << "as the load begins, and when it has come";
+  EXPECT_GT(ways.solves, 2);
+  EXPECT_EQ(ways.solved, 2) << "as the load begins, and when it has come";
   EXPECT_EQ(limited.lastReport().status, SolveStatus::kOk);
   for (std::size_t node = 0; node < free.state().displacement.size(); ++node) {
     const Vec3 off = limited.state().displacement[node] - free.state().displacement[node];

@@ -20,9 +20,9 @@ Pose poseAt(const Vec3& position, double angle = 0.0, const Vec3& axis = Vec3::U
   return pose;
 }
 
-class ToolPatchesTest : public ::testing::Test {
+class StickingContactsTest : public ::testing::Test {
  protected:
-  ToolPatchesTest()
+  StickingContactsTest()
       : tissue_(kBlock, paperSolver()), patches_(tissue_.lattice(), {"probe", "jaw"}) {
     pose_.links = {poseAt(Vec3(0.03, 0.03, 0.05)), poseAt(Vec3(0.0, 0.1, 0.05), 0.4)};
   }
@@ -111,7 +111,7 @@ class ToolPatchesTest : public ::testing::Test {
   RobotPose pose_;
 };
 
-TEST_F(ToolPatchesTest, WithoutContactThereIsNoPatch) {
+TEST_F(StickingContactsTest, WithoutContactThereIsNoPatch) {
   push({});
   EXPECT_TRUE(patches_.empty());
   EXPECT_FALSE(patches_.holds(0));
@@ -121,7 +121,7 @@ TEST_F(ToolPatchesTest, WithoutContactThereIsNoPatch) {
   EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
 }
 
-TEST_F(ToolPatchesTest, ContactAtAVertexIsPushedOutByItsDepth) {
+TEST_F(StickingContactsTest, ContactAtAVertexIsPushedOutByItsDepth) {
   const int middle = node(3, 3, 3);
   const Vec3 normal = Vec3(0.6, 0.0, -0.8);
   push({atNode(middle, 1e-3, normal)});
@@ -138,7 +138,7 @@ TEST_F(ToolPatchesTest, ContactAtAVertexIsPushedOutByItsDepth) {
   EXPECT_FALSE(patches_.holds(1));
 }
 
-TEST_F(ToolPatchesTest, ContactInsideATriangleIsPushedOutByItsDepth) {
+TEST_F(StickingContactsTest, ContactInsideATriangleIsPushedOutByItsDepth) {
   for (const Vec3& weights : {Vec3(1.0, 1.0, 1.0), Vec3(0.1, 0.2, 0.7), Vec3(0.0, 0.5, 0.5)}) {
     patches_.clear();
     const Contact hit = contact(triangleAt(0.03), weights / weights.sum(), 7e-4);
@@ -148,7 +148,7 @@ TEST_F(ToolPatchesTest, ContactInsideATriangleIsPushedOutByItsDepth) {
   }
 }
 
-TEST_F(ToolPatchesTest, NeighboringContactsAreAllPushedOut) {
+TEST_F(StickingContactsTest, NeighboringContactsAreAllPushedOut) {
   std::vector<Contact> hits;
   const int triangle = triangleAt(0.03);
   hits.push_back(contact(triangle, Vec3(0.8, 0.1, 0.1), 5e-4));
@@ -162,7 +162,7 @@ TEST_F(ToolPatchesTest, NeighboringContactsAreAllPushedOut) {
   }
 }
 
-TEST_F(ToolPatchesTest, FixedNodesAreNeverTaken) {
+TEST_F(StickingContactsTest, FixedNodesAreNeverTaken) {
   push({contact(triangleAt(0.0), Vec3::Constant(1.0 / 3.0), 1e-3, Vec3::UnitZ())});
   EXPECT_TRUE(patches_.empty());
   // A triangle of a side wall that has a fixed edge: its free nodes alone do it.
@@ -184,7 +184,7 @@ TEST_F(ToolPatchesTest, FixedNodesAreNeverTaken) {
   EXPECT_LT((wayOf(hit) - 1e-3 * inwards).norm(), 1e-12);
 }
 
-TEST_F(ToolPatchesTest, NodesOfNamedLoadsAreNeverTaken) {
+TEST_F(StickingContactsTest, NodesOfNamedLoadsAreNeverTaken) {
   const Box box = nodeBox(kBlock, {2, 2, 3}, {3, 3, 3});
   tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
   push({atNode(node(3, 3, 3), 1e-3)});
@@ -194,7 +194,7 @@ TEST_F(ToolPatchesTest, NodesOfNamedLoadsAreNeverTaken) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(4, 4, 3)}));
 }
 
-TEST_F(ToolPatchesTest, NodeThatANamedLoadTakesIsLeftToIt) {
+TEST_F(StickingContactsTest, NodeThatANamedLoadTakesIsLeftToIt) {
   push({atNode(node(3, 3, 3), 5e-4)});
   ASSERT_FALSE(patches_.empty());
   const Box box = nodeBox(kBlock, {2, 2, 3}, {3, 3, 3});
@@ -204,7 +204,7 @@ TEST_F(ToolPatchesTest, NodeThatANamedLoadTakesIsLeftToIt) {
   EXPECT_EQ(patches_.left(), (std::vector<int>{node(3, 3, 3)}));
 }
 
-TEST_F(ToolPatchesTest, NodesRideRigidlyWithTheirTool) {
+TEST_F(StickingContactsTest, NodesRideRigidlyWithTheirTool) {
   const std::vector<int> held = {node(3, 3, 3), node(4, 3, 3), node(3, 4, 3)};
   std::vector<Contact> hits;
   for (const int each : held) hits.push_back(atNode(each, 1e-3));
@@ -224,7 +224,7 @@ TEST_F(ToolPatchesTest, NodesRideRigidlyWithTheirTool) {
   EXPECT_LT((patches_.pushed(0, pose_) - way_out).norm(), 1e-15);
 }
 
-TEST_F(ToolPatchesTest, RidingOfOneToolLeavesTheOther) {
+TEST_F(StickingContactsTest, RidingOfOneToolLeavesTheOther) {
   push({atNode(node(2, 2, 3), 1e-3, kInto, 0), atNode(node(5, 5, 3), 5e-4, kInto, 1)});
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(2, 2, 3)}));
   EXPECT_EQ(patches_.nodes(1), (std::vector<int>{node(5, 5, 3)}));
@@ -237,7 +237,7 @@ TEST_F(ToolPatchesTest, RidingOfOneToolLeavesTheOther) {
   EXPECT_EQ(patches_.loadingPatch(1).name, "jaw");
 }
 
-TEST_F(ToolPatchesTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
+TEST_F(StickingContactsTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
   const int middle = node(3, 3, 3);
   push({atNode(middle, 1e-3)});
   follow();
@@ -254,7 +254,7 @@ TEST_F(ToolPatchesTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
 
 // A blade that leans on the node sideways, below the surface, and then goes back past the node's
 // rest place: the node is drawn along until the tissue pulls it off.
-TEST_F(ToolPatchesTest, NodePulledAwayOnTheNearSideOfItsRestPlaceIsLetGo) {
+TEST_F(StickingContactsTest, NodePulledAwayOnTheNearSideOfItsRestPlaceIsLetGo) {
   const int middle = node(3, 3, 3);
   push({atNode(middle, 1e-3, Vec3(0.8, 0.0, -0.6))});
   follow();
@@ -271,7 +271,7 @@ TEST_F(ToolPatchesTest, NodePulledAwayOnTheNearSideOfItsRestPlaceIsLetGo) {
   expectAtRest(tissue_);
 }
 
-TEST_F(ToolPatchesTest, NodeHeldBelowItsRestPlaceStays) {
+TEST_F(StickingContactsTest, NodeHeldBelowItsRestPlaceStays) {
   const int middle = node(3, 3, 3);
   push({atNode(middle, 1e-3)});
   follow();
@@ -285,7 +285,7 @@ TEST_F(ToolPatchesTest, NodeHeldBelowItsRestPlaceStays) {
   EXPECT_LT((tissue_.state().displacement[at(middle)] - expected).norm(), 1e-14);
 }
 
-TEST_F(ToolPatchesTest, ClearLetsEveryNodeGo) {
+TEST_F(StickingContactsTest, ClearLetsEveryNodeGo) {
   push({atNode(node(3, 3, 3), 1e-3), atNode(node(5, 5, 3), 5e-4, kInto, 1)});
   ASSERT_FALSE(patches_.empty());
   patches_.clear();
@@ -293,7 +293,7 @@ TEST_F(ToolPatchesTest, ClearLetsEveryNodeGo) {
   EXPECT_TRUE(loadingPatches().empty());
 }
 
-TEST_F(ToolPatchesTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
+TEST_F(StickingContactsTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
   const std::vector<int> grasped = {node(3, 3, 3), node(4, 3, 3), node(3, 3, 2)};
   push({atNode(grasped.front(), 1e-3)});
   follow();
@@ -316,7 +316,7 @@ TEST_F(ToolPatchesTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
   EXPECT_TRUE(patches_.pushed(1, pose_).isZero());  // it was not pushed out of the jaw
 }
 
-TEST_F(ToolPatchesTest, GraspedNodesStayAlsoWhereTheTissuePullsThemOff) {
+TEST_F(StickingContactsTest, GraspedNodesStayAlsoWhereTheTissuePullsThemOff) {
   const std::vector<int> grasped = {node(3, 3, 3), node(4, 3, 3)};
   patches_.ride(pose_, tissue_);
   grasp(grasped);
@@ -332,7 +332,7 @@ TEST_F(ToolPatchesTest, GraspedNodesStayAlsoWhereTheTissuePullsThemOff) {
   }
 }
 
-TEST_F(ToolPatchesTest, LetGoLeavesOtherToolsNodes) {
+TEST_F(StickingContactsTest, LetGoLeavesOtherToolsNodes) {
   push({atNode(node(2, 2, 3), 1e-3)});
   grasp({node(5, 5, 3)});
   patches_.letGo(1);
@@ -341,7 +341,7 @@ TEST_F(ToolPatchesTest, LetGoLeavesOtherToolsNodes) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(2, 2, 3)}));
 }
 
-TEST_F(ToolPatchesTest, TissueThatIsLetGoComesToRest) {
+TEST_F(StickingContactsTest, TissueThatIsLetGoComesToRest) {
   patches_.ride(pose_, tissue_);
   grasp({node(3, 3, 3), node(4, 3, 3)});
   pose_.links[1].translation() += Vec3(1e-3, 0.0, 1e-3);
@@ -354,7 +354,7 @@ TEST_F(ToolPatchesTest, TissueThatIsLetGoComesToRest) {
   expectAtRest(tissue_);
 }
 
-TEST_F(ToolPatchesTest, FixedLoadedAndSeatedNodesAreNotGrasped) {
+TEST_F(StickingContactsTest, FixedLoadedAndSeatedNodesAreNotGrasped) {
   const Box box = nodeBox(kBlock, {1, 1, 3}, {2, 2, 3});
   tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
   push({atNode(node(4, 4, 3), 1e-3)});
@@ -363,7 +363,7 @@ TEST_F(ToolPatchesTest, FixedLoadedAndSeatedNodesAreNotGrasped) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(4, 4, 3)}));
 }
 
-TEST_F(ToolPatchesTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
+TEST_F(StickingContactsTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
   tissue_.load(
       loadOf({displacedPatch("way", nodeBox(kBlock, {1, 1, 3}, {1, 2, 3}), Vec3(0.0, 0.0, -5e-4)),
               forcedPatch("force", nodeBox(kBlock, {5, 1, 3}, {5, 2, 3}), Vec3(0.0, 0.0, -1e-3))}));
@@ -382,7 +382,7 @@ TEST_F(ToolPatchesTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
 }
 
 // A gripper with two jaws: each node goes with the link that holds it.
-TEST_F(ToolPatchesTest, NodesOfOneToolRideOnDifferentLinks) {
+TEST_F(StickingContactsTest, NodesOfOneToolRideOnDifferentLinks) {
   StickingContacts gripper(tissue_.lattice(), {"gripper"});
   gripper.ride(pose_, tissue_);
   gripper.hold(0, 0, pose_.links[0], {node(2, 3, 3)}, tissue_);

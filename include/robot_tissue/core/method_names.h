@@ -1,4 +1,5 @@
-// The models and methods that there are. A new one is added in the registry.
+// The models and methods that there are, and what of a scene's keys they use. A new one is a line of
+// a table in src/core/tissue/registry.cpp and nowhere else.
 #pragma once
 
 #include <string>
@@ -6,8 +7,17 @@
 
 namespace robot_tissue {
 
+struct MethodTraits {
+  bool uses_tolerance = true;  // else it solves exactly
+  bool uses_threads = false;   // else one
+  bool turns_patches = true;   // that a force moves
+  double factor_bytes = 0.0;   // of memory for n nodes, over n^(4/3): of a sparse factor
+};
+
 const std::vector<std::string>& modelNames();
 const std::vector<std::string>& methodNames();
+// Throws InputError: no method of this name.
+const MethodTraits& traitsOf(const std::string& method);
 
 // The methods that fit the model; the first is the default.
 std::vector<std::string> methodsFor(const std::string& model);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "robot_tissue/core/contact_update.h"
 #include "robot_tissue/core/deadline.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
@@ -20,6 +21,7 @@ namespace robot_tissue {
 
 class SolverMethod;
 class TissueModel;
+struct LoadRamp;
 
 struct CutReport {
   int springs_cut = 0;  // by this cut
@@ -70,19 +72,8 @@ class Tissue {
   double nodeStiffness(int node) const;  // mean, at rest (N/m)
   Vec3 nodePosition(int node) const;     // deformed (m)
 
-  // What is asked after each solve while tools touch.
-  struct ContactUpdate {
-    // Per vertex of the surface: how far it may go at once from where it is (m); empty: anywhere.
-    std::function<std::vector<double>()> longest;
-    // Share of the way from these displacements to the present ones that may be gone at once: the
-    // rest is solved for anew, with the contacts at that shape.
-    std::function<double(const std::vector<Vec3>& before)> share;
-    // When the contacts are no longer those that the shape was solved for, puts the tools' new
-    // patches in and returns true: it is solved again. `whole`: the shape is what was solved for,
-    // and in balance. `last`: there is no next time, the patches are not put in.
-    std::function<bool(std::vector<LoadingPatch>& of_tools, bool whole, bool last)> renew;
-  };
-  void setContactUpdate(ContactUpdate rounds) { contact_update_ = std::move(rounds); }
+  // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
+  void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
 
   // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
   // one solve at least, with one cycle of the method. Loads stop on their way then, to be carried
@@ -131,14 +122,6 @@ class Tissue {
   void reset();
 
  private:
-  // A patch on its way to a load, in equal increments from where it is.
-  struct Ramp {
-    std::size_t patch = 0;  // index into patches_
-    LoadingPatch start;     // of the target's nodes and drive
-    LoadingPatch target;
-  };
-
-  Vec3 forceOfPatches() const;
   SolveReport solve(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
@@ -151,25 +134,19 @@ class Tissue {
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
   void deformSurface();
-  bool hasOnlyFiniteNumbers(const SolveReport& report) const;
   LoadingPatch makePatch(const PatchConfig& config) const;
-  void leaveRimsToOwners();
-  static void goAlong(const Ramp& ramp, double share, LoadingPatch& patch);
-  void requireOwnNodes(const std::vector<LoadingPatch>& patches) const;
   std::size_t place(const LoadingPatch& patch);
-  void dropDue(const std::string& name);
-  Ramp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
+  LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
   const LoadingPatch* standingPatch(const std::string& name) const;
   // load_stepping.cpp; reports are the last increment's, with the worst status of all.
-  bool stopsOnTheWay(const std::vector<Ramp>& ramps);
-  double foreseenSteps(const std::vector<Ramp>& ramps) const;
-  int foreseenIncrements(const std::vector<Ramp>& ramps) const;
-  SolveReport stepLoadsByItself(const std::vector<Ramp>& ramps, const OnIncrement& on_increment);
-  SolveReport stepLoads(const std::vector<Ramp>& ramps, int increments,
+  bool stopsOnTheWay(const std::vector<LoadRamp>& ramps);
+  double foreseenSteps(const std::vector<LoadRamp>& ramps) const;
+  SolveReport stepLoadsByItself(const std::vector<LoadRamp>& ramps,
+                                const OnIncrement& on_increment);
+  SolveReport stepLoads(const std::vector<LoadRamp>& ramps, int increments,
                         const OnIncrement& on_increment);
-  SolveReport goInSteps(const std::vector<Ramp>& ramps, int increment, int increments);
-  SolveReport goTo(const std::vector<Ramp>& ramps, double share);
-  double stepsGone(const std::vector<Ramp>& ramps, const std::vector<Vec3>& before) const;
+  SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
+  SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
   Vec3 patchForce(const LoadingPatch& patch) const;
   void rebuildSurface();
 
@@ -197,7 +174,7 @@ class Tissue {
   bool is_late_ = false;  // likewise
   double max_ms_ = 0.0;   // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
-  ContactUpdate contact_update_;
+  ContactUpdate* contact_update_ = nullptr;
 };
 
 }  // namespace robot_tissue

@@ -39,9 +39,9 @@ class SlidingContacts {
   };
 
   SlidingContacts() = default;  // of no tools
-  // Coulomb's friction of each tool (a negative one: the tool is not this class's), thickness of
+  // Coulomb's friction of each tool (none: tissue sticks to it, see StickingContacts), thickness of
   // each link (m).
-  SlidingContacts(std::vector<double> friction, std::vector<double> thickness);
+  SlidingContacts(std::vector<std::optional<double>> friction, std::vector<double> thickness);
 
   // Whether a point with these carriers can be pushed; `held` as in meet().
   static bool givesWay(const std::vector<NodeWeight>& carriers,
@@ -55,11 +55,11 @@ class SlidingContacts {
   void meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
             const std::vector<std::uint8_t>& held);
 
-  // Of the shape that was solved for (`whole`) or is on the way to it. `tracked`: one a touch,
-  // where its probe is; none when the link is out of reach. False: something changed, solve again.
+  // `tracked`: one a touch, where its probe is; none when the link is out of reach. False:
+  // something changed, solve again.
   bool update(const std::vector<std::optional<Contact>>& tracked, const ContactSet& found,
               const RobotPose& pose, const Tissue& tissue, const std::vector<std::uint8_t>& held,
-              bool whole = true);
+              ContactUpdate::Shape shape = ContactUpdate::Shape::kSolved);
 
   // From here on tissue and links stick, or slip anew. Forgets touches that the tools have left.
   void commit(const RobotPose& pose, const Tissue& tissue);
@@ -97,7 +97,7 @@ class SlidingContacts {
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
   Vec3 frictionRatioAround(const ContactConstraint& touch) const;
 
-  std::vector<double> friction_;
+  std::vector<std::optional<double>> friction_;
   std::vector<double> thickness_;
   std::vector<double> pressed_;               // per tool: its normal forces in the last update (N)
   int cut_rounds_ = 0;                        // in a row, that ended on the way to balance

@@ -6,14 +6,9 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <robot_tissue/ApplyLoad.h>
-#include <robot_tissue/Cut.h>
-#include <robot_tissue/Tool.h>
 #include <ros/node_handle.h>
-#include <ros/service_server.h>
 #include <ros/timer.h>
 #include <ros/wall_timer.h>
-#include <std_srvs/Trigger.h>
 #include <tf2_ros/buffer.h>
 
 #include <map>
@@ -25,6 +20,7 @@
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/tissue_publisher.h"
+#include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_poses.h"
 
 namespace robot_tissue {
@@ -36,10 +32,12 @@ class TissueNode {
   explicit TissueNode(const ros::NodeHandle& private_node);
 
  private:
+  enum class Ticks { kAtRate, kSeldom };  // of the timer
+
   void onStill(const ros::Time& stamp);
   void onTimer();
   void onWallTimer();
-  void tick(bool seldom);
+  void tick(Ticks ticks);
   bool timeWentBack();
   void tellStill(const ros::Time& stamp);
   bool isStill() const;
@@ -56,33 +54,16 @@ class TissueNode {
   void diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status);
 
-  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onCut(Cut::Request& request, Cut::Response& response);
-  bool onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response);
-  void loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response);
-  // tool_services.cpp
-  bool onGrasp(Tool::Request& request, Tool::Response& response);
-  bool onRelease(Tool::Request& request, Tool::Response& response);
-  void pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response);
-  std::string followPush(std::size_t tool, const Vec3& force);
-  bool isTool(const std::string& name) const;
-  std::size_t toolIndex(const std::string& name) const;
-  void advertiseServices();
-  template <class Request, class Response>
-  ros::ServiceServer advertise(const std::string& name,
-                               bool (TissueNode::*answer)(Request&, Response&));
-
   ros::NodeHandle private_node_;
   NodeParameters parameters_;
   Pipeline pipeline_;
-  double budget_s_ = 0.0;  // of an update or a service's call
   tf2_ros::Buffer buffer_;
   ToolPoses tool_poses_;
   TissuePublisher publisher_;
   bool robot_is_known_ = false;
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
-  bool ticks_seldom_ = false;
+  Ticks ticks_ = Ticks::kAtRate;
   ros::Time jumped_at_;  // stamp of the first pose after a jump that is not followed yet
   NodeStatus status_;
   ros::WallTime grace_end_;  // until then it is no fault that no pose is there yet
@@ -92,7 +73,7 @@ class TissueNode {
   bool was_late_ = false;                               // likewise
   ros::WallTime rate_told_;
   diagnostic_updater::Updater diagnostics_;
-  ros::ServiceServer reset_service_, cut_service_, load_service_, grasp_service_, release_service_;
+  std::unique_ptr<TissueServices> services_;
   ros::Timer timer_;
   ros::WallTimer wall_timer_;  // in simulated time, until there is some
   PoseWatch watch_;            // the first to go: it calls into the others

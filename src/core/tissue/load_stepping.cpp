@@ -5,6 +5,7 @@
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
+#include "tissue/load_ramp.h"
 
 namespace robot_tissue {
 namespace {
@@ -15,19 +16,49 @@ constexpr double kTooFar = 2.0;               // steps that a patch goes at once
 constexpr double kMostGrowth = 2.0;           // of an increment beside the one before
 constexpr double kLeastOfFirst = 1.0 / 16.0;  // of the first increment: none is smaller
 
-int wholeParts(double share) {
-  return std::max(1, static_cast<int>(std::ceil(std::min(share, kMostSteps) - kRounding)));
+// Longest way of a patch's node between these displacements (m).
+double farthestWay(const std::vector<LoadRamp>& ramps, const std::vector<Vec3>& before,
+                   const std::vector<Vec3>& now) {
+  double farthest = 0.0;
+  for (const LoadRamp& ramp : ramps) {
+    for (const int node : ramp.target.nodes) {
+      farthest = std::max(farthest, (now[at(node)] - before[at(node)]).norm());
+    }
+  }
+  return farthest;
+}
+
+// Sets the patch to a share of its way. A patch by force stays where the solver moved it to.
+void goAlong(const LoadRamp& ramp, double share, LoadingPatch& patch) {
+  const auto between = [share](const Vec3& start, const Vec3& target) -> Vec3 {
+    return share < 1.0 ? Vec3(start + share * (target - start)) : target;
+  };
+  patch.force = between(ramp.start.force, ramp.target.force);
+  if (byForce(patch)) return;
+  for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
+    patch.displacement[i] = between(ramp.start.displacement[i], ramp.target.displacement[i]);
+  }
+  for (RimSpring& spring : patch.rim) {
+    const auto same = [&](const RimSpring& other) { return other.node == spring.node; };
+    const auto start = std::find_if(ramp.start.rim.begin(), ramp.start.rim.end(), same);
+    const auto target = std::find_if(ramp.target.rim.begin(), ramp.target.rim.end(), same);
+    spring.anchor = between(start->anchor, target->anchor);
+  }
 }
 
 }  // namespace
 
+int wholeParts(double share) {
+  return std::max(1, static_cast<int>(std::ceil(std::min(share, kMostSteps) - kRounding)));
+}
+
 // Out of time on the way of named patches: they stand there, and what they go to is due.
-bool Tissue::stopsOnTheWay(const std::vector<Ramp>& ramps) {
+bool Tissue::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   const bool named = std::all_of(ramps.begin(), ramps.end(),
-                                 [&](const Ramp& ramp) { return ramp.patch < named_patches_; });
+                                 [&](const LoadRamp& ramp) { return ramp.patch < named_patches_; });
   if (!named || !deadline_ || !deadline_->isOver()) return false;
-  for (const Ramp& ramp : ramps) {
-    dropDue(ramp.target.name);
+  for (const LoadRamp& ramp : ramps) {
+    dropNamed(ramp.target.name, due_);
     due_.push_back(ramp.target);
   }
   last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
@@ -38,9 +69,9 @@ bool Tissue::stopsOnTheWay(const std::vector<Ramp>& ramps) {
 // the step; a force over what its patch answers to the step. In equilibrium a hard patch of n nodes
 // answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes do (own);
 // the paper's moves while the tissue around it stands, so all n nodes answer.
-double Tissue::foreseenSteps(const std::vector<Ramp>& ramps) const {
+double Tissue::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
   double steps = 1.0;
-  for (const Ramp& ramp : ramps) {
+  for (const LoadRamp& ramp : ramps) {
     if (byForce(ramp.target)) {
       double sum = 0.0;
       for (const int node : ramp.target.nodes) sum += nodeStiffness(node);
@@ -61,19 +92,15 @@ double Tissue::foreseenSteps(const std::vector<Ramp>& ramps) const {
   return std::min(steps, kMostSteps);
 }
 
-int Tissue::foreseenIncrements(const std::vector<Ramp>& ramps) const {
-  return wholeParts(foreseenSteps(ramps));
-}
-
 // With increments of its own choice. Those of a displacement are equal. Those of a force follow the
 // stiffness that the last one met, so that the next moves its patch by one step, and one that went
 // too far is made anew, where the method finds equilibria.
-SolveReport Tissue::stepLoadsByItself(const std::vector<Ramp>& ramps,
+SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
                                       const OnIncrement& on_increment) {
   const bool forced = std::any_of(ramps.begin(), ramps.end(),
-                                  [](const Ramp& ramp) { return byForce(ramp.target); });
+                                  [](const LoadRamp& ramp) { return byForce(ramp.target); });
   if (!forced || !method_->findsEquilibrium())
-    return stepLoads(ramps, foreseenIncrements(ramps), on_increment);
+    return stepLoads(ramps, wholeParts(foreseenSteps(ramps)), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   const double first = 1.0 / foreseenSteps(ramps), least = kLeastOfFirst * first;
@@ -83,7 +110,8 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<Ramp>& ramps,
     const double part = (1.0 - share) / wholeParts((1.0 - share) / stride);
     const double to = part < 1.0 - share ? share + part : 1.0;
     report = goTo(ramps, to);
-    const double went = stepsGone(ramps, *good.displacement);
+    const double went =
+        farthestWay(ramps, *good.displacement, state_.displacement) / method_->patchStep();
     stride = std::max(least, part / std::max(went, 1.0 / kMostGrowth));
     if (went > kTooFar && stride < part) {
       restore(good);
@@ -103,7 +131,7 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<Ramp>& ramps,
   return report;
 }
 
-SolveReport Tissue::stepLoads(const std::vector<Ramp>& ramps, int increments,
+SolveReport Tissue::stepLoads(const std::vector<LoadRamp>& ramps, int increments,
                               const OnIncrement& on_increment) {
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
@@ -123,7 +151,7 @@ SolveReport Tissue::stepLoads(const std::vector<Ramp>& ramps, int increments,
 
 // An increment that would turn cells over, were only the patch to move, is walked in the method's
 // own steps: in one go the shape would be that of no way there.
-SolveReport Tissue::goInSteps(const std::vector<Ramp>& ramps, int increment, int increments) {
+SolveReport Tissue::goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments) {
   const double steps = method_->findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
   const int parts = steps > kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
@@ -142,38 +170,9 @@ SolveReport Tissue::goInSteps(const std::vector<Ramp>& ramps, int increment, int
   return report;
 }
 
-SolveReport Tissue::goTo(const std::vector<Ramp>& ramps, double share) {
-  for (const Ramp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
+SolveReport Tissue::goTo(const std::vector<LoadRamp>& ramps, double share) {
+  for (const LoadRamp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
   return solve({});
-}
-
-// Longest way of a patch's node from these displacements, in the method's steps.
-double Tissue::stepsGone(const std::vector<Ramp>& ramps, const std::vector<Vec3>& before) const {
-  double farthest = 0.0;
-  for (const Ramp& ramp : ramps) {
-    for (const int node : ramp.target.nodes) {
-      farthest = std::max(farthest, (state_.displacement[at(node)] - before[at(node)]).norm());
-    }
-  }
-  return farthest / method_->patchStep();
-}
-
-// Sets the patch to a share of its way. A patch by force stays where the solver moved it to.
-void Tissue::goAlong(const Ramp& ramp, double share, LoadingPatch& patch) {
-  const auto between = [share](const Vec3& start, const Vec3& target) -> Vec3 {
-    return share < 1.0 ? Vec3(start + share * (target - start)) : target;
-  };
-  patch.force = between(ramp.start.force, ramp.target.force);
-  if (byForce(patch)) return;
-  for (std::size_t i = 0; i < patch.displacement.size(); ++i) {
-    patch.displacement[i] = between(ramp.start.displacement[i], ramp.target.displacement[i]);
-  }
-  for (RimSpring& spring : patch.rim) {
-    const auto same = [&](const RimSpring& other) { return other.node == spring.node; };
-    const auto start = std::find_if(ramp.start.rim.begin(), ramp.start.rim.end(), same);
-    const auto target = std::find_if(ramp.target.rim.begin(), ramp.target.rim.end(), same);
-    spring.anchor = between(start->anchor, target->anchor);
-  }
 }
 
 }  // namespace robot_tissue

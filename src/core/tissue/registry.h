@@ -1,4 +1,4 @@
-// The models and methods that exist. A new one is added in registry.cpp and nowhere else.
+// Makes the models and methods that exist (robot_tissue/core/method_names.h).
 #pragma once
 
 #include <memory>

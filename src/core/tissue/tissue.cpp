@@ -9,6 +9,7 @@
 #include "cutting/split_cells.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
+#include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
 
@@ -21,6 +22,22 @@ constexpr int kMostRounds = 200;       // with those that are cut short
 constexpr int kMostIterations = 1500;  // of the rounds of one load step
 constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
 constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
+
+Vec3 forceOfPatches(const SolveReport& report) {
+  Vec3 force = Vec3::Zero();
+  for (const PatchAnswer& answer : report.patches) force += answer.force;
+  return force;
+}
+
+bool hasOnlyFiniteNumbers(const SolveReport& report, const std::vector<Vec3>& displacement) {
+  const auto finite = [](const Vec3& vector) { return vector.allFinite(); };
+  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
+         std::all_of(report.patches.begin(), report.patches.end(),
+                     [&](const PatchAnswer& patch) {
+                       return finite(patch.force) && finite(patch.displacement);
+                     }) &&
+         std::all_of(displacement.begin(), displacement.end(), finite);
+}
 
 }  // namespace
 
@@ -59,7 +76,8 @@ Vec3 Tissue::weight() const { return weight_; }
 
 // What holds them: minus what the tissue, and springs in contact, do to them.
 Vec3 Tissue::forceOfFixedNodes() const {
-  if (method_->visited() != nullptr) return method_->forceLeft() - weight_ - forceOfPatches();
+  if (method_->visited() != nullptr)
+    return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
   const CellSet& cells = *state_.cells;
   Vec3 force = Vec3::Zero();
   for (int node = 0; node < cells.nodeCount(); ++node) {
@@ -73,12 +91,6 @@ Vec3 Tissue::forceOfFixedNodes() const {
       }
     }
   }
-  return force;
-}
-
-Vec3 Tissue::forceOfPatches() const {
-  Vec3 force = Vec3::Zero();
-  for (const PatchAnswer& answer : last_report_.patches) force += answer.force;
   return force;
 }
 
@@ -193,7 +205,9 @@ void Tissue::deformSurface() {
 // The surface is another one: touches are found anew where it is now.
 void Tissue::renewContacts() {
   std::vector<LoadingPatch> of_tools;
-  if (contact_update_.renew && contact_update_.renew(of_tools, true, false)) {
+  if (contact_update_ == nullptr) return;
+  if (contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved,
+                             ContactUpdate::Round::kNext)) {
     putToolPatches(std::move(of_tools));
   }
 }
@@ -219,7 +233,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
 
 SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
-  if (!contact_update_.renew) return solveOnce(disturbed);
+  if (contact_update_ == nullptr) return solveOnce(disturbed);
   Displacements before = displacements();
   RoundGain gain(before);
   SolveReport report = solveOnce(disturbed);
@@ -235,7 +249,9 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
                       report.iterations > kMostIterations || gain.isOver() ||
                       (!solved && !hurried && rounds > 1 && state_.displacement == *before);
-    const bool renewed = contact_update_.renew(of_tools, whole, last);
+    const bool renewed = contact_update_->renew(
+        of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
+        last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
     if (!renewed && (last || !hurried)) break;
     if (late) {
       is_late_ = true;
@@ -256,8 +272,8 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
 
 // A node may go as far as the vertices that it carries.
 void Tissue::limitWays() {
-  if (!contact_update_.longest) return;
-  const std::vector<double> of_vertices = contact_update_.longest();
+  if (contact_update_ == nullptr) return;
+  const std::vector<double> of_vertices = contact_update_->longestWays();
   std::vector<double> of_nodes;
   if (!of_vertices.empty()) {
     of_nodes.assign(state_.displacement.size(), std::numeric_limits<double>::infinity());
@@ -273,7 +289,7 @@ void Tissue::limitWays() {
 
 // As far as the contacts allow. False: there is no need to.
 bool Tissue::goBack(const std::vector<Vec3>& before) {
-  const double share = contact_update_.share(before);
+  const double share = contact_update_->shareOfWay(before);
   if (share >= 1.0) return false;
   kept_.reset();
   for (std::size_t node = 0; node < before.size(); ++node) {
@@ -299,7 +315,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   limitWays();
   method_->limitTime(mostMs());
   SolveReport report = method_->solve(patches_, disturbed, state_);
-  if (may_fail && !hasOnlyFiniteNumbers(report)) {
+  if (may_fail && !hasOnlyFiniteNumbers(report, state_.displacement)) {
     state_.displacement = last_good;
     patches_ = last_good_patches;
     report = SolveReport();
@@ -327,7 +343,7 @@ SolveReport Tissue::solveFromRest() {
     patches_.insert(patches_.begin(), standing.begin(), standing.end());
     named_patches_ = named;
   }
-  std::vector<Ramp> ramps;
+  std::vector<LoadRamp> ramps;
   for (std::size_t patch = 0; patch < standing.size(); ++patch) {
     ramps.push_back(makeRamp(standing[patch], nullptr));
     ramps.back().patch = patch;
@@ -343,16 +359,6 @@ SolveReport Tissue::solveFromRest() {
     is_late_ = false;
   }
   return report;
-}
-
-bool Tissue::hasOnlyFiniteNumbers(const SolveReport& report) const {
-  const auto finite = [](const Vec3& vector) { return vector.allFinite(); };
-  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
-         std::all_of(report.patches.begin(), report.patches.end(),
-                     [&](const PatchAnswer& patch) {
-                       return finite(patch.force) && finite(patch.displacement);
-                     }) &&
-         std::all_of(state_.displacement.begin(), state_.displacement.end(), finite);
 }
 
 double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }

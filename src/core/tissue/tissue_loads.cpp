@@ -10,6 +10,7 @@
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
+#include "tissue/load_ramp.h"
 
 namespace robot_tissue {
 namespace {
@@ -19,26 +20,79 @@ namespace {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
 }
 
+// A node obeys one patch.
+void requireOwnNodes(const std::vector<LoadingPatch>& patches,
+                     const std::vector<LoadingPatch>& standing) {
+  std::unordered_map<int, const LoadingPatch*> owners;
+  const auto claim = [&](const LoadingPatch& patch) {
+    for (const int node : patch.nodes) {
+      const LoadingPatch*& owner = owners[node];
+      if (owner != nullptr && owner->name != patch.name) {
+        refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
+               "patches without a common node");
+      }
+      owner = &patch;
+    }
+  };
+  for (const LoadingPatch& patch : standing) {
+    const auto replaced = std::find_if(patches.begin(), patches.end(),
+                                       [&](const auto& other) { return other.name == patch.name; });
+    if (replaced == patches.end()) {
+      claim(patch);
+    } else if (replaced->nodes != patch.nodes) {
+      refuse(patch.name, "a patch of this name stands on other nodes",
+             "the same box, or a release");
+    }
+  }
+  std::set<std::string> names;
+  for (const LoadingPatch& patch : patches) {
+    if (!names.insert(patch.name).second) {
+      refuse(patch.name, "two patches of this load have this name", "a name for each patch");
+    }
+    claim(patch);
+  }
+}
+
+// Where a patch's rim reaches nodes of another one, these are the other's alone.
+void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
+  std::unordered_map<int, const LoadingPatch*> owners;
+  for (const LoadingPatch& patch : patches) {
+    for (const int node : patch.nodes) owners[node] = &patch;
+  }
+  for (LoadingPatch& patch : patches) {
+    const auto foreign = [&](const RimSpring& spring) {
+      const auto owner = owners.find(spring.node);
+      return owner != owners.end() && owner->second != &patch;
+    };
+    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
+  }
+}
+
 }  // namespace
+
+void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches) {
+  const auto is_it = [&](const LoadingPatch& patch) { return patch.name == name; };
+  patches.erase(std::remove_if(patches.begin(), patches.end(), is_it), patches.end());
+}
 
 void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
-  requireOwnNodes(targets);
-  std::vector<Ramp> ramps;
+  requireOwnNodes(targets, patches_);
+  std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
     ramps.push_back(makeRamp(target, standingPatch(target.name)));
   }
-  const int increments = step.increments.value_or(foreseenIncrements(ramps));
+  const int increments = step.increments.value_or(wholeParts(foreseenSteps(ramps)));
   if (increments > most_increments) {
     refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
            "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
-  for (Ramp& ramp : ramps) {
-    dropDue(ramp.target.name);
+  for (LoadRamp& ramp : ramps) {
+    dropNamed(ramp.target.name, due_);
     ramp.patch = place(ramp.start);
   }
-  leaveRimsToOwners();
+  leaveRimsToOwners(patches_);
   if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
   if (step.increments) {
     stepLoads(ramps, increments, on_increment);
@@ -48,20 +102,15 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
 }
 
 void Tissue::loadOn(const OnIncrement& on_increment) {
-  std::vector<Ramp> ramps;
+  std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : std::exchange(due_, {})) {
     const LoadingPatch* standing = standingPatch(target.name);
     if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
   }
   if (ramps.empty()) return;
-  for (Ramp& ramp : ramps) ramp.patch = place(ramp.start);
-  leaveRimsToOwners();
+  for (LoadRamp& ramp : ramps) ramp.patch = place(ramp.start);
+  leaveRimsToOwners(patches_);
   stepLoadsByItself(ramps, on_increment);
-}
-
-void Tissue::dropDue(const std::string& name) {
-  const auto is_it = [&](const LoadingPatch& target) { return target.name == name; };
-  due_.erase(std::remove_if(due_.begin(), due_.end(), is_it), due_.end());
 }
 
 SolveReport Tissue::release(const std::vector<std::string>& names) {
@@ -78,7 +127,7 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
     patches_.erase(named(name));
     --named_patches_;
-    dropDue(name);
+    dropNamed(name, due_);
   }
   const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
   return unique ? solve(freeNodes()) : solveFromRest();
@@ -132,38 +181,6 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
   return patch;
 }
 
-// A node obeys one patch.
-void Tissue::requireOwnNodes(const std::vector<LoadingPatch>& patches) const {
-  std::unordered_map<int, const LoadingPatch*> owners;
-  const auto claim = [&](const LoadingPatch& patch) {
-    for (const int node : patch.nodes) {
-      const LoadingPatch*& owner = owners[node];
-      if (owner != nullptr && owner->name != patch.name) {
-        refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
-               "patches without a common node");
-      }
-      owner = &patch;
-    }
-  };
-  for (const LoadingPatch& patch : patches_) {
-    const auto replaced = std::find_if(patches.begin(), patches.end(),
-                                       [&](const auto& other) { return other.name == patch.name; });
-    if (replaced == patches.end()) {
-      claim(patch);
-    } else if (replaced->nodes != patch.nodes) {
-      refuse(patch.name, "a patch of this name stands on other nodes",
-             "the same box, or a release");
-    }
-  }
-  std::set<std::string> names;
-  for (const LoadingPatch& patch : patches) {
-    if (!names.insert(patch.name).second) {
-      refuse(patch.name, "two patches of this load have this name", "a name for each patch");
-    }
-    claim(patch);
-  }
-}
-
 // Index of the patch among the standing ones; a new one comes after the other named ones, with no
 // load yet.
 std::size_t Tissue::place(const LoadingPatch& patch) {
@@ -176,21 +193,6 @@ std::size_t Tissue::place(const LoadingPatch& patch) {
   return named_patches_++;
 }
 
-// Where a patch's rim reaches nodes of another one, these are the other's alone.
-void Tissue::leaveRimsToOwners() {
-  std::unordered_map<int, const LoadingPatch*> owners;
-  for (const LoadingPatch& patch : patches_) {
-    for (const int node : patch.nodes) owners[node] = &patch;
-  }
-  for (LoadingPatch& patch : patches_) {
-    const auto foreign = [&](const RimSpring& spring) {
-      const auto owner = owners.find(spring.node);
-      return owner != owners.end() && owner->second != &patch;
-    };
-    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
-  }
-}
-
 const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
   for (std::size_t index = 0; index < named_patches_; ++index) {
     if (patches_[index].name == name) return &patches_[index];
@@ -199,8 +201,8 @@ const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
 }
 
 // Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
-Tissue::Ramp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
-  Ramp ramp;
+LoadRamp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
+  LoadRamp ramp;
   ramp.target = target;
   ramp.start = target;
   for (RimSpring& spring : ramp.start.rim) spring.anchor = state_.displacement[at(spring.node)];

@@ -1,0 +1,23 @@
+// A patch on its way to a load, in increments from where it is.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "robot_tissue/core/loading_patch.h"
+
+namespace robot_tissue {
+
+struct LoadRamp {
+  std::size_t patch = 0;  // number among the standing ones
+  LoadingPatch start;     // of the target's nodes and drive
+  LoadingPatch target;
+};
+
+// As many equal parts as steps of these, at least one.
+int wholeParts(double steps);
+// Takes away the patch of this name.
+void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches);
+
+}  // namespace robot_tissue

@@ -1,0 +1,46 @@
+// Tools that a force drives along its line from their pose.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "robot_tissue/core/robot_pose.h"
+#include "tool_set.h"
+
+namespace robot_tissue {
+
+class ForceDrive {
+ public:
+  void setTools(std::size_t count) { drives_.assign(count, {}); }
+
+  // On the tissue (N, tissue frame); none: the tool is at its pose. Finite and not zero.
+  void push(std::size_t tool, const std::optional<Vec3>& force);
+  bool drives(std::size_t tool) const { return drives_[tool].force.has_value(); }
+  bool drivesAny() const;
+  Vec3 offset(std::size_t tool) const;  // from its pose (m)
+  // The pose with the tools where their forces moved them.
+  RobotPose driven(RobotPose pose, const ToolSet& tools) const;
+
+  // Moves the tool until its force is met: load steps until it touches, then by the secant through
+  // the last two. `longest`: a load step (m); `met`: the force on the tissue (N); `walk`: takes the
+  // tool there, false: goes no farther; `lost`: no shape could follow. True: there is a way left.
+  struct Way {
+    double longest = 0.0;
+    std::function<Vec3()> met;
+    std::function<bool()> walk;
+    std::function<bool()> lost;
+  };
+  bool meetForce(std::size_t tool, const Way& way);
+
+ private:
+  struct Drive {
+    std::optional<Vec3> force;  // N
+    double way = 0.0;           // along the force, from its pose (m)
+  };
+
+  std::vector<Drive> drives_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,78 @@
+// Graspers, and what is between their jaws.
+//
+// The gap counts where tissue is: seen from a point of the tissue that lies between them, the jaws
+// are as far apart as the points of both that are nearest to it. What they share elsewhere, as at a
+// hinge, plays no part. What a grasper holds rides on its jaws; then the gap counts there.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "world.h"
+
+namespace robot_tissue {
+
+// How a grasper's jaws stand to the tissue.
+struct Jaws {
+  // kUnseen: no tissue is between them, which alone tells open from closed.
+  enum class State { kUnseen, kOpen, kClosed };
+  // What keeps closed jaws from holding.
+  enum class Loss { kClosedBefore, kReleased, kTorn };
+  State state = State::kOpen;
+  Loss loss = Loss::kClosedBefore;
+  std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where, in each's frame (m)
+  bool asked = false;                                       // to grasp, in vain
+  bool let_go = false;  // told so since the last step, in which they hold nothing anew
+  bool were_apart = false;
+};
+
+class Grasping {
+ public:
+  explicit Grasping(World& world) : world_(world) {}
+
+  void setTools(std::size_t count) { jaws_.assign(count, {}); }
+  const std::vector<Jaws>& jaws() const { return jaws_; }
+  void restore(const std::vector<Jaws>& jaws) { jaws_ = jaws; }
+
+  void openJaws();
+  void closeJaws();
+  void forgetJaws(std::size_t tool);
+  // A grasper holds what is between its jaws now. False: nothing is.
+  bool grasp(std::size_t tool);
+  // Returns whether it held something.
+  bool letGo(std::size_t tool);
+  // Of letting go since the last step.
+  void forgetLetGo();
+  // Those that were pulled harder than they hold lose what they held; returns them.
+  std::vector<std::size_t> tearOff();
+
+  bool grasps(std::size_t tool) const;
+  bool hasJaws(std::size_t tool, const RobotPose& pose) const;
+  std::optional<double> gapAtTissue(std::size_t tool, const RobotPose& pose) const;
+  bool jawsOverlap(std::size_t tool) const;
+  std::string whyItHoldsNothing(std::size_t tool) const;
+
+ private:
+  // Two jaws seen from a point.
+  struct Pinch {
+    double gap = 0.0;  // m
+    Vec3 middle = Vec3::Zero();
+    bool is_between = false;  // the point is between them
+  };
+
+  std::optional<double> leastGap(std::size_t tool, const RobotPose& pose) const;
+  std::optional<Pinch> pinchAt(std::size_t tool, const RobotPose& pose, const Vec3& point) const;
+  std::optional<Pinch> narrowestPinch(std::size_t tool, const RobotPose& pose) const;
+  void watchJaws(std::size_t tool);
+  std::size_t hold(std::size_t tool);
+  std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
+  bool pushesWith(std::size_t link) const;
+
+  World& world_;
+  std::vector<Jaws> jaws_;  // per tool
+};
+
+}  // namespace robot_tissue

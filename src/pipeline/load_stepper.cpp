@@ -1,0 +1,214 @@
+#include "load_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "stopwatch.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
+constexpr int kRigidRounds = 6;    // nodes that the solve moved into a rigid tool go out again
+constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
+constexpr int kMoreSolves = 2;     // where one ended on its way
+constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
+constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
+constexpr double kMostLeap = 10.0;       // of the spacing, of a surface's node in a load step
+constexpr double kThrough = 0.25;        // of the spacing: how deep a link is that goes through
+constexpr double kThroughTool = 0.25;    // of the link's thickness, likewise, whichever is less
+
+}  // namespace
+
+// One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
+// with a rigid patch; for the others the solver asks for the contacts itself (ContactUpdate).
+bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
+  ++world_.report.substeps;
+  Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
+  world_.pose = pose;
+  grasping_.openJaws();
+  world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
+  for (int round = 0; round < kRigidRounds; ++round) {
+    world_.sticking.ride(pose, world_.tissue);
+    if (round == 0) meet(pose);
+    pushRigid(pose);  // robot pose -> contacts -> loading patches
+    std::vector<LoadingPatch> patches = patchesOfTools(world_);
+    const std::vector<LoadingPatch>& before = world_.tissue.patches();
+    if (!anyToolIn(patches, world_) && !anyToolIn(before, world_)) break;
+    if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
+    if (round == 0) good.shape = world_.tissue.shape();
+    follow(std::move(patches));  // loading patches -> solve
+    if (world_.tools.anyRigid() ? leaptFrom(good) : !settlesFrom(good, otherwise)) {
+      goBackTo(good);
+      return false;
+    }
+    if (!world_.tools.anyRigid()) break;
+    if (deepestInRigid(pose) <= kDeepEnough * world_.tissue.lattice().spacing()) break;
+    world_.unfinished = round + 1 < kRigidRounds && world_.deadline.isOver();
+    if (world_.unfinished) break;
+  }
+  grasping_.closeJaws();
+  world_.sliding.commit(pose, world_.tissue);
+  tearOff();
+  world_.dead_end.reset();
+  return true;
+}
+
+// Goes on where the solve ended on its way. False: no shape followed.
+bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
+  for (int more = 0;; ++more) {
+    const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
+    if (isLost(good) || (!converged && otherwise == IfUnconverged::kRefuse)) return false;
+    if (more == kMoreSolves || !isUnsettled()) return true;
+    world_.unfinished = world_.deadline.isOver();
+    if (world_.unfinished) return true;
+    follow(patchesOfTools(world_));
+  }
+}
+
+void LoadStepper::follow(std::vector<LoadingPatch> patches) {
+  const Stopwatch watch(world_.report.solve_ms);
+  const SolveReport solved =
+      world_.tissue.follow(std::move(patches), world_.sticking.left(), world_.has_supports);
+  if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
+  world_.report.changed = true;
+}
+
+// No load step takes tissue that is held so far.
+bool LoadStepper::leaptFrom(const Checkpoint& good) const {
+  if (world_.tissue.isUntouched()) return false;
+  const std::vector<Vec3>& now = world_.tissue.state().displacement;
+  const std::vector<Vec3>& before = *good.shape.displacement;
+  double farthest = 0.0;
+  for (const auto& carriers : world_.tissue.surface().carriers) {
+    for (const NodeWeight& carrier : carriers) {
+      const Vec3 way = now[at(carrier.node)] - before[at(carrier.node)];
+      farthest = std::max(farthest, way.squaredNorm());
+    }
+  }
+  const double leap = kMostLeap * world_.tissue.lattice().spacing();
+  return farthest > leap * leap;
+}
+
+// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
+bool LoadStepper::isLost(const Checkpoint& good) const {
+  if (leaptFrom(good)) return true;
+  if (world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
+  return wentThrough(good) || SlidingContacts::pushesAbsurdly(world_.tissue);
+}
+
+// Into what gives way, deeper than it was.
+bool LoadStepper::wentThrough(const Checkpoint& good) const {
+  const std::vector<double>& depths = touch_finder_.depths();
+  for (std::size_t link = 0; link < world_.tools.linkCount() && link < depths.size(); ++link) {
+    const double before = link < good.depths.size() ? good.depths[link] : 0.0;
+    if (depths[link] > std::max(throughAt(link), before)) return true;
+  }
+  return false;
+}
+
+// Deeper in the surface (m), a link is on its way to the other side of it.
+double LoadStepper::throughAt(std::size_t link) const {
+  return std::min(kThrough * world_.tissue.lattice().spacing(),
+                  kThroughTool * world_.finder.thickness(link));
+}
+
+// The solve ended on its way, as where tissue slips far.
+bool LoadStepper::isUnsettled() const {
+  if (contact_update_.leftInside() > kTooDeep * world_.tissue.lattice().spacing()) return true;
+  if (world_.tissue.lastReport().status != SolveStatus::kUnconverged) return false;
+  const ForceBalance forces = forceBalanceOf(world_);
+  return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
+}
+
+// How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
+double LoadStepper::deepestInRigid(const RobotPose& pose) {
+  double deepest = 0.0;
+  for (const Contact& contact :
+       touch_finder_.contactsAt(pose, world_.tissue.state().displacement).contacts) {
+    if (world_.tools.isRigid(contact.tool)) deepest = std::max(deepest, contact.depth_m);
+  }
+  return deepest;
+}
+
+// Nodes under a tool with a rigid patch go out of it.
+void LoadStepper::pushRigid(const RobotPose& pose) {
+  if (!world_.tools.anyRigid()) return;
+  for (int pass = 0; pass < kPushPasses; ++pass) {
+    ContactSet contacts =
+        touch_finder_.contactsAt(pose, world_.sticking.displacement(world_.tissue));
+    auto& all = contacts.contacts;
+    const double touches = kTouches * world_.tissue.lattice().spacing();
+    const auto is_others = [&](const Contact& contact) {
+      return !world_.tools.isRigid(contact.tool) || contact.depth_m < -touches;
+    };
+    all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
+    if (pass == 0) world_.sticking.keepTouching(contacts, world_.tissue);
+    if (deepest(contacts) <= 0.0) return;
+    world_.sticking.pushOut(contacts, world_.tissue, pose);
+  }
+}
+
+SolveReport LoadStepper::balance() {
+  world_.sliding.ride(world_.pose, world_.tissue);
+  world_.sticking.ride(world_.pose, world_.tissue);
+  meet(world_.pose);
+  return world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(), true);
+}
+
+void LoadStepper::meet(const RobotPose& pose) {
+  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
+  world_.sliding.meet(touch_finder_.touchesAt(pose, held), pose, world_.tissue, held);
+}
+
+// Of the tools that touched, for the surface to come back to.
+std::vector<LoadingPatch> LoadStepper::lastTouches() const {
+  std::vector<LoadingPatch> patches;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    patches.push_back(world_.sticking.loadingPatch(static_cast<int>(tool)));
+    patches.back().contacts = world_.sliding.springsOf(static_cast<int>(tool));
+  }
+  return patches;
+}
+
+Checkpoint LoadStepper::toolsCheckpoint() const {
+  return {
+      world_.pose,           {}, world_.sticking.attachments(), world_.sliding, grasping_.jaws(),
+      touch_finder_.depths()};
+}
+
+Checkpoint LoadStepper::checkpoint() const {
+  Checkpoint all = toolsCheckpoint();
+  all.shape = world_.tissue.shape();
+  return all;
+}
+
+// On the supports alone.
+void LoadStepper::lieDown() {
+  if (world_.tissue.isUntouched()) return;
+  world_.sliding.ride(world_.pose, world_.tissue);
+  meet(world_.pose);
+  world_.tissue.follow(patchesOfTools(world_), {}, world_.has_supports);
+}
+
+// Graspers that are pulled harder than they hold.
+void LoadStepper::tearOff() {
+  const std::vector<std::size_t> torn_off = grasping_.tearOff();
+  if (torn_off.empty()) return;
+  for (const std::size_t tool : torn_off) addOnce(tool, world_.report.torn_off);
+  world_.sticking.ride(world_.pose, world_.tissue);
+  world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), world_.has_supports);
+  world_.sliding.commit(world_.pose, world_.tissue);
+}
+
+void LoadStepper::goBackTo(const Checkpoint& good) {
+  world_.pose = good.pose;
+  world_.tissue.restore(good.shape);
+  world_.sticking.restore(good.attachments, world_.tissue);
+  world_.sliding = good.contacts;
+  grasping_.restore(good.jaws);
+  touch_finder_.restoreDepths(good.depths);
+}
+
+}  // namespace robot_tissue

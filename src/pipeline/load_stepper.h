@@ -1,0 +1,72 @@
+// One load step, the line of the package: robot pose -> contacts -> loading patches -> solve.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "grasping.h"
+#include "tool_contact_update.h"
+#include "touch_finder.h"
+#include "world.h"
+
+namespace robot_tissue {
+
+// Where a whole load step ended. Only rigid patches come back to its shape later: without them it
+// has none but on the way through a step.
+struct Checkpoint {
+  RobotPose pose;
+  Tissue::Shape shape;
+  StickingContacts::Attachments attachments;
+  SlidingContacts contacts;
+  std::vector<Jaws> jaws;
+  std::vector<double> depths;
+};
+
+// A shape that did not converge.
+enum class IfUnconverged { kTake, kRefuse };
+
+class LoadStepper {
+ public:
+  LoadStepper(World& world, TouchFinder& touch_finder, ToolContactUpdate& contact_update,
+              Grasping& grasping)
+      : world_(world),
+        touch_finder_(touch_finder),
+        contact_update_(contact_update),
+        grasping_(grasping) {}
+
+  // The tools go there. False: no shape could follow, all is as it was.
+  bool advance(const RobotPose& pose, IfUnconverged otherwise = IfUnconverged::kTake);
+  // Under what acts now.
+  SolveReport balance();
+  void lieDown();
+
+  Checkpoint checkpoint() const;
+  void goBackTo(const Checkpoint& good);
+
+  // Of solves that did not converge, since it was set to 0.
+  int cyclesInVain() const { return cycles_in_vain_; }
+  void forgetCyclesInVain() { cycles_in_vain_ = 0; }
+  double throughAt(std::size_t link) const;
+
+ private:
+  void meet(const RobotPose& pose);
+  void pushRigid(const RobotPose& pose);
+  double deepestInRigid(const RobotPose& pose);
+  std::vector<LoadingPatch> lastTouches() const;
+  void follow(std::vector<LoadingPatch> patches);
+  bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
+  bool isLost(const Checkpoint& good) const;
+  bool leaptFrom(const Checkpoint& good) const;
+  bool wentThrough(const Checkpoint& good) const;
+  bool isUnsettled() const;
+  void tearOff();
+  Checkpoint toolsCheckpoint() const;  // without the shape
+
+  World& world_;
+  TouchFinder& touch_finder_;
+  ToolContactUpdate& contact_update_;
+  Grasping& grasping_;
+  int cycles_in_vain_ = 0;
+};
+
+}  // namespace robot_tissue

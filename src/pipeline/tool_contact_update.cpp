@@ -1,0 +1,129 @@
+#include "tool_contact_update.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "stopwatch.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kLongestWay = 0.5;    // of the spacing, of the tissue beside a tool in one round
+constexpr double kShareOfTool = 0.25;  // of a link's thickness, likewise
+constexpr double kDepth = 0.1;         // of the spacing: how deep a point goes on such a way, and
+constexpr double kDepthInTool = 0.2;   // of the link's thickness, whichever is less
+constexpr double kDepthGrowth = 0.1;   // of that, where one is deeper already
+constexpr int kDepthTrials = 4;        // of half the way each, to get less deep
+
+bool isIn(const Box& box, const Vec3& point) {
+  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+}
+
+}  // namespace
+
+// Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
+// no vertex near a link goes farther at once than half a spacing, or half the link's thickness.
+std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() const {
+  const double spacing = world_.tissue.lattice().spacing();
+  std::vector<Surroundings> all;
+  for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
+    if (ToolSet::isAway(world_.pose.links[link])) continue;
+    Surroundings here;
+    here.box = world_.finder.bounds(link, world_.pose.links[link]);
+    here.box.min.array() -= spacing;
+    here.box.max.array() += spacing;
+    here.longest = std::min(kLongestWay * spacing, kShareOfTool * world_.finder.thickness(link));
+    all.push_back(here);
+  }
+  return all;
+}
+
+std::vector<double> ToolContactUpdate::longestWays() {
+  const Stopwatch watch(world_.report.contact_ms);
+  const std::vector<Vec3>& now = world_.tissue.vertices();
+  std::vector<double> longest;
+  for (const Surroundings& near : surroundings()) {
+    longest.resize(now.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      if (isIn(near.box, now[vertex])) longest[vertex] = std::min(longest[vertex], near.longest);
+    }
+  }
+  return longest;
+}
+
+double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
+  const Stopwatch watch(world_.report.contact_ms);
+  deform(world_.tissue.surface(), before, vertices_);
+  const std::vector<Vec3>& now = world_.tissue.vertices();
+  double share = 1.0;
+  for (const Surroundings& near : surroundings()) {
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      if (!isIn(near.box, now[vertex]) && !isIn(near.box, vertices_[vertex])) continue;
+      const double way = (now[vertex] - vertices_[vertex]).norm();
+      if (way > near.longest) share = std::min(share, near.longest / way);
+    }
+  }
+  return shareOutside(share);
+}
+
+// Of that share of the way from `vertices_` to the shape, as much as takes no point deep into a
+// link: from its middle on, nothing tells on which side it came in.
+double ToolContactUpdate::shareOutside(double share) const {
+  const std::vector<Vec3>& now = world_.tissue.vertices();
+  std::vector<Vec3> there(now.size());
+  std::vector<double> before;
+  for (int trial = 0; trial < kDepthTrials; ++trial, share *= 0.5) {
+    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+      there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
+    }
+    const std::vector<double> depths = depthsIn(there);
+    bool deep = false;
+    for (std::size_t link = 0; link < depths.size(); ++link) {
+      const double most = std::min(kDepth * world_.tissue.lattice().spacing(),
+                                   kDepthInTool * world_.finder.thickness(link));
+      if (depths[link] <= most) continue;
+      if (before.empty()) before = depthsIn(vertices_);
+      deep = deep || depths[link] > before[link] + kDepthGrowth * most;
+    }
+    if (!deep) break;
+  }
+  return share;
+}
+
+// Of the deepest point that gives way in each of the tools' links (m).
+std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertices) const {
+  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
+  std::vector<double> depths(world_.tools.linkCount(), 0.0);
+  for (const Contact& contact :
+       world_.finder.find(world_.pose, world_.tissue.surface(), vertices, 0.0).contacts) {
+    if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
+    const auto carriers =
+        carriersAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
+    if (!SlidingContacts::givesWay(carriers, held)) continue;
+    depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
+  }
+  return depths;
+}
+
+// The shape was solved for the contacts of before: are they those of the shape?
+bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
+  const bool new_surface = surface_version_ != world_.tissue.surfaceVersion();
+  surface_version_ = world_.tissue.surfaceVersion();
+  if (new_surface) world_.sliding.clear();
+  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
+  const ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
+  left_inside_ = deepest(contacts);
+  if (new_surface) {
+    world_.sliding.ride(world_.pose, world_.tissue);
+    world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
+  } else {
+    const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose), contacts,
+                                               world_.pose, world_.tissue, held, shape);
+    if (settled && (!world_.tissue.isUntouched() || world_.sliding.touches().empty())) return false;
+  }
+  if (round == Round::kLast) return true;
+  of_tools = patchesOfTools(world_);
+  return !of_tools.empty();
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,42 @@
+// Whether the contacts that a shape was solved for are those of the shape (Tissue asks).
+#pragma once
+
+#include <vector>
+
+#include "touch_finder.h"
+#include "world.h"
+
+namespace robot_tissue {
+
+class ToolContactUpdate : public ContactUpdate {
+ public:
+  ToolContactUpdate(World& world, TouchFinder& touch_finder)
+      : world_(world),
+        touch_finder_(touch_finder),
+        surface_version_(world.tissue.surfaceVersion()) {}
+
+  std::vector<double> longestWays() override;
+  double shareOfWay(const std::vector<Vec3>& before) override;
+  bool renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) override;
+
+  double leftInside() const { return left_inside_; }
+
+ private:
+  // Of a link: in the box a vertex goes so far at once (m) and no farther.
+  struct Surroundings {
+    Box box;
+    double longest = 0.0;
+  };
+
+  std::vector<Surroundings> surroundings() const;
+  double shareOutside(double share) const;
+  std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
+
+  World& world_;
+  TouchFinder& touch_finder_;
+  unsigned surface_version_;
+  std::vector<Vec3> vertices_;  // where the way began that is looked at
+  double left_inside_ = 0.0;    // depth of the deepest contact after the last solve (m)
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,320 @@
+#include "tool_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "box_distance.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kMostCheckpoints = 64;
+constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
+constexpr int kMostInVain = 3000;        // cycles that did not converge: no whole load step since
+
+RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
+  RobotPose between = to;
+  for (std::size_t link = 0; link < to.links.size(); ++link) {
+    const Pose& start = from.links[link];
+    const Pose& end = to.links[link];
+    Pose& pose = between.links[link];
+    pose.linear() = Eigen::Quaterniond(start.linear())
+                        .slerp(share, Eigen::Quaterniond(end.linear()))
+                        .toRotationMatrix();
+    pose.translation() = start.translation() + share * (end.translation() - start.translation());
+  }
+  return between;
+}
+
+}  // namespace
+
+// The shortest load step that way is the one that no shape followed when last tried from there.
+bool ToolMotion::leadsNowhere(const RobotPose& from, const RobotPose& to) const {
+  if (!world_.dead_end || ways_.stepsBetween(world_.dead_end->from, from) > 0.0) return false;
+  const double steps = ways_.stepsBetween(from, to);
+  const RobotPose shortest = steps > kShortest ? between(from, to, kShortest / steps) : to;
+  return ways_.stepsBetween(world_.dead_end->to, shortest) < 0.5 * kShortest;
+}
+
+// Tools that pass the tissue by are where they go at once. False: others have a way to go.
+bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
+  bool all_pass = !world_.tools.anyRigid();
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (ways_.passesBy(tool, start, pose)) {
+      start = world_.tools.withTool(tool, pose, start);
+    } else {
+      all_pass = false;
+    }
+  }
+  return all_pass;
+}
+
+// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
+// or in time. Tools that pass the tissue by take none.
+RobotPose ToolMotion::walk(const RobotPose& pose) {
+  RobotPose start = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
+  world_.asked = pose;
+  if (letPass(start, pose)) {
+    passTo(pose);
+    return pose;
+  }
+  if (leadsNowhere(start, pose)) {
+    world_.report.lost = true;
+    return start;
+  }
+  return walkFrom(start, pose);
+}
+
+RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
+  const double steps = ways_.stepsBetween(start, pose);
+  double gone = 0.0, longest = 1.0;
+  load_step_.forgetCyclesInVain();
+  const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
+  while (gone < steps) {
+    const double free = ways_.freeSteps(came(), pose);
+    const double stride = std::max(longest, free);
+    const bool whole = gone + stride < steps;
+    if (!whole && world_.tools.anyRigid()) break;
+    const double there = whole ? gone + stride : steps;
+    const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
+    const bool is_short = std::min(longest, there - gone) <= kShortest;
+    const bool followed =
+        load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse);
+    if (!followed) {
+      const bool is_hopeless = load_step_.cyclesInVain() > kMostInVain;
+      if (is_short || is_hopeless) {
+        world_.report.lost = true;
+        const double next = std::min(gone + kShortest, there);
+        world_.dead_end =
+            DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
+        return came();
+      }
+      longest = kShortest;
+    }
+    if (followed) {
+      if (longest == 1.0) load_step_.forgetCyclesInVain();
+      gone = there;
+      longest = std::min(1.0, 2.0 * longest);
+    }
+    if (world_.tools.anyRigid()) checkIn(on_the_way);
+    if (followed && gone < steps && world_.deadline.isOver()) {
+      world_.report.too_fast = true;
+      return came();
+    }
+  }
+  if ((world_.tools.anyRigid() || steps == 0.0) && !load_step_.advance(pose)) {
+    world_.report.lost = true;
+  }
+  if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
+  return pose;
+}
+
+void ToolMotion::checkIn(const RobotPose& pose) {
+  if (!world_.tools.anyRigid() || world_.tissue.isUntouched()) checkpoints_.clear();
+  if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
+  checkpoints_.push_back(world_.tools.anyRigid() ? load_step_.checkpoint() : Checkpoint());
+  checkpoints_.back().pose = pose;
+}
+
+// The tools let go, and come in from outside. Those that wait for the next step stay away in the
+// pose.
+void ToolMotion::startAnew(RobotPose& pose) {
+  world_.dead_end.reset();
+  world_.sticking.clear();
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    world_.sliding.clear(static_cast<int>(tool));
+  }
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) grasping_.forgetJaws(tool);
+  world_.pose = world_.tools.complete({});
+  load_step_.lieDown();
+  checkpoints_.clear();
+  world_.last_pose = pose;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (waitsOutside(tool, tool > 0 ? Others::kCame : Others::kNone, pose)) {
+      world_.last_pose = world_.tools.withTool(tool, pose, *world_.last_pose);
+    } else {
+      overlap_.resolveOverlap(tool, *world_.last_pose);
+    }
+  }
+  // Nothing sticks to where they were before.
+  world_.sliding.commit(*world_.last_pose, world_.tissue);
+  checkIn(*world_.last_pose);
+}
+
+// A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
+// stay as they are.
+void ToolMotion::comeAndGo(RobotPose& pose) {
+  RobotPose from = *world_.last_pose;
+  bool any = false;
+  Others came = Others::kNone;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
+    if (first == end || ToolSet::isAway(from.links[first]) == ToolSet::isAway(pose.links[first])) {
+      continue;
+    }
+    if (waitsOutside(tool, came, pose)) continue;
+    any = true;
+    if (!ToolSet::isAway(pose.links[first])) came = Others::kCame;
+    from = world_.tools.withTool(tool, pose, from);
+    letGoOf(tool);
+    overlap_.resolveOverlap(tool, from);
+  }
+  if (!any) return;
+  world_.last_pose = from;
+  world_.sliding.commit(from, world_.tissue);
+  checkpoints_.clear();
+  checkIn(from);
+}
+
+// Where no shape could follow, tools that have come out of the tissue by themselves let go.
+void ToolMotion::leaveStuck(RobotPose& pose) {
+  RobotPose from = *world_.last_pose;
+  bool any = false;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    const RobotPose moved = world_.tools.withTool(tool, pose, from);
+    if (ways_.stepsBetween(from, moved) == 0.0 || overlap_.isInTissue(tool, pose)) continue;
+    any = true;
+    from = moved;
+    letGoOf(tool);
+  }
+  if (!any) return;
+  world_.last_pose = from;
+  if (load_step_.advance(from)) {
+    world_.last_pose = walk(pose);
+  } else {
+    startAnew(pose);
+    world_.last_pose = walk(pose);
+  }
+}
+
+// Away from where the tissue is at rest, and through its surface.
+bool ToolMotion::isHooked(std::size_t tool) const {
+  if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
+  const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
+  for (std::size_t link = first; link < end; ++link) {
+    const Box box = world_.finder.bounds(link, world_.last_pose->links[link]);
+    if (distance(box, world_.tissue.lattice().bounds()) < world_.tissue.lattice().spacing()) {
+      return false;
+    }
+  }
+  for (std::size_t link = first; link < end; ++link) {
+    const double depth = world_.finder.penetration(
+        link, world_.last_pose->links[link], world_.tissue.surface(), world_.tissue.vertices());
+    if (depth > load_step_.throughAt(link)) return true;
+  }
+  return false;
+}
+
+void ToolMotion::letGoOf(std::size_t tool) {
+  world_.dead_end.reset();
+  world_.sticking.letGo(static_cast<int>(tool));
+  world_.sliding.clear(static_cast<int>(tool));
+  grasping_.forgetJaws(tool);
+}
+
+bool ToolMotion::standsStill(const RobotPose& pose) const {
+  if (!world_.last_pose) return false;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!ways_.isAt(tool, world_.asked, pose)) return false;
+  }
+  return true;
+}
+
+std::vector<std::size_t> ToolMotion::toolsBehind() const {
+  std::vector<std::size_t> behind;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!ways_.isAt(tool, world_.pose, world_.asked)) behind.push_back(tool);
+  }
+  return behind;
+}
+
+// A tool that drags tissue out with it that stands through it, as where it went beneath fixed
+// nodes, lets go.
+void ToolMotion::unhook(RobotPose& pose) {
+  std::vector<std::size_t> hooked;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!isHooked(tool)) continue;
+    hooked.push_back(tool);
+    addOnce(tool, world_.report.were_inside);
+  }
+  if (!hooked.empty()) comeAnew(hooked, pose);
+}
+
+// Tissue that hangs on what a grasper holds goes through its jaws: where no shape follows it out of
+// them when they are told to let go, it comes back without them.
+void ToolMotion::leaveReleased(RobotPose& pose) {
+  std::vector<std::size_t> released;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (grasping_.jaws()[tool].let_go) released.push_back(tool);
+  }
+  if (released.empty()) return;
+  world_.report.lost = false;
+  comeAnew(released, pose);
+}
+
+// The tissue comes back without these tools, and what they still meet they meet from outside.
+void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose) {
+  RobotPose without = *world_.last_pose;
+  for (const std::size_t tool : tools) {
+    without = world_.tools.withTool(tool, world_.tools.complete({}), without);
+    letGoOf(tool);
+  }
+  world_.last_pose = without;
+  if (load_step_.advance(without)) {
+    comeAndGo(pose);
+  } else {
+    startAnew(pose);
+  }
+  world_.last_pose = walk(pose);
+}
+
+// Looking for the way out of the tissue takes time: a tool that there is none for stays away in the
+// pose, and is behind, once another one came in this step.
+bool ToolMotion::waitsOutside(std::size_t tool, Others others, RobotPose& pose) {
+  const bool comes = !ToolSet::isAway(pose.links[world_.tools.firstLink(tool)]);
+  if (!comes || others == Others::kNone || !world_.deadline.isOver()) return false;
+  pose = world_.tools.withTool(tool, world_.tools.complete({}), std::move(pose));
+  world_.report.too_fast = true;
+  return true;
+}
+
+void ToolMotion::passTo(const RobotPose& pose) {
+  world_.pose = pose;
+  world_.sliding.pass(pose);
+  grasping_.openJaws();
+  grasping_.closeJaws();
+}
+
+// Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
+void ToolMotion::goBackTo(RobotPose& pose) {
+  const RobotPose& from = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
+  std::size_t nearest = checkpoints_.size() - 1;
+  double shortest = ways_.stepsBetween(from, pose);
+  for (std::size_t earlier = nearest; world_.tools.anyRigid() && earlier-- > 0;) {
+    const double way = ways_.stepsBetween(checkpoints_[earlier].pose, pose);
+    if (way < shortest) {
+      shortest = way;
+      nearest = earlier;
+    }
+  }
+  if (world_.tools.anyRigid()) {
+    checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
+                       checkpoints_.end());
+    load_step_.goBackTo(checkpoints_.back());
+  }
+  const auto far =
+      ways_.farFrom(world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose, pose);
+  if (!far.empty()) {
+    world_.report.too_fast = true;
+    world_.report.jumped = far;
+    startAnew(pose);
+  }
+}
+
+void ToolMotion::checkInAnew() {
+  checkpoints_.clear();
+  if (world_.last_pose) checkIn(*world_.last_pose);
+}
+
+}  // namespace robot_tissue

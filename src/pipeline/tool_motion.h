@@ -1,0 +1,58 @@
+// The tools' way in load steps, and what becomes of tools that come, go, jump or are stuck.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "load_stepper.h"
+#include "overlap_resolver.h"
+#include "way_lengths.h"
+
+namespace robot_tissue {
+
+class ToolMotion {
+ public:
+  ToolMotion(World& world, const WayLengths& ways, OverlapResolver& overlap, Grasping& grasping,
+             LoadStepper& load_step)
+      : world_(world), ways_(ways), overlap_(overlap), grasping_(grasping), load_step_(load_step) {}
+
+  RobotPose walk(const RobotPose& pose);
+  void startAnew(RobotPose& pose);
+  void comeAndGo(RobotPose& pose);
+  void goBackTo(RobotPose& pose);
+  void leaveStuck(RobotPose& pose);
+  void leaveReleased(RobotPose& pose);
+  void unhook(RobotPose& pose);
+
+  bool standsStill(const RobotPose& pose) const;
+  std::vector<std::size_t> toolsBehind() const;
+
+  bool hasCheckpoints() const { return !checkpoints_.empty(); }
+  // The last pose is one to come back to, and the only one.
+  void checkInAnew();
+  void clearCheckpoints() { checkpoints_.clear(); }
+  const std::vector<Checkpoint>& checkpoints() const { return checkpoints_; }
+  void restore(const std::vector<Checkpoint>& checkpoints) { checkpoints_ = checkpoints; }
+
+ private:
+  enum class Others { kNone, kCame };  // of the tools, in this step
+
+  bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
+  bool letPass(RobotPose& start, const RobotPose& pose) const;
+  RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);
+  void passTo(const RobotPose& pose);
+  void checkIn(const RobotPose& pose);
+  bool isHooked(std::size_t tool) const;
+  void letGoOf(std::size_t tool);
+  void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
+  bool waitsOutside(std::size_t tool, Others others, RobotPose& pose);
+
+  World& world_;
+  const WayLengths& ways_;
+  OverlapResolver& overlap_;
+  Grasping& grasping_;
+  LoadStepper& load_step_;
+  std::vector<Checkpoint> checkpoints_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,109 @@
+#include "touch_finder.h"
+
+#include <algorithm>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "stopwatch.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kNear = 0.25;       // of the spacing: a gap that a solve may close
+constexpr double kReach = 1.0;       // of the spacing: farther from its tool, a touch is forgotten
+constexpr double kClear = 0.03;      // of the spacing: off a tool, where its edges look round
+constexpr double kDetour = 2.0;      // of the nearest way out: the surface's may be so long,
+constexpr double kLongDetour = 0.5;  // and so much of the spacing, or of the link, longer
+constexpr double kAcross = 0.3;      // cosine of two normals that look to the same side
+constexpr double kInside = 1e-3;     // barycentric: a point that is not on an edge
+
+}  // namespace
+
+// Where the touches are, from the links.
+std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
+  const Stopwatch watch(world_.report.contact_ms);
+  std::vector<std::optional<Contact>> tracked;
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    Contact contact{
+        touch.tool,          touch.link, touch.triangle, touch.barycentric, Vec3::Zero(),
+        touch.spring.normal, 0.0};
+    contact.point = pointOf(touch.spring, world_.tissue.state().displacement);
+    const bool near = turnOut(pose, contact);
+    tracked.push_back(near ? std::optional<Contact>(contact) : std::nullopt);
+  }
+  return tracked;
+}
+
+// Into the tissue, across the surface at the point; zero where it has no normal there.
+Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
+  const int vertex = vertexAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
+  if (vertex >= 0) return -outwards_[at(vertex)].normalized();
+  return -doubleArea(vertices_, world_.tissue.surface().triangles[at(contact.triangle)])
+              .normalized();
+}
+
+// A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
+// also where another side of the tool is nearer, as at edges and on thin tools. Between its edges a
+// triangle is pressed across itself: what touches it there is a corner, an edge or a rim, which has
+// no normal of its own.
+bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  const std::size_t link = at(contact.link);
+  const Vec3 inwards = inwardsAt(contact);
+  if (!(inwards.norm() > 0.0)) return false;
+  const Pose& tissue_T_link = pose.links[link];
+  const auto nearest = world_.finder.wayOut(link, tissue_T_link, contact.point, kReach * spacing);
+  if (!nearest) return false;
+  const double farthest = kDetour * std::max(nearest->depth_m, 0.0) +
+                          kLongDetour * std::min(spacing, world_.finder.thickness(link));
+  const auto along = world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
+                                               kClear * spacing, kReach * spacing, farthest);
+  const WayOut& out = along ? *along : *nearest;
+  if (out.normal.norm() < 0.5) return true;
+  contact.normal = out.normal;
+  contact.depth_m = out.depth_m;
+  const double cosine = out.normal.dot(inwards);
+  if (contact.barycentric.minCoeff() > kInside && cosine > kAcross) {
+    contact.normal = inwards;
+    contact.depth_m = out.depth_m / cosine;
+  }
+  return true;
+}
+
+ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
+  const Stopwatch watch(world_.report.contact_ms);
+  deform(world_.tissue.surface(), displacement, vertices_);
+  return world_.finder.find(pose, world_.tissue.surface(), vertices_,
+                            kNear * world_.tissue.lattice().spacing());
+}
+
+// Of points that give way, with the ways out that turnOut finds.
+ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held) {
+  ContactSet contacts = contactsAt(pose, world_.tissue.state().displacement);
+  const auto stands = [&](const Contact& contact) {
+    const auto carriers =
+        carriersAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
+    return !SlidingContacts::givesWay(carriers, held);
+  };
+  auto& all = contacts.contacts;
+  all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
+  const Stopwatch watch(world_.report.contact_ms);
+  depths_.assign(pose.links.size(), 0.0);
+  for (const Contact& contact : all) {
+    depths_[at(contact.link)] = std::max(depths_[at(contact.link)], contact.depth_m);
+  }
+  outwards_.assign(vertices_.size(), Vec3::Zero());
+  for (const MeshTriangle& corners : world_.tissue.surface().triangles) {
+    const Vec3 area = doubleArea(vertices_, corners);
+    for (const int corner : corners) outwards_[at(corner)] += area;
+  }
+  for (Contact& contact : contacts.contacts) turnOut(pose, contact);
+  return contacts;
+}
+
+// A tool that has left the surface behind it may still be where the surface is at rest.
+bool TouchFinder::wouldTouchAtRest(const RobotPose& pose) {
+  const std::vector<Vec3> rest(world_.tissue.state().displacement.size(), Vec3::Zero());
+  return deepest(contactsAt(pose, rest)) > kDeepEnough * world_.tissue.lattice().spacing();
+}
+
+}  // namespace robot_tissue

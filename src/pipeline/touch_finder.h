@@ -1,0 +1,37 @@
+// Where the tools touch the tissue, and which way out of them the tissue's points go.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "world.h"
+
+namespace robot_tissue {
+
+class TouchFinder {
+ public:
+  explicit TouchFinder(World& world) : world_(world) {}
+
+  // With gaps that a solve may close.
+  ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
+  ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
+  // After touchesAt.
+  std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
+  bool wouldTouchAtRest(const RobotPose& pose);
+
+  // In each link, of the deepest point of the last touchesAt, by the nearest way out (m).
+  const std::vector<double>& depths() const { return depths_; }
+  void restoreDepths(const std::vector<double>& depths) { depths_ = depths; }
+
+ private:
+  Vec3 inwardsAt(const Contact& contact) const;
+  bool turnOut(const RobotPose& pose, Contact& contact) const;
+
+  World& world_;
+  std::vector<Vec3> vertices_;  // of the last contacts
+  std::vector<Vec3> outwards_;  // their normals
+  std::vector<double> depths_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,30 @@
+// How long the tools' ways are, in load steps, and which of them are free.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "world.h"
+
+namespace robot_tissue {
+
+constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
+
+class WayLengths {
+ public:
+  explicit WayLengths(const World& world) : world_(world) {}
+
+  double stepOf(std::size_t link) const;
+  double stepsBetween(const RobotPose& from, const RobotPose& to) const;
+  double freeSteps(const RobotPose& from, const RobotPose& to) const;
+  std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;
+  bool passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const;
+  bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
+
+ private:
+  bool touchesTissue(std::size_t tool) const;
+
+  const World& world_;
+};
+
+}  // namespace robot_tissue

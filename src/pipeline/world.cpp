@@ -1,0 +1,85 @@
+#include "world.h"
+
+#include <algorithm>
+
+namespace robot_tissue {
+
+World::World(const TissueConfig& tissue_config, const SolverConfig& solver)
+    : tissue(tissue_config, solver),
+      tools({}, {}),
+      finder({}),
+      sticking(tissue.lattice(), {}),
+      sliding({}, {}) {}
+
+void World::setTools(const std::vector<ToolGeometry>& geometry,
+                     const std::vector<SupportConfig>& supports) {
+  tools = ToolSet(geometry, supports);
+  has_supports = !supports.empty();
+  const std::vector<ToolGeometry> all = tools.withSupports();
+  finder = ContactFinder(all);
+  sticking = StickingContacts(tissue.lattice(), tools.names());
+  std::vector<std::optional<double>> friction;
+  for (const ToolGeometry& tool : all) {
+    const bool sticks = tool.patch == ToolConfig::Patch::kRigid;
+    friction.push_back(sticks ? std::nullopt : std::optional<double>(tool.friction));
+  }
+  std::vector<double> thickness;
+  for (std::size_t link = 0; link < finder.linkCount(); ++link) {
+    thickness.push_back(finder.thickness(link));
+  }
+  sliding = SlidingContacts(friction, thickness);
+  pose = tools.complete({});
+  sliding.commit(pose, tissue);
+  unfinished = false;
+  report = StepReport();
+  report.tools.resize(tools.size());
+}
+
+PatchAnswer answerOf(const World& world, std::size_t tool) {
+  const auto& patches = world.tissue.patches();
+  const auto& answers = world.tissue.lastReport().patches;
+  for (std::size_t i = world.tissue.namedPatches(); i < std::min(patches.size(), answers.size());
+       ++i) {
+    if (patches[i].name == world.tools.nameOf(tool)) return answers[i];
+  }
+  return {};
+}
+
+ForceBalance forceBalanceOf(const World& world) {
+  ForceBalance balance;
+  for (std::size_t tool = 0; tool < world.tools.sizeWithSupports(); ++tool) {
+    (tool < world.tools.size() ? balance.tools : balance.supports) += answerOf(world, tool).force;
+  }
+  const auto& answers = world.tissue.lastReport().patches;
+  for (std::size_t i = 0; i < std::min(world.tissue.namedPatches(), answers.size()); ++i) {
+    balance.loads += answers[i].force;
+  }
+  balance.weight = world.tissue.weight();
+  balance.fixed = world.tissue.forceOfFixedNodes();
+  return balance;
+}
+
+std::vector<LoadingPatch> patchesOfTools(const World& world) {
+  std::vector<LoadingPatch> patches;
+  for (std::size_t tool = 0; tool < world.tools.sizeWithSupports(); ++tool) {
+    const int index = static_cast<int>(tool);
+    const bool may_push = tool >= world.tools.size() || world.sliding.pushes(index, world.tissue);
+    const std::vector<ContactSpring> springs =
+        may_push ? world.sliding.springsOf(index) : std::vector<ContactSpring>();
+    if (springs.empty() && !world.sticking.holds(index)) continue;
+    patches.push_back(world.sticking.loadingPatch(index));
+    patches.back().contacts = springs;
+  }
+  return patches;
+}
+
+bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world) {
+  const std::vector<std::string>& names = world.tools.names();
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(world.tools.size());
+  const std::size_t named = &patches == &world.tissue.patches() ? world.tissue.namedPatches() : 0;
+  return std::any_of(
+      patches.begin() + static_cast<std::ptrdiff_t>(named), patches.end(),
+      [&](const auto& patch) { return std::find(names.begin(), end, patch.name) != end; });
+}
+
+}  // namespace robot_tissue
