@@ -141,7 +141,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   }
   result_.increments.push_back({step_, increment, report});
   if (on_row_) on_row_(result_.increments.back(), increments);
-  const bool more = increment < increments || at(step_) + 1 < scene_.steps.size();
+  const bool more =
+      is_cut_short_ || increment < increments || at(step_) + 1 < scene_.steps.size();
   if (more && deadline_.isOver()) throw TimeIsOver();
 }
 

@@ -68,6 +68,7 @@ class Runner {
   Updates updates_;
   RunResult result_;
   int step_ = 0;
+  bool is_cut_short_ = false;  // the way of a tool, as the time is over
 };
 
 }  // namespace robot_tissue

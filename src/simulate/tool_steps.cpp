@@ -31,7 +31,7 @@ void Runner::perform(const MoveStep& step) {
   for (int increment = 1; increment <= increments; ++increment) {
     const double share = static_cast<double>(increment) / increments;
     walkTo(way, share);
-    const bool is_between = way.gone + kRounding < share * way.steps;
+    const bool is_between = !is_cut_short_ && way.gone + kRounding < share * way.steps;
     if (is_between) {
       pipeline_.beginTrial();
       place(way, share);
@@ -57,6 +57,8 @@ int Runner::loadSteps(double steps) const {
 // ends are the same whatever the increments.
 void Runner::walkTo(Way& way, double share) {
   while (way.gone < way.steps) {
+    is_cut_short_ = deadline_.isOver();
+    if (is_cut_short_) return place(way, static_cast<double>(way.gone) / way.steps);
     tools_.put(way.tool, way.to);
     const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), kLongestFree);
     const int next = std::min(way.gone + std::max(1, static_cast<int>(free)), way.steps);
@@ -122,7 +124,10 @@ void Runner::follow() {
 // Tools by a force follow the tissue.
 void Runner::followPushes() {
   const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });
-  for (int i = 0; any && i < kMostUpdates && (i == 0 || pipeline_.report().changed); ++i) update();
+  for (int i = 0; any && i < kMostUpdates; ++i) {
+    if (i > 0 && (!pipeline_.report().changed || deadline_.isOver())) break;
+    update();
+  }
   for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
     if (pushes_[tool]) judgePush(tool);
   }

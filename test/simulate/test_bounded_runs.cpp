@@ -114,6 +114,23 @@ TEST_F(BoundedRun, WritesWhatItCameToWhenTheTimeIsOver) {
   EXPECT_LT(lines, 10001);
 }
 
+// Hundreds of load steps, each a solve, before the only row.
+TEST_F(BoundedRun, LeavesAToolOnItsWayWhenTheTimeIsOver) {
+  std::string scene = kLongScene;
+  scene.replace(scene.find("steps:"), std::string::npos, R"(
+tools: [{name: probe, friction: 0.5, shapes: [{type: sphere, radius: 0.01}]}]
+steps:
+  - move: {tool: probe, from: {xyz: [0.02, 0.05, 0.061]}, to: {xyz: [0.09, 0.05, 0.054]}, increments: 1}
+)");
+  std::ofstream(folder_ / "drag.yaml") << scene;
+  const fs::path out = folder_ / "out";
+  const int status = statusOf(start(
+      {(folder_ / "drag.yaml").string(), "--out", out.string(), "--max-seconds", "1", "--quiet"}));
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_NE(readText(out / "tools.csv").find("\n0,1,probe,"), std::string::npos);
+}
+
 TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   for (const char* seconds : {"0", "-1", "nan", "inf", "1e300", "soon"}) {
     const fs::path out = folder_ / "out";

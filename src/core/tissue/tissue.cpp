@@ -29,14 +29,13 @@ Vec3 forceOfPatches(const SolveReport& report) {
   return force;
 }
 
-bool hasOnlyFiniteNumbers(const SolveReport& report, const std::vector<Vec3>& displacement) {
-  const auto finite = [](const Vec3& vector) { return vector.allFinite(); };
+bool isFinite(const Vec3& vector) { return vector.allFinite(); }
+
+bool hasOnlyFiniteNumbers(const SolveReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
-         std::all_of(report.patches.begin(), report.patches.end(),
-                     [&](const PatchAnswer& patch) {
-                       return finite(patch.force) && finite(patch.displacement);
-                     }) &&
-         std::all_of(displacement.begin(), displacement.end(), finite);
+         std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
+           return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
+         });
 }
 
 }  // namespace
@@ -308,15 +307,18 @@ double Tissue::mostMs() const {
 }
 
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
-  const bool may_fail = !method_->staysFinite();
-  const std::vector<Vec3> last_good = may_fail ? state_.displacement : std::vector<Vec3>();
+  const Displacements last_good = displacements();
   const std::vector<LoadingPatch> last_good_patches = patches_;
   kept_.reset();
   limitWays();
   method_->limitTime(mostMs());
   SolveReport report = method_->solve(patches_, disturbed, state_);
-  if (may_fail && !hasOnlyFiniteNumbers(report, state_.displacement)) {
-    state_.displacement = last_good;
+  const bool is_finite =
+      hasOnlyFiniteNumbers(report) &&
+      (method_->staysFinite() ||
+       std::all_of(state_.displacement.begin(), state_.displacement.end(), isFinite));
+  if (!is_finite) {
+    state_.displacement = *last_good;
     patches_ = last_good_patches;
     report = SolveReport();
     report.status = SolveStatus::kUnconverged;
