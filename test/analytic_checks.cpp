@@ -20,7 +20,7 @@ constexpr double kYoungModulus = 1e4;  // Pa
 TissueConfig blockOf(const Vec3& extent, double spacing, double poisson_ratio) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = extent;
+  config.shape.max() = extent;
   config.spacing = spacing;
   config.material.young_modulus = kYoungModulus;
   config.material.poisson_ratio = poisson_ratio;
@@ -35,7 +35,7 @@ SolverConfig exactSolver() {
 
 Box faceOf(const Box& shape, int axis, bool upper) {
   Box face = shape;
-  (upper ? face.min : face.max)[axis] = upper ? shape.max[axis] : shape.min[axis];
+  (upper ? face.min() : face.max())[axis] = upper ? shape.max()[axis] : shape.min()[axis];
   return face;
 }
 
@@ -223,8 +223,8 @@ double volumeRatioUnderPress(bool by_punch, double spacing, double poisson_ratio
   punch.name = "punch";
   punch.box = faceOf(config.shape, 2, true);
   if (by_punch) {
-    punch.box.min.head<2>().setConstant(0.04);
-    punch.box.max.head<2>().setConstant(0.06);
+    punch.box.min().head<2>().setConstant(0.04);
+    punch.box.max().head<2>().setConstant(0.06);
   }
   punch.displacement = {{0.0, 0.0, -0.01}};
   LoadStep press;

@@ -77,7 +77,7 @@ std::vector<ReferenceCase> readReferenceCases(const std::string& package) {
 TissueConfig referenceTissue(const ReferenceCase& reference, double spacing) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = kExtent;
+  config.shape.max() = kExtent;
   config.spacing = spacing;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = reference.poisson_ratio;

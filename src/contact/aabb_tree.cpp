@@ -14,18 +14,8 @@ constexpr double kRayX = 0.41421356;
 constexpr double kRayY = 0.23606798;
 constexpr double kRaySlack = 1e-9;  // of the ray's parameter (m), for rounding
 
-Box noBox() {
-  const double infinity = std::numeric_limits<double>::infinity();
-  return {Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-}
-
-void growBy(const Vec3& low, const Vec3& high, Box& box) {
-  box.min = box.min.cwiseMin(low);
-  box.max = box.max.cwiseMax(high);
-}
-
 double squaredDistance(const Box& box, const Vec3& point) {
-  return (box.min - point).cwiseMax(point - box.max).cwiseMax(0.0).squaredNorm();
+  return (box.min() - point).cwiseMax(point - box.max()).cwiseMax(0.0).squaredNorm();
 }
 
 bool rayMeets(const Box& box, const Vec3& from) {
@@ -33,8 +23,8 @@ bool rayMeets(const Box& box, const Vec3& from) {
   double far = std::numeric_limits<double>::infinity();
   const double direction[3] = {kRayX, kRayY, 1.0};
   for (int k = 0; k < 3; ++k) {
-    near = std::max(near, (box.min[k] - from[k]) / direction[k] - kRaySlack);
-    far = std::min(far, (box.max[k] - from[k]) / direction[k] + kRaySlack);
+    near = std::max(near, (box.min()[k] - from[k]) / direction[k] - kRaySlack);
+    far = std::min(far, (box.max()[k] - from[k]) / direction[k] + kRaySlack);
   }
   return near <= far;
 }
@@ -107,7 +97,7 @@ AabbTree::AabbTree(const std::vector<Vec3>& vertices, const std::vector<MeshTria
 void AabbTree::build(std::size_t first, std::size_t end, const std::vector<MeshTriangle>& triangles,
                      std::vector<Unsorted>& unsorted) {
   const std::size_t node = nodes_.size();
-  nodes_.push_back({noBox(), 0, 0});
+  nodes_.push_back({Box(), 0, 0});
   if (end - first <= kLeafSize) {
     nodes_[node].first = static_cast<int>(entries_.size());
     nodes_[node].count = static_cast<int>(end - first);
@@ -117,10 +107,10 @@ void AabbTree::build(std::size_t first, std::size_t end, const std::vector<MeshT
     }
     return;
   }
-  Box box = noBox();
-  for (std::size_t i = first; i < end; ++i) growBy(unsorted[i].center, unsorted[i].center, box);
+  Box box;
+  for (std::size_t i = first; i < end; ++i) box.extend(unsorted[i].center);
   int axis = 0;
-  (box.max - box.min).maxCoeff(&axis);
+  (box.max() - box.min()).maxCoeff(&axis);
   const std::size_t middle = first + (end - first) / 2;
   const auto place = [&](std::size_t i) {
     return unsorted.begin() + static_cast<std::ptrdiff_t>(i);
@@ -139,10 +129,10 @@ void AabbTree::build(std::size_t first, std::size_t end, const std::vector<MeshT
 void AabbTree::moveTo(const std::vector<Vec3>& vertices) {
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
-    node.box = noBox();
+    node.box.setEmpty();
     if (node.count == 0 && !entries_.empty()) {
       for (const std::size_t child : {i + 1, at(node.first)}) {
-        growBy(nodes_[child].box.min, nodes_[child].box.max, node.box);
+        node.box.extend(nodes_[child].box);
       }
       continue;
     }
@@ -152,7 +142,7 @@ void AabbTree::moveTo(const std::vector<Vec3>& vertices) {
       b = vertices[at(entries_[k].vertices[1])];
       c = vertices[at(entries_[k].vertices[2])];
       if (!(a + b + c).allFinite()) continue;
-      growBy(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), node.box);
+      for (const Vec3& corner : {a, b, c}) node.box.extend(corner);
     }
   }
 }
@@ -244,7 +234,7 @@ void AabbTree::collectNear(const Corners& corners, double margin,
   while (waiting > 0) {
     const std::size_t next = stack[--waiting];
     const Node& node = nodes_[next];
-    if (!meets(node.box.min, node.box.max)) continue;
+    if (!meets(node.box.min(), node.box.max())) continue;
     if (node.count == 0 && !entries_.empty()) {
       stack[waiting++] = at(node.first);
       stack[waiting++] = next + 1;

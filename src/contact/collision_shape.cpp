@@ -49,8 +49,8 @@ CollisionShape::CollisionShape(const ToolShape& shape, const std::string& owner,
     measurePrimitive(owner);
   }
   thickness_ += 2.0 * shape.padding;
-  bounds_.min.array() -= shape.padding;
-  bounds_.max.array() += shape.padding;
+  bounds_.min().array() -= shape.padding;
+  bounds_.max().array() += shape.padding;
 }
 
 void CollisionShape::measurePrimitive(const std::string& owner) {
@@ -77,7 +77,7 @@ void CollisionShape::measureMesh(const std::string& owner, std::vector<std::stri
   mesh_ = std::make_shared<const ToolMesh>(shape_.resource, shape_.scale, owner, warnings);
   thickness_ = mesh_->thickness();
   bounds_ = mesh_->bounds();
-  positive((bounds_.max - bounds_.min).maxCoeff(), "size of its mesh", owner);
+  positive((bounds_.max() - bounds_.min()).maxCoeff(), "size of its mesh", owner);
 }
 
 SignedDistance CollisionShape::unpadded(const Vec3& point) const {
@@ -111,8 +111,8 @@ SignedDistance CollisionShape::distanceWithin(const Vec3& point, double bound) c
 
 std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) const {
   // Written so that a point that is not finite is outside.
-  const bool near = (point.array() >= bounds_.min.array() - reach).all() &&
-                    (point.array() <= bounds_.max.array() + reach).all();
+  const bool near = (point.array() >= bounds_.min().array() - reach).all() &&
+                    (point.array() <= bounds_.max().array() + reach).all();
   if (!near || !point.allFinite()) return std::nullopt;
   if (isMesh()) return wayOutOfMesh(point, reach);
   const SignedDistance found = distance(point);

@@ -121,8 +121,8 @@ double ContactFinder::reach(std::size_t link) const {
   for (const CollisionShape& shape : impl_->links[link].shapes) {
     if (shape.isPlane()) continue;
     const Box& box = shape.bounds();
-    const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min + box.max));
-    const Vec3 half = 0.5 * (box.max - box.min);
+    const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min() + box.max()));
+    const Vec3 half = 0.5 * (box.max() - box.min());
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                        (corner & 4) != 0 ? 1.0 : -1.0);
@@ -203,9 +203,9 @@ double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
                                   const Surface& surface, const std::vector<Vec3>& vertices) const {
   requireVertices(surface, vertices);
   const PlacedLink here = placed(impl_->links[link].shapes, tissue_T_link);
-  Box surface_box = emptyBox();
+  Box surface_box;
   for (const Vec3& vertex : vertices) {
-    if (vertex.allFinite()) growBy({vertex, vertex}, surface_box);
+    if (vertex.allFinite()) surface_box.extend(vertex);
   }
   if (here.empty() || !boxesMeet(boundsOf(here), surface_box, 0.0)) return 0.0;
   const auto known = impl_->deepestFound(link, tissue_T_link, surface, vertices);

@@ -17,8 +17,8 @@ constexpr double kDeeper = 1e-12;    // m, than another shape of the link
 std::uint8_t sidesBeyond(const Vec3& point, const Box& box) {
   unsigned sides = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    sides |= (point[axis] < box.min[axis] ? 1U : 0U) << (2 * axis);
-    sides |= (point[axis] > box.max[axis] ? 1U : 0U) << (2 * axis + 1);
+    sides |= (point[axis] < box.min()[axis] ? 1U : 0U) << (2 * axis);
+    sides |= (point[axis] > box.max()[axis] ? 1U : 0U) << (2 * axis + 1);
   }
   return static_cast<std::uint8_t>(sides);
 }
@@ -43,8 +43,8 @@ void LinkContacts::find(const PlacedLink& link, int tool_index, int link_index,
   tool_ = tool_index;
   link_index_ = link_index;
   Box box = boundsOf(link);
-  box.min.array() -= margin;
-  box.max.array() += margin;
+  box.min().array() -= margin;
+  box.max().array() += margin;
   beyond_.resize(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) beyond_[i] = sidesBeyond(vertices[i], box);
   vertex_asked_.assign(vertices.size(), 0);
@@ -62,11 +62,11 @@ void LinkContacts::find(const PlacedLink& link, int tool_index, int link_index,
 void LinkContacts::askTriangle(int triangle, ContactSet& found) {
   triangle_ = triangle;
   const MeshTriangle& corners = surface_->triangles[at(triangle)];
-  Box box = emptyBox();
+  Box box;
   for (const int vertex : corners) {
     const Vec3& corner = (*vertices_)[at(vertex)];
     if (!corner.allFinite()) return;
-    growBy({corner, corner}, box);
+    box.extend(corner);
   }
   for (int k = 0; k < 3; ++k) {
     const int vertex = corners[at(k)];
@@ -74,7 +74,7 @@ void LinkContacts::askTriangle(int triangle, ContactSet& found) {
     vertex_asked_[at(vertex)] = 1;
     if (beyond_[at(vertex)] == 0) askVertex(vertex, Vec3::Unit(k), found);
   }
-  if ((box.max - box.min).isZero(0.0)) return;
+  if ((box.max() - box.min()).isZero(0.0)) return;
   for (std::size_t shape = 0; shape < link_->size(); ++shape) {
     // Of a plane, a vertex is the deepest point.
     if ((*link_)[shape].shape->isPlane()) continue;

@@ -95,7 +95,7 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
       break;
   }
   // Corners and edges move outwards between their faces.
-  const Vec3 half = 0.5 * (shape.bounds().max - shape.bounds().min);
+  const Vec3 half = 0.5 * (shape.bounds().max() - shape.bounds().min());
   for (Vec3& point : points) {
     const Vec3 outside = point + 1e-6 * half.minCoeff() * point.cwiseQuotient(half);
     point += shape.padding() * shape.distance(outside).slope;
@@ -112,7 +112,7 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
   Vec3 place = Vec3::Zero();
   const auto isDeeper = [&](const Vec3& point, double least) {
     const bool in_box =
-        (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+        (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
     if (!in_box) return false;
     const auto nearest = surface.nearest(point, infinity, least);
     if (!nearest || nearest->distance <= least || !surface.isInside(point)) return false;

@@ -11,8 +11,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Box placedBounds(const CollisionShape& shape, const Pose& tissue_T_shape) {
   if (shape.isPlane()) return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
   const Box& box = shape.bounds();
-  const Vec3 center = tissue_T_shape * Vec3(0.5 * (box.min + box.max));
-  const Vec3 reach = tissue_T_shape.linear().cwiseAbs() * (0.5 * (box.max - box.min));
+  const Vec3 center = tissue_T_shape * Vec3(0.5 * (box.min() + box.max()));
+  const Vec3 reach = tissue_T_shape.linear().cwiseAbs() * (0.5 * (box.max() - box.min()));
   return {center - reach, center + reach};
 }
 
@@ -24,16 +24,9 @@ bool isRigid(const Pose& pose) {
   return (rotation.transpose() * rotation).isIdentity(kRigidSlack) && rotation.determinant() > 0.0;
 }
 
-Box emptyBox() { return {Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)}; }
-
-void growBy(const Box& other, Box& box) {
-  box.min = box.min.cwiseMin(other.min);
-  box.max = box.max.cwiseMax(other.max);
-}
-
 bool boxesMeet(const Box& a, const Box& b, double margin) {
-  return (a.min.array() - margin <= b.max.array()).all() &&
-         (b.min.array() - margin <= a.max.array()).all();
+  return (a.min().array() - margin <= b.max().array()).all() &&
+         (b.min().array() - margin <= a.max().array()).all();
 }
 
 PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_T_link) {
@@ -48,8 +41,8 @@ PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_
 }
 
 Box boundsOf(const PlacedLink& link) {
-  Box box = emptyBox();
-  for (const PlacedShape& shape : link) growBy(shape.bounds, box);
+  Box box;
+  for (const PlacedShape& shape : link) box.extend(shape.bounds);
   return box;
 }
 

@@ -22,9 +22,6 @@ using PlacedLink = std::vector<PlacedShape>;
 // Finite, and a rotation and a shift.
 bool isRigid(const Pose& pose);
 
-// Empty (min > max).
-Box emptyBox();
-void growBy(const Box& other, Box& box);
 // May be infinite.
 bool boxesMeet(const Box& a, const Box& b, double margin);
 

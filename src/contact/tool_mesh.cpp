@@ -124,7 +124,7 @@ std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach
   const Box& box = bounds();
   // A point in the box is asked wherever it is: it may be deep inside.
   const bool in_box =
-      (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+      (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
   const auto nearest =
       tree_.nearest(point, in_box ? std::numeric_limits<double>::infinity() : reach);
   if (!nearest) return std::nullopt;
@@ -157,7 +157,7 @@ SignedDistance ToolMesh::signedBy(const Vec3& point, const AabbTree::Nearest& ne
 bool ToolMesh::isInside(const Vec3& point, const AabbTree::Nearest& nearest) const {
   const Box& box = bounds();
   const bool in_box =
-      (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+      (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
   if (!in_box) return false;
   const Vec3& weights = nearest.weights;
   if (crosses_itself_ || weights.maxCoeff() == 1.0) return tree_.isInside(point);

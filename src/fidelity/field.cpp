@@ -14,7 +14,7 @@ struct PlaceInCell {
 };
 
 PlaceInCell placeOf(const Lattice& lattice, const Vec3& point) {
-  const Vec3 grid = (point - lattice.bounds().min) / lattice.spacing();
+  const Vec3 grid = (point - lattice.bounds().min()) / lattice.spacing();
   for (int side = 0; side < kCorners; ++side) {
     std::array<int, 3> index{};
     bool holds = true;

@@ -14,7 +14,7 @@ constexpr double kMostStep = 3.2;
 
 Vec3 extentOf(const TissueConfig& tissue) {
   const Box box = boxOf(tissue);
-  return box.max - box.min;
+  return box.max() - box.min();
 }
 
 // Nearest to twice the spacing, 0 where there is none.

@@ -21,7 +21,7 @@ struct Face {
 
   double sign() const { return upper ? 1.0 : -1.0; }
   Vec3 outwards() const { return sign() * Vec3::Unit(axis); }
-  double coordinate(const Box& box) const { return upper ? box.max[axis] : box.min[axis]; }
+  double coordinate(const Box& box) const { return upper ? box.max()[axis] : box.min()[axis]; }
   Face opposite() const { return {axis, !upper}; }
 };
 
@@ -30,7 +30,7 @@ Face farthestFromFixed(const TissueConfig& tissue, const Box& bounds) {
   if (tissue.fixed.empty()) return {};
   Vec3 center = Vec3::Zero();
   for (const Box& box : tissue.fixed) {
-    const Vec3 inside = 0.5 * (box.min.cwiseMax(bounds.min) + box.max.cwiseMin(bounds.max));
+    const Vec3 inside = 0.5 * (box.min().cwiseMax(bounds.min()) + box.max().cwiseMin(bounds.max()));
     center += inside / static_cast<double>(tissue.fixed.size());
   }
   Face farthest;
@@ -38,7 +38,7 @@ Face farthestFromFixed(const TissueConfig& tissue, const Box& bounds) {
   for (const int axis : {2, 1, 0}) {
     for (const bool upper : {true, false}) {
       const Face face{axis, upper};
-      const double extent = bounds.max[axis] - bounds.min[axis];
+      const double extent = bounds.max()[axis] - bounds.min()[axis];
       const double away = face.sign() * (face.coordinate(bounds) - center[axis]) / extent;
       if (away <= distance + kBeyond) continue;
       distance = away;
@@ -50,14 +50,14 @@ Face farthestFromFixed(const TissueConfig& tissue, const Box& bounds) {
 
 // Nodes of the outermost `share` of the extent at a face, in the middle part of its edges.
 PatchConfig patchAt(const Face& face, const Box& bounds, double middle, double share) {
-  const Vec3 extent = bounds.max - bounds.min;
+  const Vec3 extent = bounds.max() - bounds.min();
   PatchConfig patch;
-  patch.box.min = bounds.min + 0.5 * (1.0 - middle) * extent;
-  patch.box.max = bounds.max - 0.5 * (1.0 - middle) * extent;
+  patch.box.min() = bounds.min() + 0.5 * (1.0 - middle) * extent;
+  patch.box.max() = bounds.max() - 0.5 * (1.0 - middle) * extent;
   const double edge = face.coordinate(bounds);
   const double depth = (share + kBeyond) * extent[face.axis];
-  patch.box.min[face.axis] = face.upper ? edge - depth : edge - extent[face.axis];
-  patch.box.max[face.axis] = face.upper ? edge + extent[face.axis] : edge + depth;
+  patch.box.min()[face.axis] = face.upper ? edge - depth : edge - extent[face.axis];
+  patch.box.max()[face.axis] = face.upper ? edge + extent[face.axis] : edge + depth;
   patch.displacement = {{0.0, 0.0, 0.0}};
   return patch;
 }
@@ -72,7 +72,7 @@ LoadStep pressOf(const Face& face, const Box& bounds) {
   LoadStep press;
   PatchConfig patch = patchAt(face, bounds, kPatch, 0.0);
   patch.name = kPatchName;
-  const double depth = kDepth * (bounds.max[face.axis] - bounds.min[face.axis]);
+  const double depth = kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
   (*patch.displacement)[at(face.axis)] = -face.sign() * depth;
   press.patches.push_back(patch);
   return press;
@@ -96,7 +96,7 @@ MoveStep moveOf(const Face& face, const TriangleMesh& mesh, const Box& bounds, d
   for (const Vec3& vertex : mesh.vertices) {
     if (vertex.dot(outwards) > outermost.dot(outwards)) outermost = vertex;
   }
-  const double depth = kDepth * (bounds.max[face.axis] - bounds.min[face.axis]);
+  const double depth = kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
   MoveStep move;
   move.tool = kPatchName;
   move.from = MoveStep::Place();
@@ -123,7 +123,7 @@ Scene probed(const Scene& scene) {
     result.steps.emplace_back(pressOf(face, bounds));
     return result;
   }
-  const double radius = kRadius * (bounds.max - bounds.min).minCoeff();
+  const double radius = kRadius * (bounds.max() - bounds.min()).minCoeff();
   result.tools.push_back(sphereOf(radius));
   result.steps.emplace_back(moveOf(face, *scene.tissue.mesh, bounds, radius));
   return result;

@@ -17,10 +17,6 @@ std::string inMeters(double length) {
   return text.str();
 }
 
-bool isIn(const Box& box, const Vec3& point) {
-  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
-}
-
 }  // namespace
 
 // Both stand somewhere and have shapes.
@@ -56,16 +52,12 @@ std::optional<Grasping::Pinch> Grasping::narrowestPinch(std::size_t tool,
   const std::size_t jaw = world_.tools.firstJaw(tool);
   Box around = world_.finder.bounds(jaw, pose.links[jaw]);
   const Box other = world_.finder.bounds(jaw + 1, pose.links[jaw + 1]);
-  around.min = around.min.cwiseMin(other.min);
-  around.max = around.max.cwiseMax(other.max);
+  around.extend(other);
   const Box tissue = world_.tissue.bounds();
   std::optional<Pinch> narrowest;
-  if ((around.min.array() > tissue.max.array()).any() ||
-      (tissue.min.array() > around.max.array()).any()) {
-    return narrowest;
-  }
+  if (!around.intersects(tissue)) return narrowest;
   const auto look = [&](const Vec3& point) {
-    if (!isIn(around, point)) return;
+    if (!around.contains(point)) return;
     const auto pinch = pinchAt(tool, pose, point);
     if (!pinch || !pinch->is_between) return;
     if (!narrowest || pinch->gap < narrowest->gap) narrowest = pinch;

@@ -15,10 +15,6 @@ constexpr double kDepthInTool = 0.2;   // of the link's thickness, whichever is 
 constexpr double kDepthGrowth = 0.1;   // of that, where one is deeper already
 constexpr int kDepthTrials = 4;        // of half the way each, to get less deep
 
-bool isIn(const Box& box, const Vec3& point) {
-  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
-}
-
 }  // namespace
 
 // Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
@@ -30,8 +26,8 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
     if (ToolSet::isAway(world_.pose.links[link])) continue;
     Surroundings here;
     here.box = world_.finder.bounds(link, world_.pose.links[link]);
-    here.box.min.array() -= spacing;
-    here.box.max.array() += spacing;
+    here.box.min().array() -= spacing;
+    here.box.max().array() += spacing;
     here.longest = std::min(kLongestWay * spacing, kShareOfTool * world_.finder.thickness(link));
     all.push_back(here);
   }
@@ -45,7 +41,7 @@ std::vector<double> ToolContactUpdate::longestWays() {
   for (const Surroundings& near : surroundings()) {
     longest.resize(now.size(), std::numeric_limits<double>::infinity());
     for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-      if (isIn(near.box, now[vertex])) longest[vertex] = std::min(longest[vertex], near.longest);
+      if (near.box.contains(now[vertex])) longest[vertex] = std::min(longest[vertex], near.longest);
     }
   }
   return longest;
@@ -58,7 +54,7 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   double share = 1.0;
   for (const Surroundings& near : surroundings()) {
     for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-      if (!isIn(near.box, now[vertex]) && !isIn(near.box, vertices_[vertex])) continue;
+      if (!near.box.contains(now[vertex]) && !near.box.contains(vertices_[vertex])) continue;
       const double way = (now[vertex] - vertices_[vertex]).norm();
       if (way > near.longest) share = std::min(share, near.longest / way);
     }

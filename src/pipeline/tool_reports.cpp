@@ -10,10 +10,6 @@ namespace {
 
 constexpr double kCancelled = 1e-6;  // of the pushes: a sum of them that has no direction
 
-bool boxesMeet(const Box& a, const Box& b) {
-  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
-}
-
 Vec3 normalOf(const World& world, std::size_t tool) {
   std::map<int, std::vector<Vec3>> pushes;  // by link; as long as they are hard
   for (const auto& [node, seat] : world.sticking.attachments()[tool]) {
@@ -52,7 +48,7 @@ double deepestPointOf(const World& world, std::size_t tool) {
   const RobotPose& pose = world.report.lost ? world.asked : world.pose;
   double deepest = 0.0;
   for (std::size_t link = world.tools.firstLink(tool); link < world.tools.endLink(tool); ++link) {
-    if (!boxesMeet(world.finder.bounds(link, pose.links[link]), world.tissue.bounds())) continue;
+    if (!world.finder.bounds(link, pose.links[link]).intersects(world.tissue.bounds())) continue;
     deepest =
         std::max(deepest, world.finder.penetration(link, pose.links[link], world.tissue.surface(),
                                                    world.tissue.vertices()));

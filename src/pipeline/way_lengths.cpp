@@ -66,14 +66,11 @@ bool WayLengths::touchesTissue(std::size_t tool) const {
 bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const {
   if (touchesTissue(tool)) return false;
   Box around;
-  around.min.setConstant(std::numeric_limits<double>::infinity());
-  around.max = -around.min;
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
     const double way = longestWay(from.links[link], to.links[link], world_.finder.reach(link));
     for (const RobotPose* pose : {&from, &to}) {
       const Box box = world_.finder.bounds(link, pose->links[link]);
-      around.min = around.min.cwiseMin((box.min.array() - 0.5 * way).matrix());
-      around.max = around.max.cwiseMax((box.max.array() + 0.5 * way).matrix());
+      around.extend(Box(box.min().array() - 0.5 * way, box.max().array() + 0.5 * way));
     }
   }
   return distance(around, world_.tissue.bounds()) >= world_.tissue.lattice().spacing();

@@ -169,9 +169,9 @@ void MarkerBuilder::addSupports(const Lattice& lattice, MarkerArray& array) cons
     Vec3 size = shape.size;
     Vec3 center = shape.pose.translation();
     if (shape.type == ToolShape::Type::kPlane) {
-      const double length = (bounds.max - bounds.min).norm();
+      const double length = (bounds.max() - bounds.min()).norm();
       size = Vec3(length, length, kPlaneThickness * lattice.spacing());
-      Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min + bounds.max));
+      Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min() + bounds.max()));
       in_plane.z() = -0.5 * size.z();
       center = shape.pose * in_plane;
     }

@@ -39,9 +39,9 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
   PatchConfig patch;
   patch.name = request.name;
   patch.box = {toVec3(request.min), toVec3(request.max)};
-  requireWithin(patch.box.min, kFarthestPoint, "m", "min");
-  requireWithin(patch.box.max, kFarthestPoint, "m", "max");
-  if ((patch.box.min.array() > patch.box.max.array()).any()) {
+  requireWithin(patch.box.min(), kFarthestPoint, "m", "min");
+  requireWithin(patch.box.max(), kFarthestPoint, "m", "max");
+  if ((patch.box.min().array() > patch.box.max().array()).any()) {
     throw InputError("min: above max; allowed: min <= max along every axis");
   }
   if (request.displacement.size() + request.force.size() > 1) {

@@ -83,10 +83,11 @@ Box MapReader::box(const Range& range, bool strict) const {
   const Box box{(*this)["min"].vec3(range), (*this)["max"].vec3(range)};
   const std::vector<Entry> upper = (*this)["max"].list(3, "numbers");
   for (int axis = 0; axis < 3; ++axis) {
-    if (box.max[axis] > box.min[axis] || (!strict && box.max[axis] == box.min[axis])) continue;
+    if (box.max()[axis] > box.min()[axis] || (!strict && box.max()[axis] == box.min()[axis]))
+      continue;
     upper[static_cast<std::size_t>(axis)].fail(std::string("must be ") + (strict ? "> " : ">= ") +
                                                "min[" + std::to_string(axis) +
-                                               "] = " + numberText(box.min[axis]));
+                                               "] = " + numberText(box.min()[axis]));
   }
   return box;
 }

@@ -139,13 +139,13 @@ double nodesWithin(const TriangleMesh& mesh, double spacing) {
       std::abs(enclosedVolume(mesh.vertices, mesh.triangles)) / std::pow(spacing, 3) +
       3.0 * area / (spacing * spacing);
   const Box box = boundsOf(mesh.vertices);
-  const Vec3 around = ((box.max - box.min) / spacing).array().ceil() + 1.0;
+  const Vec3 around = ((box.max() - box.min()) / spacing).array().ceil() + 1.0;
   return std::min(cells, around.prod());
 }
 
 double memoryAround(const TriangleMesh& mesh, double spacing) {
   const Box box = boundsOf(mesh.vertices);
-  const Vec3 around = ((box.max - box.min) / spacing).array().ceil() + 2.0;
+  const Vec3 around = ((box.max() - box.min()) / spacing).array().ceil() + 2.0;
   if (around.prod() > std::numeric_limits<int>::max()) return kUnlimited;  // numbered by int
   double triangles = 0.0;
   for (const MeshTriangle& t : mesh.triangles) {

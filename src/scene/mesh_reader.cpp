@@ -84,7 +84,7 @@ void requireToolMesh(const Entry& resource, const std::string& address, const Ve
   const TriangleMesh mesh = load(resource, address, scale);
   requireInReach(resource, mesh, lengths.place);
   const Box box = boundsOf(mesh.vertices);
-  if ((box.max - box.min).maxCoeff() < lengths.length.lowest) {
+  if ((box.max() - box.min()).maxCoeff() < lengths.length.lowest) {
     resource.fail("the mesh, scaled, is smaller than " + numberText(lengths.length.lowest) +
                   " m, must be larger");
   }
@@ -95,7 +95,7 @@ void requireToolMesh(const Entry& resource, const std::string& address, const Ve
 
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh) {
   const Box bounds = boundsOf(mesh.vertices);
-  const double smallest = (bounds.max - bounds.min).minCoeff();
+  const double smallest = (bounds.max() - bounds.min()).minCoeff();
   if (spacing.number(ranges::spacing()) <= smallest) return;
   spacing.fail("must be at most the mesh's smallest extent, " + numberText(smallest) + " m");
 }

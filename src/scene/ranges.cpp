@@ -14,8 +14,8 @@ constexpr double kMostPulled = 1e2;  // of the tissue's size
 
 // Its largest extent, or how far it is from the origin if that is more (m).
 double sizeOf(const Box& box) {
-  return std::max({(box.max - box.min).maxCoeff(), box.max.cwiseAbs().maxCoeff(),
-                   box.min.cwiseAbs().maxCoeff()});
+  return std::max({(box.max() - box.min()).maxCoeff(), box.max().cwiseAbs().maxCoeff(),
+                   box.min().cwiseAbs().maxCoeff()});
 }
 
 }  // namespace

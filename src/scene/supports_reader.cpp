@@ -18,14 +18,14 @@ ToolShape readPlane(const MapReader& map, const Range& place) {
 
 ToolShape readBox(const MapReader& map, const LengthRanges& lengths) {
   const Box box = map.box(lengths.place, true);
-  if ((box.max - box.min).minCoeff() < lengths.length.lowest) {
+  if ((box.max() - box.min()).minCoeff() < lengths.length.lowest) {
     map.entry().fail("the box is thinner than " + numberText(lengths.length.lowest) +
                      " m, must be as thick at least");
   }
   ToolShape shape;
   shape.type = ToolShape::Type::kBox;
-  shape.size = box.max - box.min;
-  shape.pose.translation() = 0.5 * (box.min + box.max);
+  shape.size = box.max() - box.min();
+  shape.pose.translation() = 0.5 * (box.min() + box.max());
   return shape;
 }
 

@@ -24,7 +24,8 @@ void readShape(const Entry& entry, const std::string& scene_folder, TissueConfig
 
 // The tissue must not stand so far off that its spacing drowns in rounding.
 void requireNear(const Entry& spacing_entry, const Box& box, double spacing) {
-  const double farthest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
+  const double farthest =
+      std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
   if (farthest <= ranges::kFarthestCell * spacing) return;
   spacing_entry.fail("the tissue reaches to " + numberText(farthest) +
                      " m from its frame's origin, must be at most " +
@@ -42,7 +43,7 @@ double readMeshSpacing(const Entry& entry, const TriangleMesh& mesh) {
 
 double readSpacing(const Entry& entry, const Box& shape) {
   const double spacing = entry.number(ranges::spacing());
-  const Vec3 extent = shape.max - shape.min;
+  const Vec3 extent = shape.max() - shape.min();
   for (int axis = 0; axis < 3; ++axis) {
     const double ratio = extent[axis] / spacing;
     if (std::round(ratio) >= 1.0 && std::abs(ratio - std::round(ratio)) <= 1e-3) continue;
@@ -106,8 +107,8 @@ Vec3 readGravity(const Entry& entry) {
 // Where the nodes stand, or with an offset of half a spacing the cells' centers.
 std::string nodesText(const Grid& grid, double offset) {
   const Vec3 inset = Vec3::Constant(offset * grid.spacing());
-  const Vec3 low = grid.shape().min + inset;
-  const Vec3 high = grid.shape().max - inset;
+  const Vec3 low = grid.shape().min() + inset;
+  const Vec3 high = grid.shape().max() - inset;
   std::string text = "they stand every " + numberText(grid.spacing()) + " m at";
   for (int axis = 0; axis < 3; ++axis) {
     text += std::string(axis == 0 ? " " : ", ") + "xyz"[axis] + " " + numberText(low[axis]) +
@@ -178,8 +179,9 @@ Box readNodeBox(const MapReader& map, const Grid& grid) {
 }
 
 void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::string& method) {
-  const double nodes = tissue.mesh ? nodesWithin(*tissue.mesh, tissue.spacing)
-                                   : nodeCount(tissue.shape.max - tissue.shape.min, tissue.spacing);
+  const double nodes = tissue.mesh
+                           ? nodesWithin(*tissue.mesh, tissue.spacing)
+                           : nodeCount(tissue.shape.max() - tissue.shape.min(), tissue.spacing);
   const double around = tissue.mesh ? memoryAround(*tissue.mesh, tissue.spacing) : 0.0;
   const double free = freeMemory();
   const double most = mostNodes(free - around, method);

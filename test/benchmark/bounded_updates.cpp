@@ -53,7 +53,7 @@ RobotPose poseAt(double gone) {
 
 Pipeline pipelineWith(double max_ms) {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.1, 0.1, kTop);
+  tissue.shape.max() = Vec3(0.1, 0.1, kTop);
   tissue.spacing = 0.005;
   tissue.material.young_modulus = 1e4;
   tissue.material.poisson_ratio = 0.45;

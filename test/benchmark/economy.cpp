@@ -59,7 +59,7 @@ double heapBytes() {
 
 TissueConfig block(double spacing) {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.1, 0.1, kTop);
+  tissue.shape.max() = Vec3(0.1, 0.1, kTop);
   tissue.spacing = spacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back({Vec3(-1, -1, -1e-6), Vec3(1, 1, 1e-6)});

@@ -22,7 +22,7 @@ constexpr double kFinest = 0.004;     // m: below, newton needs too much memory
 TissueConfig blockOf(double spacing, double poisson_ratio) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = Vec3(0.10, 0.10, 0.05);
+  config.shape.max() = Vec3(0.10, 0.10, 0.05);
   config.spacing = spacing;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = poisson_ratio;

@@ -66,7 +66,7 @@ TissueConfig configOf(const Case& each, const PatchJob& job) {
   if (each.half_stiff) {
     Region region;
     region.box = config.shape;
-    region.box.min.x() = 0.5 * config.shape.max.x();
+    region.box.min().x() = 0.5 * config.shape.max().x();
     region.material = config.material;
     region.material.young_modulus *= kStiff;
     config.regions.push_back(region);

@@ -21,12 +21,12 @@ struct PatchJob {
 inline TissueConfig blockOf(const PatchJob& job) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = job.scale * Vec3(0.1, 0.1, 0.05);
+  config.shape.max() = job.scale * Vec3(0.1, 0.1, 0.05);
   config.spacing = job.spacing;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = job.poisson_ratio;
   Box bottom = config.shape;
-  bottom.max.z() = 0.0;
+  bottom.max().z() = 0.0;
   config.fixed.push_back(bottom);
   return config;
 }

@@ -94,7 +94,7 @@ double greatestDisplacement(const Tissue& tissue) {
 void run(const Probe& probe, int cycles, double depth, double speed, const std::string& model) {
   TissueConfig tissue;
   tissue.model = model;
-  tissue.shape.max = Vec3(0.1, 0.1, kTop);
+  tissue.shape.max() = Vec3(0.1, 0.1, kTop);
   tissue.spacing = 0.005;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back({Vec3(-1, -1, -1e-6), Vec3(1, 1, 1e-6)});

@@ -46,7 +46,7 @@ struct Choice {
 TissueConfig tissueOf(const Job& job) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = job.scale() * Vec3(0.10, 0.10, 0.05);
+  config.shape.max() = job.scale() * Vec3(0.10, 0.10, 0.05);
   config.spacing = job.spacing;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = job.poisson_ratio;

@@ -19,7 +19,7 @@ const Vec3 kExtent(0.10, 0.10, 0.05);
 
 TissueConfig blockOf(double spacing = kSpacing, double poisson_ratio = kPoisson) {
   TissueConfig tissue;
-  tissue.shape.max = kExtent;
+  tissue.shape.max() = kExtent;
   tissue.spacing = spacing;
   tissue.material.young_modulus = kYoung;
   tissue.material.poisson_ratio = poisson_ratio;

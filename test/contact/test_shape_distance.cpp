@@ -221,13 +221,14 @@ TEST(ShapeDistance, MeasuresOfALink) {
   EXPECT_NEAR(finder.reach(0), Vec3(0.003, 0.003, 0.101).norm(), 1e-12);
   EXPECT_NEAR((finder.center(0) - Vec3(0.0, 0.0, 0.025)).norm(), 0.0, 1e-12);
   const Box box = finder.bounds(0, makePose(Vec3(1.0, 0.0, 0.0), 0.5 * M_PI, Vec3::UnitY()));
-  EXPECT_NEAR((box.min - Vec3(0.995, -0.005, -0.005)).norm(), 0.0, 1e-12);
-  EXPECT_NEAR((box.max - Vec3(1.101, 0.005, 0.005)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((box.min() - Vec3(0.995, -0.005, -0.005)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((box.max() - Vec3(1.101, 0.005, 0.005)).norm(), 0.0, 1e-12);
   EXPECT_EQ(finder.reach(1), 0.0);
   EXPECT_TRUE(std::isinf(finder.thickness(1)));
   EXPECT_TRUE(std::isinf(finder.thickness(2)));
   EXPECT_EQ(finder.reach(2), 0.0);
-  EXPECT_GT(finder.bounds(2, Pose::Identity()).min.x(), finder.bounds(2, Pose::Identity()).max.x());
+  EXPECT_GT(finder.bounds(2, Pose::Identity()).min().x(),
+            finder.bounds(2, Pose::Identity()).max().x());
 }
 
 }  // namespace

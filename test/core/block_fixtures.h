@@ -17,7 +17,7 @@ namespace robot_tissue {
 inline TissueConfig blockOf(int cells_x, int cells_y, int cells_z, double spacing = 0.01) {
   TissueConfig config;
   config.model = "six_spring";
-  config.shape.max = Vec3(cells_x, cells_y, cells_z) * spacing;
+  config.shape.max() = Vec3(cells_x, cells_y, cells_z) * spacing;
   config.spacing = spacing;
   config.material.young_modulus = 1e4;
   config.material.density = 1000.0;
@@ -34,8 +34,8 @@ inline SolverConfig paperSolver() {
 inline Box nodeBox(const TissueConfig& config, const std::array<int, 3>& first,
                    const std::array<int, 3>& last) {
   Box box;
-  box.min = config.shape.min + config.spacing * Vec3(first[0], first[1], first[2]);
-  box.max = config.shape.min + config.spacing * Vec3(last[0], last[1], last[2]);
+  box.min() = config.shape.min() + config.spacing * Vec3(first[0], first[1], first[2]);
+  box.max() = config.shape.min() + config.spacing * Vec3(last[0], last[1], last[2]);
   return box;
 }
 
@@ -46,7 +46,7 @@ inline Box everywhere() {
 
 inline TissueConfig withFixedBottom(TissueConfig config) {
   Box bottom = config.shape;
-  bottom.max.z() = bottom.min.z();
+  bottom.max().z() = bottom.min().z();
   config.fixed.push_back(bottom);
   return config;
 }

@@ -22,8 +22,8 @@ Corners acrossBlock(const TissueConfig& config, int axis, double height, double 
   Corners corners(4, Vec3::Zero());
   for (std::size_t i = 0; i < 4; ++i) {
     corners[i][axis] = height;
-    corners[i][u] = i == 1 || i == 2 ? config.shape.max[u] + beyond : -beyond;
-    corners[i][v] = i >= 2 ? config.shape.max[v] + beyond : -beyond;
+    corners[i][u] = i == 1 || i == 2 ? config.shape.max()[u] + beyond : -beyond;
+    corners[i][v] = i >= 2 ? config.shape.max()[v] + beyond : -beyond;
   }
   return corners;
 }

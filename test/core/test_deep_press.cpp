@@ -23,7 +23,7 @@ class DeepPresses : public ::testing::TestWithParam<DeepPress> {};
 // A punch of 20 mm on a block of 100 x 100 x 50 mm at 5 mm.
 std::vector<Vec3> shapeOf(const DeepPress& press, int increments) {
   TissueConfig config;
-  config.shape.max = Vec3(0.1, 0.1, 0.05);
+  config.shape.max() = Vec3(0.1, 0.1, 0.05);
   config.spacing = 0.005;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = press.poisson_ratio;

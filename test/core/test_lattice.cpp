@@ -13,8 +13,8 @@ constexpr double kSpacing = 0.01;
 
 TEST(Lattice, NumbersItsNodesWithXFastest) {
   TissueConfig config = blockOf(2, 3, 4);
-  config.shape.min += Vec3(1.0, 2.0, 3.0);
-  config.shape.max += Vec3(1.0, 2.0, 3.0);
+  config.shape.min() += Vec3(1.0, 2.0, 3.0);
+  config.shape.max() += Vec3(1.0, 2.0, 3.0);
   const Lattice lattice(config);
   ASSERT_EQ(lattice.size(), (std::array<int, 3>{3, 4, 5}));
   ASSERT_EQ(lattice.nodeCount(), 60);
@@ -85,8 +85,8 @@ TEST(Lattice, BarOfAnyCrossSectionHasTheStiffnessOfItsModulus) {
     const TissueConfig config = blockOf(cells[0], cells[1], cells[2]);
     const Lattice lattice(config);
     for (int axis = 0; axis < 3; ++axis) {
-      const double length = config.shape.max[axis];
-      const double area = config.shape.max.prod() / length;
+      const double length = config.shape.max()[axis];
+      const double area = config.shape.max().prod() / length;
       const double expected = config.material.young_modulus * area / length;
       EXPECT_NEAR(barStiffness(lattice, axis), expected, 1e-9 * expected);
     }
@@ -131,7 +131,7 @@ TEST(Lattice, WeighsAsMuchAsItsVolume) {
   const Lattice lattice(config);
   double mass = 0.0;
   for (int node = 0; node < lattice.nodeCount(); ++node) mass += lattice.mass(node);
-  EXPECT_NEAR(mass, 1100.0 * config.shape.max.prod(), 1e-12);
+  EXPECT_NEAR(mass, 1100.0 * config.shape.max().prod(), 1e-12);
   EXPECT_NEAR(lattice.mass(0), 1100.0 * std::pow(kSpacing, 3) / 8.0, 1e-15);  // a corner
 }
 
@@ -144,14 +144,14 @@ TEST(Lattice, BoxesAreClosedWithSlackOfAThousandthOfTheSpacing) {
                         lattice.node(1, 2, 1), lattice.node(2, 2, 1), lattice.node(3, 2, 1)}));
   for (int axis = 0; axis < 3; ++axis) {
     Box box = nodeBox(config, {2, 2, 2}, {2, 2, 2});
-    box.min[axis] += 0.9e-3 * kSpacing;
-    box.max[axis] += 0.5 * kSpacing;
+    box.min()[axis] += 0.9e-3 * kSpacing;
+    box.max()[axis] += 0.5 * kSpacing;
     EXPECT_EQ(lattice.nodesIn(box).size(), 1u);
-    box.min[axis] += 0.2e-3 * kSpacing;
+    box.min()[axis] += 0.2e-3 * kSpacing;
     EXPECT_TRUE(lattice.nodesIn(box).empty());
-    box.max[axis] = (3.0 - 0.9e-3) * kSpacing;
+    box.max()[axis] = (3.0 - 0.9e-3) * kSpacing;
     EXPECT_EQ(lattice.nodesIn(box).size(), 1u);
-    box.max[axis] = (3.0 - 1.1e-3) * kSpacing;
+    box.max()[axis] = (3.0 - 1.1e-3) * kSpacing;
     EXPECT_TRUE(lattice.nodesIn(box).empty());
   }
   EXPECT_EQ(lattice.nodesIn(everywhere()).size(), 125u);

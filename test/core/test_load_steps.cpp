@@ -17,7 +17,7 @@ constexpr double kOverTolerance = 2.0;  // two shapes, each within it
 
 TissueConfig elasticOf(const Vec3& extent, double young, const Box& fixed) {
   TissueConfig config;
-  config.shape.max = extent;
+  config.shape.max() = extent;
   config.spacing = kSpacing;
   config.material.young_modulus = young;
   config.material.poisson_ratio = 0.4;

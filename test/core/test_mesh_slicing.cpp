@@ -22,9 +22,9 @@ double filledVolume(const MeshCells& cells, double spacing) {
 Grid shiftedGrid(const TriangleMesh& mesh, double spacing, Random& random) {
   Box box = boundsOf(mesh.vertices);
   for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] -= random.between(0.0, spacing);
-    box.max[axis] =
-        box.min[axis] + spacing * std::ceil((box.max[axis] - box.min[axis]) / spacing + 1.0);
+    box.min()[axis] -= random.between(0.0, spacing);
+    box.max()[axis] =
+        box.min()[axis] + spacing * std::ceil((box.max()[axis] - box.min()[axis]) / spacing + 1.0);
   }
   return Grid(box, spacing);
 }
@@ -36,8 +36,8 @@ std::array<int, 3> cellCount(const Grid& grid) {
 Vec3 lowestNode(const Grid& grid, std::size_t cell) {
   const auto count = cellCount(grid);
   const int index = static_cast<int>(cell);
-  return grid.shape().min + grid.spacing() * Vec3(index % count[0], index / count[0] % count[1],
-                                                  index / count[0] / count[1]);
+  return grid.shape().min() + grid.spacing() * Vec3(index % count[0], index / count[0] % count[1],
+                                                    index / count[0] / count[1]);
 }
 
 // How far the point is from the nearest occupied cell, along the axis where it is furthest.
@@ -56,12 +56,12 @@ TEST(MeshSlicing, AlignedBoxFillsItsCellsAndTouchesNoOthers) {
   const TriangleMesh box = boxMesh(Vec3(0.1, 0.0, -0.02), Vec3(0.13, 0.02, 0.005));
   const Grid around = gridAround(box, kSpacing);
   EXPECT_EQ(cellCount(around), (std::array<int, 3>{6, 4, 5}));
-  EXPECT_NEAR((around.shape().min - Vec3(0.1, 0.0, -0.02)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((around.shape().min() - Vec3(0.1, 0.0, -0.02)).norm(), 0.0, 1e-12);
   const MeshCells cells = sliced(box, around);
   for (const double filled : cells.filled) EXPECT_EQ(filled, 1.0);
   // One cell more all round.
   const Vec3 margin = Vec3::Constant(kSpacing);
-  const Grid wider({around.shape().min - margin, around.shape().max + margin}, kSpacing);
+  const Grid wider({around.shape().min() - margin, around.shape().max() + margin}, kSpacing);
   const MeshCells in_wider = sliced(box, wider);
   EXPECT_NEAR(filledVolume(in_wider, kSpacing), 0.03 * 0.02 * 0.025, 1e-15);
   EXPECT_EQ(std::accumulate(in_wider.occupied.begin(), in_wider.occupied.end(), 0), 6 * 4 * 5);
@@ -76,7 +76,7 @@ TEST(MeshSlicing, RoundedBoxIsSlicedLikeTheExactOne) {
   EXPECT_EQ(cellCount(grid), (std::array<int, 3>{6, 4, 5}));
   const Vec3 margin = Vec3::Constant(kSpacing);
   const MeshCells cells =
-      sliced(box, Grid({grid.shape().min - margin, grid.shape().max + margin}, kSpacing));
+      sliced(box, Grid({grid.shape().min() - margin, grid.shape().max() + margin}, kSpacing));
   EXPECT_EQ(std::accumulate(cells.occupied.begin(), cells.occupied.end(), 0), 6 * 4 * 5);
 }
 
@@ -189,8 +189,8 @@ TEST(MeshSlicing, GridAroundIsCenteredAndMovesWithTheMesh) {
   const TriangleMesh ball = sphereMesh(0.0163, 3);
   const Grid grid = gridAround(ball, kSpacing);
   EXPECT_EQ(cellCount(grid), (std::array<int, 3>{7, 7, 7}));
-  EXPECT_NEAR((grid.shape().min + grid.shape().max).norm(), 0.0, 1e-12);
-  EXPECT_TRUE(spacingFits(grid.shape().max - grid.shape().min, kSpacing));
+  EXPECT_NEAR((grid.shape().min() + grid.shape().max()).norm(), 0.0, 1e-12);
+  EXPECT_TRUE(spacingFits(grid.shape().max() - grid.shape().min(), kSpacing));
   const Vec3 offset(0.0317, -0.2213, 1.0171);
   const TriangleMesh away = moved(ball, offset);
   const MeshCells here = sliced(ball, grid);

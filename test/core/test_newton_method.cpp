@@ -15,7 +15,7 @@ constexpr double kYoung = 1e4;  // Pa
 LoadingPatch face(const Lattice& lattice, const TissueConfig& config, int axis, bool upper,
                   double displacement) {
   Box box = config.shape;
-  (upper ? box.min : box.max)[axis] = (upper ? box.max : box.min)[axis];
+  (upper ? box.min() : box.max())[axis] = (upper ? box.max() : box.min())[axis];
   LoadingPatch patch = displaced(lattice.nodesIn(box), displacement * Vec3::Unit(axis));
   patch.name = upper ? "upper" : "lower";
   patch.free_axis.fill(true);
@@ -30,7 +30,7 @@ TEST_P(Uniaxial, GivesYoungsModulusAndPoissonsRatioBackAlongEachAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     const TissueConfig config = elasticBlockOf(4, 3, 5, GetParam());
     ElasticBlock block(config);
-    const Vec3 size = config.shape.max;
+    const Vec3 size = config.shape.max();
     const SolveReport report =
         block.solve({face(block.lattice, config, axis, false, 0.0),
                      face(block.lattice, config, axis, true, kStrain * size[axis])});

@@ -194,12 +194,12 @@ void expectBar(double way, const std::array<bool, 3>& free_axis) {
   options.passes = 1000;
   options.balance_tolerance = 1e-9;
   PaperBlock block(config, options);
-  const double length = config.shape.max.z();
+  const double length = config.shape.max().z();
   LoadingPatch top = displaced(block.lattice.nodesIn(nodeBox(config, {0, 0, 10}, {1, 1, 10})),
                                Vec3(0.0, 0.0, way));
   top.free_axis = free_axis;
   const SolveReport report = block.solve({top});
-  const double area = config.shape.max.x() * config.shape.max.y();
+  const double area = config.shape.max().x() * config.shape.max().y();
   const double expected = config.material.young_modulus * area * way / length;
   EXPECT_NEAR(report.patches.at(0).force.z(), expected, 1e-4 * std::abs(expected));
   double furthest = 0.0;

@@ -89,8 +89,8 @@ TEST(Surface, HasItsVerticesOnTheOuterNodes) {
 
 TEST(Surface, LooksOutwardsOnEveryFace) {
   TissueConfig config = blockOf(3, 4, 5);
-  config.shape.min += Vec3(1.0, -2.0, 3.0);
-  config.shape.max += Vec3(1.0, -2.0, 3.0);
+  config.shape.min() += Vec3(1.0, -2.0, 3.0);
+  config.shape.max() += Vec3(1.0, -2.0, 3.0);
   const Lattice lattice(config);
   const Surface surface = extractSurface(lattice, lattice.restState());
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
@@ -99,15 +99,15 @@ TEST(Surface, LooksOutwardsOnEveryFace) {
     for (const int corner : surface.triangles[i]) middle += surface.rest[at(corner)] / 3.0;
     Eigen::Index axis = 0;
     EXPECT_NEAR(normal.cwiseAbs().maxCoeff(&axis), 1.0, 1e-9);
-    const double face = normal[axis] > 0.0 ? config.shape.max[axis] : config.shape.min[axis];
+    const double face = normal[axis] > 0.0 ? config.shape.max()[axis] : config.shape.min()[axis];
     EXPECT_NEAR(middle[axis], face, 1e-12);
   }
 }
 
 TEST(Surface, EnclosesTheVolumeOfTheBlock) {
   TissueConfig config = blockOf(3, 4, 5);
-  config.shape.min += Vec3(10.0, -20.0, 30.0);
-  config.shape.max += Vec3(10.0, -20.0, 30.0);
+  config.shape.min() += Vec3(10.0, -20.0, 30.0);
+  config.shape.max() += Vec3(10.0, -20.0, 30.0);
   const Lattice lattice(config);
   const Surface surface = extractSurface(lattice, lattice.restState());
   EXPECT_NEAR(enclosedVolume(surface, surface.rest), 60e-6, 1e-9 * 60e-6);

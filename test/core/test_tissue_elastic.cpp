@@ -12,7 +12,7 @@ class ElasticTissue : public ::testing::Test {
   static TissueConfig config() {
     TissueConfig config;
     config.model = "elastic";
-    config.shape.max = Vec3(0.08, 0.08, 0.04);
+    config.shape.max() = Vec3(0.08, 0.08, 0.04);
     config.spacing = 0.01;
     config.material.young_modulus = 1e4;
     config.material.poisson_ratio = 0.4;

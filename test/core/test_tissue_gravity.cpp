@@ -26,7 +26,7 @@ TissueConfig hangingColumn() {
   return config;
 }
 
-double length(const TissueConfig& config) { return config.shape.max.z(); }
+double length(const TissueConfig& config) { return config.shape.max().z(); }
 
 // rho g L^2 / (2 E) (m)
 double topSinks(const TissueConfig& config) {
@@ -35,7 +35,7 @@ double topSinks(const TissueConfig& config) {
 }
 
 double weight(const TissueConfig& config) {
-  return config.material.density * kGravity * config.shape.max.prod();  // N
+  return config.material.density * kGravity * config.shape.max().prod();  // N
 }
 
 Vec3 reaction(const Tissue& tissue) {  // of the fixed nodes on the tissue (N)

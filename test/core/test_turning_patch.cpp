@@ -15,7 +15,7 @@ constexpr double kSpacing = 0.005;
 TissueConfig clampedBar() {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = kSpacing * Vec3(24, 4, 4);
+  config.shape.max() = kSpacing * Vec3(24, 4, 4);
   config.spacing = kSpacing;
   config.material.young_modulus = 1e5;
   config.material.poisson_ratio = 0.3;
@@ -27,7 +27,7 @@ PatchConfig endOf(const TissueConfig& config, const Vec3& force, bool turns) {
   PatchConfig end;
   end.name = "end";
   end.box = config.shape;
-  end.box.min.x() = config.shape.max.x();
+  end.box.min().x() = config.shape.max().x();
   end.force = force;
   end.turns = turns;
   return end;
@@ -84,7 +84,7 @@ TEST(TurningPatch, NoMomentIsLeftAboutItsCenter) {
     moment += (position - center).cross(pull);
   }
   EXPECT_LT((force + Vec3(0.0, 0.05, -0.1)).norm(), 1e-9);
-  EXPECT_LT(moment.norm(), 1e-9 * 0.1 * config.shape.max.x());
+  EXPECT_LT(moment.norm(), 1e-9 * 0.1 * config.shape.max().x());
   EXPECT_GT(Eigen::AngleAxisd(patch.place.rotation).angle(), 0.1) << "it has turned";
 }
 
@@ -109,7 +109,7 @@ TEST(TurningPatch, KeepsItsShapeWhileItTurns) {
 TEST(TurningPatch, PunchNearAnEdgeTiltsTowardsIt) {
   TissueConfig config;
   config.model = "elastic";
-  config.shape.max = Vec3(0.08, 0.06, 0.03);
+  config.shape.max() = Vec3(0.08, 0.06, 0.03);
   config.spacing = 0.005;
   config.material.young_modulus = 1e4;
   config.material.poisson_ratio = 0.45;

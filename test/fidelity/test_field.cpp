@@ -53,7 +53,7 @@ TEST(FieldAt, GoesWithThePartOfACutCellThatThePointIsIn) {
 
 TEST(Ladder, DoublesAndHalvesWhereTheBoxAllows) {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.1, 0.1, 0.05);
+  tissue.shape.max() = Vec3(0.1, 0.1, 0.05);
   tissue.spacing = 0.005;
   const std::vector<double> spacings = ladderSpacings(tissue, 2, 2);
   ASSERT_EQ(spacings.size(), 5U);
@@ -67,7 +67,7 @@ TEST(Ladder, DoublesAndHalvesWhereTheBoxAllows) {
 
 TEST(Ladder, HasNoCoarserLatticeBelowTwoCells) {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.1, 0.1, 0.05);
+  tissue.shape.max() = Vec3(0.1, 0.1, 0.05);
   tissue.spacing = 0.025;
   EXPECT_EQ(ladderSpacings(tissue, 2, 1), (std::vector<double>{0.025, 0.0125}));
 }
@@ -104,12 +104,12 @@ TEST(Probe, PressesTheFaceFarthestFromWhatIsFixed) {
   const Scene from_above = probed(sceneOf(blockText()));
   const PatchConfig top = std::get<LoadStep>(from_above.steps.at(0)).patches.at(0);
   EXPECT_NEAR((*top.displacement)[2].value_or(0.0), -0.004, 1e-12);
-  EXPECT_NEAR(top.box.min.x(), 0.018, 1e-12);
+  EXPECT_NEAR(top.box.min().x(), 0.018, 1e-12);
   Scene sideways = sceneOf(blockText());
   sideways.tissue.fixed = {{Vec3(0.06, -1.0, -1.0), Vec3(0.06, 1.0, 1.0)}};
   const PatchConfig side = std::get<LoadStep>(probed(sideways).steps.at(0)).patches.at(0);
   EXPECT_NEAR((*side.displacement)[0].value_or(0.0), 0.006, 1e-12);
-  EXPECT_LT(side.box.max.x(), 0.001);
+  EXPECT_LT(side.box.max().x(), 0.001);
 }
 
 TEST(Probe, HoldsTheOppositeFaceOfWhatFloats) {

@@ -20,14 +20,14 @@ constexpr double kTop = 0.04;
 constexpr double kRadius = 0.01;
 
 inline Box bottomOf(const Box& shape) {
-  return {Vec3(shape.min.x() - 1.0, shape.min.y() - 1.0, shape.min.z() - 1e-6),
-          Vec3(shape.max.x() + 1.0, shape.max.y() + 1.0, shape.min.z() + 1e-6)};
+  return {Vec3(shape.min().x() - 1.0, shape.min().y() - 1.0, shape.min().z() - 1e-6),
+          Vec3(shape.max().x() + 1.0, shape.max().y() + 1.0, shape.min().z() + 1e-6)};
 }
 
 inline TissueConfig block(const std::string& model = "elastic", double spacing = kSpacing) {
   TissueConfig tissue;
   tissue.model = model;
-  tissue.shape.max = Vec3(kWidth, kWidth, kTop);
+  tissue.shape.max() = Vec3(kWidth, kWidth, kTop);
   tissue.spacing = spacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back(bottomOf(tissue.shape));

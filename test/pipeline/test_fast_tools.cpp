@@ -13,7 +13,7 @@ constexpr double kSheet = 0.01;  // its thickness: two cells (m)
 // Fixed at its edges x = 0 and x = kWidth.
 TissueConfig sheet() {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(kWidth, 0.04, kSheet);
+  tissue.shape.max() = Vec3(kWidth, 0.04, kSheet);
   tissue.spacing = kSpacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed = {{Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)},

@@ -16,7 +16,7 @@ const Vec3 kHinge(0.015, 0.5 * kThick, kRidgeTop + 0.027);
 
 TissueConfig ridge() {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.03, kThick, kRidgeTop);
+  tissue.shape.max() = Vec3(0.03, kThick, kRidgeTop);
   tissue.spacing = kSpacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back(bottomOf(tissue.shape));
@@ -167,7 +167,7 @@ TEST(EmptyJaws, ThatWereClosedBeforeSaySo) {
 
 TEST(EmptyJaws, AroundWhatIsFixedSaySo) {
   TissueConfig fixed = ridge();
-  fixed.fixed.front().max.z() = kRidgeTop;
+  fixed.fixed.front().max().z() = kRidgeTop;
   ToolGeometry tool = plates();
   tool.grasp.close_gap = 0.012;
   tool.grasp.open_gap = 0.013;

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Method, LyingBlock, ::testing::Values("layered", "newto
 
 TEST(Supports, BoxBearsAFixedBlocksOverhang) {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.06, 0.02, 0.02);
+  tissue.shape.max() = Vec3(0.06, 0.02, 0.02);
   tissue.spacing = 0.01;
   tissue.material.young_modulus = 5e4;
   tissue.gravity = Vec3(0.0, 0.0, -9.81);

@@ -58,7 +58,7 @@ constexpr double kRidgeTop = 0.03;
 
 TissueConfig ridge() {
   TissueConfig tissue;
-  tissue.shape.max = Vec3(0.03, kRidge, kRidgeTop);
+  tissue.shape.max() = Vec3(0.03, kRidge, kRidgeTop);
   tissue.spacing = kSpacing;
   tissue.material.young_modulus = 1e4;
   tissue.fixed.push_back(bottomOf(tissue.shape));

@@ -45,8 +45,8 @@ class SceneFolder : public ::testing::Test {
 TEST(GoodScene, TissueHasEveryField) {
   const TissueConfig tissue = parseText(kRunnerScene, SceneUser::kRunner).tissue;
   EXPECT_EQ(tissue.frame_id, "organ");
-  EXPECT_EQ(tissue.shape.min, Vec3(0.0, 0.0, 0.0));
-  EXPECT_EQ(tissue.shape.max, Vec3(0.1, 0.1, 0.05));
+  EXPECT_EQ(tissue.shape.min(), Vec3(0.0, 0.0, 0.0));
+  EXPECT_EQ(tissue.shape.max(), Vec3(0.1, 0.1, 0.05));
   EXPECT_EQ(tissue.spacing, 0.01);
   EXPECT_EQ(tissue.model, "six_spring");
   EXPECT_EQ(tissue.material.young_modulus, 10000.0);
@@ -54,8 +54,8 @@ TEST(GoodScene, TissueHasEveryField) {
   EXPECT_EQ(tissue.material.poisson_ratio, 0.45);
   EXPECT_FALSE(tissue.material.spring_stiffness.has_value());
   ASSERT_EQ(tissue.fixed.size(), 1U);
-  EXPECT_EQ(tissue.fixed[0].min, Vec3(-1.0, -1.0, -1e-6));
-  EXPECT_EQ(tissue.fixed[0].max, Vec3(1.0, 1.0, 1e-6));
+  EXPECT_EQ(tissue.fixed[0].min(), Vec3(-1.0, -1.0, -1e-6));
+  EXPECT_EQ(tissue.fixed[0].max(), Vec3(1.0, 1.0, 1e-6));
   EXPECT_EQ(tissue.gravity, Vec3(0.0, 0.0, -9.81));
 }
 
@@ -63,8 +63,8 @@ TEST(GoodScene, RegionsTakeTheirOwnEntriesAndInheritTheRest) {
   const TissueConfig tissue = parseText(kRunnerScene, SceneUser::kRunner).tissue;
   ASSERT_EQ(tissue.regions.size(), 2U);
   EXPECT_EQ(tissue.regions[0].name, "tumour");
-  EXPECT_EQ(tissue.regions[0].box.min, Vec3(0.03, 0.03, 0.01));
-  EXPECT_EQ(tissue.regions[0].box.max, Vec3(0.07, 0.07, 0.03));
+  EXPECT_EQ(tissue.regions[0].box.min(), Vec3(0.03, 0.03, 0.01));
+  EXPECT_EQ(tissue.regions[0].box.max(), Vec3(0.07, 0.07, 0.03));
   EXPECT_EQ(tissue.regions[0].material.young_modulus, 1e5);
   EXPECT_EQ(tissue.regions[0].material.density, 900.0);
   EXPECT_EQ(tissue.regions[1].name, "");
@@ -100,8 +100,8 @@ TEST(GoodScene, StepsHaveEveryField) {
   ASSERT_EQ(load.patches.size(), 2U);
   const PatchConfig& punch = load.patches[0];
   EXPECT_EQ(punch.name, "punch");
-  EXPECT_EQ(punch.box.min, Vec3(0.04, 0.04, 0.05));
-  EXPECT_EQ(punch.box.max, Vec3(0.06, 0.06, 0.05));
+  EXPECT_EQ(punch.box.min(), Vec3(0.04, 0.04, 0.05));
+  EXPECT_EQ(punch.box.max(), Vec3(0.06, 0.06, 0.05));
   ASSERT_TRUE(punch.displacement.has_value());
   EXPECT_FALSE(punch.force.has_value());
   EXPECT_FALSE((*punch.displacement)[0].has_value());

@@ -172,8 +172,8 @@ TEST(MeshFiles, DaePlacesGeometriesByTheirNodes) {
   EXPECT_EQ(mesh.triangles.size(), 6U);
   EXPECT_NEAR(areaOf(mesh), 2.5 * (1.0 + 4.0), 1e-12);  // the notch is not filled
   const Box bounds = boundsOf(mesh.vertices);
-  EXPECT_NEAR((bounds.min - Vec3(-1.0, 0.0, 0.0)).norm(), 0.0, 1e-12);
-  EXPECT_NEAR((bounds.max - Vec3(5.0, 4.0, 5.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((bounds.min() - Vec3(-1.0, 0.0, 0.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((bounds.max() - Vec3(5.0, 4.0, 5.0)).norm(), 0.0, 1e-12);
 }
 
 TEST(MeshFiles, ObjHasPolygonsIndicesFromTheEndAndLinesThatGoOn) {

@@ -58,9 +58,9 @@ TEST_F(BallScene, GivesTheMeshAndItsLattice) {
   const Scene scene = parsed(kBallScene);
   ASSERT_NE(scene.tissue.mesh, nullptr);
   EXPECT_EQ(scene.tissue.mesh->triangles.size(), 512U);
-  EXPECT_NEAR(boundsOf(scene.tissue.mesh->vertices).max.x(), 0.033, 1e-8);
+  EXPECT_NEAR(boundsOf(scene.tissue.mesh->vertices).max().x(), 0.033, 1e-8);
   const Lattice lattice(scene.tissue);
-  EXPECT_NEAR(lattice.bounds().min.x(), -0.035, 1e-8);
+  EXPECT_NEAR(lattice.bounds().min().x(), -0.035, 1e-8);
   EXPECT_EQ(lattice.size(), (std::array<int, 3>{8, 8, 8}));
   EXPECT_LT(lattice.nodeCount(), 8 * 8 * 8);
 }

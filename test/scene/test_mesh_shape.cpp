@@ -56,8 +56,8 @@ void expectBox(const TriangleMesh& mesh, double scale) {
   EXPECT_EQ(mesh.triangles.size(), 12U);
   EXPECT_FALSE(meshFault(mesh));
   const Box bounds = boundsOf(mesh.vertices);
-  EXPECT_NEAR((bounds.min - scale * kBoxMin).norm(), 0.0, scale * 1e-7);
-  EXPECT_NEAR((bounds.max - scale * kBoxMax).norm(), 0.0, scale * 1e-7);
+  EXPECT_NEAR((bounds.min() - scale * kBoxMin).norm(), 0.0, scale * 1e-7);
+  EXPECT_NEAR((bounds.max() - scale * kBoxMax).norm(), 0.0, scale * 1e-7);
   EXPECT_GT(volumeOf(mesh), 0.0);
 }
 
@@ -78,7 +78,7 @@ TEST(MeshShape, StlObjAndDaeAreTheSameBox) {
 TEST(MeshShape, ScaleMayDifferAlongTheAxes) {
   writeFile("box.stl", stlText(boxMesh(kBoxMin, kBoxMax)));
   const TriangleMesh mesh = read("resource: box.stl, scale: [1, 2, 0.5]");
-  EXPECT_NEAR(boundsOf(mesh.vertices).max.y(), 0.06, 1e-7);
+  EXPECT_NEAR(boundsOf(mesh.vertices).max().y(), 0.06, 1e-7);
   EXPECT_NEAR(volumeOf(mesh), 0.1 * 0.05 * 0.06, 1e-9);
 }
 
@@ -103,8 +103,8 @@ TEST(MeshShape, OrgansAreClosedAndOfTheStatedSize) {
     EXPECT_FALSE(meshFault(mesh));
     EXPECT_NEAR(volumeOf(mesh), organ.volume, 1e-5 * organ.volume);
     const Box bounds = boundsOf(mesh.vertices);
-    EXPECT_NEAR((bounds.max - bounds.min - organ.size).norm(), 0.0, 0.001);
-    EXPECT_NEAR((bounds.max + bounds.min).norm(), 0.0, 1e-6);
+    EXPECT_NEAR((bounds.max() - bounds.min() - organ.size).norm(), 0.0, 0.001);
+    EXPECT_NEAR((bounds.max() + bounds.min()).norm(), 0.0, 1e-6);
     EXPECT_EQ(2 * mesh.vertices.size(), mesh.triangles.size() + 4);  // like a ball, no handles
     double filled = 0.0;
     for (const double share : sliced(mesh, gridAround(mesh, 0.005)).filled) filled += share;
@@ -114,7 +114,8 @@ TEST(MeshShape, OrgansAreClosedAndOfTheStatedSize) {
 
 TEST(MeshShape, EntriesThatAreNotAllowed) {
   writeFile("box.stl", stlText(boxMesh(kBoxMin, kBoxMax)));
-  expectRefusal(refusal("resource: box.stl, min: [0, 0, 0]"), {"shape.min = [0, 0, 0]", "unknown"});
+  expectRefusal(refusal("resource: box.stl, min: [0, 0, 0]"),
+                {"shape.min() = [0, 0, 0]", "unknown"});
   expectRefusal(refusal("scale: 1"), {"tissue.shape.resource is missing", "package://"});
   expectRefusal(refusal("resource: [a]"), {"tissue.shape.resource = [a]", "a path"});
   expectRefusal(refusal("resource: none.stl"),

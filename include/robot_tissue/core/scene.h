@@ -31,7 +31,7 @@ struct Region {
 
 struct TissueConfig {
   std::string frame_id = "tissue";
-  Box shape;                                 // unused when mesh is set
+  Box shape{Vec3::Zero(), Vec3::Zero()};     // unused when mesh is set
   std::shared_ptr<const TriangleMesh> mesh;  // without fault (core/mesh_checks.h), facing outwards
   double spacing = 0.0;
   std::string model = "elastic";

@@ -33,11 +33,8 @@ struct NodeWeight {
   double weight = 0.0;
 };
 
-// Closed axis-aligned box (m).
-struct Box {
-  Vec3 min = Vec3::Zero();
-  Vec3 max = Vec3::Zero();
-};
+// Closed and axis-aligned (m); empty, with min() above max(), until it is given corners.
+using Box = Eigen::AlignedBox3d;
 
 // Bad input. what() is one line that names the key or argument, its value and what is allowed.
 class InputError : public std::runtime_error {

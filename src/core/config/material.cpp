@@ -6,7 +6,8 @@ namespace {
 constexpr double kBoxSlack = 1e-3;  // of the spacing
 
 bool contains(const Box& box, const Vec3& point, double slack) {
-  return ((point - box.min).array() >= -slack).all() && ((box.max - point).array() >= -slack).all();
+  return ((point - box.min()).array() >= -slack).all() &&
+         ((box.max() - point).array() >= -slack).all();
 }
 
 }  // namespace

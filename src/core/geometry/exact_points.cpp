@@ -6,12 +6,12 @@ namespace robot_tissue {
 
 std::vector<ExactPoint> exactPoints(const std::vector<Vec3>& vertices) {
   const Box box = boundsOf(vertices);
-  const double steps = std::ldexp(1.0, 40) / (box.max - box.min).maxCoeff();
+  const double steps = std::ldexp(1.0, 40) / (box.max() - box.min()).maxCoeff();
   std::vector<ExactPoint> points;
   for (const Vec3& vertex : vertices) {
     ExactPoint point{};
     for (int axis = 0; axis < 3; ++axis) {
-      point[at(axis)] = std::llround((vertex[axis] - box.min[axis]) * steps);
+      point[at(axis)] = std::llround((vertex[axis] - box.min()[axis]) * steps);
     }
     points.push_back(point);
   }

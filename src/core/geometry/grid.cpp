@@ -17,7 +17,7 @@ bool NodeRange::empty() const {
 
 Grid::Grid(const Box& shape, double spacing) : shape_(shape), spacing_(spacing) {
   for (int axis = 0; axis < 3; ++axis) {
-    const double cells = std::round((shape.max[axis] - shape.min[axis]) / spacing);
+    const double cells = std::round((shape.max()[axis] - shape.min()[axis]) / spacing);
     size_[static_cast<std::size_t>(axis)] = static_cast<int>(cells) + 1;
   }
 }
@@ -96,8 +96,8 @@ NodeRange Grid::pointsIn(const Box& box, double offset) const {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double end = size_[a] - (offset > 0.0 ? 1 : 0);  // a cell less than nodes
-    const double lower = (box.min[axis] - shape_.min[axis]) / spacing_ - offset - kSlack;
-    const double upper = (box.max[axis] - shape_.min[axis]) / spacing_ - offset + kSlack;
+    const double lower = (box.min()[axis] - shape_.min()[axis]) / spacing_ - offset - kSlack;
+    const double upper = (box.max()[axis] - shape_.min()[axis]) / spacing_ - offset + kSlack;
     range.first[a] = static_cast<int>(std::clamp(std::ceil(lower), 0.0, end));
     range.last[a] = static_cast<int>(std::clamp(std::floor(upper), -1.0, end - 1.0));
   }

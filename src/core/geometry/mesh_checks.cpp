@@ -94,7 +94,7 @@ std::vector<std::vector<MeshTriangle>> shellsOf(const TriangleMesh& mesh) {
 
 bool isFlat(const TriangleMesh& mesh) {
   const Box box = boundsOf(mesh.vertices);
-  const Vec3 extent = box.max - box.min;
+  const Vec3 extent = box.max() - box.min();
   const double smallest = kFlatShare * std::pow(extent.maxCoeff(), 3);
   if (!(extent.prod() > smallest)) return true;
   double volume = 0.0;

@@ -117,10 +117,10 @@ class Slicer {
 
 Grid gridAround(const TriangleMesh& mesh, double spacing) {
   const Box bounds = boundsOf(mesh.vertices);
-  const Vec3 middle = 0.5 * (bounds.min + bounds.max);
+  const Vec3 middle = 0.5 * (bounds.min() + bounds.max());
   Vec3 half;
   for (int axis = 0; axis < 3; ++axis) {
-    const double extent = (bounds.max[axis] - bounds.min[axis]) / spacing;
+    const double extent = (bounds.max()[axis] - bounds.min()[axis]) / spacing;
     half[axis] = 0.5 * std::max(1.0, std::ceil(extent - kSlack)) * spacing;
   }
   return Grid({middle - half, middle + half}, spacing);
@@ -131,7 +131,7 @@ MeshCells sliced(const TriangleMesh& mesh, const Grid& grid) {
   Polygon polygon(3);
   for (const MeshTriangle& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-      polygon[i] = (mesh.vertices[at(triangle[i])] - grid.shape().min) / grid.spacing();
+      polygon[i] = (mesh.vertices[at(triangle[i])] - grid.shape().min()) / grid.spacing();
     }
     slicer.add(polygon);
   }

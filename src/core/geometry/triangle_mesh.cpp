@@ -41,11 +41,8 @@ std::vector<int> representatives(const std::vector<Vec3>& vertices, double reach
 }  // namespace
 
 Box boundsOf(const std::vector<Vec3>& vertices) {
-  Box box{vertices.front(), vertices.front()};
-  for (const Vec3& vertex : vertices) {
-    box.min = box.min.cwiseMin(vertex);
-    box.max = box.max.cwiseMax(vertex);
-  }
+  Box box;
+  for (const Vec3& vertex : vertices) box.extend(vertex);
   return box;
 }
 
@@ -86,7 +83,7 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   TriangleMesh joined;
   if (mesh.vertices.empty()) return joined;
   const Box box = boundsOf(mesh.vertices);
-  const auto stands = representatives(mesh.vertices, kWeld * (box.max - box.min).maxCoeff());
+  const auto stands = representatives(mesh.vertices, kWeld * (box.max() - box.min()).maxCoeff());
   std::vector<int> number(mesh.vertices.size(), -1);
   for (MeshTriangle triangle : mesh.triangles) {
     for (int& corner : triangle) corner = stands[at(corner)];

@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastShare = 1e-3;
 
 Grid gridOf(const Box& shape, double spacing) {
-  const Vec3 extent = shape.max - shape.min;
+  const Vec3 extent = shape.max() - shape.min();
   if (!spacingFits(extent, spacing)) {
     std::ostringstream line;
     line << "tissue.spacing: " << spacing << ": the shape is " << extent.x() << " x " << extent.y()

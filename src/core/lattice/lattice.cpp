@@ -132,7 +132,7 @@ void Lattice::fix(const std::vector<Box>& boxes) {
 
 Vec3 Lattice::restPosition(int node) const {
   const auto& index = index_of_[at(node)];
-  return grid_.shape().min + spacing() * Vec3(index[0], index[1], index[2]);
+  return grid_.shape().min() + spacing() * Vec3(index[0], index[1], index[2]);
 }
 
 int Lattice::cellAt(const std::array<int, 3>& index) const {

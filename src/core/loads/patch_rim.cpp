@@ -63,7 +63,7 @@ class RimBuilder {
       const bool on_surface = std::all_of(nodes.begin(), nodes.end(),
                                           [&](int node) { return isOnSurface(node, axis); });
       if (!on_surface) continue;
-      const Vec3 extent = box_.max - box_.min;
+      const Vec3 extent = box_.max() - box_.min();
       if (normal_ < 0 || extent[axis] <= extent[normal_]) normal_ = axis;
     }
   }
@@ -109,7 +109,7 @@ class RimBuilder {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const double rest = lattice_.restPosition(node)[axis];
     const double depth =
-        (side > 0 ? box_.max[axis] - rest : rest - box_.min[axis]) / lattice_.spacing();
+        (side > 0 ? box_.max()[axis] - rest : rest - box_.min()[axis]) / lattice_.spacing();
     const int outwards = 2 * axis + (side > 0 ? 1 : 0), inwards = outwards ^ 1;
     if (depth < 0.0) return isJoined(node, inwards) ? depth : -kNone;
     return isJoined(node, outwards) ? depth : kNone;

@@ -110,7 +110,7 @@ class CutMeshBuilder {
   std::vector<Vec3> inSpacings() const {
     std::vector<Vec3> points;
     for (const Vec3& vertex : mesh_.vertices) {
-      points.push_back((vertex - lattice_.bounds().min) / lattice_.spacing());
+      points.push_back((vertex - lattice_.bounds().min()) / lattice_.spacing());
     }
     return points;
   }
@@ -244,7 +244,7 @@ class CutMeshBuilder {
   }
 
   Vec3 placed(const Vec3& point) const {
-    return lattice_.bounds().min + lattice_.spacing() * point;
+    return lattice_.bounds().min() + lattice_.spacing() * point;
   }
 
   // The cell's corner at the node that the octant belongs to, or the nearest to that.

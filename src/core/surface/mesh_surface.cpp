@@ -73,7 +73,7 @@ Surface meshSurface(const Lattice& lattice, const LatticeState& state, const Tri
   surface.triangles = mesh.triangles;
   surface.opened.assign(mesh.triangles.size(), 0);
   for (const Vec3& vertex : mesh.vertices) {
-    const Vec3 point = (vertex - lattice.bounds().min) / lattice.spacing();
+    const Vec3 point = (vertex - lattice.bounds().min()) / lattice.spacing();
     const Cell& cell = lattice.cells()[at(cellAround(lattice, point))];
     surface.carriers.push_back(carriersIn(lattice, cell, point));
   }

@@ -179,16 +179,13 @@ Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
            std::vector<Vec3>& vertices) {
   vertices.resize(surface.rest.size());
   Box bounds;
-  bounds.min.setConstant(std::numeric_limits<double>::infinity());
-  bounds.max = -bounds.min;
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
     Vec3 position = surface.rest[vertex];
     for (const NodeWeight& carrier : surface.carriers[vertex]) {
       position += carrier.weight * displacement[at(carrier.node)];
     }
     vertices[vertex] = position;
-    bounds.min = bounds.min.cwiseMin(position);
-    bounds.max = bounds.max.cwiseMax(position);
+    bounds.extend(position);
   }
   return bounds;
 }

@@ -15,7 +15,7 @@ constexpr double kDepth = 0.004;  // m
 
 rt::TissueConfig block() {
   rt::TissueConfig tissue;
-  tissue.shape.max = rt::Vec3(0.06, 0.06, kTop);
+  tissue.shape.max() = rt::Vec3(0.06, 0.06, kTop);
   tissue.spacing = 0.01;
   tissue.material.young_modulus = 1e4;  // Pa
   tissue.fixed.push_back({rt::Vec3(-1.0, -1.0, -1e-6), rt::Vec3(1.0, 1.0, 1e-6)});
