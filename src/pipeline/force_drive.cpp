@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tuning.h"
+
 namespace robot_tissue {
-namespace {
-
-constexpr int kMostPushes = 12;      // corrections of a driven tool in one update
-constexpr double kPushed = 0.005;    // of the force: near enough
-constexpr double kFirstPush = 0.1;   // of a load step: to learn the stiffness from
-constexpr double kFarthest = 200.0;  // load steps: a driven tool that finds nothing to push stops
-
-}  // namespace
-
 void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   Drive& drive = drives_[tool];
   const bool same_way =
@@ -48,12 +41,13 @@ bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
   const double wanted = drive.force->norm(), longest = way.longest;
   double met = way.met().dot(direction), stiffness = 0.0;
   int pushes = 0;
-  while (std::abs(met - wanted) > kPushed * wanted && pushes++ < kMostPushes) {
-    double length =
-        stiffness > 0.0 ? (wanted - met) / stiffness : (met > 0.0 ? kFirstPush * longest : longest);
+  while (std::abs(met - wanted) > tuning::kForceMet * wanted &&
+         pushes++ < tuning::kMostCorrections) {
+    double length = stiffness > 0.0 ? (wanted - met) / stiffness
+                                    : (met > 0.0 ? tuning::kFirstCorrection * longest : longest);
     if (met > wanted && stiffness <= 0.0) length = -length;
     length = std::min(std::max(length, -longest), longest);
-    if (drive.way + length > kFarthest * longest) break;
+    if (drive.way + length > tuning::kFarthestPush * longest) break;
     drive.way += length;
     const bool goes_on = way.walk();
     const double now = way.met().dot(direction);
@@ -61,8 +55,8 @@ bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
     met = now;
     if (!goes_on) break;
   }
-  const bool met_it = std::abs(met - wanted) <= kPushed * wanted || way.lost();
-  return !met_it && drive.way < (kFarthest - 1.0) * longest;
+  const bool met_it = std::abs(met - wanted) <= tuning::kForceMet * wanted || way.lost();
+  return !met_it && drive.way < (tuning::kFarthestPush - 1.0) * longest;
 }
 
 }  // namespace robot_tissue

@@ -5,10 +5,11 @@
 #include <limits>
 #include <sstream>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr double kOpposed = -0.5;  // cosine between the ways out of two jaws
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 std::string inMeters(double length) {
@@ -183,7 +184,7 @@ std::vector<int> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw, d
     const auto here = world_.finder.wayOut(jaw, world_.pose.links[jaw], position, reach);
     if (!here) continue;
     const auto there = world_.finder.wayOut(other, world_.pose.links[other], position, reach);
-    if (!there || here->normal.dot(there->normal) > kOpposed) continue;
+    if (!there || here->normal.dot(there->normal) > tuning::kOpposed) continue;
     const double between = -(here->depth_m + there->depth_m);
     const bool nearer =
         here->depth_m > there->depth_m || (here->depth_m == there->depth_m && jaw == first);
@@ -246,7 +247,7 @@ bool Grasping::pushesWith(std::size_t link) const {
     const std::size_t other = link == first ? first + 1 : first;
     const Vec3 point = pointOf(touch.spring, world_.tissue.state().displacement);
     const auto there = world_.finder.wayOut(other, world_.pose.links[other], point, kAnywhere);
-    return there && there->normal.dot(touch.spring.normal) < kOpposed;
+    return there && there->normal.dot(touch.spring.normal) < tuning::kOpposed;
   });
 }
 

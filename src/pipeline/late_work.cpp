@@ -4,14 +4,9 @@
 
 #include "pipeline_parts.h"
 #include "stopwatch.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr int kMostLateIterations = 1500;  // where the tools stand: as many as a load step takes
-
-}  // namespace
-
 Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
   World& world = pipeline.world_;
@@ -38,7 +33,7 @@ const StepReport& Pipeline::carryOn() {
 void Pipeline::countLate() {
   late_iterations_ +=
       world_.tissue.isLoading() ? 0 : std::max(1, world_.tissue.lastReport().iterations);
-  gave_up_ = late_iterations_ > kMostLateIterations;
+  gave_up_ = late_iterations_ > tuning::kMostLateIterations;
 }
 
 bool Pipeline::isLate() const {

@@ -5,22 +5,9 @@
 #include <utility>
 
 #include "stopwatch.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr int kPushPasses = 4;     // a curved tool's way out turns as the surface moves
-constexpr int kRigidRounds = 6;    // nodes that the solve moved into a rigid tool go out again
-constexpr double kTouches = 0.02;  // of the spacing: a gap that is none
-constexpr int kMoreSolves = 2;     // where one ended on its way
-constexpr double kTooDeep = 0.04;  // of the spacing, in a tool
-constexpr double kMostUnbalanced = 0.5;  // of the tools' force, where a solve did not converge
-constexpr double kMostLeap = 10.0;       // of the spacing, of a surface's node in a load step
-constexpr double kThrough = 0.25;        // of the spacing: how deep a link is that goes through
-constexpr double kThroughTool = 0.25;    // of the link's thickness, likewise, whichever is less
-
-}  // namespace
-
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
 // with a rigid patch; for the others the solver asks for the contacts itself (ContactUpdate).
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
@@ -29,7 +16,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  for (int round = 0; round < kRigidRounds; ++round) {
+  for (int round = 0; round < tuning::kRigidRounds; ++round) {
     world_.sticking.ride(pose, world_.tissue);
     if (round == 0) meet(pose);
     pushRigid(pose);  // robot pose -> contacts -> loading patches
@@ -44,8 +31,8 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
       return false;
     }
     if (!world_.tools.anyRigid()) break;
-    if (deepestInRigid(pose) <= kDeepEnough * world_.tissue.lattice().spacing()) break;
-    world_.unfinished = round + 1 < kRigidRounds && world_.deadline.isOver();
+    if (deepestInRigid(pose) <= tuning::kDeepEnough * world_.tissue.lattice().spacing()) break;
+    world_.unfinished = round + 1 < tuning::kRigidRounds && world_.deadline.isOver();
     if (world_.unfinished) break;
   }
   grasping_.closeJaws();
@@ -60,7 +47,7 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
     const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
     if (isLost(good) || (!converged && otherwise == IfUnconverged::kRefuse)) return false;
-    if (more == kMoreSolves || !isUnsettled()) return true;
+    if (more == tuning::kMoreSolves || !isUnsettled()) return true;
     world_.unfinished = world_.deadline.isOver();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
@@ -87,7 +74,7 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
       farthest = std::max(farthest, way.squaredNorm());
     }
   }
-  const double leap = kMostLeap * world_.tissue.lattice().spacing();
+  const double leap = tuning::kMostLeap * world_.tissue.lattice().spacing();
   return farthest > leap * leap;
 }
 
@@ -110,16 +97,18 @@ bool LoadStepper::wentThrough(const Checkpoint& good) const {
 
 // Deeper in the surface (m), a link is on its way to the other side of it.
 double LoadStepper::throughAt(std::size_t link) const {
-  return std::min(kThrough * world_.tissue.lattice().spacing(),
-                  kThroughTool * world_.finder.thickness(link));
+  return std::min(tuning::kThrough * world_.tissue.lattice().spacing(),
+                  tuning::kThroughOfThickness * world_.finder.thickness(link));
 }
 
 // The solve ended on its way, as where tissue slips far.
 bool LoadStepper::isUnsettled() const {
-  if (contact_update_.leftInside() > kTooDeep * world_.tissue.lattice().spacing()) return true;
+  if (contact_update_.leftInside() > tuning::kTooDeep * world_.tissue.lattice().spacing()) {
+    return true;
+  }
   if (world_.tissue.lastReport().status != SolveStatus::kUnconverged) return false;
   const ForceBalance forces = forceBalanceOf(world_);
-  return forces.unbalanced().norm() > kMostUnbalanced * forces.tools.norm();
+  return forces.unbalanced().norm() > tuning::kMostUnbalanced * forces.tools.norm();
 }
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
@@ -135,11 +124,11 @@ double LoadStepper::deepestInRigid(const RobotPose& pose) {
 // Nodes under a tool with a rigid patch go out of it.
 void LoadStepper::pushRigid(const RobotPose& pose) {
   if (!world_.tools.anyRigid()) return;
-  for (int pass = 0; pass < kPushPasses; ++pass) {
+  for (int pass = 0; pass < tuning::kPushPasses; ++pass) {
     ContactSet contacts =
         touch_finder_.contactsAt(pose, world_.sticking.displacement(world_.tissue));
     auto& all = contacts.contacts;
-    const double touches = kTouches * world_.tissue.lattice().spacing();
+    const double touches = tuning::kTouchingGap * world_.tissue.lattice().spacing();
     const auto is_others = [&](const Contact& contact) {
       return !world_.tools.isRigid(contact.tool) || contact.depth_m < -touches;
     };

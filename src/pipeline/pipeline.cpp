@@ -6,6 +6,7 @@
 #include "pipeline_parts.h"
 #include "stopwatch.h"
 #include "tool_reports.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 
@@ -183,7 +184,7 @@ std::optional<StillPose> Pipeline::stillPose() const {
     reach.push_back(world_.finder.reach(link));
   }
   return StillPose(std::move(of_tools), std::move(reach),
-                   kStandsStill * world_.tissue.lattice().spacing());
+                   tuning::kStandsStill * world_.tissue.lattice().spacing());
 }
 
 void Pipeline::reset() {

@@ -4,18 +4,9 @@
 #include <limits>
 
 #include "stopwatch.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr double kLongestWay = 0.5;    // of the spacing, of the tissue beside a tool in one round
-constexpr double kShareOfTool = 0.25;  // of a link's thickness, likewise
-constexpr double kDepth = 0.1;         // of the spacing: how deep a point goes on such a way, and
-constexpr double kDepthInTool = 0.2;   // of the link's thickness, whichever is less
-constexpr double kDepthGrowth = 0.1;   // of that, where one is deeper already
-constexpr int kDepthTrials = 4;        // of half the way each, to get less deep
-
-}  // namespace
 
 // Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
 // no vertex near a link goes farther at once than half a spacing, or half the link's thickness.
@@ -28,7 +19,8 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
     here.box = world_.finder.bounds(link, world_.pose.links[link]);
     here.box.min().array() -= spacing;
     here.box.max().array() += spacing;
-    here.longest = std::min(kLongestWay * spacing, kShareOfTool * world_.finder.thickness(link));
+    here.longest = std::min(tuning::kLongestWay * spacing,
+                            tuning::kLongestWayOfThickness * world_.finder.thickness(link));
     all.push_back(here);
   }
   return all;
@@ -68,18 +60,18 @@ double ToolContactUpdate::shareOutside(double share) const {
   const std::vector<Vec3>& now = world_.tissue.vertices();
   std::vector<Vec3> there(now.size());
   std::vector<double> before;
-  for (int trial = 0; trial < kDepthTrials; ++trial, share *= 0.5) {
+  for (int trial = 0; trial < tuning::kDepthTrials; ++trial, share *= 0.5) {
     for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
       there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
     }
     const std::vector<double> depths = depthsIn(there);
     bool deep = false;
     for (std::size_t link = 0; link < depths.size(); ++link) {
-      const double most = std::min(kDepth * world_.tissue.lattice().spacing(),
-                                   kDepthInTool * world_.finder.thickness(link));
+      const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
+                                   tuning::kDeepestOfThickness * world_.finder.thickness(link));
       if (depths[link] <= most) continue;
       if (before.empty()) before = depthsIn(vertices_);
-      deep = deep || depths[link] > before[link] + kDepthGrowth * most;
+      deep = deep || depths[link] > before[link] + tuning::kDepthGrowth * most;
     }
     if (!deep) break;
   }

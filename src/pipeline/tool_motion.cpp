@@ -5,13 +5,10 @@
 #include <utility>
 
 #include "box_distance.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr std::size_t kMostCheckpoints = 64;
-constexpr double kShortest = 1.0 / 8.0;  // of a load step: tried where no shape follows
-constexpr int kMostInVain = 3000;        // cycles that did not converge: no whole load step since
 
 RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
   RobotPose between = to;
@@ -33,8 +30,9 @@ RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
 bool ToolMotion::leadsNowhere(const RobotPose& from, const RobotPose& to) const {
   if (!world_.dead_end || ways_.stepsBetween(world_.dead_end->from, from) > 0.0) return false;
   const double steps = ways_.stepsBetween(from, to);
-  const RobotPose shortest = steps > kShortest ? between(from, to, kShortest / steps) : to;
-  return ways_.stepsBetween(world_.dead_end->to, shortest) < 0.5 * kShortest;
+  const RobotPose shortest =
+      steps > tuning::kShortestStep ? between(from, to, tuning::kShortestStep / steps) : to;
+  return ways_.stepsBetween(world_.dead_end->to, shortest) < 0.5 * tuning::kShortestStep;
 }
 
 // Tools that pass the tissue by are where they go at once. False: others have a way to go.
@@ -78,19 +76,19 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     if (!whole && world_.tools.anyRigid()) break;
     const double there = whole ? gone + stride : steps;
     const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
-    const bool is_short = std::min(longest, there - gone) <= kShortest;
+    const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
     const bool followed =
         load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse);
     if (!followed) {
-      const bool is_hopeless = load_step_.cyclesInVain() > kMostInVain;
+      const bool is_hopeless = load_step_.cyclesInVain() > tuning::kMostCyclesInVain;
       if (is_short || is_hopeless) {
         world_.report.lost = true;
-        const double next = std::min(gone + kShortest, there);
+        const double next = std::min(gone + tuning::kShortestStep, there);
         world_.dead_end =
             DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
         return came();
       }
-      longest = kShortest;
+      longest = tuning::kShortestStep;
     }
     if (followed) {
       if (longest == 1.0) load_step_.forgetCyclesInVain();
@@ -112,7 +110,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
 
 void ToolMotion::checkIn(const RobotPose& pose) {
   if (!world_.tools.anyRigid() || world_.tissue.isUntouched()) checkpoints_.clear();
-  if (checkpoints_.size() >= kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
+  if (checkpoints_.size() >= tuning::kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
   checkpoints_.push_back(world_.tools.anyRigid() ? load_step_.checkpoint() : Checkpoint());
   checkpoints_.back().pose = pose;
 }

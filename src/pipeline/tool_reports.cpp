@@ -5,10 +5,10 @@
 #include <map>
 #include <set>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kCancelled = 1e-6;  // of the pushes: a sum of them that has no direction
 
 Vec3 normalOf(const World& world, std::size_t tool) {
   std::map<int, std::vector<Vec3>> pushes;  // by link; as long as they are hard
@@ -40,7 +40,7 @@ Vec3 normalOf(const World& world, std::size_t tool) {
     }
     if (first_only && all > 0.0) break;
   }
-  return (sum.norm() > kCancelled * all ? sum : hardest).normalized();
+  return (sum.norm() > tuning::kCancelled * all ? sum : hardest).normalized();
 }
 
 // Also of a tool that touches nothing that gives way (m).

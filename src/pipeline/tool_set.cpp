@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kFarAway = 1e6;  // m: where a tool is that stands nowhere
 
 ToolGeometry asTool(const SupportConfig& support) {
   ToolGeometry tool;
@@ -40,7 +40,7 @@ std::vector<ToolGeometry> ToolSet::withSupports() const {
 
 Pose ToolSet::away() {
   Pose away = Pose::Identity();
-  away.translation().setConstant(kFarAway);
+  away.translation().setConstant(tuning::kFarAway);
   return away;
 }
 
@@ -48,7 +48,7 @@ bool ToolSet::isRigid(int tool) const {
   return at(tool) < size() && tools_[at(tool)].patch == ToolConfig::Patch::kRigid;
 }
 
-bool ToolSet::isAway(const Pose& pose) { return pose.translation().x() >= kFarAway; }
+bool ToolSet::isAway(const Pose& pose) { return pose.translation().x() >= tuning::kFarAway; }
 
 // With the supports, which stand at the origin of the tissue's frame.
 RobotPose ToolSet::complete(const RobotPose& pose) const {

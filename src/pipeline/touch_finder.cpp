@@ -4,20 +4,9 @@
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "stopwatch.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr double kNear = 0.25;       // of the spacing: a gap that a solve may close
-constexpr double kReach = 1.0;       // of the spacing: farther from its tool, a touch is forgotten
-constexpr double kClear = 0.03;      // of the spacing: off a tool, where its edges look round
-constexpr double kDetour = 2.0;      // of the nearest way out: the surface's may be so long,
-constexpr double kLongDetour = 0.5;  // and so much of the spacing, or of the link, longer
-constexpr double kAcross = 0.3;      // cosine of two normals that look to the same side
-constexpr double kInside = 1e-3;     // barycentric: a point that is not on an edge
-
-}  // namespace
-
 // Where the touches are, from the links.
 std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
   const Stopwatch watch(world_.report.contact_ms);
@@ -51,18 +40,20 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   const Vec3 inwards = inwardsAt(contact);
   if (!(inwards.norm() > 0.0)) return false;
   const Pose& tissue_T_link = pose.links[link];
-  const auto nearest = world_.finder.wayOut(link, tissue_T_link, contact.point, kReach * spacing);
+  const auto nearest =
+      world_.finder.wayOut(link, tissue_T_link, contact.point, tuning::kReach * spacing);
   if (!nearest) return false;
-  const double farthest = kDetour * std::max(nearest->depth_m, 0.0) +
-                          kLongDetour * std::min(spacing, world_.finder.thickness(link));
-  const auto along = world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
-                                               kClear * spacing, kReach * spacing, farthest);
+  const double farthest = tuning::kDetour * std::max(nearest->depth_m, 0.0) +
+                          tuning::kDetourBeyond * std::min(spacing, world_.finder.thickness(link));
+  const auto along =
+      world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
+                                tuning::kOffEdge * spacing, tuning::kReach * spacing, farthest);
   const WayOut& out = along ? *along : *nearest;
   if (out.normal.norm() < 0.5) return true;
   contact.normal = out.normal;
   contact.depth_m = out.depth_m;
   const double cosine = out.normal.dot(inwards);
-  if (contact.barycentric.minCoeff() > kInside && cosine > kAcross) {
+  if (contact.barycentric.minCoeff() > tuning::kInsideTriangle && cosine > tuning::kSameSide) {
     contact.normal = inwards;
     contact.depth_m = out.depth_m / cosine;
   }
@@ -73,7 +64,7 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), displacement, vertices_);
   return world_.finder.find(pose, world_.tissue.surface(), vertices_,
-                            kNear * world_.tissue.lattice().spacing());
+                            tuning::kNearGap * world_.tissue.lattice().spacing());
 }
 
 // Of points that give way, with the ways out that turnOut finds.
@@ -103,7 +94,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
 // A tool that has left the surface behind it may still be where the surface is at rest.
 bool TouchFinder::wouldTouchAtRest(const RobotPose& pose) {
   const std::vector<Vec3> rest(world_.tissue.state().displacement.size(), Vec3::Zero());
-  return deepest(contactsAt(pose, rest)) > kDeepEnough * world_.tissue.lattice().spacing();
+  return deepest(contactsAt(pose, rest)) > tuning::kDeepEnough * world_.tissue.lattice().spacing();
 }
 
 }  // namespace robot_tissue

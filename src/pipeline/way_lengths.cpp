@@ -5,17 +5,13 @@
 
 #include "box_distance.h"
 #include "robot_tissue/pipeline/pipeline.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr double kShareOfTool = 0.25;  // of a link's thickness: its longest step
-
-}  // namespace
-
 // Longest step of a link (m): no thin one is through what it meets.
 double WayLengths::stepOf(std::size_t link) const {
-  return std::min(world_.tissue.stepLength(), kShareOfTool * world_.finder.thickness(link));
+  return std::min(world_.tissue.stepLength(),
+                  tuning::kStepOfThickness * world_.finder.thickness(link));
 }
 
 double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) const {
@@ -77,7 +73,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
 }
 
 bool WayLengths::isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const {
-  const double still = kStandsStill * world_.tissue.lattice().spacing();
+  const double still = tuning::kStandsStill * world_.tissue.lattice().spacing();
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
     if (longestWay(here.links[link], there.links[link], world_.finder.reach(link)) > still) {
       return false;

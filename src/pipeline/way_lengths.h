@@ -8,8 +8,6 @@
 
 namespace robot_tissue {
 
-constexpr double kStandsStill = 1e-3;  // of the spacing: a motion that is none
-
 class WayLengths {
  public:
   explicit WayLengths(const World& world) : world_(world) {}

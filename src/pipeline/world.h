@@ -14,8 +14,6 @@
 
 namespace robot_tissue {
 
-constexpr double kDeepEnough = 0.01;  // of the spacing: penetration that counts
-
 // A shortest load step that no shape followed.
 struct DeadEnd {
   RobotPose from;

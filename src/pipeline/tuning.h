@@ -1,0 +1,109 @@
+// The numbers of the pipeline in one place: unit, where each comes from, and what turning it does.
+// "spacing" is the lattice's, "thickness" that of a link's thinnest shape, "load step" the longest
+// motion between two solves (WayLengths::stepOf). Chosen: by judgment, and kept as the tests of
+// physics and the contact study (doc/contact.md) passed; no other value was measured against it.
+#pragma once
+
+#include <cstddef>
+
+namespace robot_tissue::tuning {
+
+// Load steps.
+// Of the thickness (1): the longest load step of a link. More: fewer solves, but a thin link may be
+// through what it meets. Chosen.
+constexpr double kStepOfThickness = 0.25;
+// Of a load step (1): the shortest that is tried where no shape follows. Less: more is followed
+// between tools that meet, at up to 1 / this as many solves. Chosen.
+constexpr double kShortestStep = 1.0 / 8.0;
+// Cycles of solves that did not converge, since the last whole load step: then the way is given up.
+// More: hopeless ways take longer, and a few more are followed. Chosen.
+constexpr int kMostCyclesInVain = 3000;
+// Shapes at the ends of load steps that are kept for rigid patches to come back to. More: a longer
+// way back is found again, for a copy of the shape each. Chosen.
+constexpr std::size_t kMostCheckpoints = 64;
+// Of the spacing (1): a motion of a tool that is none. More: fewer updates of a tool that trembles,
+// and forces that are off by so much of a motion. Chosen.
+constexpr double kStandsStill = 1e-3;
+// Iterations of the method where the tools stand, over all updates: then what is late is given up.
+// As many as one load step takes at most (Tissue). More: a scene without balance works longer.
+constexpr int kMostLateIterations = 1500;
+
+// Shapes that are taken.
+// Of the spacing (1): the farthest that a surface's node goes in a load step; beyond, the shape is
+// one that was thrown away. Less: real slips are refused. Chosen.
+constexpr double kMostLeap = 10.0;
+// Of the spacing and of the thickness (1), whichever is less: deeper in the surface, a link is on
+// its way through. More: thin tools get through; less: sharp edges are refused. Chosen.
+constexpr double kThrough = 0.25;
+constexpr double kThroughOfThickness = 0.25;
+// Of the spacing (1): penetration of a rigid tool that asks for another round. Chosen.
+constexpr double kDeepEnough = 0.01;
+// Of the spacing (1): a deepest point after which a load step is solved on. Less: more solves,
+// smaller penetration. Chosen.
+constexpr double kTooDeep = 0.04;
+// Of the tools' force (1): unbalanced in all, where a solve did not converge; beyond, it is solved
+// on. Chosen.
+constexpr double kMostUnbalanced = 0.5;
+// Further solves of a load step for these two. Chosen.
+constexpr int kMoreSolves = 2;
+
+// Tools with rigid patches.
+// Rounds of pushing nodes out and solving, as the solve moves nodes into the tool. Chosen.
+constexpr int kRigidRounds = 6;
+// Passes of one push: a curved tool's way out turns as the surface moves. Chosen.
+constexpr int kPushPasses = 4;
+// Of the spacing (1): a gap that is none, so that its node stays in the patch. Chosen.
+constexpr double kTouchingGap = 0.02;
+
+// Contacts: where they are looked for.
+// Of the spacing (1): gaps up to it are contacts, as a solve may close them. More: more springs
+// that do nothing; less: more rounds. Chosen.
+constexpr double kNearGap = 0.25;
+// Of the spacing (1): a touch farther from its tool is forgotten. Chosen.
+constexpr double kReach = 1.0;
+// Of the spacing (1): off a tool, the distance from which its edges look round, so that the normal
+// does not jump there. More: rounder edges. Chosen.
+constexpr double kOffEdge = 0.03;
+// The way out across the surface may be so much longer than the nearest one (1), and so much of the
+// lesser of spacing and thickness (1). More: points behind thin tools go out in front. Chosen.
+constexpr double kDetour = 2.0;
+constexpr double kDetourBeyond = 0.5;
+// Cosine of two normals that look to the same side. Chosen.
+constexpr double kSameSide = 0.3;
+// Barycentric weight (1): with more of each corner, a point is on no edge of its triangle. Chosen.
+constexpr double kInsideTriangle = 1e-3;
+
+// Contacts: how far tissue goes between two looks at them.
+// Of the spacing and of the thickness (1), whichever is less: the longest way of a vertex beside a
+// tool. More: fewer rounds, but tissue springs past a thin tool. Chosen.
+constexpr double kLongestWay = 0.5;
+constexpr double kLongestWayOfThickness = 0.25;
+// Of the spacing and of the thickness (1), whichever is less: how deep a point may go on it. From a
+// link's middle on, its nearest way out leads to the wrong side. Chosen.
+constexpr double kDeepestOnWay = 0.1;
+constexpr double kDeepestOfThickness = 0.2;
+// Of that depth (1): a point that was deeper already may go so much deeper. Chosen.
+constexpr double kDepthGrowth = 0.1;
+// Times that the way is halved to get less deep. Chosen.
+constexpr int kDepthTrials = 4;
+
+// Graspers and reports.
+// Cosine between the ways out of two jaws: below it, they lead to opposite sides. Chosen.
+constexpr double kOpposed = -0.5;
+// Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
+constexpr double kCancelled = 1e-6;
+
+// Tools that a force drives.
+// Corrections in one update. More: the force is met sooner, by longer updates. Chosen.
+constexpr int kMostCorrections = 12;
+// Of the force (1): near enough. Chosen.
+constexpr double kForceMet = 0.005;
+// Load steps (1): the first motion, from which the stiffness is learned. Chosen.
+constexpr double kFirstCorrection = 0.1;
+// Load steps (1): a tool that finds nothing to push stops so far from its pose. Chosen.
+constexpr double kFarthestPush = 200.0;
+
+// m: where a link is that stands nowhere; beyond every legal place of a scene.
+constexpr double kFarAway = 1e6;
+
+}  // namespace robot_tissue::tuning
