@@ -6,29 +6,10 @@
 #include <set>
 #include <utility>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kFirm = 10.0;         // spring over the tissue's stiffness at its point
-constexpr double kSettled = 0.03;      // of the spacing: a depth or gap that is none, at most
-constexpr double kCertain = 0.003;     // likewise, at least
-constexpr double kOfForce = 0.1;       // of its tool's normal force: what closing it may change
-constexpr double kLittle = 0.05;       // likewise: a touch that may push from afar
-constexpr double kFarOff = 0.3;        // of the spacing: a gap at which a vertex is forgotten
-constexpr double kSamePoint = 0.25;    // barycentric: a touch that has wandered
-constexpr double kWanders = 0.2;       // of the slack: deeper than a touch, a point takes its place
-constexpr double kMostPush = 0.2;      // of the spacing: a touch's depth, in one round
-constexpr double kMostTurn = 0.5;      // rad, of a touch's plane in a load step
-constexpr double kSameSide = 0.3;      // cosine: a normal that turns further has jumped
-constexpr double kSameForce = 0.03;    // of the greatest drag of all touches
-constexpr double kFirmDrag = 2.0;      // drag's spring over that stiffness, at most
-constexpr double kElasticSlip = 0.02;  // of the fineness: before what sticks slips, at least
-constexpr double kMostSlip = 0.1;      // likewise, at most
-constexpr double kNoShare = 1e-9;      // of a corner in a touch's point
-constexpr int kWavers = 12;  // rounds cut short in a row: planes that turn to and fro stay then
-constexpr double kMostForce =
-    45.0;  // of a node's stiffness times the spacing: no tissue pushes so hard
-constexpr double kLeastFree = 0.1;  // of a point's weight on nodes that give way
 
 // Beyond which a touch's force is not taken on (N).
 double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
@@ -36,12 +17,12 @@ double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
   for (const NodeWeight& carrier : spring.carriers) {
     stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
   }
-  return kMostForce * stiffness * tissue.lattice().spacing();
+  return tuning::kMostForce * stiffness * tissue.lattice().spacing();
 }
 
 // Where the point is to be pushed to; what is far in a tool comes out by and by.
 Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
-  const double most = kMostPush * tissue.lattice().spacing();
+  const double most = tuning::kMostPush * tissue.lattice().spacing();
   return contact.point + std::min(contact.depth_m, most) * contact.normal;
 }
 
@@ -113,8 +94,10 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
   for (ContactConstraint& touch : touches_) {
     if (friction_[at(touch.tool)].value_or(0.0) <= 0.0 || pushing.count(touch.link) != 0) continue;
     ContactSpring& spring = touch.spring;
-    spring.friction_stiffness = kFirmDrag / kFirm * spring.stiffness;
-    spring.friction_bound = kMostForce * spring.friction_stiffness * tissue.lattice().spacing();
+    spring.friction_stiffness =
+        tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
+    spring.friction_bound =
+        tuning::kMostForce * spring.friction_stiffness * tissue.lattice().spacing();
   }
 }
 
@@ -123,7 +106,7 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
                              const Held& held, ContactUpdate::Shape shape) {
   const bool whole = shape == ContactUpdate::Shape::kSolved;
   cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
-  const bool wavers = cut_rounds_ > kWavers;
+  const bool wavers = cut_rounds_ > tuning::kMostTurningRounds;
   bool settled = whole && updateMultipliers(tissue);
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
@@ -149,22 +132,24 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   touch.off = -contact->depth_m;
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.link)].linear() * touch.since_normal;
-    spring.normal = turnedBy(since, contact->normal, kMostTurn);
+    spring.normal = turnedBy(since, contact->normal, tuning::kMostTurn);
     spring.plane_point = planePointOf(*contact, tissue);
   }
   anchor(pose, touch);
   const double gap = gapOf(spring, tissue.state().displacement);
   const double slack = slackOf(touch, tissue);
-  return gap >= -slack && (gap <= slack || spring.multiplier <= kLittle * pressed_[at(touch.tool)]);
+  return gap >= -slack &&
+         (gap <= slack || spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.tool)]);
 }
 
 // A depth or gap that is none (m): the tissue would not push much harder or less without it.
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
   const double stiffness = touch.spring.stiffness;
   const double spacing = tissue.lattice().spacing();
-  const double slack =
-      stiffness > 0.0 ? kOfForce * kFirm * pressed_[at(touch.tool)] / stiffness : 0.0;
-  return std::min(std::max(slack, kCertain * spacing), kSettled * spacing);
+  const double slack = stiffness > 0.0 ? tuning::kSlackOfForce * tuning::kContactStiffness *
+                                             pressed_[at(touch.tool)] / stiffness
+                                       : 0.0;
+  return std::min(std::max(slack, tuning::kLeastSlack * spacing), tuning::kMostSlack * spacing);
 }
 
 // A point that was found in a link or near it: a new touch, or one of a triangle that has wandered.
@@ -177,9 +162,10 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     return contact.depth_m <= slackOf(touches_.back(), tissue);
   }
   const double slack = slackOf(*touch, tissue);
-  if (touch->vertex >= 0 || -contact.depth_m >= touch->off - kWanders * slack) return true;
-  const bool same_side = touch->spring.normal.dot(contact.normal) >= kSameSide;
-  const bool deep = contact.depth_m > kSettled * tissue.lattice().spacing();
+  if (touch->vertex >= 0 || -contact.depth_m >= touch->off - tuning::kDeeperThanTouch * slack)
+    return true;
+  const bool same_side = touch->spring.normal.dot(contact.normal) >= tuning::kSameSideOfTool;
+  const bool deep = contact.depth_m > tuning::kMostSlack * tissue.lattice().spacing();
   if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
     add(contact, pose, tissue, held);
     return false;
@@ -212,11 +198,12 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
     const double fine = fineness(touch.link, spacing);
-    const double soft = kFirmDrag / kFirm * spring.stiffness;
-    spring.friction_stiffness = std::min(std::max(soft, friction_bound / (kMostSlip * fine)),
-                                         friction_bound / (kElasticSlip * fine));
+    const double soft = tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
+    spring.friction_stiffness =
+        std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
+                 friction_bound / (tuning::kElasticSlip * fine));
   }
-  return std::abs(drag_now - drag_before) <= kSameForce * drag_now;
+  return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
 }
 
 // On the way to balance nothing is known of forces, but what went into a link is to come out of it.
@@ -235,7 +222,7 @@ bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const He
     if (held[at(node)] == kGrasped) return false;
     if (held[at(node)] == 0) free += weight;
   }
-  return free >= kLeastFree;
+  return free >= tuning::kLeastFree;
 }
 
 void SlidingContacts::forgetLost(const Held& held) {
@@ -250,7 +237,7 @@ SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact
                                                           const Surface& surface) {
   const int vertex = vertexAt(surface, contact.triangle, contact.barycentric);
   ContactConstraint* nearest = nullptr;
-  double least = kSamePoint;
+  double least = tuning::kSamePoint;
   for (ContactConstraint& touch : touches_) {
     if (touch.link != contact.link || touch.vertex != vertex) continue;
     if (vertex >= 0) return &touch;
@@ -305,7 +292,7 @@ void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const T
 void SlidingContacts::carry(const Tissue& tissue, const Held& held, ContactConstraint& touch) {
   const Surface& surface = tissue.surface();
   ContactSpring& spring = touch.spring;
-  const Vec3 shares = (touch.barycentric.array() < kNoShare).select(0.0, touch.barycentric);
+  const Vec3 shares = (touch.barycentric.array() < tuning::kNoShare).select(0.0, touch.barycentric);
   spring.rest.setZero();
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(touch.triangle)][at(corner)];
@@ -317,7 +304,7 @@ void SlidingContacts::carry(const Tissue& tissue, const Held& held, ContactConst
     const double stiffness = tissue.nodeStiffness(node);
     if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
   }
-  spring.stiffness = compliance > 0.0 ? kFirm / compliance : 0.0;
+  spring.stiffness = compliance > 0.0 ? tuning::kContactStiffness / compliance : 0.0;
 }
 
 void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
@@ -338,7 +325,7 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   }
   const auto left = [&](const ContactConstraint& touch) {
     if (touch.spring.multiplier > 0.0) return false;
-    const double far = touch.vertex >= 0 ? kFarOff * tissue.lattice().spacing() : 0.0;
+    const double far = touch.vertex >= 0 ? tuning::kFarOff * tissue.lattice().spacing() : 0.0;
     return gapOf(touch.spring, *since_displacement_) > far;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());

@@ -4,15 +4,9 @@
 #include <set>
 #include <utility>
 
+#include "tuning.h"
+
 namespace robot_tissue {
-namespace {
-
-constexpr int kPushSweeps = 300;
-constexpr double kPushedOut = 1e-3;     // of the spacing
-constexpr double kHeldMobility = 0.05;  // of a node with a place on a tool; 1 for others
-
-}  // namespace
-
 StickingContacts::StickingContacts(const Lattice& lattice, std::vector<std::string> tool_names)
     : lattice_(&lattice), names_(std::move(tool_names)), attachments_(names_.size()) {}
 
@@ -73,10 +67,10 @@ void StickingContacts::pushOut(const ContactSet& contacts, const Tissue& tissue,
   }
   scale(pushes);
   std::map<int, Vec3> motion;
-  for (int sweep = 0; sweep < kPushSweeps; ++sweep) {
+  for (int sweep = 0; sweep < tuning::kPushSweeps; ++sweep) {
     const double deepest = deepen(pushes, motion);
     motion = motionOf(pushes);
-    if (deepest <= kPushedOut * lattice_->spacing()) break;
+    if (deepest <= tuning::kPushedOut * lattice_->spacing()) break;
   }
   std::map<int, const Contact*> pushed_by;
   for (const Push& push : pushes) {
@@ -103,7 +97,7 @@ void StickingContacts::scale(std::vector<Push>& pushes) const {
   std::map<int, double> shared;  // per node: sum of the contacts' weights
   for (Push& push : pushes) {
     for (Carrier& carrier : push.support) {
-      carrier.mobility = held.count(carrier.node) != 0 ? kHeldMobility : 1.0;
+      carrier.mobility = held.count(carrier.node) != 0 ? tuning::kSeatedMobility : 1.0;
       shared[carrier.node] += carrier.weight;
     }
   }

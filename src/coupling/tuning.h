@@ -1,0 +1,66 @@
+// The numbers of contact in one place: unit, where each comes from, and what turning it does.
+// "spacing" is the lattice's; "slack" the depth or gap of a touch that is none; "normal force" the
+// sum of a tool's normal forces. Chosen: by judgment, and kept as the tests of physics and the
+// contact study (doc/contact.md) passed; no other value was measured against it.
+#pragma once
+
+namespace robot_tissue::tuning {
+
+// Springs in contact.
+// Stiffness of a contact spring over the tissue's at its point (1). More: fewer updates of the
+// multipliers, harder solves. Chosen.
+constexpr double kContactStiffness = 10.0;
+// The same of friction's spring, at most (1). More: sticking gives way less. Chosen.
+constexpr double kFrictionStiffness = 2.0;
+// Of the fineness (1): how far a point that sticks goes before it slips, at least and at most.
+// Less: sharper sticking, harder solves. Chosen.
+constexpr double kElasticSlip = 0.02;
+constexpr double kMostElasticSlip = 0.1;
+// Of a node's stiffness times the spacing (1): no tissue pushes so hard; beyond, the shape is
+// refused. Chosen.
+constexpr double kMostForce = 45.0;
+
+// When contacts stand.
+// Of the normal force (1): what closing a gap may change at most; gives the slack. Less: more
+// updates, smaller penetration. Chosen.
+constexpr double kSlackOfForce = 0.1;
+// Of the spacing (1): the slack is at least and at most. Chosen.
+constexpr double kLeastSlack = 0.003;
+constexpr double kMostSlack = 0.03;
+// Of the normal force (1): a touch that pushes less may do so from afar. Chosen.
+constexpr double kLittleForce = 0.05;
+// Of the greatest friction force of all touches (1): its change in an update that is none. Chosen.
+constexpr double kSameFriction = 0.03;
+// Updates in a row on the way to balance, after which planes no longer turn: some turn to and fro
+// for ever. Chosen.
+constexpr int kMostTurningRounds = 12;
+
+// Touches come, wander and go.
+// Of the spacing (1): the farthest that a touch's plane is put into the tissue in one update.
+// Chosen.
+constexpr double kMostPush = 0.2;
+// rad: the farthest that a touch's plane turns in a load step. Chosen.
+constexpr double kMostTurn = 0.5;
+// Cosine of two normals on the same side; one that turns further has jumped. Chosen.
+constexpr double kSameSideOfTool = 0.3;
+// Of the spacing (1): a vertex with a larger gap is forgotten at the end of a load step. Chosen.
+constexpr double kFarOff = 0.3;
+// Barycentric (1): points of a triangle that are nearer than this are one touch. Chosen.
+constexpr double kSamePoint = 0.25;
+// Of the slack (1): a point that is so much deeper than the touch takes its place. Chosen.
+constexpr double kDeeperThanTouch = 0.2;
+// Barycentric (1): a corner's share that is none. Rounding.
+constexpr double kNoShare = 1e-9;
+// Of a point's weight (1): on nodes that give way, else it is not pushed. Chosen.
+constexpr double kLeastFree = 0.1;
+
+// Nodes that stick.
+// Sweeps over the contacts while nodes are pushed out of a rigid tool, at most. Chosen.
+constexpr int kPushSweeps = 300;
+// Of the spacing (1): a depth that is none, which ends them. Chosen.
+constexpr double kPushedOut = 1e-3;
+// How far a node that sits on a tool already is pushed, beside others (1): it keeps its place where
+// others can give way. Chosen.
+constexpr double kSeatedMobility = 0.05;
+
+}  // namespace robot_tissue::tuning
