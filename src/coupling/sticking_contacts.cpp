@@ -7,6 +7,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 StickingContacts::StickingContacts(const Lattice& lattice, std::vector<std::string> tool_names)
     : lattice_(&lattice), names_(std::move(tool_names)), attachments_(names_.size()) {}
 

@@ -6,6 +6,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   Drive& drive = drives_[tool];
   const bool same_way =

@@ -7,6 +7,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
   World& world = pipeline.world_;

@@ -8,6 +8,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
 // with a rigid patch; for the others the solver asks for the contacts itself (ContactUpdate).
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {

@@ -7,6 +7,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 // Where the touches are, from the links.
 std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
   const Stopwatch watch(world_.report.contact_ms);

@@ -8,6 +8,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 // Longest step of a link (m): no thin one is through what it meets.
 double WayLengths::stepOf(std::size_t link) const {
   return std::min(world_.tissue.stepLength(),
