@@ -42,11 +42,13 @@ robot_tissue_room(solvers/multigrid/level
   USES base simd lattice material loads
   FILES cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h constrained_nodes.cpp
     constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
-    skyline_cholesky.cpp skyline_cholesky.h woodbury_update.cpp woodbury_update.h)
+    skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
+    woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy
   USES simd lattice material loads solvers/multigrid/level
   FILES composite_grid.cpp composite_grid_vectors.cpp grid_hierarchy.cpp grid_hierarchy.h
-    grid_transfer.cpp grid_transfer.h level_constraints.cpp level_source.cpp level_source.h)
+    grid_transfer.cpp grid_transfer.h level_constraints.cpp level_source.cpp level_source.h
+    tuning.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/hierarchy
   FILES fas_cg_solver.cpp fas_cg_solver.h fas_cycle.cpp fas_error.cpp fas_layers.cpp

@@ -49,8 +49,8 @@ struct Around {
       for (auto& values : *field) values.assign(at(on.count()), Real(0));
     }
   }
-  void find(const Field<Real>& displacement, bool with_steps) {
-    cells.findForces(loads(displacement), with_steps);
+  void find(const Field<Real>& displacement, Find what) {
+    cells.findForces(loads(displacement), what);
   }
   typename CellOperator<Real>::Loads loads(const Field<Real>& displacement) {
     return {displacement, load, free, force, inverse};
@@ -81,7 +81,7 @@ class CellKernel : public testing::Test {
     CellOperator<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
     const Field<Real> moved = shaken(cells, far);
     Around<Real> around(cells);
-    around.find(moved, true);
+    around.find(moved, Find::kForcesAndStiffness);
     std::vector<Vec3> forces(at(cells.count()), Vec3::Zero());
     std::vector<Eigen::Matrix3d> blocks(at(cells.count()), Eigen::Matrix3d::Zero());
     double greatest = 0.0;
@@ -158,7 +158,7 @@ TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
   const Field<TypeParam> moved = this->shaken(cells, 0.1);
   Around<TypeParam> around(cells), around_alone(alone);
   cells.findForcesOfCovered(around.loads(moved));
-  around_alone.find(moved, false);
+  around_alone.find(moved, Find::kForces);
   double greatest = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (int node = 0; node < given.grid.beside; ++node) {

@@ -116,7 +116,7 @@ void FasCgSolver<Real>::prepare(const ConstrainedState& shape, const DofConstrai
   }
   if (first_of_step_) noteStep();
   free_nodes_ = hold.freeNodes();
-  finest().findForces(true);
+  finest().findForces();
   greatest_ = unbalanced();
 }
 
@@ -152,7 +152,7 @@ bool FasCgSolver<Real>::settlePatches(ConstrainedState& shape, const DofConstrai
   }
   if (!any) return false;
   levels_->renewGroups(shape, hold);
-  finest().findForces(true);
+  finest().findForces();
   return turned;
 }
 

@@ -48,7 +48,7 @@ template <typename Real>
 void FasCgSolver<Real>::move(const Vector& step, double alpha) {
   finest().moveBy(step.nodes, step.groups, alpha);
   levels_->moveBeyond(step.beyond, alpha);
-  finest().findForces(true);
+  finest().findForces();
 }
 
 template <typename Real>
@@ -143,7 +143,7 @@ bool FasCgSolver<Real>::warmStart() {
   const double best = slope / (slope - here);  // of `share`, were the energy quadratic
   if (!std::isfinite(here) || !(best > 0.0)) {
     putBack(before_);
-    finest().findForces(true);
+    finest().findForces();
     return false;
   }
   move(last_step_, alpha * (std::min(best, 2.0) - 1.0));
@@ -156,7 +156,7 @@ template <typename Real>
 bool FasCgSolver<Real>::isStepGood(double local) {
   if (!ended_late_ || finest().squaredLocalMotion() <= local) return true;
   putBack(before_);
-  finest().findForces(true);
+  finest().findForces();
   return false;
 }
 
@@ -184,7 +184,7 @@ SolveStatus FasCgSolver<Real>::iterate(bool changed, bool warm_started, const Bu
   // What slips has more left on its way: only a shape that blew up goes back.
   if (status == SolveStatus::kUnconverged && !(left_ <= kBlownUp * first_left_)) {
     putBack(best_);
-    finest().findForces(true);
+    finest().findForces();
     error_ = best_error_;
   }
   return status;
@@ -196,8 +196,8 @@ template <typename Real>
 void FasCgSolver<Real>::endLate() {
   finest().constrained.soon_touches = kSoonTouches;
   if (left_ <= kAstray * first_left_) {
-    finest().findForces(true);
-    finest().smooth(steps_, true);
+    finest().findForces();
+    finest().smoothAndFindForces(steps_);
     settleForces();
   } else {
     goPlainly(best_);
@@ -213,11 +213,11 @@ void FasCgSolver<Real>::finish() {
   if (conjugate_) keepPlace(before_);
   const double most = unbalanced();
   levels_->go(1.0);
-  finest().findForces(true);
-  finest().smooth(1, true);
+  finest().findForces();
+  finest().smoothAndFindForces(1);
   if (conjugate_ && unbalanced() > most) {
     putBack(before_);
-    finest().findForces(true);
+    finest().findForces();
     cgCycle();
   }
 }
@@ -229,7 +229,7 @@ void FasCgSolver<Real>::settleForces() {
   for (int round = 0; round < kMostSettling; ++round) {
     const double given = patchForce().norm() + finest().constrained.contactForce().norm();
     if (netForce().norm() <= kForceShare * options_.tolerance * given || given == 0.0) return;
-    finest().smooth(steps(), true);
+    finest().smoothAndFindForces(steps());
   }
 }
 
@@ -245,16 +245,16 @@ void FasCgSolver<Real>::cgCycle() {
   const double alpha = longest > options_.line_step ? options_.line_step / longest : 1.0;
   if (alpha == 1.0 && isSteady()) {
     levels_->go(1.0);
-    finest().findForces(true);
-    finest().smooth(steps(), true);
+    finest().findForces();
+    finest().smoothAndFindForces(steps());
     fresh_ = true;
     conjugate_ = false;
     return;
   }
   keepForce(force_before_);
   levels_->go(alpha);
-  finest().findForces(true);
-  finest().smooth(steps(), true);
+  finest().findForces();
+  finest().smoothAndFindForces(steps());
   keepPlace(cg_step_);
   add(before_, -1.0, cg_step_);
   const double own_slope = work(force_before_, cg_step_);
@@ -300,8 +300,8 @@ int FasCgSolver<Real>::steps() const {
 template <typename Real>
 void FasCgSolver<Real>::goPlainly(const Vector& from) {
   putBack(from);
-  finest().findForces(true);
-  finest().smooth(kPlainSteps, true);
+  finest().findForces();
+  finest().smoothAndFindForces(kPlainSteps);
   fresh_ = true;
 }
 

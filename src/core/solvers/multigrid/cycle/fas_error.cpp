@@ -53,7 +53,7 @@ void FasCgSolver<Real>::findLeastFactor(const LatticeState& state) {
   const Field<Real> weight = finest().right_hand_side;
   finest().clearRightHandSide();
   levels_->setDisplacement(rest.state.displacement, fixed.dirichletMask());
-  finest().findForces(true);
+  finest().findForces();
   least_factor_ = 1.0;
   const int cycles = levels_->isWhole() ? kTrialCycles : kTrialCyclesInPart;
   for (int cycle = 0; cycle < cycles; ++cycle) {
@@ -64,8 +64,8 @@ void FasCgSolver<Real>::findLeastFactor(const LatticeState& state) {
       least_factor_ = std::max(least_factor_, std::sqrt(off) / left);
     }
     levels_->go(1.0);
-    finest().findForces(true);
-    finest().smooth(steps_, true);
+    finest().findForces();
+    finest().smoothAndFindForces(steps_);
   }
   finest().right_hand_side = weight;
   least_factor_ = std::min(least_factor_, kMostAtRest);

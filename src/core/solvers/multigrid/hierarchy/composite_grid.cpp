@@ -3,14 +3,12 @@
 #include <cmath>
 
 #include "solvers/multigrid/hierarchy/grid_hierarchy.h"
+#include "solvers/multigrid/hierarchy/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kBesideRough = 2;    // layers, of what a coarser lattice does not tell
-constexpr int kMiddle = 8;         // layers around a point
-constexpr int kMeasured = 24;      // cells along an axis that tell the greatest stiffness
-constexpr double kMostOpen = 0.6;  // of a level's points: beyond, it is open as a whole
+namespace tuning = hierarchy_tuning;
 
 int countOf(const GridBox& box) {
   return (box.high[0] - box.low[0] + 1) * (box.high[1] - box.low[1] + 1) *
@@ -45,7 +43,7 @@ GridBox fitted(const GridBox& box, const GridBox& whole) {
     const int high = box.high[axis] + 1 - box.high[axis] % 2;
     fit.high[axis] = high >= whole.high[axis] - 2 ? whole.high[axis] : high;
   }
-  return countOf(fit) > kMostOpen * countOf(whole) ? whole : fit;
+  return countOf(fit) > tuning::kMostOpen * countOf(whole) ? whole : fit;
 }
 
 LevelGrid gridOf(const GridBox& points) {
@@ -97,7 +95,7 @@ void GridHierarchy<Real>::measureStiffness() {
     LevelSource& source = sources_[level];
     if (!source.isUniform()) continue;
     GridBox points = source.whole();
-    for (int& high : points.high) high = std::min(high, kMeasured);
+    for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
     const LevelGrid grid = gridOf(points);
     const GridLevel<Real> block(grid, 0, source.cellsIn(points, grid),
                                 {points, level == 0 ? GridBox{{1}, {0}} : points});
@@ -112,7 +110,7 @@ GridBox GridHierarchy<Real>::middle() const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.low[axis] = box.high[axis] = box.high[axis] / 2;
   }
-  return around(box, kMiddle);
+  return around(box, tuning::kAroundMiddle);
 }
 
 template <typename Real>
@@ -136,7 +134,8 @@ std::vector<GridBox> GridHierarchy<Real>::partsAround(const GridBox& box, int la
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     const LevelSource& source = sources_[level];
     const bool has_coarser = level + 1 < sources_.size() && sources_[level + 1].isThick();
-    if (!source.rough.isEmpty()) wanted = joined(wanted, around(source.rough, kBesideRough));
+    if (!source.rough.isEmpty())
+      wanted = joined(wanted, around(source.rough, tuning::kBesideRough));
     free.push_back(has_coarser ? fitted(wanted, source.whole()) : source.whole());
     wanted = around(coveredBy(free.back(), source.whole()), layers);
   }

@@ -6,16 +6,12 @@
 #include <utility>
 
 #include "simd/field_kernel.h"
+#include "solvers/multigrid/hierarchy/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kFewest = 3;       // grid points along the longest side of the coarsest level
-constexpr int kStepsBefore = 3;  // of the smoother on a coarse level, before it is corrected
-constexpr int kStepsAfter = 3;   // and after
-constexpr int kStepsCoarsest = 12;
-constexpr int kLayersAroundMiddle = 6;
-constexpr double kSame = 1e-15;  // relative, of a displacement that went to m and back
+namespace tuning = hierarchy_tuning;
 
 }  // namespace
 
@@ -28,10 +24,10 @@ GridHierarchy<Real>::GridHierarchy(const Lattice& lattice, const ElasticModel& m
     modulus_ = std::max(modulus_, model.cellModuli(cell).shear);
   }
   if (modulus_ == 0.0) modulus_ = 1.0;
-  sources_ = levelSources(lattice, model, cells, modulus_, kFewest);
+  sources_ = levelSources(lattice, model, cells, modulus_, tuning::kFewestPoints);
   if (!sources_.empty()) {
     measureStiffness();
-    openParts(partsAround(middle(), kLayersAroundMiddle));
+    openParts(partsAround(middle(), tuning::kLayersAroundMiddle));
   } else {
     openAll(model, cells);
   }
@@ -54,7 +50,7 @@ void GridHierarchy<Real>::openAll(const ElasticModel& model, const CellSet& cell
     const GridBox all = grid.whole();
     addLevel(grid, beside, level_cells, {all, levels_.empty() ? GridBox{{1}, {0}} : all}, 0.0);
     free_.push_back(all);
-    if (*std::max_element(grid.size.begin(), grid.size.end()) <= kFewest) break;
+    if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());
     level_cells = std::move(to.cells);
     beside = to.nodes_beside;
@@ -129,7 +125,7 @@ bool GridHierarchy<Real>::setDisplacement(const std::vector<Vec3>& displacement,
       const std::size_t node = at(nodes_[i]);
       Real& here = to[entries_[i]];
       const Real now = static_cast<Real>(displacement[node][axis] * unit);
-      const bool same = std::abs(now - here) <= kSame * std::abs(here);
+      const bool same = std::abs(now - here) <= tuning::kSame * std::abs(here);
       others_moved = others_moved || (!same && held[node] == 0);
       if (!same) here = now;
     }
@@ -204,13 +200,13 @@ template <typename Real>
 void GridHierarchy<Real>::solveCoarse(std::size_t index) {
   GridLevel<Real>& level = levels_[index];
   if (index + 1 == levels_.size()) {
-    level.smooth(kStepsCoarsest, false);
+    level.smooth(tuning::kStepsCoarsest);
     return;
   }
-  level.smooth(kStepsBefore, true);
+  level.smoothAndFindForces(tuning::kStepsBefore);
   correct(index);
-  level.findForces(true);
-  level.smooth(kStepsAfter, false);
+  level.findForces();
+  level.smooth(tuning::kStepsAfter);
 }
 
 // Moves a level by what the next coarser one says.

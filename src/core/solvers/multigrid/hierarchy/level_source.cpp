@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "solvers/multigrid/hierarchy/tuning.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr int kThick = 8;        // cells along the shortest side
-constexpr int kMostSlender = 4;  // times the shortest side is the longest
+namespace tuning = hierarchy_tuning;
+
 constexpr GridBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
 
 template <typename Visit>
@@ -106,7 +108,7 @@ bool isBlock(const Lattice& lattice, const ElasticModel& model, const CellSet& c
 
 bool LevelSource::isThick() const {
   const auto [shortest, longest] = std::minmax_element(size.begin(), size.end());
-  return *shortest > kThick && *longest - 1 <= kMostSlender * (*shortest - 1);
+  return *shortest > tuning::kThick && *longest - 1 <= tuning::kMostSlender * (*shortest - 1);
 }
 
 std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGrid& grid) const {

@@ -3,15 +3,9 @@
 #include <algorithm>
 
 #include "simd/field_kernel.h"
+#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr int kWorthSharing =
-    8000;  // nodes that are visited: with fewer, threads wait more than work
-
-}  // namespace
-
 template <typename Real>
 CellOperator<Real>::CellOperator(const LevelGrid& grid, int beside,
                                  const std::vector<LevelCell>& cells, const LevelPart& part)
@@ -108,29 +102,29 @@ void CellOperator<Real>::share(Workers& workers) {
 }
 
 template <typename Real>
-void CellOperator<Real>::findForces(const Loads& loads, bool with_steps) {
-  findForces(loads, with_steps, blocks_);
+void CellOperator<Real>::findForces(const Loads& loads, Find what) {
+  findForces(loads, what, blocks_);
 }
 
 template <typename Real>
 void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
-  findForces(loads, false, covered_blocks_);
+  findForces(loads, Find::kForces, covered_blocks_);
 }
 
 // Threads take planes that lie together; the plane of cells between two shares is summed by both.
 template <typename Real>
-void CellOperator<Real>::findForces(const Loads& loads, bool with_steps, const Blocks& blocks) {
+void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks& blocks) {
   const int planes = grid_.size[2];
-  if (workers_ == nullptr || grid_.plane * planes < kWorthSharing) {
-    findPlanes(loads, with_steps, blocks, 0, planes, sums_.front());
+  if (workers_ == nullptr || grid_.plane * planes < level_tuning::kWorthSharing) {
+    findPlanes(loads, what, blocks, 0, planes, sums_.front());
   } else {
     const int threads = workers_->count();
     workers_->run([&](int part) {
-      findPlanes(loads, with_steps, blocks, planes * part / threads, planes * (part + 1) / threads,
+      findPlanes(loads, what, blocks, planes * part / threads, planes * (part + 1) / threads,
                  sums_[at(part)]);
     });
   }
-  finishBeside(loads, with_steps);
+  finishBeside(loads, what);
 }
 
 template <typename Real>
@@ -150,23 +144,23 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
 // Planes of nodes first .. end - 1, each as soon as both planes of cells at it are done, while all
 // is near at hand. What is found on a plane does not hang on where the planes begin.
 template <typename Real>
-void CellOperator<Real>::findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks,
-                                    int first, int end, Sums& sums) {
+void CellOperator<Real>::findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first,
+                                    int end, Sums& sums) {
   if (first >= end) return;
   if (first > 0) {
-    addPlane(loads, with_steps, blocks[at(first - 1)], first - 1, sums);
+    addPlane(loads, what, blocks[at(first - 1)], first - 1, sums);
   } else {
     for (auto& values : sums.upper) std::fill(values.begin(), values.end(), Real(0));
   }
   for (int plane = first; plane < end; ++plane) {
     sums.below.swap(sums.upper);
-    addPlane(loads, with_steps, blocks[at(plane)], plane, sums);
-    finishPlane(loads, with_steps, plane, sums);
+    addPlane(loads, what, blocks[at(plane)], plane, sums);
+    finishPlane(loads, what, plane, sums);
   }
 }
 
 template <typename Real>
-void CellOperator<Real>::addPlane(const Loads& loads, bool with_steps,
+void CellOperator<Real>::addPlane(const Loads& loads, Find what,
                                   const std::vector<CellBlock>& blocks, int plane,
                                   Sums& sums) const {
   for (auto* both : {&sums.lower, &sums.upper}) {
@@ -178,7 +172,7 @@ void CellOperator<Real>::addPlane(const Loads& loads, bool with_steps,
     cells.lower[axis] = sums.lower[axis].data();
     cells.upper[axis] = sums.upper[axis].data();
   }
-  if (with_steps) {
+  if (what == Find::kForcesAndStiffness) {
     cells.lower_stiffness = sums.lower[3].data();
     cells.upper_stiffness = sums.upper[3].data();
   }
@@ -186,27 +180,26 @@ void CellOperator<Real>::addPlane(const Loads& loads, bool with_steps,
 }
 
 template <typename Real>
-void CellOperator<Real>::finishPlane(const Loads& loads, bool with_steps, int plane,
-                                     const Sums& sums) {
+void CellOperator<Real>::finishPlane(const Loads& loads, Find what, int plane, const Sums& sums) {
   const int first = plane * grid_.plane;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     sumForces(sums.below[axis].data(), sums.lower[axis].data(),
               loads.right_hand_side[axis].data() + first, loads.free.data() + first,
               whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
   }
-  if (!with_steps) return;
+  if (what == Find::kForces) return;
   invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
                   stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
 }
 
 // Nodes beside the grid, and those on it that loose cells have.
 template <typename Real>
-void CellOperator<Real>::finishBeside(const Loads& loads, bool with_steps) {
+void CellOperator<Real>::finishBeside(const Loads& loads, Find what) {
   if (loose_.empty()) return;
   for (auto& sums : loose_sums_) std::fill(sums.begin(), sums.end(), Real(0));
   CellGrid<Real> cells = gridOf(loads);
   for (std::size_t axis = 0; axis < 3; ++axis) cells.lower[axis] = loose_sums_[axis].data();
-  if (with_steps) cells.lower_stiffness = loose_sums_[3].data();
+  if (what == Find::kForcesAndStiffness) cells.lower_stiffness = loose_sums_[3].data();
   addLoose(cells, loose_.data(), static_cast<int>(loose_.size()));
   for (std::size_t i = 0; i < loose_nodes_.size(); ++i) {
     const std::size_t node = at(loose_nodes_[i]);
@@ -216,7 +209,7 @@ void CellOperator<Real>::finishBeside(const Loads& loads, bool with_steps) {
       whole[axis][node] += loose_sums_[axis][i];
       loads.force[axis][node] = is_free ? whole[axis][node] : Real(0);
     }
-    if (!with_steps) continue;
+    if (what == Find::kForces) continue;
     if (is_beside) stiffness[node] = Real(0);
     stiffness[node] += loose_sums_[3][i];
     loads.inverse[node] = is_free ? Real(1) / stiffness[node] : Real(0);

@@ -18,6 +18,10 @@ namespace robot_tissue {
 template <typename Real>
 using Field = std::array<std::vector<Real>, 3>;
 
+// What is found at a shape: forces alone, or what the smoother needs for a step, too (bounds of the
+// nodes' stiffness, and their inverses where the nodes are free).
+enum class Find { kForces, kForcesAndStiffness };
+
 // What a level is for.
 struct LevelPart {
   GridBox free;     // nodes that may move; the others stay, and count as balanced
@@ -40,7 +44,7 @@ class CellOperator {
   const LevelPart& part() const { return part_; }
 
   // All that cells and the load do to the nodes: `whole`, and `force`, the same where `free` is 1,
-  // else 0. With steps also bounds of the nodes' stiffness and their inverses where free.
+  // else 0; `stiffness`, and `inverse` of it.
   struct Loads {
     const Field<Real>& displacement;
     const Field<Real>& right_hand_side;
@@ -48,7 +52,7 @@ class CellOperator {
     Field<Real>& force;
     std::vector<Real>& inverse;
   };
-  void findForces(const Loads& loads, bool with_steps);
+  void findForces(const Loads& loads, Find what);
   // Of the cells that stand for finer ones alone, and of the load.
   void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.
@@ -68,14 +72,14 @@ class CellOperator {
   void place(const std::vector<LevelCell>& cells);
   void findBlocks();
   void makeSums(int threads);
-  void findForces(const Loads& loads, bool with_steps, const Blocks& blocks);
-  void findPlanes(const Loads& loads, bool with_steps, const Blocks& blocks, int first, int end,
+  void findForces(const Loads& loads, Find what, const Blocks& blocks);
+  void findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first, int end,
                   Sums& sums);
   CellGrid<Real> gridOf(const Loads& loads) const;
-  void addPlane(const Loads& loads, bool with_steps, const std::vector<CellBlock>& blocks,
-                int plane, Sums& sums) const;
-  void finishPlane(const Loads& loads, bool with_steps, int plane, const Sums& sums);
-  void finishBeside(const Loads& loads, bool with_steps);
+  void addPlane(const Loads& loads, Find what, const std::vector<CellBlock>& blocks, int plane,
+                Sums& sums) const;
+  void finishPlane(const Loads& loads, Find what, int plane, const Sums& sums);
+  void finishBeside(const Loads& loads, Find what);
 
   LevelGrid grid_;
   int count_ = 0;

@@ -4,25 +4,42 @@
 #include <algorithm>
 #include <utility>
 
+#include "solvers/multigrid/level/tuning.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr double kBothEnds = 2.0;  // weights of a spring to a group, summed
-constexpr double kNoStiffness = 1e-12;
+constexpr double kBothEnds = 2.0;  // sum of the weights' sizes, of a spring to a group
 
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
-Jacobian jacobianAt(const Vec3& arm, bool turns) {
+// Of the motion of the group's point at that arm, by the group's.
+Jacobian jacobianAt(const LevelGroup& group, const Vec3& arm) {
   Jacobian jacobian = Jacobian::Zero();
   jacobian.leftCols<3>().setIdentity();
-  if (turns) jacobian.rightCols<3>() = -crossMatrix(arm);
+  if (group.turns) jacobian.rightCols<3>() = -crossMatrix(arm);
   return jacobian;
 }
 
-// Of a spring in contact, along its normal.
+Vec3 motionAt(const LevelGroup& group, const Vec3& arm, const GroupVector& motion) {
+  const Vec3 shift = motion.head<3>();
+  if (!group.turns) return shift;
+  const Vec3 turn = motion.tail<3>();
+  return shift + turn.cross(arm);
+}
+
+// Of a spring in contact, along its normal n: n . K n.
 double stiffnessAlong(const LevelSpring& spring) {
   const Vec3& normal = spring.contact->normal;
   return normal.dot(spring.stiffness * normal);
+}
+
+// Without that: K - (n . K n) n n^T.
+Eigen::Matrix3d stiffnessAcross(const LevelSpring& spring) {
+  const Vec3& normal = spring.contact->normal;
+  Eigen::Matrix3d stiffness = spring.stiffness;
+  stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
+  return stiffness;
 }
 
 // To no more than `longest` in any component.
@@ -33,13 +50,6 @@ void cut(Vector& vector, double longest) {
 }
 
 }  // namespace
-
-Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion) {
-  const Vec3 shift = motion.head<3>();
-  if (!turns) return shift;
-  const Vec3 turn = motion.tail<3>();
-  return shift + turn.cross(arm);
-}
 
 template <typename Real>
 void ConstrainedNodes<Real>::setUnits(double spacing, double modulus) {
@@ -73,7 +83,7 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
     nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
   }
   for (std::size_t node = 0; node < held.size(); ++node) {
-    if (held[node] != 0 && held[node] != 7) nodes.push_back(static_cast<int>(node));
+    if (held[node] != 0 && held[node] != kAllAxes) nodes.push_back(static_cast<int>(node));
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -90,7 +100,7 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
     for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
       ConstrainedNode& constrained = all_[at(indexOf(groups[group].nodes[i]))];
       constrained.group = static_cast<int>(group);
-      constrained.held = 7;
+      constrained.held = kAllAxes;
       constrained.arm = groups[group].arms[i];
     }
   }
@@ -109,14 +119,14 @@ Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring,
   }
   if (spring.group >= 0) {
     const std::size_t group = at(spring.group);
-    mean -= motionAt(spring.arm, groups[group].turns, motion[group]);
+    mean -= motionAt(groups[group], spring.arm, motion[group]);
   }
   return mean;
 }
 
 template <typename Real>
 void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displacement,
-                                       bool with_steps) {
+                                       Find what) {
   const Vec3 mean = meanOf(spring, displacement);
   Vec3 on_nodes = Vec3::Zero();
   bool joins = false;
@@ -126,7 +136,7 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
     const Vec3 point = spring.contact->rest + spacing_ * mean;
     on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
     contact_force_ += on_nodes;
-    if (with_steps) {
+    if (what == Find::kForcesAndStiffness) {
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
       joins = isJoining(spring, point);
     }
@@ -134,29 +144,27 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
     all_[at(carrier.constrained)].force += carrier.weight * on_nodes;
   }
-  if (with_steps) addStiffness(spring, joins);
+  if (what == Find::kForcesAndStiffness) {
+    if (joins) join(spring);
+    addStiffness(spring, joins ? stiffnessAcross(spring) : spring.stiffness);
+  }
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
-  force[group] -= jacobianAt(spring.arm, groups[group].turns).transpose() * on_nodes;
+  force[group] -= jacobianAt(groups[group], spring.arm).transpose() * on_nodes;
 }
 
 // By its weights' sum, so that no motion is stiffer than the step allows (l1-Jacobi: Baker,
 // Falgout, Kolev, Yang 2011); what joins nodes does so beside.
 template <typename Real>
-void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring, bool joins) {
-  Eigen::Matrix3d stiffness = spring.stiffness;
-  if (joins) {
-    const Vec3& normal = spring.contact->normal;
-    stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
-    join(spring);
-  }
+void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring,
+                                          const Eigen::Matrix3d& stiffness) {
   const double ends = spring.group >= 0 ? kBothEnds : 1.0;
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
     all_[at(carrier.constrained)].stiffness += ends * carrier.weight * stiffness;
   }
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
-  const Jacobian jacobian = jacobianAt(spring.arm, groups[group].turns);
+  const Jacobian jacobian = jacobianAt(groups[group], spring.arm);
   group_stiffness_[group] += ends * jacobian.transpose() * stiffness * jacobian;
 }
 
@@ -186,27 +194,27 @@ void ConstrainedNodes<Real>::join(const LevelSpring& spring) {
 
 template <typename Real>
 void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
-                                        const Field<Real>& displacement, bool with_steps,
+                                        const Field<Real>& displacement, Find what,
                                         Field<Real>& forces) {
   for (ConstrainedNode& constrained : all_) {
     constrained.force = vectorAt(cells.whole, constrained.node);
-    if (!with_steps) continue;
+    if (what == Find::kForces) continue;
     const double stiffness = static_cast<double>(cells.stiffness[at(constrained.node)]);
     constrained.stiffness = stiffness * Eigen::Matrix3d::Identity();
   }
   force = right_hand_side;
   contact_force_.setZero();
-  if (with_steps) {
+  if (what == Find::kForcesAndStiffness) {
     group_stiffness_.assign(groups.size(), Matrix6::Zero());
     joining_.clear();
   }
-  for (LevelSpring& spring : springs) addSpring(spring, displacement, with_steps);
+  for (LevelSpring& spring : springs) addSpring(spring, displacement, what);
   for (ConstrainedNode& constrained : all_) {
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
-      const Jacobian jacobian = jacobianAt(constrained.arm, groups[group].turns);
+      const Jacobian jacobian = jacobianAt(groups[group], constrained.arm);
       force[group] += jacobian.transpose() * constrained.force;
-      if (with_steps)
+      if (what == Find::kForcesAndStiffness)
         group_stiffness_[group] += jacobian.transpose() * constrained.stiffness * jacobian;
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -214,9 +222,9 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
       forces[at(axis)][at(constrained.node)] =
           is_held ? Real(0) : static_cast<Real>(constrained.force[axis]);
     }
-    if (with_steps) invert(constrained);
+    if (what == Find::kForcesAndStiffness) invert(constrained);
   }
-  if (!with_steps) return;
+  if (what == Find::kForces) return;
   invertGroups();
   std::vector<Eigen::Matrix3d> inverses;
   for (const ConstrainedNode& constrained : all_) inverses.push_back(constrained.inverse);
@@ -246,7 +254,7 @@ void ConstrainedNodes<Real>::invertGroups() {
     const double scale = stiffness.diagonal().maxCoeff();
     for (int axis = 0; axis < 6; ++axis) {
       double& own = stiffness(axis, axis);
-      if (own <= kNoStiffness * scale) own = std::max(scale, 1.0);
+      if (own <= level_tuning::kNoStiffness * scale) own = std::max(scale, 1.0);
     }
     group_inverse_[group] = stiffness.inverse();
     if (!groups[group].turns) group_inverse_[group].template bottomRightCorner<3, 3>().setZero();
@@ -287,7 +295,7 @@ void ConstrainedNodes<Real>::step(double keep, double share, double longest,
     ConstrainedNode& constrained = all_[i];
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
-      constrained.step = motionAt(constrained.arm, groups[group].turns, group_way_[group]);
+      constrained.step = motionAt(groups[group], constrained.arm, group_way_[group]);
     } else {
       constrained.step = keep * constrained.step + share * motions[i];
       cut(constrained.step, longest);
@@ -306,7 +314,7 @@ void ConstrainedNodes<Real>::moveBy(const Field<Real>& step,
     Vec3 moved = share * vectorAt(step, constrained.node);
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
-      moved = share * motionAt(constrained.arm, groups[group].turns, of_groups[group]);
+      moved = share * motionAt(groups[group], constrained.arm, of_groups[group]);
     }
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_held = constrained.group < 0 && (constrained.held >> axis & 1U) != 0;
@@ -337,7 +345,7 @@ double ConstrainedNodes<Real>::squaredMotionOf(const std::vector<GroupVector>& o
   double squared = 0.0;
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (const Vec3& arm : groups[group].arms) {
-      squared += motionAt(arm, groups[group].turns, of_groups[group]).squaredNorm();
+      squared += motionAt(groups[group], arm, of_groups[group]).squaredNorm();
     }
   }
   return squared;

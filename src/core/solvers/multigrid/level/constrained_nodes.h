@@ -36,9 +36,6 @@ struct LevelGroup {
 };
 using GroupVector = Eigen::Matrix<double, 6, 1>;  // shift, turn; or force, moment
 
-// Motion of a point of a group by the group's.
-Vec3 motionAt(const Vec3& arm, bool turns, const GroupVector& motion);
-
 template <typename Real>
 Vec3 vectorAt(const Field<Real>& field, int node) {
   return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
@@ -65,7 +62,7 @@ class ConstrainedNodes {
   std::vector<int> nodes() const;  // ascending
 
   // Adds springs to what the cells found; puts the free components into `forces`.
-  void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, bool with_steps,
+  void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, Find what,
                   Field<Real>& forces);
   // Forces are these now.
   void setForces(const Field<Real>& forces);
@@ -102,8 +99,8 @@ class ConstrainedNodes {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
   int indexOf(int node) const;
-  void addSpring(LevelSpring& spring, const Field<Real>& displacement, bool with_steps);
-  void addStiffness(const LevelSpring& spring, bool joins);
+  void addSpring(LevelSpring& spring, const Field<Real>& displacement, Find what);
+  void addStiffness(const LevelSpring& spring, const Eigen::Matrix3d& stiffness);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
   void join(const LevelSpring& spring);
   // Motions of the nodes that are in no group, per entry of all_; until it is called again.

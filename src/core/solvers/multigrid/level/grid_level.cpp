@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "simd/field_kernel.h"
+#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kProbes = 20;            // steps of the power method
-constexpr double kProbe = 1e-3;        // its motion, in spacings
-constexpr double kMargin = 1.1;        // on what it finds
-constexpr double kLongestStep = 0.25;  // of a node along an axis, in spacings
+namespace tuning = level_tuning;
 
 }  // namespace
 
@@ -24,7 +22,8 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
   }
   for (auto* values : {&inverse_, &free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
   held_.assign(at(count()), 0);
-  cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, true);
+  cells_.findForces({displacement, right_hand_side, free_, force, inverse_},
+                    Find::kForcesAndStiffness);
   rest_stiffness_ = cells_.stiffness;
   bind();
   if (greatest_stiffness > 0.0) {
@@ -37,7 +36,7 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
 // The power method from rest, its start any numbers that are the same each time.
 template <typename Real>
 void GridLevel<Real>::measureSteps() {
-  findForces(true);
+  findForces();
   std::uint32_t number = 1;
   for (auto& values : displacement) {
     for (std::size_t node = 0; node < values.size(); ++node) {
@@ -46,17 +45,17 @@ void GridLevel<Real>::measureSteps() {
     }
   }
   double greatest = 1.0;
-  for (int probe = 0; probe < kProbes; ++probe) {
+  for (int probe = 0; probe < tuning::kPowerSteps; ++probe) {
     double squared = 0.0;
     for (const auto& values : displacement) {
       squared += dotOf(values.data(), values.data(), count());
     }
     if (squared == 0.0) break;
-    const Real scale = static_cast<Real>(kProbe * std::sqrt(count() / squared));
+    const Real scale = static_cast<Real>(tuning::kPowerMotion * std::sqrt(count() / squared));
     for (auto& values : displacement) {
       for (Real& value : values) value *= scale;
     }
-    findForces(false);
+    findForces(Find::kForces);
     double product = 0.0, length = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t node = 0; node < inverse_.size(); ++node) {
@@ -68,7 +67,7 @@ void GridLevel<Real>::measureSteps() {
     }
     greatest = std::max(greatest, product / length);
   }
-  step_ = 1.0 / (kMargin * greatest);
+  step_ = 1.0 / (tuning::kStiffnessMargin * greatest);
   for (auto& values : displacement) std::fill(values.begin(), values.end(), Real(0));
 }
 
@@ -123,27 +122,37 @@ void GridLevel<Real>::hideInterface() {
 }
 
 template <typename Real>
-void GridLevel<Real>::findForces(bool with_steps) {
-  cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, with_steps);
-  constrained.findForces(cells_, displacement, with_steps, force);
+void GridLevel<Real>::findForces() {
+  findForces(Find::kForcesAndStiffness);
+}
+
+template <typename Real>
+void GridLevel<Real>::findForces(Find what) {
+  cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, what);
+  constrained.findForces(cells_, displacement, what, force);
 }
 
 // Chebyshev's polynomials of the fourth kind, that smooth whatever is rough (Lottes 2022).
 template <typename Real>
-void GridLevel<Real>::smooth(int steps, bool forces_at_end) {
+void GridLevel<Real>::smooth(int steps) {
   calm();
   for (int k = 1; k <= steps; ++k) {
     const double keep = k == 1 ? 0.0 : (2.0 * k - 3.0) / (2.0 * k + 1.0);
     const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       stepAlong(inverse_.data(), force[axis].data(), static_cast<Real>(keep),
-                static_cast<Real>(share), static_cast<Real>(kLongestStep), step_along_[axis].data(),
-                displacement[axis].data(), count());
+                static_cast<Real>(share), static_cast<Real>(tuning::kLongestStep),
+                step_along_[axis].data(), displacement[axis].data(), count());
     }
-    constrained.step(keep, share, kLongestStep, displacement);
-    if (k < steps) findForces(false);
+    constrained.step(keep, share, tuning::kLongestStep, displacement);
+    if (k < steps) findForces(Find::kForces);
   }
-  if (forces_at_end) findForces(true);
+}
+
+template <typename Real>
+void GridLevel<Real>::smoothAndFindForces(int steps) {
+  smooth(steps);
+  findForces();
 }
 
 template <typename Real>
@@ -168,7 +177,7 @@ void GridLevel<Real>::setFasRightHandSide(const Field<Real>& wanted,
     cells_.findForcesOfCovered({displacement, right_hand_side, free_, force, inverse_});
     of_covered_ = cells_.whole;
   }
-  findForces(true);
+  findForces();
   if (covers_all) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       fasRightHandSide(wanted[axis].data(), free_.data(), right_hand_side[axis].data(),

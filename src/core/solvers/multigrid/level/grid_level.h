@@ -46,10 +46,11 @@ class GridLevel {
 
   void share(Workers& workers) { cells_.share(workers); }
 
-  // Unbalanced forces at `displacement`; with the steps that the smoother may take from there on.
-  void findForces(bool with_steps);
-  // Takes so many steps; forces at their end if asked, with new steps.
-  void smooth(int steps, bool forces_at_end);
+  // Unbalanced forces at `displacement`, and the stiffness that the smoother's steps go by.
+  void findForces();
+  // Takes so many steps of the smoother from there on; `force` and stiffness are stale then.
+  void smooth(int steps);
+  void smoothAndFindForces(int steps);
   // Drops the way that the smoother was on.
   void calm();
   // Makes the force what is asked, by a load: where it covers a finer level. Beside that, what the
@@ -70,6 +71,7 @@ class GridLevel {
   Vec3 wholeForce(int node) const;
 
  private:
+  void findForces(Find what);
   void measureSteps();
   void findFree();
 

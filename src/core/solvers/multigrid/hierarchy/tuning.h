@@ -1,0 +1,45 @@
+// Every number of this room that is no law: its unit, where it comes from, what turning it up does.
+// "model.md": doc/model.md, method `layered`, tells it, with what was measured. "Chosen": it passes
+// the tests; what its neighbors would do was not written down.
+#pragma once
+
+namespace robot_tissue::hierarchy_tuning {
+
+// --- A visit of the coarse levels (V-cycle)
+
+// Steps of the smoother on a coarse level, before and after the next coarser one corrects it, and
+// on the coarsest (model.md; two or four visits a cycle were slower). Up: fewer cycles, each
+// dearer.
+constexpr int kStepsBefore = 3;
+constexpr int kStepsAfter = 3;
+constexpr int kStepsCoarsest = 12;
+// Grid points along the longest side of the coarsest level, at most (model.md). Up: fewer levels,
+// of which the coarsest is balanced less.
+constexpr int kFewestPoints = 3;
+
+// --- The parts that are open
+
+// Cells along the shortest side, and times that the longest side may have it: thinner or longer
+// blocks bend as coarse cells do not tell (model.md). Up: more is open as a whole; less.
+constexpr int kThick = 8;
+constexpr int kMostSlender = 4;
+// Layers around what a coarser level does not tell (model.md). Up: larger parts.
+constexpr int kBesideRough = 2;
+// Of a level's points: where a part has more, all of it is open (model.md). Up: larger parts that
+// save little.
+constexpr double kMostOpen = 0.6;
+// The part that is open before there is a load, for the trial at rest: layers around the middle
+// point, and then on each level (chosen, as under a tool). Up: slower to build.
+constexpr int kAroundMiddle = 8;
+constexpr int kLayersAroundMiddle = 6;
+
+// --- Rounding and measuring
+
+// Of a displacement: what a way to meters and back may change of it (double precision). Up: what
+// others moved by less is not seen.
+constexpr double kSame = 1e-15;
+// Cells along an axis of the block that tells the greatest stiffness of equal cells (chosen; larger
+// blocks have the same). Up: slower to build.
+constexpr int kMeasuredCells = 24;
+
+}  // namespace robot_tissue::hierarchy_tuning

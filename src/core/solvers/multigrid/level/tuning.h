@@ -1,0 +1,32 @@
+// Every number of this room that is no law: its unit, where it comes from, what turning it up does.
+// "Chosen": it passes the tests; what its neighbors would do was not written down.
+#pragma once
+
+namespace robot_tissue::level_tuning {
+
+// --- The greatest stiffness of a motion, by the power method (GridLevel::measureSteps)
+
+// Steps of it, and the root mean square of the motion (spacings), so small that forces are linear
+// (chosen). Up: slower to build; nearer to the greatest stiffness.
+constexpr int kPowerSteps = 20;
+constexpr double kPowerMotion = 1e-3;
+// Times what it found, as it finds no more than there is (chosen). Up: shorter, surer steps of the
+// smoother.
+constexpr double kStiffnessMargin = 1.1;
+
+// --- The smoother
+
+// Spacings: longest step of a node along an axis, or of a patch by force (also rad), so that no
+// cell turns over at once (chosen). Up: far motions in fewer steps, less surely.
+constexpr double kLongestStep = 0.25;
+// Of a patch's greatest stiffness: directions in which it has less count as this stiff (chosen;
+// far above rounding). Up: loose patches are moved in shorter steps.
+constexpr double kNoStiffness = 1e-12;
+
+// --- Threads
+
+// Nodes of a level: with fewer, threads wait more than they work (chosen). Up: more levels in one
+// thread. Results are the same.
+constexpr int kWorthSharing = 8000;
+
+}  // namespace robot_tissue::level_tuning
