@@ -3,203 +3,166 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simd/field_kernel.h"
+#include "solvers/multigrid/cycle/patch_answers.h"
+#include "solvers/multigrid/cycle/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr int kFewestSteps = 3;            // of the smoother in a cycle
-constexpr double kStepsOfRoot = 1.6;       // likewise, of the root of the greatest stiffness
-constexpr double kSinglePrecision = 1e-3;  // tolerance that single precision reaches
-constexpr int kMostTurns = 20;             // solves, until turning patches have settled
-constexpr int kMostRounds = 8;             // of a solve, in wider parts or for what these miss
-constexpr double kTurned = 1e-4;           // rad
+namespace tuning = cycle_tuning;
 
 }  // namespace
 
 template <typename Real>
+FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model,
+                               const LayeredOptions& options)
+    : lattice_(lattice),
+      model_(model),
+      part_(lattice, options.tolerance),
+      forces_(shape_, options.tolerance),
+      warm_start_(shape_),
+      iteration_({shape_, part_, limits_, forces_}, options) {
+  if (options.threads > 1) workers_ = std::make_unique<Workers>(options.threads);
+}
+
+template <typename Real>
 void FasCgSolver<Real>::forget() {
-  factor_ = least_factor_;
-  layers_ = firstLayers();
-  has_start_ = has_step_ = false;
-  loaded_.clear();
-  held_ = 0.0;
-  missed_ = 0.0;
+  iteration_.forget();
+  part_.forget();
+  warm_start_.forget();
+  forces_.noteHeld(0.0);
+}
+
+template <typename Real>
+const GridBox* FasCgSolver<Real>::visited() const {
+  return !shape_.exists() || shape_.levels().isWhole() ? nullptr : &shape_.levels().free();
+}
+
+template <typename Real>
+Vec3 FasCgSolver<Real>::forceLeft() {
+  return shape_.exists() ? forceLeftOn(shape_, lattice_.spacing()) : Vec3(Vec3::Zero());
 }
 
 template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state) {
   if (cells_ == state.cells) return;
-  levels_ = std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get());
+  shape_.reset(
+      std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get()));
   cells_ = state.cells;
-  has_start_ = has_step_ = false;
-  loaded_.clear();
-  steps_ = std::max(
-      kFewestSteps,
-      static_cast<int>(std::lround(kStepsOfRoot * std::sqrt(finest().greatestStiffness()))));
-  findLeastFactor(state);
+  warm_start_.forget();
+  part_.forgetLoads();
+  iteration_.reset(lattice_, model_, state);
 }
 
 template <typename Real>
 SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints& hold,
                                    const std::vector<int>& disturbed, const Budget& budget) {
+  SolveContext solve{shape, hold, budget};
+  solve.in_contact = !hold.touched().empty();
+  solve.has_changed = solve.in_contact || !disturbed.empty();
   findLevels(shape.state);
-  findSeeds(shape, hold, disturbed);
+  part_.findSeeds(solve, disturbed);
   SolveReport report;
-  if (seeds_.isEmpty()) return report;
-  in_contact_ = !hold.touched().empty();
-  const bool changed = in_contact_ || !disturbed.empty();
-  cycles_ = 0;
-  for (int round = 0; round < kMostTurns; ++round) {
-    report.status = solve(shape, hold, changed, budget);
-    if (!levels_->isFinite()) return giveUp(shape, hold);
-    levels_->writeTo(shape.state.displacement, hold.dirichletMask());
-    if (!settlePatches(shape, hold) || report.status != SolveStatus::kOk) break;
+  if (part_.isEmpty()) return report;
+  for (int round = 0; round < tuning::kMostTurns; ++round) {
+    report.status = balance(solve);
+    if (!shape_.levels().isFinite()) return giveUp(solve);
+    writeShape(solve);
+    if (!settlePatches(solve) || report.status != SolveStatus::kOk) break;
   }
-  ended_late_ = report.status == SolveStatus::kLate;
-  report.iterations = cycles_;
-  report.error_estimate = std::isfinite(error_) ? std::hypot(error_, missed_) : 1.0;
-  answer(shape, hold, report);
+  warm_start_.noteEnd(report.status);
+  const double error = iteration_.error();
+  report.error_estimate = std::isfinite(error) ? std::hypot(error, part_.missed()) : 1.0;
+  answer(solve, report);
   return report;
 }
 
 // As it was when the solve began.
 template <typename Real>
-SolveReport FasCgSolver<Real>::giveUp(const ConstrainedState& shape, const DofConstraints& hold) {
-  prepare(shape, hold);
-  has_start_ = has_step_ = false;
+SolveReport FasCgSolver<Real>::giveUp(const SolveContext& solve) {
+  prepare(solve);
+  warm_start_.forget();
   SolveReport report;
   report.status = SolveStatus::kUnconverged;
-  report.iterations = cycles_;
   report.error_estimate = 1.0;
-  answer(shape, hold, report);
+  answer(solve, report);
   return report;
 }
 
 // In the part around the seeds, in a larger one where it is not smooth beyond that, or in all of it
 // where it does not go well.
 template <typename Real>
-SolveStatus FasCgSolver<Real>::solve(ConstrainedState& shape, const DofConstraints& hold,
-                                     bool changed, const Budget& budget) {
-  open(shape, hold, aroundSeeds());
+SolveStatus FasCgSolver<Real>::balance(SolveContext& solve) {
+  open(solve, part_.box());
   for (int round = 1;; ++round) {
-    const bool warm_started = first_of_step_ && has_step_ && greatest_ > 0.0 && warmStart();
-    first_of_step_ = false;
-    const SolveStatus status = iterate(changed, warm_started, budget);
-    if (status == SolveStatus::kUnconverged && !levels_->isWhole()) {
-      open(shape, hold, levels_->whole());
-    } else if (status == SolveStatus::kOk && raiseLayers()) {
-      levels_->writeTo(shape.state.displacement, hold.dirichletMask());
-      open(shape, hold, aroundSeeds());
-    } else if (status != SolveStatus::kOk || error_ <= allowed() || round > kMostRounds) {
+    solve.warm_started = warm_start_.take() && forces_.greatestAtStart() > 0.0 && warm_start_.go();
+    const SolveStatus status = iteration_.run(solve);
+    if (status == SolveStatus::kUnconverged && !shape_.levels().isWhole()) {
+      open(solve, shape_.levels().whole());
+    } else if (status == SolveStatus::kOk && part_.raise(shape_.missedBeyond())) {
+      writeShape(solve);
+      open(solve, part_.box());
+    } else if (status != SolveStatus::kOk || iteration_.error() <= part_.allowedError() ||
+               round > tuning::kMostRounds) {
       return status;
     }
   }
 }
 
 template <typename Real>
-void FasCgSolver<Real>::open(const ConstrainedState& shape, const DofConstraints& hold,
-                             const GridBox& box) {
-  if (levels_->open(box, static_cast<int>(layers_), shape.state.displacement)) {
-    has_start_ = has_step_ = false;
+void FasCgSolver<Real>::open(const SolveContext& solve, const GridBox& box) {
+  if (shape_.levels().open(box, part_.layers(), solve.shape.state.displacement)) {
+    warm_start_.forget();
   }
-  prepare(shape, hold);
+  prepare(solve);
 }
 
 template <typename Real>
-void FasCgSolver<Real>::prepare(const ConstrainedState& shape, const DofConstraints& hold) {
-  levels_->bind(shape, hold);
-  levels_->setDisplacement(shape.state.displacement, hold.dirichletMask());
-  limited_from_.clear();
-  for (const NodeLimit& limit : limits_) {
-    limited_from_.push_back(shape.state.displacement[at(limit.node)]);
-  }
-  if (first_of_step_) noteStep();
-  free_nodes_ = hold.freeNodes();
-  finest().findForces();
-  greatest_ = unbalanced();
+void FasCgSolver<Real>::prepare(const SolveContext& solve) {
+  const std::vector<Vec3>& displacement = solve.shape.state.displacement;
+  shape_.levels().bind(solve.shape, solve.hold);
+  shape_.levels().setDisplacement(displacement, solve.hold.dirichletMask());
+  limits_.begin(displacement);
+  warm_start_.noteStart();
+  shape_.finest().findForces();
+  forces_.begin();
 }
 
-// Remembers the way of the last step, if anything moved in it.
 template <typename Real>
-void FasCgSolver<Real>::noteStep() {
-  Vector now;
-  keepPlace(now);
-  if (has_start_ && step_start_.nodes != now.nodes) {
-    last_step_ = now;
-    step_start_.groups.clear();
-    last_step_.groups.clear();
-    add(step_start_, -1.0, last_step_);
-    has_step_ = true;
-  }
-  step_start_ = std::move(now);
-  has_start_ = true;
+void FasCgSolver<Real>::writeShape(SolveContext& solve) const {
+  shape_.levels().writeTo(solve.shape.state.displacement, solve.hold.dirichletMask());
 }
 
 // Patches by force go where the levels moved them, as rigid bodies do. True: one turned so far that
 // its nodes are no longer where they were found to balance.
 template <typename Real>
-bool FasCgSolver<Real>::settlePatches(ConstrainedState& shape, const DofConstraints& hold) {
-  bool any = false, turned = false;
-  for (std::size_t index = 0; index < shape.patches.size(); ++index) {
-    LoadingPatch& patch = shape.patches[index];
-    const GroupVector motion = finest().constrained.motion[index];
-    if (!byForce(patch) || motion.isZero(0.0)) continue;
-    movePatch(lattice_, patch, lattice_.spacing() * motion.template head<3>(),
-              motion.template tail<3>(), shape.state);
-    any = true;
-    turned = turned || motion.template tail<3>().norm() > kTurned;
-  }
-  if (!any) return false;
-  levels_->renewGroups(shape, hold);
-  finest().findForces();
-  return turned;
+bool FasCgSolver<Real>::settlePatches(SolveContext& solve) {
+  const PatchesMoved moved = movePatches(lattice_, shape_.finest().constrained.motion, solve.shape);
+  if (moved == PatchesMoved::kNone) return false;
+  shape_.levels().renewGroups(solve.shape, solve.hold);
+  shape_.finest().findForces();
+  return moved == PatchesMoved::kTurned;
 }
 
 template <typename Real>
-void FasCgSolver<Real>::answer(const ConstrainedState& shape, const DofConstraints& hold,
-                               SolveReport& report) {
-  held_ = answerPatches(shape, hold, report);
-  double left = unbalanced();
-  for (std::size_t index = 0; index < shape.patches.size(); ++index) {
-    if (!byForce(shape.patches[index])) continue;
-    left = std::max(left, finest().constrained.force[index].template head<3>().norm());
-  }
-  report.residual = left / std::max({held_, greatest_, kStill});
-  report.active_nodes = openNodes(hold);
-  report.layers = layersRaised();
-}
-
-// The greatest force of a patch on a node, in the levels' units.
-template <typename Real>
-double FasCgSolver<Real>::answerPatches(const ConstrainedState& shape, const DofConstraints& hold,
-                                        SolveReport& report) const {
-  const std::vector<Vec3>& displacement = shape.state.displacement;
-  const double unit = levels_->modulus() * lattice_.spacing() * lattice_.spacing();
-  double held = 0.0;
-  for (std::size_t index = 0; index < shape.patches.size(); ++index) {
-    const LoadingPatch& patch = shape.patches[index];
-    std::vector<Vec3> of_hard;
-    for (const int node : hold.hardOf(index)) {
-      of_hard.push_back(unit * finest().wholeForce(levels_->entryOf(node)));
-      held = std::max(held, of_hard.back().norm() / unit);
-    }
-    for (const RimSpring& spring : patch.rim) {
-      const Vec3 stretch = spring.anchor - displacement[at(spring.node)];
-      held = std::max(held, (stiffnessOf(patch, spring) * stretch).norm() / unit);
-    }
-    for (const ContactSpring& spring : patch.contacts) {
-      held = std::max(held, forceOf(spring, displacement).norm() / unit);
-    }
-    report.patches.push_back(answerOf(lattice_, shape.state, patch, of_hard));
-  }
-  return held;
+void FasCgSolver<Real>::answer(const SolveContext& solve, SolveReport& report) {
+  const GridHierarchy<Real>& levels = shape_.levels();
+  const double unit = levels.modulus() * lattice_.spacing() * lattice_.spacing();
+  PatchAnswers answers = answersOf(lattice_, solve, [&levels, unit](int node) -> Vec3 {
+    return unit * levels.finest().wholeForce(levels.entryOf(node));
+  });
+  forces_.noteHeld(answers.greatest / unit);
+  report.patches = std::move(answers.all);
+  report.iterations = solve.cycles;
+  report.residual = forces_.residual(solve.shape);
+  report.active_nodes = part_.nodesIn(levels.free(), solve.hold);
+  report.layers = part_.layersIn(levels.free());
 }
 
 std::unique_ptr<MultigridSolver> makeMultigridSolver(const Lattice& lattice,
                                                      const ElasticModel& model,
                                                      const LayeredOptions& options) {
-  if (options.tolerance >= kSinglePrecision) {
+  if (options.tolerance >= tuning::kSinglePrecision) {
     return std::make_unique<FasCgSolver<float>>(lattice, model, options);
   }
   return std::make_unique<FasCgSolver<double>>(lattice, model, options);

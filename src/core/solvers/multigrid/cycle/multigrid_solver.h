@@ -5,7 +5,6 @@
 // conjugate gradients; where one goes too far or not far enough, a search along it mends that.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -13,7 +12,7 @@
 #include "material/elastic_model.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/solve_report.h"
-#include "solvers/multigrid/hierarchy/grid_hierarchy.h"
+#include "solvers/multigrid/cycle/budget.h"
 #include "solvers/solver_method.h"
 
 namespace robot_tissue {
@@ -29,22 +28,6 @@ struct LayeredOptions {
   int patience_in_contact = 40;
   double patch_step = 0.5;  // longest motion of a patch in one solve, in spacings
   double line_step = 2.0;   // of a node in one cycle, likewise
-};
-
-// A clock that may run out.
-class Budget {
- public:
-  explicit Budget(double max_ms) : max_ms_(max_ms) {}
-  double elapsedMs() const {
-    const std::chrono::duration<double, std::milli> elapsed =
-        std::chrono::steady_clock::now() - started_;
-    return elapsed.count();
-  }
-  bool isSpent() const { return max_ms_ > 0.0 && elapsedMs() > max_ms_; }
-
- private:
-  double max_ms_;
-  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
 class MultigridSolver {

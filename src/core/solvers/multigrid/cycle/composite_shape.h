@@ -1,0 +1,78 @@
+// The shape on the composite grid (doc/architecture.md, "Words") as one vector x, with the forces
+// f(x) that are unbalanced there: what the solver adds, measures and moves as a whole.
+//
+// Lengths in spacings of the finest lattice, forces in GridHierarchy::modulus() * spacing^2.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solvers/multigrid/hierarchy/grid_hierarchy.h"
+
+namespace robot_tissue {
+
+// Positions, a step between two of them, or forces that do work in a step.
+template <typename Real>
+struct CompositeVector {
+  Field<Real> nodes;                            // of the finest lattice's open part
+  std::vector<GroupVector> groups;              // of patches by force
+  typename GridHierarchy<Real>::Beyond beyond;  // on the coarse levels; none where all is open
+
+  // this += share * other.
+  void add(const CompositeVector& other, double share);
+};
+
+// Work of forces in a step.
+template <typename Real>
+double workOf(const CompositeVector<Real>& force, const CompositeVector<Real>& step);
+
+template <typename Real>
+class CompositeShape {
+ public:
+  using Vector = CompositeVector<Real>;
+
+  // On these levels from now on; before, there is no shape.
+  void reset(std::unique_ptr<GridHierarchy<Real>> levels);
+  bool exists() const { return levels_ != nullptr; }
+  GridHierarchy<Real>& levels() { return *levels_; }
+  const GridHierarchy<Real>& levels() const { return *levels_; }
+  GridLevel<Real>& finest() { return levels_->finest(); }
+  const GridLevel<Real>& finest() const { return levels_->finest(); }
+
+  void keepPlaces(Vector& places) const;
+  void keepForces(Vector& forces);
+  void restore(const Vector& places);
+  void move(const Vector& step, double share);                            // x += share * step
+  void moveFrom(const Vector& places, const Vector& step, double share);  // x = places + ...
+  // The smooth motion that the coarse levels found last (GridHierarchy::findSmoothMotion), or a
+  // share of it, then steps of the smoother.
+  void correctAndSmooth(double share, int smoother_steps);
+
+  // Work in a step by the forces as they are now; and what the open part has in it.
+  double workOfForces(const Vector& step);
+  double workOfForcesInPart(const Vector& step) const;
+
+  double greatestForce() const;  // on a node along an axis
+  Vec3 netForce() const;         // sum over the open part's nodes
+
+  double distanceFrom(const Vector& places) const;
+  double displacementNorm() const;
+  // Of the motion that the coarse levels, and each node alone, say is left: (|s|^2 + |d|^2)^1/2.
+  double correctionNorm() const;
+  double longestSmoothMotion() const;  // of a node along an axis
+  // What the coarse levels miss beyond the open part, as trilinear means, over the displacement.
+  double missedBeyond() const;
+
+ private:
+  void placeAt(const Vector& places);
+  double squared(const Field<Real>& field) const;
+
+  std::unique_ptr<GridHierarchy<Real>> levels_;
+};
+
+extern template struct CompositeVector<float>;
+extern template struct CompositeVector<double>;
+extern template class CompositeShape<float>;
+extern template class CompositeShape<double>;
+
+}  // namespace robot_tissue

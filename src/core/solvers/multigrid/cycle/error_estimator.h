@@ -1,0 +1,77 @@
+// How far the shape is from balance, relative to its displacement:
+//
+//   error = factor |x| / max(|u|, least)
+//
+// |x| is the length of the motion left that cycles see (CompositeShape::correctionNorm); the factor
+// makes up for what they do not see, |u| is the length of the displacement.
+#pragma once
+
+#include "solvers/multigrid/cycle/composite_shape.h"
+#include "solvers/multigrid/cycle/fas_cg_cycle.h"
+#include "solvers/multigrid/cycle/motion_left.h"
+#include "solvers/multigrid/cycle/solve_context.h"
+
+namespace robot_tissue {
+
+// What is really left over what cycles see, learned from solve to solve.
+class ErrorFactor {
+ public:
+  // Of a lattice whose least factor a trial at rest showed.
+  void restart(double least) { least_ = value_ = least; }
+  void forget() { value_ = least_; }
+  double value() const { return value_; }
+  // From what a solve showed in its first cycles (kLong of them), or later.
+  enum class Solve { kShort, kLong };
+  void learn(double shown, Solve solve);
+
+ private:
+  double least_ = 1.0;
+  double value_ = 1.0;
+};
+
+template <typename Real>
+class ErrorEstimator {
+ public:
+  explicit ErrorEstimator(const CompositeShape<Real>& shape) : shape_(shape) {}
+
+  ErrorFactor factor;
+
+  // Cycles begin, from the shape as it is.
+  void begin();
+  // After findSmoothMotion; the last cycle is that one, if there was one.
+  void update(const SolveContext& solve, const FasCgCycle<Real>& last);
+
+  const MotionLeft& left() const { return left_; }
+  double distanceFromStart() const { return shape_.distanceFrom(start_); }
+  double error() const { return error_; }
+  double errorAfterCorrection() const { return error_after_; }
+
+  // The correction has been made.
+  void noteCorrection() { error_ = error_after_; }
+  // Another shape, with that error, was put in place.
+  void noteError(double error) { error_ = error; }
+  // No force acts at all.
+  void noteRest() { error_ = error_after_ = left_.now = 0.0; }
+
+ private:
+  void learn(const SolveContext& solve, const FasCgCycle<Real>& last, double trend_before);
+  void mark(int cycles);
+
+  const CompositeShape<Real>& shape_;
+  MotionLeft left_;
+  double trend_ = 0.0;  // |x|, as it falls under conjugate gradients, where it swings
+  double error_ = 0.0;
+  double error_after_ = 0.0;  // once the smooth motion that is found has been made
+  CompositeVector<Real> start_;
+  bool at_start_ = true;
+
+  // A shape of this solve, at half of its cycles or before.
+  CompositeVector<Real> mark_;
+  int mark_cycle_ = 0;
+  double mark_left_ = 0.0;  // |x| there; 0: no mark
+};
+
+extern template class ErrorEstimator<float>;
+extern template class ErrorEstimator<double>;
+
+}  // namespace robot_tissue

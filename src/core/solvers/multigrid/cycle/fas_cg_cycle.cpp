@@ -1,0 +1,105 @@
+#include "solvers/multigrid/cycle/fas_cg_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solvers/multigrid/cycle/line_search.h"
+#include "solvers/multigrid/cycle/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+namespace tuning = cycle_tuning;
+
+int rounded(double steps) { return static_cast<int>(std::lround(steps)); }
+
+}  // namespace
+
+template <typename Real>
+void FasCgCycle<Real>::reset() {
+  const double greatest = shape_.finest().greatestStiffness();
+  steps_ = std::max(tuning::kFewestSteps, rounded(tuning::kStepsOfRoot * std::sqrt(greatest)));
+}
+
+// Springs in contact are the stiffest of all, and begin and end: what is rough beside them lasts.
+// Where tissue slips, the first cycle is all that a solve has.
+template <typename Real>
+int FasCgCycle<Real>::smootherSteps(const SolveContext& solve) const {
+  const bool more = solve.in_contact && solve.cycles > 0;
+  return more ? rounded(tuning::kMoreInContact * steps_) : steps_;
+}
+
+template <typename Real>
+void FasCgCycle<Real>::begin() {
+  fresh_ = true;
+  conjugate_ = false;
+}
+
+template <typename Real>
+void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
+  startHere();
+  const double longest = shape_.longestSmoothMotion();
+  const double share = longest > longest_step_ ? longest_step_ / longest : 1.0;
+  const int steps = smootherSteps(solve);
+  if (share == 1.0 && isSteady(solve, left)) {
+    shape_.correctAndSmooth(1.0, steps);
+    return begin();
+  }
+  shape_.keepForces(force_);
+  shape_.correctAndSmooth(share, steps);
+  shape_.keepPlaces(direction_);
+  direction_.add(start_, -1.0);
+  const bool slow = left.isAbove(tuning::kSlow);
+  const double own_slope = workOf(force_, direction_);
+  const double slope = fresh_ || !slow ? own_slope : joinLastDirection(own_slope);
+  conjugate_ = !fresh_ && slow;
+  fresh_ = false;
+  slope_before_ = own_slope;
+  std::swap(force_before_, force_);
+  if (own_slope > 0.0 && searchAlong(slope)) {
+    std::swap(direction_before_, direction_);
+  } else {
+    smoothFrom(start_);
+  }
+}
+
+// Where a part is open, cycles that get on need no looking back at what they did: forces beyond
+// cost more than a look.
+template <typename Real>
+bool FasCgCycle<Real>::isSteady(const SolveContext& solve, const MotionLeft& left) const {
+  return !shape_.levels().isWhole() && (solve.cycles == 0 || left.isAtMost(tuning::kSlow));
+}
+
+// Goes on along the last direction, too, if the forces work along it. The slope there.
+template <typename Real>
+double FasCgCycle<Real>::joinLastDirection(double own_slope) {
+  const double beta = (own_slope - workOf(force_before_, direction_)) / slope_before_;
+  if (!(beta > tuning::kWorthKeeping)) return own_slope;
+  const double along = workOf(force_, direction_before_);
+  if (!(own_slope + beta * along > 0.0)) return own_slope;
+  direction_.add(direction_before_, beta);
+  shape_.moveFrom(start_, direction_, 1.0);
+  return own_slope + beta * along;
+}
+
+// False: it leads nowhere.
+template <typename Real>
+bool FasCgCycle<Real>::searchAlong(double slope) {
+  return searchLine(slope, shape_.workOfForces(direction_), [this](double length) {
+    shape_.moveFrom(start_, direction_, length);
+    return shape_.workOfForces(direction_);
+  });
+}
+
+template <typename Real>
+void FasCgCycle<Real>::smoothFrom(const Vector& places) {
+  shape_.restore(places);
+  shape_.finest().smoothAndFindForces(tuning::kPlainSteps);
+  fresh_ = true;
+}
+
+template class FasCgCycle<float>;
+template class FasCgCycle<double>;
+
+}  // namespace robot_tissue

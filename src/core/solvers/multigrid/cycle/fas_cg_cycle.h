@@ -1,0 +1,62 @@
+// One step of nonlinear conjugate gradients with a multigrid cycle as preconditioner (Nocedal and
+// Wright 2006, 5.2; Brandt 1977). From the shape x, with forces f:
+//
+//   s = cycle(x) - x                              the smooth motion, then the smoother
+//   beta = (f . s - f' . s) / (f' . s')           Polak and Ribiere; ' of the step before
+//   d = s + beta d'                               where cycles alone are slow
+//   x + a d,  f(x + a d) . d about 0              line search, from a = 1 on
+#pragma once
+
+#include "solvers/multigrid/cycle/composite_shape.h"
+#include "solvers/multigrid/cycle/motion_left.h"
+#include "solvers/multigrid/cycle/solve_context.h"
+
+namespace robot_tissue {
+
+template <typename Real>
+class FasCgCycle {
+ public:
+  // longest_step: of a node in one cycle, in spacings.
+  FasCgCycle(CompositeShape<Real>& shape, double longest_step)
+      : shape_(shape), longest_step_(longest_step) {}
+
+  // The shape is on other levels: how many steps their smoother takes.
+  void reset();
+  int smootherSteps() const { return steps_; }
+  int smootherSteps(const SolveContext& solve) const;
+
+  // Forgets the last direction.
+  void begin();
+  // After findSmoothMotion.
+  void run(const SolveContext& solve, const MotionLeft& left);
+  // Steps of the smoother alone, from there on; the last direction is forgotten.
+  void smoothFrom(const CompositeVector<Real>& places);
+
+  // Where the last cycle began.
+  const CompositeVector<Real>& start() const { return start_; }
+  void startHere() { shape_.keepPlaces(start_); }
+  bool isConjugate() const { return conjugate_; }  // it went on with the one before
+
+ private:
+  using Vector = CompositeVector<Real>;
+
+  bool isSteady(const SolveContext& solve, const MotionLeft& left) const;
+  double joinLastDirection(double own_slope);
+  bool searchAlong(double slope);
+
+  CompositeShape<Real>& shape_;
+  double longest_step_;
+  int steps_ = 3;
+  Vector start_;
+  Vector force_, force_before_;  // f, f'
+  Vector direction_;             // s, then d
+  Vector direction_before_;      // d'
+  double slope_before_ = 0.0;    // f' . s'
+  bool fresh_ = true;            // no direction yet
+  bool conjugate_ = false;
+};
+
+extern template class FasCgCycle<float>;
+extern template class FasCgCycle<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,143 @@
+#include "solvers/multigrid/cycle/fas_cg_iteration.h"
+
+#include "solvers/multigrid/cycle/trial_at_rest.h"
+#include "solvers/multigrid/cycle/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+namespace tuning = cycle_tuning;
+
+}  // namespace
+
+template <typename Real>
+FasCgIteration<Real>::FasCgIteration(const On& on, const LayeredOptions& options)
+    : shape_(on.shape),
+      part_(on.part),
+      limits_(on.limits),
+      forces_(on.forces),
+      options_(options),
+      cycle_(on.shape, options.line_step),
+      estimator_(on.shape) {}
+
+template <typename Real>
+void FasCgIteration<Real>::reset(const Lattice& lattice, const ElasticModel& model,
+                                 const LatticeState& state) {
+  cycle_.reset();
+  estimator_.factor.restart(
+      leastErrorFactor(shape_, lattice, model, state, cycle_.smootherSteps()));
+}
+
+template <typename Real>
+SolveStatus FasCgIteration<Real>::run(SolveContext& solve) {
+  estimator_.begin();
+  progress_.begin();
+  cycle_.begin();
+  SolveStatus status = check(solve);
+  for (; status == SolveStatus::kLate; status = check(solve)) {
+    if (solve.cycles > 0 && solve.budget.isSpent()) break;
+    makeCycle(solve);
+    ++solve.cycles;
+  }
+  if (status == SolveStatus::kLate) finishLate(solve);
+  // What is in balance stays, bit for bit.
+  const bool moves =
+      solve.cycles > 0 || solve.warm_started || estimator_.error() > options_.tolerance;
+  if (status == SolveStatus::kOk && moves && estimator_.left().now > 0.0) finish(solve);
+  // What slips has more left on its way: only a shape that blew up goes back.
+  if (status == SolveStatus::kUnconverged && !estimator_.left().isWithin(tuning::kBlownUp)) {
+    shape_.restore(progress_.bestPlaces());
+    estimator_.noteError(progress_.bestError());
+  }
+  return status;
+}
+
+// Where the solve stands: kLate while there is hope.
+template <typename Real>
+SolveStatus FasCgIteration<Real>::check(const SolveContext& solve) {
+  shape_.levels().findSmoothMotion();
+  estimator_.update(solve, cycle_);
+  progress_.note(solve, estimator_, shape_);
+  if (solve.cycles == 0 && forces_.isZero()) {
+    estimator_.noteRest();
+    return SolveStatus::kOk;
+  }
+  if (isBalanced(solve)) return SolveStatus::kOk;
+  return isHopeless(solve) ? SolveStatus::kUnconverged : SolveStatus::kLate;
+}
+
+template <typename Real>
+bool FasCgIteration<Real>::isBalanced(const SolveContext& solve) const {
+  const bool untried = solve.cycles == 0 && solve.has_changed;
+  return !untried && estimator_.errorAfterCorrection() <= part_.allowedError() &&
+         forces_.isReached(solve);
+}
+
+// What went beyond its limit is cut back: the rest of the solve would be in vain.
+template <typename Real>
+bool FasCgIteration<Real>::isHopeless(const SolveContext& solve) const {
+  const int cycles = solve.cycles;
+  const auto place = [this](int node) { return shape_.levels().displacementOf(node); };
+  if (cycles > 0 && limits_.areExceeded(place)) return true;
+  const bool whole = shape_.levels().isWhole();
+  if (!whole && progress_.isStuck(cycles, tuning::kPatienceInPart)) return true;
+  const int most = solve.in_contact ? options_.max_cycles_in_contact : options_.max_cycles;
+  const int patience = solve.in_contact ? options_.patience_in_contact : options_.patience;
+  return cycles >= most || progress_.isStuck(cycles, patience);
+}
+
+template <typename Real>
+void FasCgIteration<Real>::makeCycle(const SolveContext& solve) {
+  if (estimator_.left().isWithin(tuning::kBlownUp)) {
+    cycle_.run(solve, estimator_.left());
+  } else {
+    cycle_.smoothFrom(progress_.bestPlaces());
+    cycle_.startHere();
+  }
+}
+
+// Makes the smooth motion that was found; a cycle where that, under conjugate gradients, leaves
+// more force unbalanced than there was.
+template <typename Real>
+void FasCgIteration<Real>::finish(const SolveContext& solve) {
+  estimator_.noteCorrection();
+  const bool may_worsen = cycle_.isConjugate();
+  if (may_worsen) cycle_.startHere();
+  const double before = shape_.greatestForce();
+  shape_.correctAndSmooth(1.0, 1);
+  if (may_worsen && shape_.greatestForce() > before) {
+    shape_.restore(cycle_.start());
+    makeCycle(solve);
+  }
+  settleForces(solve);
+}
+
+// Cut short, a cycle leaves what is rough unbalanced: springs in contact, the stiffest of all,
+// would tell forces that nothing answers. What went astray is not told.
+template <typename Real>
+void FasCgIteration<Real>::finishLate(const SolveContext& solve) {
+  GridLevel<Real>& finest = shape_.finest();
+  finest.constrained.soon_touches = tuning::kSoonTouches;
+  if (estimator_.left().isWithin(tuning::kAstray)) {
+    finest.findForces();
+    finest.smoothAndFindForces(cycle_.smootherSteps());
+    settleForces(solve);
+  } else {
+    cycle_.smoothFrom(progress_.bestPlaces());
+    estimator_.noteError(progress_.bestError());
+  }
+  finest.constrained.soon_touches = 0.0;
+}
+
+template <typename Real>
+void FasCgIteration<Real>::settleForces(const SolveContext& solve) {
+  for (int round = 0; round < tuning::kMostSettling; ++round) {
+    if (forces_.isSettled(part_.loaded())) return;
+    shape_.finest().smoothAndFindForces(cycle_.smootherSteps(solve));
+  }
+}
+
+template class FasCgIteration<float>;
+template class FasCgIteration<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,54 @@
+// Cycles until the shape of the open part balances, or does not get on, or the budget is spent.
+#pragma once
+
+#include "solvers/multigrid/cycle/error_estimator.h"
+#include "solvers/multigrid/cycle/fas_cg_cycle.h"
+#include "solvers/multigrid/cycle/force_balance.h"
+#include "solvers/multigrid/cycle/node_limits.h"
+#include "solvers/multigrid/cycle/open_part.h"
+#include "solvers/multigrid/cycle/solve_progress.h"
+
+namespace robot_tissue {
+
+template <typename Real>
+class FasCgIteration {
+ public:
+  // What it reads and moves must outlive it.
+  struct On {
+    CompositeShape<Real>& shape;
+    const OpenPart& part;
+    const NodeLimits& limits;
+    const ForceBalance<Real>& forces;
+  };
+  FasCgIteration(const On& on, const LayeredOptions& options);
+
+  // The shape is on other levels, of cells that an earlier solve did not know.
+  void reset(const Lattice& lattice, const ElasticModel& model, const LatticeState& state);
+  void forget() { estimator_.factor.forget(); }
+
+  SolveStatus run(SolveContext& solve);
+  double error() const { return estimator_.error(); }  // of the shape that the last run left
+
+ private:
+  SolveStatus check(const SolveContext& solve);
+  bool isBalanced(const SolveContext& solve) const;
+  bool isHopeless(const SolveContext& solve) const;
+  void makeCycle(const SolveContext& solve);
+  void finish(const SolveContext& solve);
+  void finishLate(const SolveContext& solve);
+  void settleForces(const SolveContext& solve);
+
+  CompositeShape<Real>& shape_;
+  const OpenPart& part_;
+  const NodeLimits& limits_;
+  const ForceBalance<Real>& forces_;
+  LayeredOptions options_;
+  FasCgCycle<Real> cycle_;
+  ErrorEstimator<Real> estimator_;
+  SolveProgress<Real> progress_;
+};
+
+extern template class FasCgIteration<float>;
+extern template class FasCgIteration<double>;
+
+}  // namespace robot_tissue

@@ -1,0 +1,116 @@
+#include "solvers/multigrid/cycle/force_balance.h"
+
+#include <algorithm>
+
+#include "simd/field_kernel.h"
+#include "solvers/multigrid/cycle/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+namespace tuning = cycle_tuning;
+
+Vec3 forceOf(const GroupVector& vector) { return vector.head<3>(); }
+double sizeOf(const GroupVector& vector) { return vector.head<3>().norm(); }
+
+}  // namespace
+
+// Whatever coarse lattices make of rounding.
+template <typename Real>
+bool ForceBalance<Real>::isZero() const {
+  const std::vector<GroupVector>& on_groups = shape_.finest().constrained.force;
+  return shape_.greatestForce() == 0.0 &&
+         std::all_of(on_groups.begin(), on_groups.end(),
+                     [](const GroupVector& force) { return force.isZero(0.0); });
+}
+
+template <typename Real>
+bool ForceBalance<Real>::isReached(const SolveContext& solve) const {
+  if (!solve.in_contact && !isCalm()) return false;
+  if (solve.cycles < tuning::kCyclesForBalance && !areContactsBalanced()) return false;
+  return arePatchesBalanced();
+}
+
+// What hangs by little moves far under forces that cycles hardly lessen.
+template <typename Real>
+bool ForceBalance<Real>::isCalm() const {
+  double most = std::max(greatest_at_start_, greatest_held_);
+  for (const GroupVector& load : shape_.finest().constrained.right_hand_side) {
+    most = std::max(most, sizeOf(load));
+  }
+  return shape_.greatestForce() <= tuning::kMostUnbalanced * most;
+}
+
+template <typename Real>
+bool ForceBalance<Real>::areContactsBalanced() const {
+  const double pushed = shape_.finest().constrained.contactForce().norm();
+  return !(pushed > 0.0 && shape_.netForce().norm() > tuning::kContactBalance * pushed);
+}
+
+// Patches by force: each, and the whole that they move.
+template <typename Real>
+bool ForceBalance<Real>::arePatchesBalanced() const {
+  const ConstrainedNodes<Real>& constrained = shape_.finest().constrained;
+  Vec3 given = Vec3::Zero(), net = Vec3::Zero();
+  for (std::size_t group = 0; group < constrained.groups.size(); ++group) {
+    const Vec3 load = forceOf(constrained.right_hand_side[group]);
+    const Vec3 left = forceOf(constrained.force[group]);
+    if (left.norm() > std::max(tolerance_, tuning::kPatchBalance) * load.norm()) return false;
+    given += load;
+    net += left;
+  }
+  if (given.isZero(0.0)) return true;
+  net += shape_.netForce();
+  return net.norm() < tuning::kFalling * given.norm();
+}
+
+// What is unbalanced in all is what the forces on the tissue's ends do not agree by.
+template <typename Real>
+bool ForceBalance<Real>::isSettled(const std::vector<int>& loaded) const {
+  const double given = heldForce(loaded).norm() + shape_.finest().constrained.contactForce().norm();
+  return shape_.netForce().norm() <= tuning::kForceShare * tolerance_ * given || given == 0.0;
+}
+
+// On those of the nodes whose places are given.
+template <typename Real>
+Vec3 ForceBalance<Real>::heldForce(const std::vector<int>& loaded) const {
+  Vec3 force = Vec3::Zero();
+  for (const int node : loaded) {
+    const int entry = shape_.levels().entryOf(node);
+    if (shape_.finest().dirichletAxes(entry) != 0) force += shape_.finest().wholeForce(entry);
+  }
+  return force;
+}
+
+template <typename Real>
+double ForceBalance<Real>::residual(const ConstrainedState& state) const {
+  double left = shape_.greatestForce();
+  for (std::size_t index = 0; index < state.patches.size(); ++index) {
+    if (!byForce(state.patches[index])) continue;
+    left = std::max(left, sizeOf(shape_.finest().constrained.force[index]));
+  }
+  return left / std::max({greatest_held_, greatest_at_start_, tuning::kStill});
+}
+
+// Level by level: a unit of force is four times the finer level's.
+template <typename Real>
+Vec3 forceLeftOn(CompositeShape<Real>& shape, double spacing) {
+  Vec3 left = shape.netForce();
+  for (const GroupVector& force : shape.finest().constrained.force) left += forceOf(force);
+  double unit = 1.0;
+  for (const Field<Real>& forces : shape.levels().findForcesBeyond()) {
+    unit *= 4.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto& values = forces[at(axis)];
+      left[axis] += unit * sumOf(values.data(), static_cast<int>(values.size()));
+    }
+  }
+  return shape.levels().modulus() * spacing * spacing * left;
+}
+
+template class ForceBalance<float>;
+template class ForceBalance<double>;
+template Vec3 forceLeftOn(CompositeShape<float>&, double);
+template Vec3 forceLeftOn(CompositeShape<double>&, double);
+
+}  // namespace robot_tissue

@@ -1,0 +1,22 @@
+// One solve: what it is given, and what it has cost so far.
+#pragma once
+
+#include "loads/constrained_state.h"
+#include "loads/dof_constraints.h"
+#include "solvers/multigrid/cycle/budget.h"
+
+namespace robot_tissue {
+
+struct SolveContext {
+  ConstrainedState& shape;
+  const DofConstraints& hold;  // bound to it
+  const Budget& budget;
+  bool in_contact = false;
+  // There are contacts or disturbed nodes. What they change may be too small to show in the error,
+  // which is relative to the displacement: at least one cycle is made.
+  bool has_changed = false;
+  bool warm_started = false;  // moved along the last step, before the first cycle
+  int cycles = 0;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,37 @@
+#include "solvers/multigrid/cycle/solve_progress.h"
+
+#include <limits>
+
+#include "solvers/multigrid/cycle/tuning.h"
+
+namespace robot_tissue {
+
+template <typename Real>
+void SolveProgress<Real>::begin() {
+  least_left_ = std::numeric_limits<double>::infinity();
+  farthest_ = 0.0;
+}
+
+// What swings far has more left on its way than where it began; in contact it slips, and a smaller
+// step follows it better.
+template <typename Real>
+void SolveProgress<Real>::note(const SolveContext& solve, const ErrorEstimator<Real>& estimator,
+                               const CompositeShape<Real>& shape) {
+  if (estimator.left().now < least_left_) {
+    least_left_ = estimator.left().now;
+    shape.keepPlaces(best_);
+    best_error_ = estimator.error();
+    last_gain_ = solve.cycles;
+  }
+  if (solve.in_contact) return;
+  const double gone = estimator.distanceFromStart();
+  if (gone > cycle_tuning::kFarther * farthest_) {
+    farthest_ = gone;
+    last_gain_ = solve.cycles;
+  }
+}
+
+template class SolveProgress<float>;
+template class SolveProgress<double>;
+
+}  // namespace robot_tissue

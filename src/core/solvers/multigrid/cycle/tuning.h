@@ -1,0 +1,137 @@
+// Every number of this room that is no law: its unit, where it comes from, what turning it up does.
+// "model.md": doc/model.md, method `layered`, tells it, with what was measured. "Chosen": it passes
+// the tests; what its neighbors would do was not written down.
+//
+// Lengths in spacings of the finest lattice. |x|: length (L2) of the motion left
+// (CompositeShape::correctionNorm). Tolerance: LayeredOptions::tolerance, of the relative error.
+#pragma once
+
+namespace robot_tissue::cycle_tuning {
+
+// --- Precision, rest
+
+// Tolerance that single precision reaches (model.md). Up: more solves in double, slower.
+constexpr double kSinglePrecision = 1e-3;
+// Spacings, per free node: off rest by less is at rest (model.md). Up: small loads are answered
+// less exactly.
+constexpr double kStill = 1e-6;
+
+// --- A cycle (FasCgCycle)
+
+// The smoother takes this times the root of the greatest stiffness of any motion in the nodes' own
+// stiffnesses, as a Chebyshev polynomial's reach goes by the square of its degree (Lottes 2022;
+// 1.6: model.md), and no fewer steps than these. Up: fewer cycles, each dearer.
+constexpr double kStepsOfRoot = 1.6;
+constexpr int kFewestSteps = 3;
+// Times as many, in contact from the second cycle of a solve on (model.md). Up: likewise.
+constexpr double kMoreInContact = 1.3;
+// Steps of the smoother in the place of a cycle that led nowhere (model.md). Up: slower, surer.
+constexpr int kPlainSteps = 8;
+// |x| after a cycle over |x| before: above it, cycles are slow and conjugate gradients help
+// (model.md). Up: more cycles stand alone.
+constexpr double kSlow = 0.3;
+// Of the slope at the start of a search: flat enough to end there (model.md). Up: shorter searches.
+constexpr double kFlatEnough = 0.3;
+// beta, share of the last direction: below, it is left out (chosen). Up: more begin anew.
+constexpr double kWorthKeeping = 0.05;
+// Places that a line search tries (chosen), and how many of them further and further, where the
+// slope stays positive (chosen). Up: longer searches; longer steps.
+constexpr int kTrials = 8;
+constexpr int kTrialsAhead = 2;
+// Times the last load step: the farthest warm start (chosen). Up: bolder where steps grow.
+constexpr double kFarthestWarmStart = 2.0;
+
+// --- Going astray (FasCgIteration)
+
+// Times |x| where cycles began: the shape blew up, and the best one comes back (model.md). Up:
+// later.
+constexpr double kBlownUp = 100.0;
+// Likewise, of a solve cut short, whose shape no cycle comes to mend (chosen). Up: likewise.
+constexpr double kAstray = 3.0;
+// Spacings from a tool at which springs already count as stiff in the last steps of a solve cut
+// short (model.md). Up: what is thrown into a tool is told less as a force; steps are shorter.
+constexpr double kSoonTouches = 0.1;
+
+// --- Forces (ForceBalance)
+
+// Times the tolerance: share of the given force that may be unbalanced in all at the end; and
+// rounds of the smoother that are spent on it (both: model.md). Up: worse forces, quicker; better
+// forces, slower.
+constexpr double kForceShare = 2.0;
+constexpr int kMostSettling = 3;
+// Share of a patch's own force that may be unbalanced on it, if the tolerance is less: single
+// precision knows no better (chosen). Up: patches by force stop earlier.
+constexpr double kPatchBalance = 1e-5;
+// Share of the greatest force that may be unbalanced on a node, without contacts (chosen, for what
+// hangs by little and moves far). Up: that stops early.
+constexpr double kMostUnbalanced = 0.1;
+// Share of the contacts' force that may be unbalanced in all, and cycles of a solve that are spent
+// on it (both chosen). Up: worse forces in contact, quicker; slower where tissue slips.
+constexpr double kContactBalance = 0.05;
+constexpr int kCyclesForBalance = 6;
+// Share of the force on patches by force: as much unbalanced in all, nothing holds them (chosen).
+// Up: what falls may count as balanced.
+constexpr double kFalling = 0.5;
+
+// --- Estimate of the error (ErrorEstimator)
+
+// |x| after cycles over |x| before: above it, they teach nothing of the factor, as the difference
+// is too small to divide by (chosen). Up: more samples, and wilder ones.
+constexpr double kMostLeft = 0.9;
+// Greatest factor that the first kLong cycles of a solve may show, and later ones, in which what
+// hangs by little moves far (chosen). Up: a chance sample costs more cycles.
+constexpr double kMostSoon = 32.0;
+constexpr double kMostFactor = 1000.0;
+constexpr int kLong = 15;
+// Share of the factor that is left after a cycle that shows less (chosen). Up: hard solves make the
+// next ones longer.
+constexpr double kRemembered = 0.9;
+// Share of |x| before a cycle that counts as left after it, at least, under conjugate gradients,
+// where |x| swings on its way down (chosen). Up: surer, more cycles.
+constexpr double kDip = 0.5;
+// Share of the error that is left, at least, by the smooth motion that ends a solve (model.md). Up:
+// likewise.
+constexpr double kLeastAfter = 0.6;
+// Cycles: at each power of two from here on, the shape is marked, and so many cycles later what it
+// went since then tells of slow motions (chosen). Up: these are seen later.
+constexpr int kFirstMark = 16;
+constexpr int kShortest = 4;
+
+// The trial at rest (model.md). Cycles where all is open, and where a part is, as what is beyond
+// comes later. Up: slower to build, slower motions count.
+constexpr int kTrialCycles = 6;
+constexpr int kTrialCyclesInPart = 12;
+// Spacings from end to end of its random numbers: so small that the answer is linear.
+constexpr double kTrialMotion = 1e-3;
+// Greatest factor that it may show: nu 0.49 has it. Up: more cycles there.
+constexpr double kMostAtRest = 8.0;
+
+// --- Patience
+
+// Times the farthest that a solve came from its start: it gets on (chosen). Up: it gives up sooner.
+constexpr double kFarther = 1.1;
+// Cycles without a gain in a part: then all is open (model.md). Up: later.
+constexpr int kPatienceInPart = 6;
+// Radians by which a patch by force turns to be solved for anew (model.md), and how often at most
+// (chosen). Up: less exact moments; longer solves.
+constexpr double kTurned = 1e-4;
+constexpr int kMostTurns = 20;
+// Rounds of one solve, in wider parts or for what these miss (chosen). Up: longer solves.
+constexpr int kMostRounds = 8;
+
+// --- The open part (OpenPart)
+
+// Layers around the seeds to begin with: kLayersOfError over the tolerance, within these bounds
+// (model.md). Up: dearer cycles, parts are widened less often.
+constexpr double kLayersOfError = 0.06;
+constexpr double kFewestLayers = 4.0;
+constexpr double kEnoughLayers = 6.0;
+// Times the layers there were, where coarse lattices miss too much (model.md). Up: likewise.
+constexpr double kMoreLayers = 1.5;
+// Share of the tolerance that coarse lattices may miss (model.md). Up: fewer layers, but more
+// cycles, which have what is left of the tolerance.
+constexpr double kMostMissed = 0.7;
+// Tolerance: below it, all is open (model.md). Up: parts are open less often.
+constexpr double kLeastOfPart = 5e-3;
+
+}  // namespace robot_tissue::cycle_tuning
