@@ -194,5 +194,26 @@ TEST(LevelSource, IsNoneOfWhatHasAWeight) {
   EXPECT_TRUE(levelSources(lattice, model, *lattice.restState().cells, 1.0, 3).empty());
 }
 
+// Cycles in a part led nowhere, and all is visited: where they went is not measured with the fields
+// of the whole, whose ends are beyond theirs. So it begins as it does where all is visited at once.
+TEST(LayeredParts, TeachTheWholeNothingWhereTheyFail) {
+  const TissueConfig config = wideBlock(0.25);
+  LayeredOptions options = within(kTolerance);
+  options.max_cycles = 0;
+  LayeredBlock at_once(config, options);
+  const LoadingPatch torn = pressed(at_once.lattice, config, 14, Vec3(0.03, 0, 0.1));
+  const SolveReport begun = at_once.solve({torn}, nodesOf(at_once.lattice));
+  ASSERT_EQ(begun.status, SolveStatus::kUnconverged);
+  for (const int cycles : {1, 2, 5}) {
+    options.max_cycles = cycles;
+    LayeredBlock block(config, options);
+    const SolveReport report = block.solve({torn});
+    EXPECT_EQ(report.status, SolveStatus::kUnconverged);
+    EXPECT_EQ(report.active_nodes, begun.active_nodes);
+    EXPECT_NEAR(report.error_estimate, begun.error_estimate, 1e-6 * begun.error_estimate)
+        << cycles << " cycles in the part";
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue

@@ -34,7 +34,8 @@ void ErrorEstimator<Real>::update(const SolveContext& solve, const FasCgCycle<Re
   left_.now = shape_.correctionNorm();
   const double trend_before = trend_;
   trend_ = last.isConjugate() ? std::max(left_.now, tuning::kDip * trend_) : left_.now;
-  if (solve.cycles > 0) learn(solve, last, trend_before);
+  if (solve.cycles > 0 && knows_way_) learn(solve, last, trend_before);
+  knows_way_ = true;
   const double least = tuning::kStill * std::sqrt(solve.hold.freeNodes() + 1.0);
   const double unit = std::max(shape_.displacementNorm(), least);
   error_ = factor.value() * trend_ / unit;

@@ -38,6 +38,8 @@ class ErrorEstimator {
 
   // Cycles begin, from the shape as it is.
   void begin();
+  // Another part is open: the places that earlier cycles came from are not of it.
+  void noteOpened() { knows_way_ = false; }
   // After findSmoothMotion; the last cycle is that one, if there was one.
   void update(const SolveContext& solve, const FasCgCycle<Real>& last);
 
@@ -64,6 +66,7 @@ class ErrorEstimator {
   double error_after_ = 0.0;  // once the smooth motion that is found has been made
   CompositeVector<Real> start_;
   bool at_start_ = true;
+  bool knows_way_ = false;  // of the last cycle, in the part that is open
 
   // A shape of this solve, at half of its cycles or before.
   CompositeVector<Real> mark_;

@@ -22,8 +22,10 @@ class FasCgIteration {
   };
   FasCgIteration(const On& on, const LayeredOptions& options);
 
-  // The shape is on other levels, of cells that an earlier solve did not know.
+  // The shape is on the levels of other cells.
   void reset(const Lattice& lattice, const ElasticModel& model, const LatticeState& state);
+  // The shape is on the same levels, of which another part is open.
+  void noteOpened() { estimator_.noteOpened(); }
   void forget() { estimator_.factor.forget(); }
 
   SolveStatus run(SolveContext& solve);

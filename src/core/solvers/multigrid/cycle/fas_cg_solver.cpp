@@ -113,6 +113,7 @@ template <typename Real>
 void FasCgSolver<Real>::open(const SolveContext& solve, const GridBox& box) {
   if (shape_.levels().open(box, part_.layers(), solve.shape.state.displacement)) {
     warm_start_.forget();
+    iteration_.noteOpened();
   }
   prepare(solve);
 }
