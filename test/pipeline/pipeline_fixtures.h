@@ -34,6 +34,19 @@ inline TissueConfig block(const std::string& model = "elastic", double spacing =
   return tissue;
 }
 
+// Two cells wide between y = 0 and kRidge, fixed at its bottom.
+constexpr double kRidge = 0.01;     // m
+constexpr double kRidgeTop = 0.03;  // m
+
+inline TissueConfig ridge() {
+  TissueConfig tissue;
+  tissue.shape.max() = Vec3(0.03, kRidge, kRidgeTop);
+  tissue.spacing = kSpacing;
+  tissue.material.young_modulus = 1e4;
+  tissue.fixed.push_back(bottomOf(tissue.shape));
+  return tissue;
+}
+
 inline SolverConfig methodOf(const std::string& model) {
   SolverConfig solver;
   solver.method = methodsFor(model).front();

@@ -8,20 +8,9 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kThick = 0.01;       // of a ridge of two cells between y = 0 and this (m)
-constexpr double kRidgeTop = 0.03;    // m
 constexpr double kCloseGap = 0.0085;  // m
 constexpr double kOpenGap = 0.0095;   // m
-const Vec3 kHinge(0.015, 0.5 * kThick, kRidgeTop + 0.027);
-
-TissueConfig ridge() {
-  TissueConfig tissue;
-  tissue.shape.max() = Vec3(0.03, kThick, kRidgeTop);
-  tissue.spacing = kSpacing;
-  tissue.material.young_modulus = 1e4;
-  tissue.fixed.push_back(bottomOf(tissue.shape));
-  return tissue;
-}
+const Vec3 kHinge(0.015, 0.5 * kRidge, kRidgeTop + 0.027);
 
 ToolGeometry forceps(const ToolShape& left, const ToolShape& right) {
   ToolGeometry tool;
@@ -131,8 +120,8 @@ ToolGeometry plates() {
 }
 
 std::vector<Vec3> apart(double gap, double lift = 0.0) {
-  return {Vec3(0.015, 0.5 * (kThick - gap), kRidgeTop - 0.005 + lift),
-          Vec3(0.015, 0.5 * (kThick + gap), kRidgeTop - 0.005 + lift)};
+  return {Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005 + lift),
+          Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005 + lift)};
 }
 
 TEST(EmptyJaws, ToldToLetGoStayEmptyUntilTheyOpen) {

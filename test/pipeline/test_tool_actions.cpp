@@ -52,19 +52,7 @@ TEST(DrivenTool, ForceThatIsZeroOrNotFiniteIsRefused) {
   EXPECT_THROW(pipeline.push(0, Vec3(0.0, 0.0, NAN)), InputError);
 }
 
-// A ridge two cells wide, fixed at its bottom, and two plates that close on it along y.
-constexpr double kRidge = 0.01;
-constexpr double kRidgeTop = 0.03;
-
-TissueConfig ridge() {
-  TissueConfig tissue;
-  tissue.shape.max() = Vec3(0.03, kRidge, kRidgeTop);
-  tissue.spacing = kSpacing;
-  tissue.material.young_modulus = 1e4;
-  tissue.fixed.push_back(bottomOf(tissue.shape));
-  return tissue;
-}
-
+// Two plates that close on the ridge along y.
 class Grasper : public ::testing::TestWithParam<const char*> {
  protected:
   static constexpr double kCloseGap = 0.0085, kOpenGap = 0.0095;
