@@ -146,6 +146,18 @@ TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
   EXPECT_FALSE(pipeline.step(down).changed);
 }
 
+// No solve meets this tolerance: each step is tried short, and costs cycles that lead nowhere.
+TEST(JammedTool, IsGivenUpWhereNoSolveConverges) {
+  SolverConfig solver;
+  solver.tolerance = 1e-15;
+  Pipeline pipeline(block("elastic", 0.01), solver, {probe()});
+  pipeline.step(pressed(-0.001));
+  const StepReport& report = pipeline.step(pressed(0.02));
+  EXPECT_TRUE(report.lost);
+  EXPECT_GT(pipeline.pose()->links.front().translation().z(), kTop + kRadius - 0.01);
+  EXPECT_FALSE(pipeline.step(pressed(0.02)).changed);
+}
+
 TEST(TwoTools, OnOppositeSidesOfASheetPressEachOther) {
   constexpr double kSmall = 0.006;
   Pipeline pipeline(sheet(), {}, {smallProbe("upper", kSmall), smallProbe("lower", kSmall)});
