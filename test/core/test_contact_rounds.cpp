@@ -1,0 +1,77 @@
+// Solves while tools touch: the rounds end where they no longer gain.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "robot_tissue/core/contact_update.h"
+#include "tissue/round_gain.h"
+#include "tissue_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+// Lets the shape go nowhere, and wants another solve each time.
+class NeverContent : public ContactUpdate {
+ public:
+  std::vector<double> longestWays() override { return {}; }
+  double shareOfWay(const std::vector<Vec3>&) override { return 0.0; }
+  bool renew(std::vector<LoadingPatch>&, Shape, Round round) override {
+    ++rounds_;
+    return round == Round::kNext;
+  }
+  int rounds() const { return rounds_; }
+
+ private:
+  int rounds_ = 0;
+};
+
+TEST(ContactRounds, EndWhereTheyLeadNeitherNearerNorFarther) {
+  TissueConfig config;
+  config.shape.max = Vec3(0.04, 0.04, 0.02);
+  config.spacing = 0.01;
+  config.material.young_modulus = 1e4;
+  config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
+  Tissue tissue(config, {});
+  NeverContent contacts;
+  tissue.setContactUpdate(&contacts);
+  const Box punch{Vec3(0.01, 0.01, 0.02), Vec3(0.03, 0.03, 0.02)};
+  tissue.load(loadOf({displacedPatch("punch", punch, Vec3(0.0, 0.0, -0.001))}, 1));
+  EXPECT_GT(contacts.rounds(), 1);
+  EXPECT_LT(contacts.rounds(), 40);
+}
+
+class Rounds : public ::testing::Test {
+ protected:
+  // The only node's way (m).
+  void note(double error, double way, bool whole = false) {
+    SolveReport report;
+    report.error_estimate = error;
+    report.iterations = 100;
+    gain_.note(report, {Vec3(way, 0.0, 0.0)}, whole);
+  }
+
+  RoundGain gain_{std::make_shared<const std::vector<Vec3>>(1, Vec3::Zero())};
+};
+
+TEST_F(Rounds, ThatGainNothingAreOver) {
+  note(0.1, 0.01);
+  for (int round = 0; round < 3; ++round) {
+    note(0.09, 0.0105);
+    EXPECT_FALSE(gain_.isOver());
+  }
+  note(0.09, 0.0105);
+  EXPECT_TRUE(gain_.isOver());
+}
+
+TEST_F(Rounds, GoOnNearerOrFartherOrWhole) {
+  double error = 0.1, way = 0.01;
+  for (int round = 0; round < 60; ++round) {
+    if (round % 3 == 0) error *= 0.6;
+    if (round % 3 == 1) way *= 1.2;
+    note(error, way, round % 3 == 2);
+    EXPECT_FALSE(gain_.isOver()) << round;
+  }
+}
+
+}  // namespace
+}  // namespace robot_tissue
