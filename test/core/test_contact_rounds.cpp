@@ -27,7 +27,7 @@ class NeverContent : public ContactUpdate {
 
 TEST(ContactRounds, EndWhereTheyLeadNeitherNearerNorFarther) {
   TissueConfig config;
-  config.shape.max = Vec3(0.04, 0.04, 0.02);
+  config.shape.max() = Vec3(0.04, 0.04, 0.02);
   config.spacing = 0.01;
   config.material.young_modulus = 1e4;
   config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
