@@ -32,20 +32,21 @@ HEAP = ("memory of the heap", r"malloc|free|_int_|calloc|realloc|unlink_chunk")
 STAGES = [
     ("the tools' way", UPDATE),
     ("bookkeeping of contact",
-     r"SlidingContacts::|Pipeline::(contact|longest|meet|patchesOf|touches|track)|"
+     r"SlidingContacts::|TouchFinder::|ToolContactUpdate::|LoadStepper::meet|patchesOfTools|"
      r"Tissue::(solve|limitWays|goBack|putToolPatches)"),
     ("contact search", r"ContactFinder::|LinkContacts::|AabbTree"),
     ("surface, volume, inverted cells",
      r"Tissue::(deformSurface|describeShape|volumeRatio)\n|robot_tissue::deform\n"),
     ("sums, search and errors of the solve",
-     r"FasCgSolver<\w+>::|GridHierarchy<\w+>::|MultigridSolver|LayeredMethod::|DofConstraints::"),
+     r"(FasCg\w+|ErrorEstimator|ForceBalance|OpenPart|WarmStart|CompositeShape)<\w+>::|"
+     r"searchLine|SolveProgress|GridHierarchy<\w+>::|MultigridSolver|LayeredMethod::|DofConstraints::"),
     ("finest lattice: patches, steps", r"GridLevel<\w+>::|ConstrainedNodes<\w+>::|::stepAlong\n"),
     ("finest lattice: forces of cells", r"CellOperator<\w+>::(find|add|finish)"),
     ("coarse lattices: beyond the part", r"GridHierarchy<\w+>::\w+Beyond\n"),
     ("coarse lattices: smooth motion", r"GridHierarchy<\w+>::findSmoothMotion\n"),
     ("parts opened, patches bound, shape written",
      r"GridHierarchy<\w+>::(open|bind|renew|setDisplacement|writeTo)"),
-    ("reports", r"Pipeline::describeTools"),
+    ("reports", r"describeTool"),
     HEAP,
 ]
 
