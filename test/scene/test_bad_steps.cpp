@@ -135,7 +135,7 @@ const std::vector<BadScene> kBadPatches = {
     {"PatchReversed",
      "max: [0.06, 0.06, 0.05]",
      "max: [0.06, 0.03, 0.05]",
-     {"steps[1].load.patches[0].max()[1] = 0.03", ">= min[1] = 0.04"}},
+     {"steps[1].load.patches[0].max[1] = 0.03", ">= min[1] = 0.04"}},
     {"PatchBoth",
      "displacement: [free",
      "force: [0, 0, 1], displacement: [free",

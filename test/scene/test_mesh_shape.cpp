@@ -115,7 +115,7 @@ TEST(MeshShape, OrgansAreClosedAndOfTheStatedSize) {
 TEST(MeshShape, EntriesThatAreNotAllowed) {
   writeFile("box.stl", stlText(boxMesh(kBoxMin, kBoxMax)));
   expectRefusal(refusal("resource: box.stl, min: [0, 0, 0]"),
-                {"shape.min() = [0, 0, 0]", "unknown"});
+                {"shape.min = [0, 0, 0]", "unknown"});
   expectRefusal(refusal("scale: 1"), {"tissue.shape.resource is missing", "package://"});
   expectRefusal(refusal("resource: [a]"), {"tissue.shape.resource = [a]", "a path"});
   expectRefusal(refusal("resource: none.stl"),
