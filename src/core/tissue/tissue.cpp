@@ -307,7 +307,10 @@ double Tissue::mostMs() const {
 }
 
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
-  const Displacements last_good = displacements();
+  // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
+  // it saves a method that stays finite.
+  const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
+  const Displacements last_good = keeps_shape ? displacements() : nullptr;
   const std::vector<LoadingPatch> last_good_patches = patches_;
   kept_.reset();
   limitWays();
@@ -318,7 +321,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
       (method_->staysFinite() ||
        std::all_of(state_.displacement.begin(), state_.displacement.end(), isFinite));
   if (!is_finite) {
-    state_.displacement = *last_good;
+    if (last_good) state_.displacement = *last_good;
     patches_ = last_good_patches;
     report = SolveReport();
     report.status = SolveStatus::kUnconverged;
