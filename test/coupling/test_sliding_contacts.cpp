@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
-#include "tissue_fixtures.h"
 
 namespace robot_tissue {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sticking_contacts.h"
-#include "tissue_fixtures.h"
 
 namespace robot_tissue {
 namespace {

@@ -1,8 +1,8 @@
 // Tissue of model elastic with cuts: ghosts from the cut to the reset, under loads and tools.
 #include <gtest/gtest.h>
 
+#include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sticking_contacts.h"
-#include "tissue_fixtures.h"
 
 namespace robot_tissue {
 namespace {
