@@ -53,7 +53,7 @@ configure() {
   fi
   mkdir -p "$build"
   cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_INSTALL_PREFIX="$build/install" "$@" >"$build/configure.log" 2>&1 ||
+    -DCMAKE_INSTALL_PREFIX="$build/.install" "$@" >"$build/configure.log" 2>&1 ||
     { tail -n 30 "$build/configure.log" >&2; give_up "scripts: configuring failed"; }
 }
 

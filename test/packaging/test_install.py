@@ -38,14 +38,15 @@ ENVIRONMENT = {"HOME": str(WORK), "PATH": "/usr/bin:/bin", "ROS_HOSTNAME": "loca
                "ROS_MASTER_URI": f"http://localhost:{free_port()}", "LC_ALL": "C.UTF-8"}
 
 
-def start(command):
-    return subprocess.Popen(["bash", "-c", f"source '{prefix()}/setup.bash' && exec {command}"],
+def start(command, space=None):
+    setup = (space or prefix()) / "setup.bash"
+    return subprocess.Popen(["bash", "-c", f"source '{setup}' && exec {command}"],
                             cwd=WORK, env=ENVIRONMENT, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, text=True, start_new_session=True)
 
 
-def output_of(command):
-    process = start(command)
+def output_of(command, space=None):
+    process = start(command, space)
     try:
         output, _ = process.communicate(timeout=LONGEST)
     except subprocess.TimeoutExpired:
@@ -68,6 +69,11 @@ class InstallSpace(unittest.TestCase):
         subprocess.run(["cmake", "--install", BUILD], check=True, stdout=subprocess.DEVNULL)
         cls.share = prefix() / "share/robot_tissue"
         cls.programs = prefix() / "lib/robot_tissue"
+
+    # roslaunch looks for files in all folders below a package, and refuses what it finds twice.
+    def test_the_checkout_still_has_each_launch_file_once(self):
+        found = output_of("roslaunch --files robot_tissue demo.launch", BUILD / "devel")
+        self.assertIn(str(SOURCE / "launch/demo.launch"), found)
 
     def test_all_files_are_there(self):
         for folder in ("launch", "config", "msg", "srv"):
