@@ -42,10 +42,10 @@ STAGES = [
      r"searchLine|SolveProgress|GridHierarchy<\w+>::|MultigridSolver|LayeredMethod::|DofConstraints::"),
     ("finest lattice: patches, steps", r"GridLevel<\w+>::|ConstrainedNodes<\w+>::|::stepAlong\n"),
     ("finest lattice: forces of cells", r"CellOperator<\w+>::(find|add|finish)"),
-    ("coarse lattices: beyond the part", r"GridHierarchy<\w+>::\w+Beyond\n"),
-    ("coarse lattices: smooth motion", r"GridHierarchy<\w+>::findSmoothMotion\n"),
+    ("coarse lattices: beyond the part", r"UncoveredPart<\w+>::"),
+    ("coarse lattices: smooth motion", r"(CoarseCorrection|FasRestriction)<\w+>::"),
     ("parts opened, patches bound, shape written",
-     r"GridHierarchy<\w+>::(open|bind|renew|setDisplacement|writeTo)"),
+     r"(CompositeGrid|LevelConstraints|NodeDisplacements)<\w+>::|GridHierarchy<\w+>::open"),
     ("reports", r"describeTool"),
     HEAP,
 ]

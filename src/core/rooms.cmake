@@ -46,9 +46,11 @@ robot_tissue_room(solvers/multigrid/level
     woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy
   USES simd lattice material loads solvers/multigrid/level
-  FILES composite_grid.cpp composite_grid_vectors.cpp grid_hierarchy.cpp grid_hierarchy.h
-    grid_transfer.cpp grid_transfer.h level_constraints.cpp level_source.cpp level_source.h
-    tuning.h)
+  FILES coarse_correction.cpp coarse_correction.h composite_grid.cpp composite_grid.h
+    fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
+    grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
+    node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
+    uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy
   FILES budget.h composite_shape.cpp composite_shape.h error_estimator.cpp error_estimator.h

@@ -15,9 +15,9 @@ double dot(const std::vector<Real>& a, const std::vector<Real>& b) {
 }
 
 template <typename Real>
-void addTo(Field<Real>& to, const Field<Real>& other, double share) {
+void addTo(Field<Real>& to, const Field<Real>& other, double alpha) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    addShare(other[axis].data(), static_cast<Real>(share), to[axis].data(),
+    addShare(other[axis].data(), static_cast<Real>(alpha), to[axis].data(),
              static_cast<int>(to[axis].size()));
   }
 }
@@ -36,20 +36,20 @@ double withWork(double work, const Field<Real>& force, const std::vector<GroupVe
 }  // namespace
 
 template <typename Real>
-void CompositeVector<Real>::add(const CompositeVector& other, double share) {
-  addTo(nodes, other.nodes, share);
+void CompositeVector<Real>::add(const CompositeVector& other, double alpha) {
+  addTo(nodes, other.nodes, alpha);
   for (std::size_t group = 0; group < groups.size(); ++group) {
-    groups[group] += share * other.groups[group];
+    groups[group] += alpha * other.groups[group];
   }
-  for (std::size_t level = 0; level < beyond.size(); ++level) {
-    addTo(beyond[level], other.beyond[level], share);
+  for (std::size_t level = 0; level < uncovered.size(); ++level) {
+    addTo(uncovered[level], other.uncovered[level], alpha);
   }
 }
 
 template <typename Real>
 double workOf(const CompositeVector<Real>& force, const CompositeVector<Real>& step) {
-  const double beyond = GridHierarchy<Real>::workBeyond(force.beyond, step.beyond);
-  return withWork(beyond, force.nodes, force.groups, step);
+  const double uncovered = UncoveredPart<Real>::workOf(force.uncovered, step.uncovered);
+  return withWork(uncovered, force.nodes, force.groups, step);
 }
 
 template <typename Real>
@@ -61,21 +61,21 @@ template <typename Real>
 void CompositeShape<Real>::keepPlaces(Vector& places) const {
   places.nodes = finest().displacement;
   places.groups = finest().constrained.motion;
-  places.beyond = levels_->placesBeyond();
+  places.uncovered = levels_->uncovered().places();
 }
 
 template <typename Real>
 void CompositeShape<Real>::keepForces(Vector& forces) {
   forces.nodes = finest().force;
   forces.groups = finest().constrained.force;
-  forces.beyond = levels_->findForcesBeyond();
+  forces.uncovered = levels_->uncovered().findForces();
 }
 
 template <typename Real>
 void CompositeShape<Real>::placeAt(const Vector& places) {
   finest().constrained.motion = places.groups;
   finest().displacement = places.nodes;
-  levels_->putBeyond(places.beyond);
+  levels_->uncovered().placeAt(places.uncovered);
 }
 
 template <typename Real>
@@ -85,21 +85,21 @@ void CompositeShape<Real>::restore(const Vector& places) {
 }
 
 template <typename Real>
-void CompositeShape<Real>::move(const Vector& step, double share) {
-  finest().moveBy(step.nodes, step.groups, share);
-  levels_->moveBeyond(step.beyond, share);
+void CompositeShape<Real>::move(const Vector& step, double alpha) {
+  finest().moveBy(step.nodes, step.groups, alpha);
+  levels_->uncovered().moveBy(step.uncovered, alpha);
   finest().findForces();
 }
 
 template <typename Real>
-void CompositeShape<Real>::moveFrom(const Vector& places, const Vector& step, double share) {
+void CompositeShape<Real>::moveFrom(const Vector& places, const Vector& step, double alpha) {
   placeAt(places);
-  move(step, share);
+  move(step, alpha);
 }
 
 template <typename Real>
-void CompositeShape<Real>::correctAndSmooth(double share, int smoother_steps) {
-  levels_->go(share);
+void CompositeShape<Real>::correctAndSmooth(double alpha, int smoother_steps) {
+  levels_->correction().moveBy(alpha);
   finest().findForces();
   finest().smoothAndFindForces(smoother_steps);
 }
@@ -107,7 +107,7 @@ void CompositeShape<Real>::correctAndSmooth(double share, int smoother_steps) {
 template <typename Real>
 double CompositeShape<Real>::workOfForces(const Vector& step) {
   return workOfForcesInPart(step) +
-         GridHierarchy<Real>::workBeyond(levels_->findForcesBeyond(), step.beyond);
+         UncoveredPart<Real>::workOf(levels_->uncovered().findForces(), step.uncovered);
 }
 
 template <typename Real>
@@ -135,7 +135,7 @@ Vec3 CompositeShape<Real>::netForce() const {
 
 template <typename Real>
 double CompositeShape<Real>::distanceFrom(const Vector& places) const {
-  double squared = levels_->squaredDistanceBeyond(places.beyond);
+  double squared = levels_->uncovered().squaredDistanceFrom(places.uncovered);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     squared += squaredDistance(finest().displacement[axis].data(), places.nodes[axis].data(),
                                finest().count());
@@ -145,20 +145,20 @@ double CompositeShape<Real>::distanceFrom(const Vector& places) const {
 
 template <typename Real>
 double CompositeShape<Real>::displacementNorm() const {
-  return std::sqrt(squared(finest().displacement) + levels_->squaredDisplacementBeyond());
+  return std::sqrt(squared(finest().displacement) + levels_->uncovered().squaredDisplacement());
 }
 
 template <typename Real>
 double CompositeShape<Real>::correctionNorm() const {
-  return std::sqrt(finest().squaredLocalMotion() + squared(levels_->motion) +
-                   levels_->squaredMotionBeyond() +
-                   finest().constrained.squaredMotionOf(levels_->group_motion));
+  return std::sqrt(finest().squaredLocalMotion() + squared(levels_->correction().motion()) +
+                   levels_->correction().squaredUncovered() +
+                   finest().constrained.squaredMotionOf(levels_->correction().groupMotion()));
 }
 
 template <typename Real>
 double CompositeShape<Real>::longestSmoothMotion() const {
   double longest = 0.0;
-  for (const auto& values : levels_->motion) {
+  for (const auto& values : levels_->correction().motion()) {
     longest = std::max(longest, greatestOf(values.data(), finest().count()));
   }
   return longest;
@@ -168,7 +168,7 @@ template <typename Real>
 double CompositeShape<Real>::missedBeyond() const {
   if (levels_->isWhole()) return 0.0;
   const double moved = displacementNorm();
-  return moved == 0.0 ? 0.0 : std::sqrt(levels_->squaredRoughnessBeyond()) / moved;
+  return moved == 0.0 ? 0.0 : std::sqrt(levels_->uncovered().squaredRoughness()) / moved;
 }
 
 template <typename Real>

@@ -1,7 +1,7 @@
 // The shape on the composite grid (doc/architecture.md, "Words") as one vector x, with the forces
 // f(x) that are unbalanced there: what the solver adds, measures and moves as a whole.
 //
-// Lengths in spacings of the finest lattice, forces in GridHierarchy::modulus() * spacing^2.
+// Lengths in spacings of the finest lattice, forces in CompositeGrid::modulus() * spacing^2.
 #pragma once
 
 #include <memory>
@@ -14,12 +14,12 @@ namespace robot_tissue {
 // Positions, a step between two of them, or forces that do work in a step.
 template <typename Real>
 struct CompositeVector {
-  Field<Real> nodes;                            // of the finest lattice's open part
-  std::vector<GroupVector> groups;              // of patches by force
-  typename GridHierarchy<Real>::Beyond beyond;  // on the coarse levels; none where all is open
+  Field<Real> nodes;                               // of the finest lattice's open part
+  std::vector<GroupVector> groups;                 // of patches by force
+  typename UncoveredPart<Real>::Vector uncovered;  // by coarse levels; empty where all is open
 
-  // this += share * other.
-  void add(const CompositeVector& other, double share);
+  // this += alpha * other.
+  void add(const CompositeVector& other, double alpha);
 };
 
 // Work of forces in a step.
@@ -42,11 +42,11 @@ class CompositeShape {
   void keepPlaces(Vector& places) const;
   void keepForces(Vector& forces);
   void restore(const Vector& places);
-  void move(const Vector& step, double share);                            // x += share * step
-  void moveFrom(const Vector& places, const Vector& step, double share);  // x = places + ...
-  // The smooth motion that the coarse levels found last (GridHierarchy::findSmoothMotion), or a
-  // share of it, then steps of the smoother.
-  void correctAndSmooth(double share, int smoother_steps);
+  void move(const Vector& step, double alpha);                            // x += alpha * step
+  void moveFrom(const Vector& places, const Vector& step, double alpha);  // x = places + ...
+  // The smooth motion that the coarse levels found last (CoarseCorrection), times alpha
+  // (1 or less), then steps of the smoother.
+  void correctAndSmooth(double alpha, int smoother_steps);
 
   // Work in a step by the forces as they are now; and what the open part has in it.
   double workOfForces(const Vector& step);

@@ -40,7 +40,7 @@ class ErrorEstimator {
   void begin();
   // Another part is open: the places that earlier cycles came from are not of it.
   void noteOpened() { knows_way_ = false; }
-  // After findSmoothMotion; the last cycle is that one, if there was one.
+  // After CoarseCorrection::find; the last cycle is that one, if there was one.
   void update(const SolveContext& solve, const FasCgCycle<Real>& last);
 
   const MotionLeft& left() const { return left_; }

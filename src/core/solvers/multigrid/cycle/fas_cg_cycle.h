@@ -27,7 +27,7 @@ class FasCgCycle {
 
   // Forgets the last direction.
   void begin();
-  // After findSmoothMotion.
+  // After CoarseCorrection::find.
   void run(const SolveContext& solve, const MotionLeft& left);
   // Steps of the smoother alone, from there on; the last direction is forgotten.
   void smoothFrom(const CompositeVector<Real>& places);

@@ -55,7 +55,7 @@ SolveStatus FasCgIteration<Real>::run(SolveContext& solve) {
 // Where the solve stands: kLate while there is hope.
 template <typename Real>
 SolveStatus FasCgIteration<Real>::check(const SolveContext& solve) {
-  shape_.levels().findSmoothMotion();
+  shape_.levels().correction().find();
   estimator_.update(solve, cycle_);
   progress_.note(solve, estimator_, shape_);
   if (solve.cycles == 0 && forces_.isZero()) {
@@ -77,7 +77,7 @@ bool FasCgIteration<Real>::isBalanced(const SolveContext& solve) const {
 template <typename Real>
 bool FasCgIteration<Real>::isHopeless(const SolveContext& solve) const {
   const int cycles = solve.cycles;
-  const auto place = [this](int node) { return shape_.levels().displacementOf(node); };
+  const auto place = [this](int node) { return shape_.levels().displacements().of(node); };
   if (cycles > 0 && limits_.areExceeded(place)) return true;
   const bool whole = shape_.levels().isWhole();
   if (!whole && progress_.isStuck(cycles, tuning::kPatienceInPart)) return true;

@@ -35,7 +35,7 @@ void FasCgSolver<Real>::forget() {
 
 template <typename Real>
 const GridBox* FasCgSolver<Real>::visited() const {
-  return !shape_.exists() || shape_.levels().isWhole() ? nullptr : &shape_.levels().free();
+  return !shape_.exists() || shape_.levels().isWhole() ? nullptr : &shape_.levels().grid().free();
 }
 
 template <typename Real>
@@ -98,7 +98,7 @@ SolveStatus FasCgSolver<Real>::balance(SolveContext& solve) {
     solve.warm_started = warm_start_.take() && forces_.greatestAtStart() > 0.0 && warm_start_.go();
     const SolveStatus status = iteration_.run(solve);
     if (status == SolveStatus::kUnconverged && !shape_.levels().isWhole()) {
-      open(solve, shape_.levels().whole());
+      open(solve, shape_.levels().grid().whole());
     } else if (status == SolveStatus::kOk && part_.raise(shape_.missedBeyond())) {
       writeShape(solve);
       open(solve, part_.box());
@@ -121,8 +121,8 @@ void FasCgSolver<Real>::open(const SolveContext& solve, const GridBox& box) {
 template <typename Real>
 void FasCgSolver<Real>::prepare(const SolveContext& solve) {
   const std::vector<Vec3>& displacement = solve.shape.state.displacement;
-  shape_.levels().bind(solve.shape, solve.hold);
-  shape_.levels().setDisplacement(displacement, solve.hold.dirichletMask());
+  shape_.levels().constraints().bind(solve.shape, solve.hold);
+  shape_.levels().displacements().take(displacement, solve.hold.dirichletMask());
   limits_.begin(displacement);
   warm_start_.noteStart();
   shape_.finest().findForces();
@@ -131,7 +131,8 @@ void FasCgSolver<Real>::prepare(const SolveContext& solve) {
 
 template <typename Real>
 void FasCgSolver<Real>::writeShape(SolveContext& solve) const {
-  shape_.levels().writeTo(solve.shape.state.displacement, solve.hold.dirichletMask());
+  shape_.levels().displacements().writeTo(solve.shape.state.displacement,
+                                          solve.hold.dirichletMask());
 }
 
 // Patches by force go where the levels moved them, as rigid bodies do. True: one turned so far that
@@ -140,24 +141,24 @@ template <typename Real>
 bool FasCgSolver<Real>::settlePatches(SolveContext& solve) {
   const PatchesMoved moved = movePatches(lattice_, shape_.finest().constrained.motion, solve.shape);
   if (moved == PatchesMoved::kNone) return false;
-  shape_.levels().renewGroups(solve.shape, solve.hold);
+  shape_.levels().constraints().renewGroups(solve.shape, solve.hold);
   shape_.finest().findForces();
   return moved == PatchesMoved::kTurned;
 }
 
 template <typename Real>
 void FasCgSolver<Real>::answer(const SolveContext& solve, SolveReport& report) {
-  const GridHierarchy<Real>& levels = shape_.levels();
-  const double unit = levels.modulus() * lattice_.spacing() * lattice_.spacing();
-  PatchAnswers answers = answersOf(lattice_, solve, [&levels, unit](int node) -> Vec3 {
-    return unit * levels.finest().wholeForce(levels.entryOf(node));
+  const CompositeGrid<Real>& grid = shape_.levels().grid();
+  const double unit = grid.modulus() * lattice_.spacing() * lattice_.spacing();
+  PatchAnswers answers = answersOf(lattice_, solve, [&grid, unit](int node) -> Vec3 {
+    return unit * grid.finest().wholeForce(grid.entryOf(node));
   });
   forces_.noteHeld(answers.greatest / unit);
   report.patches = std::move(answers.all);
   report.iterations = solve.cycles;
   report.residual = forces_.residual(solve.shape);
-  report.active_nodes = part_.nodesIn(levels.free(), solve.hold);
-  report.layers = part_.layersIn(levels.free());
+  report.active_nodes = part_.nodesIn(grid.free(), solve.hold);
+  report.layers = part_.layersIn(grid.free());
 }
 
 std::unique_ptr<MultigridSolver> makeMultigridSolver(const Lattice& lattice,

@@ -76,7 +76,7 @@ template <typename Real>
 Vec3 ForceBalance<Real>::heldForce(const std::vector<int>& loaded) const {
   Vec3 force = Vec3::Zero();
   for (const int node : loaded) {
-    const int entry = shape_.levels().entryOf(node);
+    const int entry = shape_.levels().grid().entryOf(node);
     if (shape_.finest().dirichletAxes(entry) != 0) force += shape_.finest().wholeForce(entry);
   }
   return force;
@@ -98,14 +98,14 @@ Vec3 forceLeftOn(CompositeShape<Real>& shape, double spacing) {
   Vec3 left = shape.netForce();
   for (const GroupVector& force : shape.finest().constrained.force) left += forceOf(force);
   double unit = 1.0;
-  for (const Field<Real>& forces : shape.levels().findForcesBeyond()) {
+  for (const Field<Real>& forces : shape.levels().uncovered().findForces()) {
     unit *= 4.0;
     for (int axis = 0; axis < 3; ++axis) {
       const auto& values = forces[at(axis)];
       left[axis] += unit * sumOf(values.data(), static_cast<int>(values.size()));
     }
   }
-  return shape.levels().modulus() * spacing * spacing * left;
+  return shape.levels().grid().modulus() * spacing * spacing * left;
 }
 
 template class ForceBalance<float>;

@@ -1,5 +1,5 @@
 // Which part of the finest lattice is solved for: a box around what acts (the seeds) and so many
-// layers more; beyond, coarse lattices tell (GridHierarchy).
+// layers more; beyond, coarse levels tell (CompositeGrid).
 #pragma once
 
 #include <vector>

@@ -37,15 +37,15 @@ double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
   fixed.bind(rest);
   throwOffRest(fixed, lattice.spacing(), rest.state.displacement);
   GridHierarchy<Real>& levels = shape.levels();
-  levels.bind(rest, fixed);
+  levels.constraints().bind(rest, fixed);
   const Field<Real> weight = shape.finest().right_hand_side;
   shape.finest().clearRightHandSide();
-  levels.setDisplacement(rest.state.displacement, fixed.dirichletMask());
+  levels.displacements().take(rest.state.displacement, fixed.dirichletMask());
   shape.finest().findForces();
   double least = 1.0;
   const int cycles = levels.isWhole() ? tuning::kTrialCycles : tuning::kTrialCyclesInPart;
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    levels.findSmoothMotion();
+    levels.correction().find();
     const double seen = shape.correctionNorm();
     if (cycle > 0 && seen > 0.0) least = std::max(least, shape.displacementNorm() / seen);
     shape.correctAndSmooth(1.0, smoother_steps);

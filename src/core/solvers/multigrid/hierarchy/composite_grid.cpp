@@ -1,50 +1,16 @@
-// GridHierarchy: the parts of the levels that are solved for.
-#include <algorithm>
-#include <cmath>
+#include "solvers/multigrid/hierarchy/composite_grid.h"
 
-#include "solvers/multigrid/hierarchy/grid_hierarchy.h"
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "solvers/multigrid/hierarchy/open_parts.h"
 #include "solvers/multigrid/hierarchy/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 namespace tuning = hierarchy_tuning;
-
-int countOf(const GridBox& box) {
-  return (box.high[0] - box.low[0] + 1) * (box.high[1] - box.low[1] + 1) *
-         (box.high[2] - box.low[2] + 1);
-}
-
-// Coarse nodes whose fine ones, those next to them too, may all move.
-GridBox coveredBy(const GridBox& free, const GridBox& whole) {
-  GridBox covered;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool to_the_end = free.high[axis] == whole.high[axis];
-    covered.low[axis] = (free.low[axis] + 1) / 2;
-    covered.high[axis] = (free.high[axis] + (to_the_end ? 1 : 0)) / 2;
-  }
-  return covered;
-}
-
-GridBox around(const GridBox& box, int layers) {
-  GridBox wider = box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    wider.low[axis] -= layers;
-    wider.high[axis] += layers;
-  }
-  return wider;
-}
-
-// So that the points just beyond are points of the next coarser level, or the block ends there.
-GridBox fitted(const GridBox& box, const GridBox& whole) {
-  GridBox fit = box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    fit.low[axis] = box.low[axis] <= 2 ? 0 : box.low[axis] - 1 + box.low[axis] % 2;
-    const int high = box.high[axis] + 1 - box.high[axis] % 2;
-    fit.high[axis] = high >= whole.high[axis] - 2 ? whole.high[axis] : high;
-  }
-  return countOf(fit) > tuning::kMostOpen * countOf(whole) ? whole : fit;
-}
 
 LevelGrid gridOf(const GridBox& points) {
   std::array<int, 3> size{};
@@ -53,8 +19,9 @@ LevelGrid gridOf(const GridBox& points) {
   return LevelGrid(size);
 }
 
-// Where a place next to the grid's end would be, as the nodes before it go on.
-NodeShares goingOn(const LevelGrid& grid, const std::array<int, 3>& beyond) {
+// The value at a place one beyond the grid's end along some axes, from the nodes before it:
+// u(n) = 2 u(n - 1) - u(n - 2) along each of these.
+NodeShares extrapolated(const LevelGrid& grid, const std::array<int, 3>& beyond) {
   std::array<int, 3> last = beyond;
   for (std::size_t axis = 0; axis < 3; ++axis)
     last[axis] = std::min(last[axis], grid.size[axis] - 1);
@@ -80,17 +47,34 @@ GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
   return local;
 }
 
+double greatestShear(const ElasticModel& model, const CellSet& cells) {
+  double greatest = 0.0;
+  for (const Cell& cell : cells.all()) greatest = std::max(greatest, model.cellModuli(cell).shear);
+  return greatest == 0.0 ? 1.0 : greatest;
+}
+
 }  // namespace
 
 template <typename Real>
-GridBox GridHierarchy<Real>::whole() const {
-  return wholeOf(lattice_.size());
+CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& model,
+                                   const CellSet& cells, Workers* workers)
+    : lattice_(lattice),
+      workers_(workers),
+      spacing_(lattice.spacing()),
+      modulus_(greatestShear(model, cells)),
+      sources_(levelSources(lattice, model, cells, modulus_, tuning::kFewestPoints)) {
+  if (isBlock()) {
+    measureStiffness();
+    openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
+  } else {
+    openAll(model, cells);
+  }
 }
 
 // Of lattices of equal cells, by a block of them that all stand for finer ones, the stiffest there
 // is: not of each part anew.
 template <typename Real>
-void GridHierarchy<Real>::measureStiffness() {
+void CompositeGrid<Real>::measureStiffness() {
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     LevelSource& source = sources_[level];
     if (!source.isUniform()) continue;
@@ -98,14 +82,15 @@ void GridHierarchy<Real>::measureStiffness() {
     for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
     const LevelGrid grid = gridOf(points);
     const GridLevel<Real> block(grid, 0, source.cellsIn(points, grid),
-                                {points, level == 0 ? GridBox{{1}, {0}} : points});
+                                {points, level == 0 ? kCoversNothing : points});
     source.greatest_stiffness = block.greatestStiffness();
   }
 }
 
-// As what a tool touches, but always the same.
+// A part about as large as a tool opens, for the trial at rest; it hangs on the lattice alone, so
+// that what the trial measures does, too.
 template <typename Real>
-GridBox GridHierarchy<Real>::middle() const {
+GridBox CompositeGrid<Real>::middle() const {
   GridBox box = whole();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.low[axis] = box.high[axis] = box.high[axis] / 2;
@@ -114,68 +99,36 @@ GridBox GridHierarchy<Real>::middle() const {
 }
 
 template <typename Real>
-bool GridHierarchy<Real>::open(const GridBox& box, int layers,
-                               const std::vector<Vec3>& displacement) {
-  if (sources_.empty()) return false;
-  const std::vector<GridBox> free = partsAround(box, layers);
+bool CompositeGrid<Real>::open(const GridBox& box, int layers) {
+  if (!isBlock()) return false;
+  const std::vector<GridBox> free = openPartsAround(sources_, box, layers);
   if (free == free_) return false;
   openParts(free);
-  bond_ = Bond();
-  setDisplacement(displacement, std::vector<std::uint8_t>(displacement.size(), 0));
-  placeCoarse(displacement);
   return true;
 }
 
-// Where a level is open as a whole, the coarser ones are.
 template <typename Real>
-std::vector<GridBox> GridHierarchy<Real>::partsAround(const GridBox& box, int layers) const {
-  std::vector<GridBox> free;
-  GridBox wanted = box;
-  for (std::size_t level = 0; level < sources_.size(); ++level) {
-    const LevelSource& source = sources_[level];
-    const bool has_coarser = level + 1 < sources_.size() && sources_[level + 1].isThick();
-    if (!source.rough.isEmpty())
-      wanted = joined(wanted, around(source.rough, tuning::kBesideRough));
-    free.push_back(has_coarser ? fitted(wanted, source.whole()) : source.whole());
-    wanted = around(coveredBy(free.back(), source.whole()), layers);
-  }
-  return free;
-}
-
-// The nodes that may move, and those next to them.
-template <typename Real>
-GridBox GridHierarchy<Real>::pointsOf(std::size_t level) const {
-  const GridBox whole = sources_[level].whole();
-  GridBox points = around(free_[level], 1);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    points.low[axis] = std::max(points.low[axis], 0);
-    points.high[axis] = std::min(points.high[axis], whole.high[axis]);
-  }
-  return points;
-}
-
-template <typename Real>
-void GridHierarchy<Real>::openParts(const std::vector<GridBox>& free) {
+void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
   free_ = free;
+  points_.clear();
   levels_.clear();
-  links_.clear();
-  motions_.clear();
+  transfers_.clear();
   for (std::size_t level = 0; level < free_.size(); ++level) {
     LevelSource& source = sources_[level];
-    const GridBox points = pointsOf(level);
+    points_.push_back(withNeighbors(free_[level], source.whole()));
+    const GridBox& points = points_.back();
     const LevelGrid grid = gridOf(points);
     const LevelPart part = {
         from(free_[level], points.low),
-        level == 0 ? GridBox{{1}, {0}}
+        level == 0 ? kCoversNothing
                    : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
-    if (level > 0) addLink(transferTo(level, grid));
+    if (level > 0) transfers_.push_back(transferTo(level, grid));
     addLevel(grid, 0, source.cellsIn(points, grid), part, source.greatest_stiffness);
   }
-  motion = std::move(motions_.front());
-  levels_.front().constrained.setUnits(spacing_, modulus_);
+  finest().constrained.setUnits(spacing_, modulus_);
   nodes_.clear();
   entries_.clear();
-  const GridBox points = pointsOf(0);
+  const GridBox& points = points_.front();
   for (int k = points.low[2]; k <= points.high[2]; ++k) {
     for (int j = points.low[1]; j <= points.high[1]; ++j) {
       for (int i = points.low[0]; i <= points.high[0]; ++i) {
@@ -186,9 +139,11 @@ void GridHierarchy<Real>::openParts(const std::vector<GridBox>& free) {
   }
 }
 
+// From the coarsest level there is so far. A coarse node that stands one beyond the fine grid's end
+// starts where the fine nodes before it lead.
 template <typename Real>
-GridTransfer<Real> GridHierarchy<Real>::transferTo(std::size_t level, const LevelGrid& grid) {
-  const GridBox fine = pointsOf(level - 1), points = pointsOf(level);
+GridTransfer<Real> CompositeGrid<Real>::transferTo(std::size_t level, const LevelGrid& grid) const {
+  const GridBox &fine = points_[level - 1], &points = points_[level];
   const LevelGrid& fine_grid = levels_.back().grid();
   std::array<int, 3> place{};
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] = fine.low[axis] / 2 - points.low[axis];
@@ -200,67 +155,107 @@ GridTransfer<Real> GridHierarchy<Real>::transferTo(std::size_t level, const Leve
         const std::array<int, 3> twice = {2 * i, 2 * j, 2 * k};
         if (fine_grid.whole().has(twice)) continue;
         to.starts.push_back(
-            {grid.index(place[0] + i, place[1] + j, place[2] + k), goingOn(fine_grid, twice)});
+            {grid.index(place[0] + i, place[1] + j, place[2] + k), extrapolated(fine_grid, twice)});
       }
     }
   }
   return {fine_grid, std::move(to), place};
 }
 
+// What is no block: all of it, with the nodes that stand beside the grid.
 template <typename Real>
-int GridHierarchy<Real>::entryOf(int node) const {
-  if (sources_.empty()) return entries_[at(node)];
-  const GridBox points = pointsOf(0);
+void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cells) {
+  LevelGrid grid(lattice_.size());
+  int beside = static_cast<int>(cells.ghosts().size());
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    const std::array<int, 3>& place = lattice_.gridIndex(cells.original(node));
+    entries_.push_back(cells.isGhost(node) ? grid.beside + node - cells.latticeNodeCount()
+                                           : grid.index(place[0], place[1], place[2]));
+  }
+  nodes_.resize(entries_.size());
+  std::iota(nodes_.begin(), nodes_.end(), 0);
+  std::vector<LevelCell> level_cells = finestCells(model, cells);
+  while (true) {
+    const GridBox all = grid.whole();
+    addLevel(grid, beside, level_cells, {all, levels_.empty() ? kCoversNothing : all}, 0.0);
+    free_.push_back(all);
+    if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
+    Coarsening to = coarsened(grid, level_cells, levels_.back().count());
+    level_cells = std::move(to.cells);
+    beside = to.nodes_beside;
+    const LevelGrid coarse = to.grid;
+    transfers_.push_back({grid, std::move(to)});
+    grid = coarse;
+  }
+  finest().constrained.setUnits(spacing_, modulus_);
+  findWeight(model, cells);
+}
+
+template <typename Real>
+std::vector<LevelCell> CompositeGrid<Real>::finestCells(const ElasticModel& model,
+                                                        const CellSet& cells) const {
+  std::vector<LevelCell> level_cells;
+  level_cells.reserve(cells.all().size());
+  for (const Cell& cell : cells.all()) {
+    LevelCell level_cell;
+    level_cell.place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
+    const Moduli moduli = model.cellModuli(cell);
+    level_cell.shear = moduli.shear / modulus_;
+    level_cell.bulk = moduli.bulk / modulus_;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      level_cell.nodes[at(corner)] = entryOf(cell.nodes[at(corner)]);
+    }
+    level_cells.push_back(level_cell);
+  }
+  return level_cells;
+}
+
+template <typename Real>
+void CompositeGrid<Real>::addLevel(const LevelGrid& grid, int beside,
+                                   const std::vector<LevelCell>& cells, const LevelPart& part,
+                                   double greatest_stiffness) {
+  levels_.emplace_back(grid, beside, cells, part, greatest_stiffness);
+  if (workers_ != nullptr) levels_.back().share(*workers_);
+}
+
+template <typename Real>
+void CompositeGrid<Real>::findWeight(const ElasticModel& model, const CellSet& cells) {
+  const double unit = modulus_ * spacing_ * spacing_;
+  for (const Cell& cell : cells.all()) {
+    const Vec3 weight = model.cornerWeight(cell) / unit;
+    if (weight.isZero(0.0)) continue;
+    for (auto& values : weight_) values.resize(at(finest().count()), Real(0));
+    for (const int node : cell.nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        weight_[at(axis)][at(entryOf(node))] += static_cast<Real>(weight[axis]);
+      }
+    }
+  }
+}
+
+template <typename Real>
+int CompositeGrid<Real>::entryOf(int node) const {
+  if (!isBlock()) return entries_[at(node)];
+  const GridBox& points = points_.front();
   const std::array<int, 3>& place = lattice_.gridIndex(node);
   if (!points.has(place)) return -1;
   return levels_.front().grid().index(place[0] - points.low[0], place[1] - points.low[1],
                                       place[2] - points.low[2]);
 }
 
-// Visits the points that a coarse level has open, with the node at each one's place, or next to it
-// where the block ends before.
 template <typename Real>
-template <typename Visit>
-void GridHierarchy<Real>::forPoints(std::size_t level, Visit visit) const {
-  const GridBox points = pointsOf(level);
-  const LevelGrid& grid = levels_[level].grid();
-  const auto& last = whole().high;
-  for (int k = points.low[2]; k <= points.high[2]; ++k) {
-    for (int j = points.low[1]; j <= points.high[1]; ++j) {
-      for (int i = points.low[0]; i <= points.high[0]; ++i) {
-        const std::array<int, 3> there = {std::min(i << level, last[0]),
-                                          std::min(j << level, last[1]),
-                                          std::min(k << level, last[2])};
-        visit(grid.index(i - points.low[0], j - points.low[1], k - points.low[2]),
-              lattice_.node(there[0], there[1], there[2]));
-      }
-    }
-  }
+void CompositeGrid<Real>::placeInterface(std::size_t fine) {
+  transfers_[fine].place(levels_[fine + 1].displacement, levels_[fine].interfaceNodes(),
+                         levels_[fine].displacement);
 }
 
-// Of a block, in all the coarse parts that are open: where the nodes at their places are.
+// From the coarsest on.
 template <typename Real>
-void GridHierarchy<Real>::placeCoarse(const std::vector<Vec3>& displacement) {
-  if (sources_.empty()) return;
-  for (std::size_t level = 1; level < levels_.size(); ++level) {
-    const double unit = 1.0 / (spacing_ * (1 << level));
-    forPoints(level, [&](int entry, int node) {
-      for (int axis = 0; axis < 3; ++axis) {
-        levels_[level].displacement[at(axis)][at(entry)] =
-            static_cast<Real>(unit * displacement[at(node)][axis]);
-      }
-    });
-  }
+void CompositeGrid<Real>::placeInterfaces() {
+  for (std::size_t fine = transfers_.size(); fine-- > 0;) placeInterface(fine);
 }
 
-template <typename Real>
-void GridHierarchy<Real>::holdFixed(std::size_t level) {
-  forPoints(level, [&](int entry, int node) {
-    if (lattice_.isFixed(node)) levels_[level].hold(entry, kAllAxes);
-  });
-}
-
-template class GridHierarchy<float>;
-template class GridHierarchy<double>;
+template class CompositeGrid<float>;
+template class CompositeGrid<double>;
 
 }  // namespace robot_tissue

@@ -1,58 +1,69 @@
-// GridHierarchy: what holds the nodes, on every level.
-#include <algorithm>
+#include "solvers/multigrid/hierarchy/level_constraints.h"
 
-#include "solvers/multigrid/hierarchy/grid_hierarchy.h"
+#include <algorithm>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kNext = -1.0;  // between the parts of a bond
+constexpr double kNext = -1.0;  // between the parts of a pattern
 
 }  // namespace
 
 template <typename Real>
-void GridHierarchy<Real>::bind(const ConstrainedState& shape, const DofConstraints& hold) {
-  Bond bond = bondOf(shape, hold);
-  const bool by_force = std::any_of(shape.patches.begin(), shape.patches.end(), byForce);
-  const bool held_alike = !by_force && bond.held == bond_.held;
-  if (held_alike && bond.springs == bond_.springs) return renewSprings(shape, hold);
-  bond_ = by_force ? Bond() : std::move(bond);
-  if (!held_alike) {
-    holdFinest(shape, hold);
-    for (std::size_t level = 0; level + 1 < levels_.size(); ++level) holdCoarse(level);
-  }
-  hangFinest(shape, hold);
-  for (std::size_t level = 0; level + 1 < levels_.size(); ++level) hangCoarse(level);
-  if (!held_alike) placeInterfaces();
+LevelConstraints<Real>::LevelConstraints(CompositeGrid<Real>& grid) : grid_(grid) {
+  reset();
 }
 
 template <typename Real>
-typename GridHierarchy<Real>::Bond GridHierarchy<Real>::bondOf(const ConstrainedState& shape,
-                                                               const DofConstraints& hold) {
-  Bond bond = {{kNext}, {kNext}};
+void LevelConstraints<Real>::reset() {
+  pattern_ = Pattern();
+  from_fine_.assign(grid_.levelCount() - 1, FromFine());
+}
+
+template <typename Real>
+void LevelConstraints<Real>::bind(const ConstrainedState& shape, const DofConstraints& hold) {
+  Pattern pattern = patternOf(shape, hold);
+  const bool by_force = std::any_of(shape.patches.begin(), shape.patches.end(), byForce);
+  const bool held_alike = !by_force && pattern.dirichlet == pattern_.dirichlet;
+  if (held_alike && pattern.springs == pattern_.springs) return renewSprings(shape, hold);
+  pattern_ = by_force ? Pattern() : std::move(pattern);
+  if (!held_alike) {
+    holdFinest(shape, hold);
+    for (std::size_t level = 1; level < grid_.levelCount(); ++level) holdCoarse(level);
+  }
+  addSpringsToFinest(shape, hold);
+  for (std::size_t level = 1; level < grid_.levelCount(); ++level) addSpringsToCoarse(level);
+  if (!held_alike) grid_.placeInterfaces();
+}
+
+template <typename Real>
+typename LevelConstraints<Real>::Pattern LevelConstraints<Real>::patternOf(
+    const ConstrainedState& shape, const DofConstraints& hold) {
+  Pattern pattern = {{kNext}, {kNext}};
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
     for (const int node : hold.hardOf(index)) {
-      bond.held.push_back(node);
-      bond.held.push_back(hold.dirichletMask()[at(node)]);
+      pattern.dirichlet.push_back(node);
+      pattern.dirichlet.push_back(hold.dirichletMask()[at(node)]);
     }
-    bond.held.push_back(kNext);
-    for (const RimSpring& rim : patch.rim) bond.springs.push_back(rim.node);
-    bond.springs.push_back(kNext);
+    pattern.dirichlet.push_back(kNext);
+    for (const RimSpring& rim : patch.rim) pattern.springs.push_back(rim.node);
+    pattern.springs.push_back(kNext);
     for (const ContactSpring& contact : patch.contacts) {
-      bond.springs.push_back(static_cast<double>(contact.carriers.size()));
+      pattern.springs.push_back(static_cast<double>(contact.carriers.size()));
       for (const NodeWeight& carrier : contact.carriers) {
-        bond.springs.push_back(carrier.node);
-        bond.springs.push_back(carrier.weight);
+        pattern.springs.push_back(carrier.node);
+        pattern.springs.push_back(carrier.weight);
       }
     }
   }
-  return bond;
+  return pattern;
 }
 
 template <typename Real>
-void GridHierarchy<Real>::holdFinest(const ConstrainedState& shape, const DofConstraints& hold) {
-  GridLevel<Real>& level = levels_.front();
+void LevelConstraints<Real>::holdFinest(const ConstrainedState& shape, const DofConstraints& hold) {
+  GridLevel<Real>& level = grid_.finest();
   level.freeAll();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     level.constrained.groups.emplace_back();
@@ -60,55 +71,57 @@ void GridHierarchy<Real>::holdFinest(const ConstrainedState& shape, const DofCon
     group.turns = shape.patches[index].turns;
     if (!byForce(shape.patches[index])) continue;
     for (const int node : hold.hardOf(index)) {
-      group.nodes.push_back(entryOf(node));
-      group.arms.push_back(hold.armOf(shape, index, node) / spacing_);
+      group.nodes.push_back(grid_.entryOf(node));
+      group.arms.push_back(hold.armOf(shape, index, node) / grid_.spacing());
     }
   }
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const std::size_t node = at(nodes_[i]);
-    level.hold(entries_[i], hold.carriers()[node] >= 0 ? 0U : hold.dirichletMask()[node]);
+  for (std::size_t i = 0; i < grid_.nodes().size(); ++i) {
+    const std::size_t node = at(grid_.nodes()[i]);
+    level.hold(grid_.entries()[i], hold.carriers()[node] >= 0 ? 0U : hold.dirichletMask()[node]);
   }
-  if (!weight_.front().empty()) level.right_hand_side = weight_;
+  if (!grid_.weight().front().empty()) level.right_hand_side = grid_.weight();
 }
 
 template <typename Real>
-void GridHierarchy<Real>::hangFinest(const ConstrainedState& shape, const DofConstraints& hold) {
-  GridLevel<Real>& level = levels_.front();
+void LevelConstraints<Real>::addSpringsToFinest(const ConstrainedState& shape,
+                                                const DofConstraints& hold) {
+  GridLevel<Real>& level = grid_.finest();
   std::vector<LevelSpring>& springs = level.constrained.springs;
   springs.clear();
   for (const LoadingPatch& patch : shape.patches) {
     for (const RimSpring& rim : patch.rim) {
       springs.emplace_back();
-      springs.back().carriers.push_back({entryOf(rim.node), 1.0});
+      springs.back().carriers.push_back({grid_.entryOf(rim.node), 1.0});
     }
     for (const ContactSpring& contact : patch.contacts) {
       springs.emplace_back();
       for (const NodeWeight& carrier : contact.carriers) {
-        springs.back().carriers.push_back({entryOf(carrier.node), carrier.weight});
+        springs.back().carriers.push_back({grid_.entryOf(carrier.node), carrier.weight});
       }
     }
   }
   renewSprings(shape, hold);
   level.bind();
-  const double unit = modulus_ * spacing_ * spacing_;
+  const double unit = grid_.modulus() * grid_.spacing() * grid_.spacing();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     if (!byForce(shape.patches[index])) continue;
     level.constrained.right_hand_side[index].template head<3>() = shape.patches[index].force / unit;
   }
 }
 
-// Springs hang where they did; what they are may have changed.
+// Springs join the nodes that they did; their stiffness, anchors and laws may have changed.
 template <typename Real>
-void GridHierarchy<Real>::renewSprings(const ConstrainedState& shape, const DofConstraints& hold) {
-  auto spring = levels_.front().constrained.springs.begin();
+void LevelConstraints<Real>::renewSprings(const ConstrainedState& shape,
+                                          const DofConstraints& hold) {
+  auto spring = grid_.finest().constrained.springs.begin();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
     for (const RimSpring& rim : patch.rim) {
-      spring->stiffness = stiffnessOf(patch, rim) / (modulus_ * spacing_);
-      spring->anchor = rim.anchor / spacing_;
+      spring->stiffness = stiffnessOf(patch, rim) / (grid_.modulus() * grid_.spacing());
+      spring->anchor = rim.anchor / grid_.spacing();
       if (byForce(patch)) {
         spring->group = static_cast<int>(index);
-        spring->arm = hold.armOf(shape, index, rim.node) / spacing_;
+        spring->arm = hold.armOf(shape, index, rim.node) / grid_.spacing();
       }
       ++spring;
     }
@@ -120,31 +133,36 @@ void GridHierarchy<Real>::renewSprings(const ConstrainedState& shape, const DofC
 }
 
 template <typename Real>
-void GridHierarchy<Real>::renewGroups(const ConstrainedState& shape, const DofConstraints& hold) {
+void LevelConstraints<Real>::renewGroups(const ConstrainedState& shape,
+                                         const DofConstraints& hold) {
   bind(shape, hold);
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     if (!byForce(shape.patches[index])) continue;
     for (const int node : hold.hardOf(index)) {
       for (int axis = 0; axis < 3; ++axis) {
-        levels_.front().displacement[at(axis)][at(entryOf(node))] =
-            static_cast<Real>(shape.state.displacement[at(node)][axis] / spacing_);
+        grid_.finest().displacement[at(axis)][at(grid_.entryOf(node))] =
+            static_cast<Real>(shape.state.displacement[at(node)][axis] / grid_.spacing());
       }
     }
   }
 }
 
 template <typename Real>
-void GridHierarchy<Real>::holdCoarse(std::size_t index) {
-  const GridLevel<Real>& fine = levels_[index];
-  GridLevel<Real>& coarse = levels_[index + 1];
+void LevelConstraints<Real>::holdCoarse(std::size_t index) {
+  const GridLevel<Real>& fine = grid_.level(index - 1);
+  GridLevel<Real>& coarse = grid_.level(index);
+  const GridTransfer<Real>& transfer = grid_.transfer(index - 1);
   coarse.freeAll();
-  if (!sources_.empty()) holdFixed(index + 1);
+  if (grid_.isBlock()) {
+    grid_.forNodesAt(index, [&](int entry, int node) {
+      if (grid_.lattice().isFixed(node)) coarse.hold(entry, kAllAxes);
+    });
+  }
   for (std::size_t group = 0; group < fine.constrained.groups.size(); ++group) {
     coarse.constrained.groups.emplace_back();
     coarse.constrained.groups.back().turns = fine.constrained.groups[group].turns;
     for (std::size_t i = 0; i < fine.constrained.groups[group].nodes.size(); ++i) {
-      const NodeShares carriers =
-          links_[index].transfer.carriersOf(fine.constrained.groups[group].nodes[i]);
+      const NodeShares carriers = transfer.carriersOf(fine.constrained.groups[group].nodes[i]);
       if (carriers.size() > 1) continue;
       coarse.constrained.groups.back().nodes.push_back(carriers.front().node);
       coarse.constrained.groups.back().arms.push_back(fine.constrained.groups[group].arms[i] /
@@ -153,20 +171,20 @@ void GridHierarchy<Real>::holdCoarse(std::size_t index) {
   }
   for (int node = 0; node < fine.count(); ++node) {
     if (fine.dirichletAxes(node) == 0 || !fine.exists(node)) continue;
-    const NodeShares carriers = links_[index].transfer.carriersOf(node);
+    const NodeShares carriers = transfer.carriersOf(node);
     if (carriers.size() == 1) coarse.hold(carriers.front().node, fine.dirichletAxes(node));
   }
-  links_[index].ties.clear();
+  from_fine_[index - 1].ties.clear();
   addTies(index);
 }
 
 template <typename Real>
-void GridHierarchy<Real>::hangCoarse(std::size_t index) {
-  const std::vector<LevelSpring>& fine = levels_[index].constrained.springs;
-  GridLevel<Real>& coarse = levels_[index + 1];
-  std::vector<int>& sources = links_[index].sources;
+void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
+  const std::vector<LevelSpring>& fine = grid_.level(index - 1).constrained.springs;
+  GridLevel<Real>& coarse = grid_.level(index);
+  std::vector<int>& fine_springs = from_fine_[index - 1].springs;
   coarse.constrained.springs.clear();
-  sources.clear();
+  fine_springs.clear();
   for (std::size_t i = 0; i < fine.size(); ++i) {
     LevelSpring spring = fine[i];
     spring.contact = nullptr;
@@ -174,22 +192,22 @@ void GridHierarchy<Real>::hangCoarse(std::size_t index) {
     spring.carriers = freeCarriers(index, fine[i].carriers);
     if (spring.carriers.empty() && spring.group < 0) continue;
     coarse.constrained.springs.push_back(std::move(spring));
-    sources.push_back(static_cast<int>(i));
+    fine_springs.push_back(static_cast<int>(i));
   }
-  const std::vector<LevelSpring>& ties = links_[index].ties;
+  const std::vector<LevelSpring>& ties = from_fine_[index - 1].ties;
   coarse.constrained.springs.insert(coarse.constrained.springs.end(), ties.begin(), ties.end());
   coarse.bind();
 }
 
 // The coarse nodes that carry a spring of the fine lattice, without those that do not move.
 template <typename Real>
-std::vector<LevelSpring::Carrier> GridHierarchy<Real>::freeCarriers(
+std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
     std::size_t index, const std::vector<LevelSpring::Carrier>& fine) const {
-  const GridLevel<Real>& coarse = levels_[index + 1];
+  const GridLevel<Real>& coarse = grid_.level(index);
   std::vector<LevelSpring::Carrier> carriers;
   for (const LevelSpring::Carrier& carrier : fine) {
-    if (levels_[index].dirichletAxes(carrier.node) == kAllAxes) continue;
-    for (const NodeShare& share : links_[index].transfer.carriersOf(carrier.node)) {
+    if (grid_.level(index - 1).dirichletAxes(carrier.node) == kAllAxes) continue;
+    for (const NodeShare& share : grid_.transfer(index - 1).carriersOf(carrier.node)) {
       if (coarse.dirichletAxes(share.node) == kAllAxes) continue;
       const LevelSpring::Carrier part{share.node, share.weight * carrier.weight};
       const auto same = std::find_if(carriers.begin(), carriers.end(),
@@ -204,16 +222,16 @@ std::vector<LevelSpring::Carrier> GridHierarchy<Real>::freeCarriers(
   return carriers;
 }
 
-// A fine node that is held where no coarse one is keeps those around it back, as stiffly as it is.
+// One for each component that is given where no coarse node stands, and for hard nodes of groups.
 template <typename Real>
-void GridHierarchy<Real>::addTies(std::size_t index) {
-  const GridLevel<Real>& fine = levels_[index];
+void LevelConstraints<Real>::addTies(std::size_t index) {
+  const GridLevel<Real>& fine = grid_.level(index - 1);
   for (int node = 0; node < fine.count(); ++node) {
     if (fine.dirichletAxes(node) == 0 || !fine.exists(node)) continue;
     addTie(index, node, fine.dirichletAxes(node), -1, Vec3::Zero());
   }
   for (std::size_t group = 0; group < fine.constrained.groups.size(); ++group) {
-    if (levels_[index + 1].constrained.groups[group].nodes.empty()) continue;
+    if (grid_.level(index).constrained.groups[group].nodes.empty()) continue;
     const LevelGroup& hard = fine.constrained.groups[group];
     for (std::size_t i = 0; i < hard.nodes.size(); ++i) {
       addTie(index, hard.nodes[i], kAllAxes, static_cast<int>(group), hard.arms[i]);
@@ -222,11 +240,11 @@ void GridHierarchy<Real>::addTies(std::size_t index) {
 }
 
 template <typename Real>
-void GridHierarchy<Real>::addTie(std::size_t index, int node, unsigned axes, int group,
-                                 const Vec3& arm) {
-  const NodeShares carriers = links_[index].transfer.carriersOf(node);
+void LevelConstraints<Real>::addTie(std::size_t index, int node, unsigned axes, int group,
+                                    const Vec3& arm) {
+  const NodeShares carriers = grid_.transfer(index - 1).carriersOf(node);
   if (carriers.size() == 1) return;
-  const GridLevel<Real>& coarse = levels_[index + 1];
+  const GridLevel<Real>& coarse = grid_.level(index);
   LevelSpring spring;
   double weight = 0.0;
   for (const NodeShare& carrier : carriers) {
@@ -241,16 +259,16 @@ void GridHierarchy<Real>::addTie(std::size_t index, int node, unsigned axes, int
   if (spring.carriers.empty()) return;
   for (LevelSpring::Carrier& carrier : spring.carriers) carrier.weight /= weight;
   const double stiffness =
-      weight * weight * levels_[index].restStiffness(node) / GridTransfer<Real>::kTwice;
+      weight * weight * grid_.level(index - 1).restStiffness(node) / GridTransfer<Real>::kTwice;
   for (int axis = 0; axis < 3; ++axis) {
     if ((axes >> axis & 1U) != 0) spring.stiffness(axis, axis) = stiffness;
   }
   spring.group = group;
   spring.arm = arm / GridTransfer<Real>::kTwice;
-  links_[index].ties.push_back(std::move(spring));
+  from_fine_[index - 1].ties.push_back(std::move(spring));
 }
 
-template class GridHierarchy<float>;
-template class GridHierarchy<double>;
+template class LevelConstraints<float>;
+template class LevelConstraints<double>;
 
 }  // namespace robot_tissue

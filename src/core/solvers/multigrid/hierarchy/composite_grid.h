@@ -1,0 +1,118 @@
+// The levels of a tissue and what joins them: on each the part that is open, between a level and
+// the next coarser one the transfer P, and which node of the tissue is which entry of the finest.
+//
+// Of a block that is all there, each level is open in a part only, wider from level to level; nodes
+// beyond are where the next coarser level has them, u = P u_coarse. Where two spacings meet, the
+// forces of the fine cells go to the coarse nodes by P^T, so that nothing is lost there (fast
+// adaptive composite grid: McCormick 1984). What is no block is open as a whole on every level.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "material/elastic_model.h"
+#include "robot_tissue/core/lattice.h"
+#include "solvers/multigrid/hierarchy/grid_transfer.h"
+#include "solvers/multigrid/hierarchy/level_source.h"
+#include "solvers/multigrid/level/grid_level.h"
+
+namespace robot_tissue {
+
+template <typename Real>
+class CompositeGrid {
+ public:
+  // A block is open in its middle. The workers, null for none, must outlive the grid.
+  CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
+                Workers* workers);
+
+  // Opens the least part that has the box (points of the finest lattice), and so many layers more
+  // on each coarser level. The levels are new then, at rest and held by nothing. False: it was
+  // open, and nothing changed.
+  bool open(const GridBox& box, int layers);
+
+  bool isBlock() const { return !sources_.empty(); }
+  bool isWhole() const { return free_.front() == whole(); }  // all of the finest level is open
+  const GridBox& free() const { return free_.front(); }      // nodes of the finest lattice
+  GridBox whole() const { return wholeOf(lattice_.size()); }
+
+  std::size_t levelCount() const { return levels_.size(); }
+  GridLevel<Real>& level(std::size_t index) { return levels_[index]; }
+  const GridLevel<Real>& level(std::size_t index) const { return levels_[index]; }
+  GridLevel<Real>& finest() { return levels_.front(); }
+  const GridLevel<Real>& finest() const { return levels_.front(); }
+  // Between this level and the next coarser one.
+  GridTransfer<Real>& transfer(std::size_t fine) { return transfers_[fine]; }
+  const GridTransfer<Real>& transfer(std::size_t fine) const { return transfers_[fine]; }
+  // Puts a level's interface nodes, then those of all levels, where the coarser level has them.
+  void placeInterface(std::size_t fine);
+  void placeInterfaces();
+
+  // Of a block: points of a level's whole grid that its open part has, those next to free ones too.
+  const GridBox& points(std::size_t level) const { return points_[level]; }
+  LevelGrid wholeGrid(std::size_t level) const { return LevelGrid(sources_[level].size); }
+  // Of a block: calls visit(entry, node) with the entries of a coarse level and the tissue's node
+  // at each one's place, or next to it where the block ends before.
+  template <typename Visit>
+  void forNodesAt(std::size_t level, Visit visit) const;
+
+  // Of the tissue, in the open part, and their entries in the finest level's fields.
+  const std::vector<int>& nodes() const { return nodes_; }
+  const std::vector<int>& entries() const { return entries_; }
+  int entryOf(int node) const;  // -1: not in the open part
+
+  const Lattice& lattice() const { return lattice_; }
+  Workers* workers() const { return workers_; }
+  double modulus() const { return modulus_; }            // E0 (Pa)
+  double spacing() const { return spacing_; }            // h (m), of the finest lattice
+  const Field<Real>& weight() const { return weight_; }  // of nodes (E0 h^2); empty without gravity
+
+ private:
+  void measureStiffness();
+  GridBox middle() const;
+  void openParts(const std::vector<GridBox>& free);
+  GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
+  void openAll(const ElasticModel& model, const CellSet& cells);
+  std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
+  void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
+                const LevelPart& part, double greatest_stiffness);
+  void findWeight(const ElasticModel& model, const CellSet& cells);
+
+  const Lattice& lattice_;
+  Workers* workers_;
+  double spacing_;
+  double modulus_ = 1.0;
+  std::vector<LevelSource> sources_;  // empty where parts cannot be open
+  std::vector<GridBox> free_;         // per level, in points of its whole grid
+  std::vector<GridBox> points_;
+  std::vector<GridLevel<Real>> levels_;
+  std::vector<GridTransfer<Real>> transfers_;  // from level i to i + 1
+  std::vector<int> nodes_;
+  std::vector<int> entries_;
+  Field<Real> weight_;
+};
+
+template <typename Real>
+template <typename Visit>
+void CompositeGrid<Real>::forNodesAt(std::size_t level, Visit visit) const {
+  const GridBox& points = points_[level];
+  const LevelGrid& grid = levels_[level].grid();
+  const std::array<int, 3> last = whole().high;
+  for (int k = points.low[2]; k <= points.high[2]; ++k) {
+    for (int j = points.low[1]; j <= points.high[1]; ++j) {
+      for (int i = points.low[0]; i <= points.high[0]; ++i) {
+        const std::array<int, 3> there = {std::min(i << level, last[0]),
+                                          std::min(j << level, last[1]),
+                                          std::min(k << level, last[2])};
+        visit(grid.index(i - points.low[0], j - points.low[1], k - points.low[2]),
+              lattice_.node(there[0], there[1], there[2]));
+      }
+    }
+  }
+}
+
+extern template class CompositeGrid<float>;
+extern template class CompositeGrid<double>;
+
+}  // namespace robot_tissue

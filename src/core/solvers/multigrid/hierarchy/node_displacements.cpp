@@ -1,0 +1,189 @@
+#include "solvers/multigrid/hierarchy/node_displacements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solvers/multigrid/hierarchy/tuning.h"
+
+namespace robot_tissue {
+
+namespace tuning = hierarchy_tuning;
+
+// Axis by axis: nodes in a row of the grid are neighbors in a component's array.
+template <typename Real>
+bool NodeDisplacements<Real>::take(const std::vector<Vec3>& displacement,
+                                   const std::vector<std::uint8_t>& held) {
+  const double unit = 1.0 / grid_.spacing();
+  const std::vector<int>&nodes = grid_.nodes(), &entries = grid_.entries();
+  bool others_moved = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    Real* to = grid_.finest().displacement[at(axis)].data();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::size_t node = at(nodes[i]);
+      Real& here = to[entries[i]];
+      const Real now = static_cast<Real>(displacement[node][axis] * unit);
+      const bool same = std::abs(now - here) <= tuning::kSame * std::abs(here);
+      others_moved = others_moved || (!same && held[node] == 0);
+      if (!same) here = now;
+    }
+  }
+  if (others_moved) takeCoarse(displacement);
+  return others_moved;
+}
+
+template <typename Real>
+void NodeDisplacements<Real>::takeCoarse(const std::vector<Vec3>& displacement) {
+  if (!grid_.isBlock()) return;
+  for (std::size_t level = 1; level < grid_.levelCount(); ++level) {
+    const double unit = 1.0 / (grid_.spacing() * (1 << level));
+    Field<Real>& to = grid_.level(level).displacement;
+    grid_.forNodesAt(level, [&](int entry, int node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        to[at(axis)][at(entry)] = static_cast<Real>(unit * displacement[at(node)][axis]);
+      }
+    });
+  }
+}
+
+template <typename Real>
+Vec3 NodeDisplacements<Real>::of(int node) const {
+  if (grid_.isBlock()) return grid_.spacing() * valueAt(0, grid_.lattice().gridIndex(node));
+  return grid_.spacing() * vectorAt(grid_.finest().displacement, grid_.entryOf(node));
+}
+
+// In spacings of the finest lattice, at a point of the level's whole grid: where that is not open,
+// the mean of the two, four or eight coarse points around it (P).
+template <typename Real>
+Vec3 NodeDisplacements<Real>::valueAt(std::size_t level, const std::array<int, 3>& place) const {
+  const GridBox& points = grid_.points(level);
+  if (points.has(place)) {
+    const GridLevel<Real>& open = grid_.level(level);
+    const int entry = open.grid().index(place[0] - points.low[0], place[1] - points.low[1],
+                                        place[2] - points.low[2]);
+    return std::ldexp(1.0, static_cast<int>(level)) * vectorAt(open.displacement, entry);
+  }
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int z = place[2] / 2; z <= (place[2] + 1) / 2; ++z) {
+    for (int y = place[1] / 2; y <= (place[1] + 1) / 2; ++y) {
+      for (int x = place[0] / 2; x <= (place[0] + 1) / 2; ++x) {
+        sum += valueAt(level + 1, {x, y, z});
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+template <typename Real>
+void NodeDisplacements<Real>::writeTo(std::vector<Vec3>& displacement,
+                                      const std::vector<std::uint8_t>& held) const {
+  const Field<Real>& from = grid_.finest().displacement;
+  for (std::size_t i = 0; i < grid_.nodes().size(); ++i) {
+    const std::size_t node = at(grid_.nodes()[i]);
+    if (held[node] == kAllAxes) continue;
+    const Vec3 moved = grid_.spacing() * vectorAt(from, grid_.entries()[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((held[node] >> axis & 1) == 0) displacement[node][axis] = moved[axis];
+    }
+  }
+  if (!grid_.isWhole()) writeInterpolated(displacement);
+}
+
+// Nodes outside of the finest level's open part. From the coarsest level down, each one's whole
+// grid is filled by u = P u_coarse, then with what is open of it.
+template <typename Real>
+void NodeDisplacements<Real>::writeInterpolated(std::vector<Vec3>& displacement) const {
+  const std::size_t coarsest = grid_.levelCount() - 1;
+  Field<Real> coarse = grid_.level(coarsest).displacement;
+  LevelGrid coarse_grid = grid_.wholeGrid(coarsest);
+  for (std::size_t level = coarsest; level-- > 0;) {
+    for (auto& values : coarse) {
+      for (Real& value : values) value *= static_cast<Real>(GridTransfer<Real>::kTwice);
+    }
+    const LevelGrid grid = grid_.wholeGrid(level);
+    Coarsening to;
+    to.grid = coarse_grid;
+    const GridTransfer<Real> transfer(grid, std::move(to));
+    if (level == 0) {
+      writePlanes(transfer, coarse, displacement);
+      break;
+    }
+    Field<Real> fine;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fine[axis].resize(at(grid.beside));
+      std::vector<Real> between;
+      for (int k = 0; k < grid.size[2]; ++k) {
+        transfer.prolongPlane(coarse[axis], k, between, fine[axis].data() + grid.index(0, 0, k));
+      }
+    }
+    putOpenPart(level, grid, fine);
+    coarse = std::move(fine);
+    coarse_grid = grid;
+  }
+}
+
+template <typename Real>
+void NodeDisplacements<Real>::putOpenPart(std::size_t level, const LevelGrid& grid,
+                                          Field<Real>& all) const {
+  const GridBox& points = grid_.points(level);
+  const GridLevel<Real>& open = grid_.level(level);
+  for (int k = points.low[2]; k <= points.high[2]; ++k) {
+    for (int j = points.low[1]; j <= points.high[1]; ++j) {
+      const int first = open.grid().index(0, j - points.low[1], k - points.low[2]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::copy_n(open.displacement[axis].begin() + first, points.high[0] - points.low[0] + 1,
+                    all[axis].begin() + grid.index(points.low[0], j, k));
+      }
+    }
+  }
+}
+
+// In all threads there are.
+template <typename Real>
+void NodeDisplacements<Real>::writePlanes(const GridTransfer<Real>& transfer,
+                                          const Field<Real>& coarse,
+                                          std::vector<Vec3>& displacement) const {
+  const int planes = grid_.lattice().size()[2];
+  Workers* const workers = grid_.workers();
+  if (workers == nullptr) return writePlanes(transfer, coarse, 0, planes, displacement);
+  const int threads = workers->count();
+  workers->run([&](int part) {
+    writePlanes(transfer, coarse, planes * part / threads, planes * (part + 1) / threads,
+                displacement);
+  });
+}
+
+template <typename Real>
+void NodeDisplacements<Real>::writePlanes(const GridTransfer<Real>& transfer,
+                                          const Field<Real>& coarse, int first, int end,
+                                          std::vector<Vec3>& displacement) const {
+  const GridBox open = grid_.points(0);
+  const Lattice& lattice = grid_.lattice();
+  const auto& size = lattice.size();
+  const LevelGrid grid = grid_.wholeGrid(0);
+  const double spacing = grid_.spacing();
+  Field<Real> plane;
+  for (auto& values : plane) values.resize(at(grid.plane));
+  std::vector<Real> between;
+  for (int k = first; k < end; ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      transfer.prolongPlane(coarse[axis], k, between, plane[axis].data());
+    }
+    for (int j = 0; j < size[1]; ++j) {
+      Vec3* const row = displacement.data() + lattice.node(0, j, k);
+      const auto put = [&](int from, int to) {
+        for (int i = from; i <= to; ++i) row[i] = spacing * vectorAt(plane, grid.index(i, j, 0));
+      };
+      const bool beside = open.has({open.low[0], j, k});
+      put(0, beside ? open.low[0] - 1 : size[0] - 1);
+      if (beside) put(open.high[0] + 1, size[0] - 1);
+    }
+  }
+}
+
+template class NodeDisplacements<float>;
+template class NodeDisplacements<double>;
+
+}  // namespace robot_tissue
