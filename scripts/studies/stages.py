@@ -39,13 +39,15 @@ STAGES = [
      r"Tissue::(deformSurface|describeShape|volumeRatio)\n|robot_tissue::deform\n"),
     ("sums, search and errors of the solve",
      r"(FasCg\w+|ErrorEstimator|ForceBalance|OpenPart|WarmStart|CompositeShape)<\w+>::|"
-     r"searchLine|SolveProgress|GridHierarchy<\w+>::|MultigridSolver|LayeredMethod::|DofConstraints::"),
+     r"searchLine|SolveProgress|GridHierarchy<\w+>::|CoarseCorrection<\w+>::|"
+     r"MultigridSolver|LayeredMethod::|DofConstraints::"),
     ("finest lattice: patches, steps", r"GridLevel<\w+>::|ConstrainedNodes<\w+>::|::stepAlong\n"),
     ("finest lattice: forces of cells", r"CellOperator<\w+>::(find|add|finish)"),
     ("coarse lattices: beyond the part", r"UncoveredPart<\w+>::"),
-    ("coarse lattices: smooth motion", r"(CoarseCorrection|FasRestriction)<\w+>::"),
+    ("coarse lattices: smooth motion", r"CoarseCorrection<\w+>::find\n"),
     ("parts opened, patches bound, shape written",
-     r"(CompositeGrid|LevelConstraints|NodeDisplacements)<\w+>::|GridHierarchy<\w+>::open"),
+     r"(CompositeGrid|GridHierarchy)<\w+>::open|LevelConstraints<\w+>::|"
+     r"NodeDisplacements<\w+>::(take|write)"),
     ("reports", r"describeTool"),
     HEAP,
 ]

@@ -38,7 +38,7 @@ class ErrorEstimator {
 
   // Cycles begin, from the shape as it is.
   void begin();
-  // Another part is open: the places that earlier cycles came from are not of it.
+  // Another part is open: earlier shapes are of other nodes, and distances from them are not known.
   void noteOpened() { knows_way_ = false; }
   // After CoarseCorrection::find; the last cycle is that one, if there was one.
   void update(const SolveContext& solve, const FasCgCycle<Real>& last);

@@ -64,8 +64,8 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   }
 }
 
-// Where a part is open, cycles that get on need no looking back at what they did: forces beyond
-// cost more than a look.
+// Where a part is open, cycles that get on are not searched along: the forces in the uncovered
+// part, which the slope takes, cost more than the search gains.
 template <typename Real>
 bool FasCgCycle<Real>::isSteady(const SolveContext& solve, const MotionLeft& left) const {
   return !shape_.levels().isWhole() && (solve.cycles == 0 || left.isAtMost(tuning::kSlow));

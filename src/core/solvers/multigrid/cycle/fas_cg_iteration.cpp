@@ -96,8 +96,9 @@ void FasCgIteration<Real>::makeCycle(const SolveContext& solve) {
   }
 }
 
-// Makes the smooth motion that was found; a cycle where that, under conjugate gradients, leaves
-// more force unbalanced than there was.
+// Makes the smooth motion that was found, so that what is found is not thrown away. After a step of
+// conjugate gradients that may leave more force unbalanced than there was: then a whole cycle is
+// made from there instead.
 template <typename Real>
 void FasCgIteration<Real>::finish(const SolveContext& solve) {
   estimator_.noteCorrection();
@@ -112,8 +113,9 @@ void FasCgIteration<Real>::finish(const SolveContext& solve) {
   settleForces(solve);
 }
 
-// Cut short, a cycle leaves what is rough unbalanced: springs in contact, the stiffest of all,
-// would tell forces that nothing answers. What went astray is not told.
+// When time has run out. The last cycle may have left what is rough unbalanced; springs in contact,
+// the stiffest of all, would report forces that no tissue bears. So the smoother runs once more; a
+// shape that went astray (tuning::kAstray) is replaced by the best one.
 template <typename Real>
 void FasCgIteration<Real>::finishLate(const SolveContext& solve) {
   GridLevel<Real>& finest = shape_.finest();

@@ -15,7 +15,7 @@ double sizeOf(const GroupVector& vector) { return vector.head<3>().norm(); }
 
 }  // namespace
 
-// Whatever coarse lattices make of rounding.
+// On the finest level alone: coarse levels show forces of rounding even where there are none.
 template <typename Real>
 bool ForceBalance<Real>::isZero() const {
   const std::vector<GroupVector>& on_groups = shape_.finest().constrained.force;
@@ -31,7 +31,8 @@ bool ForceBalance<Real>::isReached(const SolveContext& solve) const {
   return arePatchesBalanced();
 }
 
-// What hangs by little moves far under forces that cycles hardly lessen.
+// A tissue that hangs on little moves far: the error relative to its displacement is small while
+// forces are still unbalanced. So the greatest one on a node is compared with those that act.
 template <typename Real>
 bool ForceBalance<Real>::isCalm() const {
   double most = std::max(greatest_at_start_, greatest_held_);
@@ -64,7 +65,8 @@ bool ForceBalance<Real>::arePatchesBalanced() const {
   return net.norm() < tuning::kFalling * given.norm();
 }
 
-// What is unbalanced in all is what the forces on the tissue's ends do not agree by.
+// The sum of all unbalanced forces is the difference between what goes into the tissue and what its
+// held nodes bear.
 template <typename Real>
 bool ForceBalance<Real>::isSettled(const std::vector<int>& loaded) const {
   const double given = heldForce(loaded).norm() + shape_.finest().constrained.contactForce().norm();

@@ -21,14 +21,15 @@ void SlopeBracket::add(double length, double slope) {
 
 double SlopeBracket::next(double length) const { return closed_ ? between() : secant(length); }
 
-// Where a line through the slopes at 0 and at the length is zero, not farther than four times.
+// Where a line through the slopes at 0 and at the length is zero, between 1.1 and 4 times the
+// length.
 double SlopeBracket::secant(double length) const {
   const double zero = low_slope_ < slope_ ? length * slope_ / (slope_ - low_slope_) : 2.0 * length;
   return std::min(std::max(zero, 1.1 * length), 4.0 * length);
 }
 
-// Likewise, through the two ends, not within a tenth of either; in the middle where beyond is no
-// shape.
+// Where a line through the slopes at both ends of the bracket is zero, but a tenth of the bracket
+// from either end at least; in the middle where the slope at the high end is not finite.
 double SlopeBracket::between() const {
   if (!std::isfinite(high_slope_)) return 0.5 * (low_ + high_);
   const double zero = low_slope_ / (low_slope_ - high_slope_);

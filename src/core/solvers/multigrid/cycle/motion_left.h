@@ -8,7 +8,7 @@ struct MotionLeft {
   double before = 0.0;    // the last cycle
   double at_start = 0.0;  // of the cycles
 
-  // False, all three, where what is left is no number.
+  // All three are false where `now` is NaN.
   bool isWithin(double times) const { return now <= times * at_start; }
   bool isAbove(double share) const { return now > share * before; }
   bool isAtMost(double share) const { return now <= share * before; }

@@ -1,6 +1,6 @@
 // How method `layered` comes to balance, in single or double precision (own; doc/model.md).
 //
-// One cycle: a smooth motion of all layers, found on coarser lattices (GridHierarchy); then a few
+// One cycle: a smooth motion of all layers, found on coarser levels (GridHierarchy); then a few
 // steps of a smoother on the tissue's own. Where cycles gain little they are strung together by
 // conjugate gradients; where one goes too far or not far enough, a search along it mends that.
 #pragma once

@@ -21,7 +21,7 @@ void OpenPart::forget() {
   missed_ = 0.0;
 }
 
-// What coarse lattices miss falls about as layers grow.
+// What coarse levels miss is about inverse to the number of layers.
 double OpenPart::firstLayers() const {
   return std::clamp(tuning::kLayersOfError / tolerance_, tuning::kFewestLayers,
                     tuning::kEnoughLayers);

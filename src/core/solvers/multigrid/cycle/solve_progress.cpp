@@ -12,8 +12,8 @@ void SolveProgress<Real>::begin() {
   farthest_ = 0.0;
 }
 
-// What swings far has more left on its way than where it began; in contact it slips, and a smaller
-// step follows it better.
+// A gain is a smaller |x|, or a shape farther from the start: on a long way |x| may grow before it
+// falls. Not so in contact: what goes far there slips, and a smaller load step follows it better.
 template <typename Real>
 void SolveProgress<Real>::note(const SolveContext& solve, const ErrorEstimator<Real>& estimator,
                                const CompositeShape<Real>& shape) {

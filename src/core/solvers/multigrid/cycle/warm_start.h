@@ -13,10 +13,10 @@ class WarmStart {
   explicit WarmStart(CompositeShape<Real>& shape) : shape_(shape) {}
 
   void beginStep() { first_of_step_ = true; }
-  // The way of the last step, as other nodes are open; see noteStart.
+  // Drops the last step: it is of other nodes than those that are open now.
   void forget() { has_start_ = has_step_ = false; }
-  // The next solve begins at the shape as it is: in the first of a step, the way from where the
-  // last step began is the last step.
+  // The next solve begins at the shape as it is. In the first solve of a step, the last step is
+  // then last_step = this shape - the one at which the last step began.
   void noteStart();
   // Whether the last solve was cut short.
   void noteEnd(SolveStatus status) { ended_late_ = status == SolveStatus::kLate; }

@@ -8,7 +8,7 @@
 namespace robot_tissue {
 namespace {
 
-// Of a row of fine nodes, along one axis: the coarse rows around it.
+// The coarse indices around a fine one along an axis: one at an even index, else two with 1/2 each.
 struct Around {
   int low = 0;
   int count = 1;

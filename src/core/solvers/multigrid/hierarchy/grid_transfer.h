@@ -1,6 +1,7 @@
-// Between a level and the next coarser one (own): fine nodes move as the trilinear mean of the
-// coarse nodes around them, P; forces go the other way by P^T; a coarse node starts where the fine
-// node at its place is. In each level's own units: half the displacement, a quarter of the force.
+// Between a level and the next coarser one (doc/architecture.md, "Words"): prolongation P, by which
+// a fine node moves as the trilinear mean of the coarse nodes around it; restriction of forces by
+// P^T; injection of displacements, a coarse node starts where the fine node at its place is. In
+// each level's own units: lengths in h or 2 h, forces in E0 h^2 or E0 (2 h)^2.
 #pragma once
 
 #include "solvers/multigrid/level/cell_operator.h"
@@ -19,17 +20,16 @@ class GridTransfer {
   // The coarse nodes that carry a fine one.
   NodeShares carriersOf(int fine_node) const;
 
-  // To the coarse nodes around the fine grid.
+  // coarse = P^T fine / 4, at all coarse nodes that carry fine ones.
   void restrictForces(const Field<Real>& fine, Field<Real>& coarse) const;
-  // Of the coarse nodes in the box.
+  // coarse = fine / 2 at the same place, for coarse nodes in the box.
   void restrictDisplacement(const Field<Real>& fine, const GridBox& box, Field<Real>& coarse) const;
-  // The coarse motion, now less start.
+  // fine = 2 P (now - start).
   void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine);
-  // Where the coarse nodes have a plane of fine ones, both in the same unit. `between`: room for
-  // coarse nodes.
+  // P on a plane of fine nodes, with coarse and fine values in the same unit. `between`: scratch.
   void prolongPlane(const std::vector<Real>& coarse, int k, std::vector<Real>& between,
                     Real* plane) const;
-  // Puts fine nodes where the coarse nodes have them.
+  // fine = 2 P coarse at these fine nodes.
   void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
  private:

@@ -34,7 +34,7 @@ void lessen(LevelSource& source) {
   source.bulk = {source.bulk.front()};
 }
 
-// With the mean moduli of eight cells each; what is beyond the block's end has none.
+// Cells with the mean of the moduli of eight each; those beyond the block's end count as 0.
 LevelSource coarser(LevelSource& fine) {
   LevelSource coarse;
   for (std::size_t axis = 0; axis < 3; ++axis) coarse.size[axis] = fine.size[axis] / 2 + 1;
@@ -70,8 +70,8 @@ std::size_t pointAt(const LevelSource& source, int i, int j, int k) {
   return at(i + source.size[0] * (j + source.size[1] * k));
 }
 
-// A coarse node as the node at its place, or next to it where the block ends before. A node is held
-// with the coarse nodes that carry it, or it is told apart.
+// A coarse node is held if the node at its place is, or next to it where the block ends before. A
+// fine node that is held though not all its carriers are, or the other way round, is rough.
 Held heldOn(const LevelSource& coarse, LevelSource& fine, const Held& held) {
   Held on_coarse(at(coarse.size[0] * coarse.size[1] * coarse.size[2]), 0);
   forAll(coarse.size, [&](int i, int j, int k) {

@@ -1,5 +1,5 @@
-// What the lattices of several spacings of a block that is all there are made of (own): the moduli
-// of each lattice's cells, and where a coarser one tells less than they do.
+// What the levels of a block with all its cells are made of (own): the moduli of each level's
+// cells, and where the next coarser level has lost some of what they say.
 #pragma once
 
 #include <array>
@@ -16,13 +16,15 @@ struct LevelSource {
   // Per cell, x fastest (E0); one value where all are alike.
   std::vector<double> shear;
   std::vector<double> bulk;
-  // Points beside which the eight cells of a coarse one differ, or nodes are held that no coarse
-  // node stands for. Empty: low above high.
+  // A box around what the next coarser level does not resolve: coarse cells whose eight cells
+  // differ in modulus, and fixed nodes of which not all carriers in P are fixed, or the other way
+  // round. Empty: low above high.
   GridBox rough;
   double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
 
-  // Whether the block is so thick, in its cells and beside its length, that these bend as finer
-  // ones do, and cycles see it.
+  // More than tuning::kThick points along the shortest side, and at most tuning::kMostSlender times
+  // that along the longest. Thinner or longer blocks bend, and few trilinear cells are too stiff in
+  // bending (shear locking): there a coarse level does not stand for the finer one (model.md).
   bool isThick() const;
   GridBox whole() const { return wholeOf(size); }
   // Of the cells between these points, placed from its low corner.
@@ -33,8 +35,8 @@ struct LevelSource {
   }
 };
 
-// From the finest on, up to `fewest` points along the longest side. Empty where the tissue is no
-// block, is cut, or has a weight: there a coarse lattice alone does not tell enough.
+// From the finest on, down to `fewest` points along the longest side. Empty where the tissue is no
+// block, is cut, or has a weight, which is no load of a part: then all levels are open as a whole.
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
                                       const CellSet& cells, double modulus, int fewest);
 

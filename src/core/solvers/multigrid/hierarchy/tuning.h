@@ -19,11 +19,13 @@ constexpr int kFewestPoints = 3;
 
 // --- The parts that are open
 
-// Cells along the shortest side, and times that the longest side may have it: thinner or longer
-// blocks bend as coarse cells do not tell (model.md). Up: more is open as a whole; less.
+// A level is solved for in a part only where the next coarser one has more points than this along
+// its shortest side, and at most so many times as many cells along its longest: few trilinear cells
+// are too stiff in bending (model.md). Up: more is open as a whole; less.
 constexpr int kThick = 8;
 constexpr int kMostSlender = 4;
-// Layers around what a coarser level does not tell (model.md). Up: larger parts.
+// Layers around what a coarser level does not resolve (LevelSource::rough; model.md). Up: larger
+// parts.
 constexpr int kBesideRough = 2;
 // Of a level's points: where a part has more, all of it is open (model.md). Up: larger parts that
 // save little.
@@ -35,8 +37,8 @@ constexpr int kLayersAroundMiddle = 6;
 
 // --- Rounding and measuring
 
-// Of a displacement: what a way to meters and back may change of it (double precision). Up: what
-// others moved by less is not seen.
+// Relative: a displacement in spacings that was written in meters and read back may differ by so
+// much (rounding, double precision). Up: what others moved by less is not seen.
 constexpr double kSame = 1e-15;
 // Cells along an axis of the block that tells the greatest stiffness of equal cells (chosen; larger
 // blocks have the same). Up: slower to build.

@@ -12,8 +12,9 @@ namespace {
 
 using namespace vectors;
 
-// A block of cells: displacements of the corners, then their modes / 4, then the forces. Near rest
-// all is told by what is off it, so that nothing is lost to rounding: F = 1 + H, He_a = -M_a / 4.
+// A block of cells. `mode` holds the displacements of the corners, then m_s = M_s / 4 of these,
+// then the energy's gradients in the corners. Near rest F, I1 and J are stored less their values
+// there, so that no digits cancel: F = 1 + H, H e_a = -m_a.
 template <typename Real>
 struct Block {
   using L = Lanes<Real>;
@@ -22,13 +23,15 @@ struct Block {
   L shear, bulk;
   L cofactor[3][3];     // of F, less 1, by axes
   L invariant, volume;  // I1 - 3, J - 1
-  L slight;             // bounds how far all corners are from rest
+  L slight;             // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
   L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
   L stiffness;
   L parts{};  // bulk where the volumes of a cell's parts are held
   bool has_parts = false;
 
-  // Sums and differences along one axis after another. Twice gives eight times what was.
+  // From corners to modes, M_s = sum over k of (-1)^(bits in k and s) x_k, by sums and differences
+  // along one axis after another (Walsh-Hadamard). Twice gives eight times what was: it also goes
+  // back.
   ROBOT_TISSUE_INLINE void transform() {
 #pragma GCC unroll 3
     for (int bit = 1; bit < kCorners; bit <<= 1) {
@@ -73,7 +76,8 @@ struct Block {
              mode[1][1] * cofactor[0][1] - mode[1][2] * cofactor[0][2];
   }
 
-  // Below kFlattest a(J) goes on as its quadratic form.
+  // a(J) = mu J^(-2/3); below J = kFlattest its Taylor polynomial of second order there, so that it
+  // stays finite (elastic_law.h).
   template <bool kWithStiffness>
   ROBOT_TISSUE_INLINE void stiffen() {
     const L all_of_it = volume + Real(1.0);
@@ -119,8 +123,9 @@ struct Block {
     }
   }
 
-  // What the volumes of the eight parts of a cell, were it split, differ by: the energy of the
-  // finer lattice that a coarse one stands for holds each of them.
+  // Coarse cells: K/2 sum over the eight parts p of (J_p - J)^2 / 8, where J_p is the volume ratio
+  // of part p, to first order in the modes of two and three axes (doc/model.md, "Volume on coarse
+  // lattices").
   ROBOT_TISSUE_INLINE void addParts(L (&push)[kCorners][3]) {
     const auto product = [](const L(&x)[3], const L(&y)[3]) {
       return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -145,8 +150,9 @@ struct Block {
       push[7][axis] += yz * whole[0][axis] + xz * whole[1][axis] + xy * whole[2][axis];
     }
   }
-  // Adds the barrier's part to `push` on the modes. The edge at a corner along an axis is the mean
-  // edge plus the modes that change sign along it.
+  // Adds the barrier's gradient in the modes to `push`. `edge` is minus the edge along an axis at a
+  // corner with signs x, y, z (-1 at the high end): along x it is
+  // m_x + y m_xy + z m_xz + y z m_xyz - e_x.
   template <bool kWithStiffness>
   ROBOT_TISSUE_INLINE void addBarrier(L (&push)[kCorners][3]) {
     constexpr Real kSqueezed = Real(elastic_law::kSqueezed);

@@ -1,6 +1,7 @@
-// Forces of the cells of model `elastic` (core/material/elastic_cell.h), many at a time: the same
-// numbers, barrier included, in the lanes of vector instructions (own). One program runs on any
-// processor of its kind: which instructions it has is asked when the program starts.
+// Forces of the cells of model `elastic` (core/material/elastic_cell.h; the energy of a cell is in
+// doc/model.md), many at a time: the same numbers, barrier included, in the lanes of vector
+// instructions (own). One program runs on any processor of its kind: which instructions it has is
+// asked when the program starts.
 //
 // All lengths are in lattice spacings h, moduli in any unit E0, forces in E0 h^2.
 //
@@ -25,7 +26,7 @@ constexpr std::uint16_t kAllLanes = 0xffff;
 struct CellBlock {
   int first = 0;
   std::uint16_t cells = kAllLanes;  // those that count
-  std::uint16_t standing = 0;       // for eight finer ones each, whose volumes they hold too
+  std::uint16_t standing = 0;       // coarse: each also holds the volumes of its eight parts
 };
 
 // Nodes are points of a grid, x fastest, one array a component; a cell has the number of its
@@ -37,9 +38,9 @@ struct CellGrid {
   const Real* bulk;
   int row;           // from a node to the next along y
   int plane;         // and along z
-  bool loose_stand;  // loose cells, as blocks may
-  // Sums of a plane of cells, from node `origin` on: on their lower and on their upper four
-  // corners.
+  bool loose_stand;  // loose cells are coarse, as CellBlock::standing
+  // Where a plane of cells adds its forces, from node `origin` on: those on the cells' lower four
+  // corners, and those on the upper ones, which are in the next plane of nodes.
   int origin;
   std::array<Real*, 3> lower, upper;
   // Bounds of the nodes' stiffness against moving alone (E0 h), likewise; may be null.

@@ -111,7 +111,8 @@ void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
   findForces(loads, Find::kForces, covered_blocks_);
 }
 
-// Threads take planes that lie together; the plane of cells between two shares is summed by both.
+// Each thread takes planes that lie together; the plane of cells between two threads' nodes is
+// computed by both.
 template <typename Real>
 void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks& blocks) {
   const int planes = grid_.size[2];
@@ -141,8 +142,9 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   return cells;
 }
 
-// Planes of nodes first .. end - 1, each as soon as both planes of cells at it are done, while all
-// is near at hand. What is found on a plane does not hang on where the planes begin.
+// Planes of nodes first .. end - 1, each as soon as both planes of cells at it are done, while its
+// sums are in the cache. Each is the sum of the same two terms wherever `first` is: any number of
+// threads finds the same.
 template <typename Real>
 void CellOperator<Real>::findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first,
                                     int end, Sums& sums) {

@@ -22,7 +22,7 @@ using Field = std::array<std::vector<Real>, 3>;
 // nodes' stiffness, and their inverses where the nodes are free).
 enum class Find { kForces, kForcesAndStiffness };
 
-// What a level is for.
+// Which part of a level is solved for (doc/architecture.md, "Words": composite grid).
 struct LevelPart {
   GridBox free;     // nodes that may move; the others stay, and count as balanced
   GridBox covered;  // by a finer level: cells with a corner in it stand for eight finer ones each
@@ -43,8 +43,8 @@ class CellOperator {
 
   const LevelPart& part() const { return part_; }
 
-  // All that cells and the load do to the nodes: `whole`, and `force`, the same where `free` is 1,
-  // else 0; `stiffness`, and `inverse` of it.
+  // On the nodes: `whole` = forces of cells + right_hand_side, `force` = free * whole (free: 0 or
+  // 1), `stiffness`, and `inverse` = free / stiffness.
   struct Loads {
     const Field<Real>& displacement;
     const Field<Real>& right_hand_side;
@@ -53,7 +53,7 @@ class CellOperator {
     std::vector<Real>& inverse;
   };
   void findForces(const Loads& loads, Find what);
-  // Of the cells that stand for finer ones alone, and of the load.
+  // Of covered cells alone, and of the right-hand side.
   void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.
   void share(Workers& workers);
@@ -61,8 +61,8 @@ class CellOperator {
   std::vector<Real> stiffness;
 
  private:
-  // Forces and stiffness that planes of cells sum up on planes of nodes: a plane of cells on its
-  // lower and upper nodes, the one before on those same lower ones.
+  // Forces (0 to 2) and stiffness (3) on planes of nodes: of a plane of cells on its lower and
+  // upper nodes, and `below`, of the plane of cells before on the same lower ones.
   struct Sums {
     std::array<std::vector<Real>, 4> below, lower, upper;
   };

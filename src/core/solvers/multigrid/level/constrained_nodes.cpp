@@ -9,11 +9,12 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kBothEnds = 2.0;  // sum of the weights' sizes, of a spring to a group
+// Sum of the sizes of a spring's weights: 1 on its nodes, and -1 on a group.
+constexpr double kBothEnds = 2.0;
 
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
-// Of the motion of the group's point at that arm, by the group's.
+// The derivative of the motion of the group's point at that arm (spacings) by the group's motion.
 Jacobian jacobianAt(const LevelGroup& group, const Vec3& arm) {
   Jacobian jacobian = Jacobian::Zero();
   jacobian.leftCols<3>().setIdentity();
@@ -105,7 +106,7 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
     }
   }
   group_inverse_.assign(groups.size(), Matrix6::Zero());
-  for (auto* vectors : {&right_hand_side, &force, &motion, &group_way_}) {
+  for (auto* vectors : {&right_hand_side, &force, &motion, &group_step_}) {
     vectors->assign(groups.size(), GroupVector::Zero());
   }
 }
@@ -153,8 +154,9 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
   force[group] -= jacobianAt(groups[group], spring.arm).transpose() * on_nodes;
 }
 
-// By its weights' sum, so that no motion is stiffer than the step allows (l1-Jacobi: Baker,
-// Falgout, Kolev, Yang 2011); what joins nodes does so beside.
+// The stiffness matrix's row sums, w_i (sum over j of |w_j|) K, in the place of its diagonal w_i^2
+// K: no motion is stiffer than the smoother's steps allow (l1-Jacobi: Baker, Falgout, Kolev, Yang
+// 2011). Of a joining spring what is along its normal is left out, as WoodburyUpdate has that.
 template <typename Real>
 void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring,
                                           const Eigen::Matrix3d& stiffness) {
@@ -276,16 +278,16 @@ const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::calm() {
+void ConstrainedNodes<Real>::clearStep() {
   for (ConstrainedNode& constrained : all_) constrained.step.setZero();
-  for (GroupVector& step : group_way_) step.setZero();
+  for (GroupVector& step : group_step_) step.setZero();
 }
 
 template <typename Real>
 void ConstrainedNodes<Real>::step(double keep, double share, double longest,
                                   Field<Real>& displacement) {
   for (std::size_t group = 0; group < groups.size(); ++group) {
-    GroupVector& step = group_way_[group];
+    GroupVector& step = group_step_[group];
     step = keep * step + share * group_inverse_[group] * force[group];
     cut(step, longest);
     motion[group] += step;
@@ -295,7 +297,7 @@ void ConstrainedNodes<Real>::step(double keep, double share, double longest,
     ConstrainedNode& constrained = all_[i];
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
-      constrained.step = motionAt(groups[group], constrained.arm, group_way_[group]);
+      constrained.step = motionAt(groups[group], constrained.arm, group_step_[group]);
     } else {
       constrained.step = keep * constrained.step + share * motions[i];
       cut(constrained.step, longest);
@@ -307,14 +309,14 @@ void ConstrainedNodes<Real>::step(double keep, double share, double longest,
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::moveBy(const Field<Real>& step,
-                                    const std::vector<GroupVector>& of_groups, double share,
+void ConstrainedNodes<Real>::moveBy(const Field<Real>& of_nodes,
+                                    const std::vector<GroupVector>& of_groups, double alpha,
                                     Field<Real>& displacement) {
   for (const ConstrainedNode& constrained : all_) {
-    Vec3 moved = share * vectorAt(step, constrained.node);
+    Vec3 moved = alpha * vectorAt(of_nodes, constrained.node);
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
-      moved = share * motionAt(groups[group], constrained.arm, of_groups[group]);
+      moved = alpha * motionAt(groups[group], constrained.arm, of_groups[group]);
     }
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_held = constrained.group < 0 && (constrained.held >> axis & 1U) != 0;
@@ -322,7 +324,7 @@ void ConstrainedNodes<Real>::moveBy(const Field<Real>& step,
     }
   }
   for (std::size_t group = 0; group < groups.size(); ++group) {
-    motion[group] += share * of_groups[group];
+    motion[group] += alpha * of_groups[group];
   }
 }
 

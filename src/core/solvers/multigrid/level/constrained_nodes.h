@@ -51,8 +51,9 @@ class ConstrainedNodes {
   std::vector<GroupVector> force;            // on groups, unbalanced
   std::vector<GroupVector> motion;           // of groups, since it was last set to zero
 
-  // A gap (spacings) at which springs in contact already count as stiff: 0 is quick, more keeps
-  // what is thrown into a tool out of it.
+  // Springs in contact with a gap of less than this (spacings) already count as stiff. 0: those
+  // that push alone, which takes the fewest cycles; more keeps nodes that a cycle throws towards a
+  // tool out of it.
   double soon_touches = 0.0;
 
   // `held`: bits of axes, per node.
@@ -61,21 +62,23 @@ class ConstrainedNodes {
   void setUnits(double spacing, double modulus);
   std::vector<int> nodes() const;  // ascending
 
-  // Adds springs to what the cells found; puts the free components into `forces`.
+  // Forces of the cells and of springs; the free components go to `forces`.
   void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, Find what,
                   Field<Real>& forces);
   // Forces are these now.
   void setForces(const Field<Real>& forces);
-  // way = keep * way + share * step that balances; displacement += way, cut to `longest`.
+  // With d the motion that would balance each node or group alone, D^-1 f:
+  // step = keep * step + share * d, no component longer than `longest`; displacement += step.
   void step(double keep, double share, double longest, Field<Real>& displacement);
-  void calm();
-  void moveBy(const Field<Real>& step, const std::vector<GroupVector>& of_groups, double share,
+  void clearStep();
+  // displacement += alpha * motion; hard nodes go with their groups.
+  void moveBy(const Field<Real>& of_nodes, const std::vector<GroupVector>& of_groups, double alpha,
               Field<Real>& displacement);
 
   double squaredLocalMotion() const;
   // Of hard nodes, under such motions of their groups.
   double squaredMotionOf(const std::vector<GroupVector>& of_groups) const;
-  // All but holds; null where the node is none of these.
+  // Of cells, right-hand side and springs, as last found; null where the node is none of these.
   const Vec3* wholeForce(int node) const;
   bool isFree(int constrained, int axis) const {
     return (all_[at(constrained)].held >> axis & 1U) == 0;
@@ -103,7 +106,8 @@ class ConstrainedNodes {
   void addStiffness(const LevelSpring& spring, const Eigen::Matrix3d& stiffness);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
   void join(const LevelSpring& spring);
-  // Motions of the nodes that are in no group, per entry of all_; until it is called again.
+  // D^-1 f of the nodes that are in no group, per entry of all_ (D with joining springs:
+  // WoodburyUpdate); the reference holds until the next call.
   const std::vector<Vec3>& balancing() const;
   void invert(ConstrainedNode& constrained);
   void invertGroups();
@@ -115,7 +119,7 @@ class ConstrainedNodes {
   WoodburyUpdate joined_;
   mutable std::vector<Vec3> balancing_;
   std::vector<Matrix6> group_stiffness_, group_inverse_;
-  std::vector<GroupVector> group_way_;
+  std::vector<GroupVector> group_step_;
 };
 
 extern template class ConstrainedNodes<float>;

@@ -17,7 +17,7 @@ template <typename Real>
 GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                            const LevelPart& part, double greatest_stiffness)
     : cells_(grid, beside, cells, part) {
-  for (Field<Real>* field : {&displacement, &right_hand_side, &force, &step_along_}) {
+  for (Field<Real>* field : {&displacement, &right_hand_side, &force, &last_step_}) {
     for (auto& values : *field) values.assign(at(count()), Real(0));
   }
   for (auto* values : {&inverse_, &free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
@@ -33,7 +33,9 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
   }
 }
 
-// The power method from rest, its start any numbers that are the same each time.
+// The power method at rest, u <- D^-1 K u, with the Rayleigh quotient (u, K u) / (u, D u); it
+// starts with pseudo-random numbers that are the same each time (a linear congruential generator:
+// Numerical Recipes).
 template <typename Real>
 void GridLevel<Real>::measureSteps() {
   findForces();
@@ -132,17 +134,20 @@ void GridLevel<Real>::findForces(Find what) {
   constrained.findForces(cells_, displacement, what, force);
 }
 
-// Chebyshev's polynomials of the fourth kind, that smooth whatever is rough (Lottes 2022).
+// Chebyshev's polynomials of the fourth kind (Lottes 2022): with lambda the greatest eigenvalue of
+// D^-1 K,
+//
+//   z_k = (2 k - 3) / (2 k + 1) z_(k-1) + (8 k - 4) / (2 k + 1) / lambda D^-1 f(u),   u += z_k
 template <typename Real>
 void GridLevel<Real>::smooth(int steps) {
-  calm();
+  clearStep();
   for (int k = 1; k <= steps; ++k) {
     const double keep = k == 1 ? 0.0 : (2.0 * k - 3.0) / (2.0 * k + 1.0);
     const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       stepAlong(inverse_.data(), force[axis].data(), static_cast<Real>(keep),
                 static_cast<Real>(share), static_cast<Real>(tuning::kLongestStep),
-                step_along_[axis].data(), displacement[axis].data(), count());
+                last_step_[axis].data(), displacement[axis].data(), count());
     }
     constrained.step(keep, share, tuning::kLongestStep, displacement);
     if (k < steps) findForces(Find::kForces);
@@ -156,9 +161,9 @@ void GridLevel<Real>::smoothAndFindForces(int steps) {
 }
 
 template <typename Real>
-void GridLevel<Real>::calm() {
-  for (auto& values : step_along_) std::fill(values.begin(), values.end(), Real(0));
-  constrained.calm();
+void GridLevel<Real>::clearStep() {
+  for (auto& values : last_step_) std::fill(values.begin(), values.end(), Real(0));
+  constrained.clearStep();
 }
 
 template <typename Real>
@@ -169,8 +174,8 @@ void GridLevel<Real>::clearRightHandSide() {
 }
 
 template <typename Real>
-void GridLevel<Real>::setFasRightHandSide(const Field<Real>& wanted,
-                                          const std::vector<GroupVector>& wanted_of_groups) {
+void GridLevel<Real>::setFasRightHandSide(const Field<Real>& residual,
+                                          const std::vector<GroupVector>& residual_of_groups) {
   clearRightHandSide();
   const bool covers_all = part().covered == part().free;
   if (!covers_all) {
@@ -180,19 +185,18 @@ void GridLevel<Real>::setFasRightHandSide(const Field<Real>& wanted,
   findForces();
   if (covers_all) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      fasRightHandSide(wanted[axis].data(), free_.data(), right_hand_side[axis].data(),
+      fasRightHandSide(residual[axis].data(), free_.data(), right_hand_side[axis].data(),
                        force[axis].data(), count());
     }
   } else {
-    setFasRightHandSideBeside(wanted);
+    setFasRightHandSideInPart(residual);
   }
-  setFasRightHandSideOfConstrained(wanted, wanted_of_groups);
+  setFasRightHandSideOfConstrained(residual, residual_of_groups);
 }
 
-// In the covered part and on its rim, the cells of the finer level act in place of the covered
-// ones.
+// In the covered part f = f_c: r - f_c is what GridLevel::setFasRightHandSide asks for there, too.
 template <typename Real>
-void GridLevel<Real>::setFasRightHandSideBeside(const Field<Real>& wanted) {
+void GridLevel<Real>::setFasRightHandSideInPart(const Field<Real>& residual) {
   GridBox with_interface = part().covered;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     with_interface.low[axis] = std::max(with_interface.low[axis] - 1, 0);
@@ -203,7 +207,7 @@ void GridLevel<Real>::setFasRightHandSideBeside(const Field<Real>& wanted) {
     for (int k = with_interface.low[2]; k <= with_interface.high[2]; ++k) {
       for (int j = with_interface.low[1]; j <= with_interface.high[1]; ++j) {
         const int first = grid().index(with_interface.low[0], j, k);
-        fasRightHandSideBeside(wanted[axis].data() + first, of_covered_[axis].data() + first,
+        fasRightHandSideBeside(residual[axis].data() + first, of_covered_[axis].data() + first,
                                free_.data() + first, right_hand_side[axis].data() + first,
                                force[axis].data() + first, length);
       }
@@ -213,32 +217,32 @@ void GridLevel<Real>::setFasRightHandSideBeside(const Field<Real>& wanted) {
 
 template <typename Real>
 void GridLevel<Real>::setFasRightHandSideOfConstrained(
-    const Field<Real>& wanted, const std::vector<GroupVector>& wanted_of_groups) {
+    const Field<Real>& residual, const std::vector<GroupVector>& residual_of_groups) {
   const std::vector<int> constrained_nodes = constrained.nodes();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < constrained_nodes.size(); ++i) {
       const std::size_t node = at(constrained_nodes[i]);
       if (!constrained.isFree(static_cast<int>(i), static_cast<int>(axis))) continue;
       if (!part().covered.has(placeOf(constrained_nodes[i]))) continue;
-      right_hand_side[axis][node] = wanted[axis][node] - force[axis][node];
-      force[axis][node] = wanted[axis][node];
+      right_hand_side[axis][node] = residual[axis][node] - force[axis][node];
+      force[axis][node] = residual[axis][node];
     }
   }
   for (std::size_t group = 0; group < constrained.groups.size(); ++group) {
-    constrained.right_hand_side[group] = wanted_of_groups[group] - constrained.force[group];
-    constrained.force[group] = wanted_of_groups[group];
+    constrained.right_hand_side[group] = residual_of_groups[group] - constrained.force[group];
+    constrained.force[group] = residual_of_groups[group];
   }
   constrained.setForces(force);
 }
 
 template <typename Real>
 void GridLevel<Real>::moveBy(const Field<Real>& motion, const std::vector<GroupVector>& of_groups,
-                             double share) {
+                             double alpha) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    addWhereFree(motion[axis].data(), free_.data(), static_cast<Real>(share),
+    addWhereFree(motion[axis].data(), free_.data(), static_cast<Real>(alpha),
                  displacement[axis].data(), count());
   }
-  constrained.moveBy(motion, of_groups, share, displacement);
+  constrained.moveBy(motion, of_groups, alpha, displacement);
 }
 
 template <typename Real>

@@ -27,10 +27,10 @@ class GridLevel {
   std::array<int, 3> placeOf(int node) const { return cells_.placeOf(node); }
   double restStiffness(int node) const { return static_cast<double>(rest_stiffness_[at(node)]); }
   bool exists(int node) const { return rest_stiffness_[at(node)] > 0; }
-  // Of any motion, in the nodes' stiffnesses.
+  // Greatest eigenvalue of D^-1 K at rest, D the nodes' own stiffnesses, with a margin.
   double greatestStiffness() const { return 1.0 / step_; }
 
-  // What holds the nodes: by nothing, then one by one, then `bind`. Bits of axes.
+  // What holds the nodes: first nothing does, then `hold` one by one, then `bind`. Bits of axes.
   void freeAll();
   void hold(int node, unsigned axes) { held_[at(node)] |= static_cast<std::uint8_t>(axes); }
   unsigned dirichletAxes(int node) const { return held_[at(node)]; }
@@ -38,28 +38,29 @@ class GridLevel {
   void bind();
 
   const LevelPart& part() const { return cells_.part(); }
-  // Nodes that only a coarser level moves, but that neither are held nor out of reach of free ones.
+  // Nodes next to free ones that only the next coarser level moves.
   const std::vector<int>& interfaceNodes() const { return interface_; }
-  // Shows the forces on them, or counts them as balanced again.
+  // `force` on them: all that acts, to be restricted; or 0, as they count as balanced here.
   void showInterface();
   void hideInterface();
 
   void share(Workers& workers) { cells_.share(workers); }
 
-  // Unbalanced forces at `displacement`, and the stiffness that the smoother's steps go by.
+  // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
   void findForces();
   // Takes so many steps of the smoother from there on; `force` and stiffness are stale then.
   void smooth(int steps);
   void smoothAndFindForces(int steps);
-  // Drops the way that the smoother was on.
-  void calm();
-  // Makes the force what is asked, by a load: where it covers a finer level. Beside that, what the
-  // cells of the covered part do is asked for.
-  void setFasRightHandSide(const Field<Real>& wanted,
-                           const std::vector<GroupVector>& wanted_of_groups);
+  // Sets the right-hand side b of the full approximation scheme. With f the forces of the cells and
+  // r the finer level's unbalanced forces, restricted:
+  //   f + b = r         in the covered part
+  //   b = r - f_c       on its rim, f_c the forces of covered cells, for which the finer ones act
+  //   b = 0             elsewhere
+  void setFasRightHandSide(const Field<Real>& residual,
+                           const std::vector<GroupVector>& residual_of_groups);
   void clearRightHandSide();
-  // Adds a share of a motion, held components left out.
-  void moveBy(const Field<Real>& motion, const std::vector<GroupVector>& of_groups, double share);
+  // displacement += alpha * motion, held components left out.
+  void moveBy(const Field<Real>& motion, const std::vector<GroupVector>& of_groups, double alpha);
 
   Field<Real> displacement;
   Field<Real> right_hand_side;  // acts besides
@@ -75,18 +76,19 @@ class GridLevel {
   void measureSteps();
   void findFree();
 
-  void setFasRightHandSideBeside(const Field<Real>& wanted);
-  void setFasRightHandSideOfConstrained(const Field<Real>& wanted,
-                                        const std::vector<GroupVector>& wanted_of_groups);
+  void clearStep();
+  void setFasRightHandSideInPart(const Field<Real>& residual);
+  void setFasRightHandSideOfConstrained(const Field<Real>& residual,
+                                        const std::vector<GroupVector>& residual_of_groups);
 
   CellOperator<Real> cells_;
   std::vector<std::uint8_t> held_;
   std::vector<Real> rest_stiffness_;
-  double step_ = 0.5;  // one over the greatest stiffness of a motion in nodes' stiffnesses
-  Field<Real> step_along_;
+  double step_ = 0.5;       // one over greatestStiffness()
+  Field<Real> last_step_;   // of the smoother
   Field<Real> of_covered_;  // forces; empty where the covered part is the whole
   std::vector<int> interface_;
-  std::vector<Real> free_;     // 1 where a node may move and is not firm, else 0
+  std::vector<Real> free_;     // 1 where a node may move and is none of `constrained`, else 0
   std::vector<Real> inverse_;  // of the stiffness of such nodes, else 0
 };
 

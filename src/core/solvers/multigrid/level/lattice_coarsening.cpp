@@ -35,7 +35,7 @@ class Coarsener {
   }
 
  private:
-  // Fine cells by the coarse place they are in, then by the pieces in which they hang together.
+  // Fine cells by the coarse place they are in, then by connected pieces (over shared nodes).
   void gatherPieces() {
     std::vector<std::pair<int, int>> by_place;
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {

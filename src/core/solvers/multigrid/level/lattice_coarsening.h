@@ -1,7 +1,7 @@
-// From a lattice to one of twice its spacing (own). A coarse cell stands for the cells in it that
-// hang together; cells that a cut has parted become coarse cells of their own, at the same place.
-// Coarse cells have nodes in common where their cells have some: so what a cut parts stays parted,
-// on every level, and a piece that hangs on nothing has no node in common with the rest.
+// From a lattice to one of twice its spacing (own). Of the eight cells at a coarse cell's place,
+// those that share nodes, directly or through others of the eight, become one coarse cell; what a
+// cut has parted there becomes several, at the same place. Two coarse cells share a coarse node
+// where cells of theirs share a fine one: what a cut parts stays parted on every level.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@ struct LevelCell {
   double bulk = 0.0;
 };
 
-// Entries of a level's fields: the grid's points, x fastest, planes padded so that what a block of
-// cells touches beyond its plane's corners is nobody's; then nodes beside it,
-// that stand where a grid point is taken.
+// Entries of a level's fields: the grid's points, x fastest; planes are padded, so that the lanes
+// of a vector that reach beyond a plane's last cell write to no node. Then the nodes beside the
+// grid: those at a point whose entry another node has (where a cut has parted cells).
 struct LevelGrid {
   std::array<int, 3> size{};
   int row = 0;
@@ -49,9 +49,9 @@ struct Coarsening {
   LevelGrid grid;
   int nodes_beside = 0;
   std::vector<LevelCell> cells;
-  // Fine nodes that are not the mean of the coarse grid points around them, but of these.
+  // Fine nodes whose carriers in P are not the coarse grid points around them, but these.
   std::unordered_map<int, NodeShares> carriers;
-  std::vector<int> carried;  // which, in ascending order
+  std::vector<int> carried;  // keys of `carriers`, ascending
   // Coarse nodes that do not start where the fine grid point at their place is, but at the mean of
   // these fine nodes.
   struct Start {

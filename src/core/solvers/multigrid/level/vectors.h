@@ -1,5 +1,5 @@
-// Vectors of 512 bits, as long as the longest instructions have them (elsewhere the compiler splits
-// them), and what cell_kernel.cpp does with them.
+// Vectors of 512 bits, the longest that instructions take (where they take less, the compiler
+// splits them), and what cell_kernel.cpp does with them.
 #pragma once
 
 #include <cstdint>

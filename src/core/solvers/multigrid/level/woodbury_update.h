@@ -1,8 +1,8 @@
-// What springs that each join several nodes, along one direction, add to the stiffness of the nodes
-// alone (own). Node by node they count by their weights' sum, which is many times too stiff for
-// whatever leaves their mean in place: so rough motion beside a tool would hardly be smoothed.
-// Together, by the formula of Woodbury: with D the nodes' own stiffness, and columns w of the
-// springs' weights times their directions,
+// Nodes' stiffness together with that of springs which each join several nodes along one direction.
+// Counted node by node (l1-Jacobi), such a spring is many times too stiff for motions that leave
+// the mean of its nodes in place: rough motion beside a tool would hardly be smoothed. By the
+// formula of Woodbury (1950), with D the nodes' own stiffness, K the springs' (diagonal), and a
+// column of W per spring, its weights times its direction,
 //
 //   (D + W K W^T)^-1 = D^-1 - D^-1 W (K^-1 + W^T D^-1 W)^-1 W^T D^-1
 #pragma once
@@ -26,9 +26,9 @@ class WoodburyUpdate {
     double stiffness = 0.0;
   };
 
-  // `inverses`: D^-1 of the nodes.
+  // `inverses`: D^-1 of the nodes, per node (one over E0 h).
   void join(std::vector<Spring> springs, const std::vector<Eigen::Matrix3d>& inverses);
-  // From D^-1 f to that of all springs.
+  // In place, from D^-1 f to (D + W K W^T)^-1 f.
   void apply(std::vector<Vec3>& motions) const;
 
  private:
@@ -36,7 +36,7 @@ class WoodburyUpdate {
   void fillMatrix();
 
   std::vector<Spring> springs_;
-  std::vector<std::vector<Vec3>> answers_;    // D^-1 times `along`, per part
+  std::vector<std::vector<Vec3>> answers_;    // D^-1 W: per spring and part
   std::vector<std::vector<int>> springs_at_;  // per node
   SkylineCholesky matrix_;                    // K^-1 + W^T D^-1 W
   mutable Eigen::VectorXd forces_;            // of the springs; room that `apply` needs
