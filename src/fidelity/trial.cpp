@@ -82,21 +82,22 @@ std::vector<Vec3> forcesOf(const RunResult& result) {
   return forces;
 }
 
-// `first`: the answers are kept, not the times alone.
-void run(const PacedScene& paced, const std::vector<Vec3>& points, bool first, Stopwatch& watch,
+enum class Keep { kTimes, kTimesAndAnswers };
+
+void run(const PacedScene& paced, const std::vector<Vec3>& points, Keep keep, Stopwatch& watch,
          Trial& trial) {
   watch.start();
   const RunResult result = runScene(
       paced.scene, [&](const IncrementRow& row, int) { watch.stop(row, trial); },
       [&](int, const Tissue& tissue) {
         trial.nodes = tissue.lattice().nodeCount();
-        if (first) trial.fields.push_back(fieldAt(tissue, points));
+        if (keep == Keep::kTimesAndAnswers) trial.fields.push_back(fieldAt(tissue, points));
         watch.startStep();
       });
   for (const IncrementRow& row : result.increments) {
     trial.worst = std::max(trial.worst, row.report.status);
   }
-  if (first) trial.forces = forcesOf(result);
+  if (keep == Keep::kTimesAndAnswers) trial.forces = forcesOf(result);
 }
 
 void repeatForTimes(const PacedScene& paced, double seconds_of_one, Clock::time_point deadline,
@@ -106,7 +107,7 @@ void repeatForTimes(const PacedScene& paced, double seconds_of_one, Clock::time_
   try {
     double seconds = seconds_of_one;
     while (trial.update_ms.size() < kEnoughUpdates && seconds + seconds_of_one < kShortSeconds) {
-      run(paced, {}, false, watch, trial);
+      run(paced, {}, Keep::kTimes, watch, trial);
       seconds += seconds_of_one;
     }
   } catch (const OutOfTime&) {
@@ -124,7 +125,7 @@ Trial tried(const Scene& scene, const Rung& rung, double way_an_update,
   try {
     const PacedScene paced_scene = paced(sceneAt(scene, rung), way_an_update);
     Stopwatch watch(paced_scene, deadline, on_update);
-    run(paced_scene, points, true, watch, trial);
+    run(paced_scene, points, Keep::kTimesAndAnswers, watch, trial);
     trial.seconds = 1e-3 * milliseconds(Clock::now() - begin);
     repeatForTimes(paced_scene, trial.seconds, deadline, trial);
   } catch (const OutOfTime&) {

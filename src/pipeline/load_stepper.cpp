@@ -8,6 +8,13 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+Bedding beddingOf(const World& world) {
+  return world.has_supports ? Bedding::kSupports : Bedding::kFixedNodes;
+}
+
+}  // namespace
 
 // One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
 // with a rigid patch; for the others the solver asks for the contacts itself (ContactUpdate).
@@ -58,7 +65,7 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(world_.report.solve_ms);
   const SolveReport solved =
-      world_.tissue.follow(std::move(patches), world_.sticking.left(), world_.has_supports);
+      world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
   if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
   world_.report.changed = true;
 }
@@ -144,7 +151,8 @@ SolveReport LoadStepper::balance() {
   world_.sliding.ride(world_.pose, world_.tissue);
   world_.sticking.ride(world_.pose, world_.tissue);
   meet(world_.pose);
-  return world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(), true);
+  return world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(),
+                              Bedding::kSupports);
 }
 
 void LoadStepper::meet(const RobotPose& pose) {
@@ -179,7 +187,7 @@ void LoadStepper::lieDown() {
   if (world_.tissue.isUntouched()) return;
   world_.sliding.ride(world_.pose, world_.tissue);
   meet(world_.pose);
-  world_.tissue.follow(patchesOfTools(world_), {}, world_.has_supports);
+  world_.tissue.follow(patchesOfTools(world_), {}, beddingOf(world_));
 }
 
 // Graspers that are pulled harder than they hold.
@@ -188,7 +196,7 @@ void LoadStepper::tearOff() {
   if (torn_off.empty()) return;
   for (const std::size_t tool : torn_off) addOnce(tool, world_.report.torn_off);
   world_.sticking.ride(world_.pose, world_.tissue);
-  world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), world_.has_supports);
+  world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
   world_.sliding.commit(world_.pose, world_.tissue);
 }
 

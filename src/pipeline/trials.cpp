@@ -22,13 +22,13 @@ void Pipeline::beginTrial() {
       Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
            world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
            world_.unfinished, touched_, world_.report});
-  world_.tissue.solveAside(true);
+  world_.tissue.beginAside();
 }
 
 void Pipeline::undoTrial() {
   if (!trial_from_) return;
   const Mark& mark = *trial_from_;
-  world_.tissue.solveAside(false);
+  world_.tissue.endAside();
   parts_->load_step.goBackTo(mark.now);
   parts_->motion.restore(mark.checkpoints);
   parts_->drive = mark.drive;

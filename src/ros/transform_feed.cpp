@@ -22,25 +22,23 @@ TransformFeed::TransformFeed(tf2_ros::Buffer& buffer, ros::CallbackQueueInterfac
     : buffer_(buffer), time_went_back_(std::move(time_went_back)) {
   ros::NodeHandle node;
   node.setCallbackQueue(&queue);
-  const auto subscribe = [&](const char* topic, bool is_static) {
+  const auto subscribe = [&](const char* topic, Kind kind) {
     const boost::function<void(const tf2_msgs::TFMessageConstPtr&)> take =
-        [this, is_static](const tf2_msgs::TFMessageConstPtr& message) {
-          this->take(*message, is_static);
-        };
+        [this, kind](const tf2_msgs::TFMessageConstPtr& message) { this->take(*message, kind); };
     return node.subscribe<tf2_msgs::TFMessage>(topic, kQueue, take, ros::VoidConstPtr(),
                                                ros::TransportHints().tcpNoDelay());
   };
-  moving_ = subscribe("/tf", false);
-  static_ = subscribe("/tf_static", true);
+  moving_ = subscribe("/tf", Kind::kMoving);
+  static_ = subscribe("/tf_static", Kind::kStatic);
 }
 
-void TransformFeed::take(const tf2_msgs::TFMessage& message, bool is_static) {
+void TransformFeed::take(const tf2_msgs::TFMessage& message, Kind kind) {
   if (time_went_back_()) newest_.clear();
   warnOfAhead();
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    if (!is_static && !hasPlace(transform)) continue;
+    if (kind == Kind::kMoving && !hasPlace(transform)) continue;
     try {
-      buffer_.setTransform(transform, "/tf", is_static);
+      buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
     } catch (const tf2::TransformException& error) {
       ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << onOneLine(error.what()));
     }

@@ -79,7 +79,8 @@ Entry MapReader::operator[](const std::string& key) const {
   return map_.child(YAML::Node(YAML::NodeType::Undefined), key);
 }
 
-Box MapReader::box(const Range& range, bool strict) const {
+Box MapReader::box(const Range& range, FlatBox flat) const {
+  const bool strict = flat == FlatBox::kRefused;
   const Box box{(*this)["min"].vec3(range), (*this)["max"].vec3(range)};
   const std::vector<Entry> upper = (*this)["max"].list(3, "numbers");
   for (int axis = 0; axis < 3; ++axis) {

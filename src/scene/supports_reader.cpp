@@ -17,7 +17,7 @@ ToolShape readPlane(const MapReader& map, const Range& place) {
 }
 
 ToolShape readBox(const MapReader& map, const LengthRanges& lengths) {
-  const Box box = map.box(lengths.place, true);
+  const Box box = map.box(lengths.place, FlatBox::kRefused);
   if ((box.max() - box.min()).minCoeff() < lengths.length.lowest) {
     map.entry().fail("the box is thinner than " + numberText(lengths.length.lowest) +
                      " m, must be as thick at least");

@@ -16,7 +16,8 @@ const std::vector<std::string> kMaterialKeys = {"young_modulus", "poisson_ratio"
 void readShape(const Entry& entry, const std::string& scene_folder, TissueConfig& tissue) {
   const MapReader any_type(entry, {"type", "min", "max", "resource", "scale"});
   if (any_type["type"].choice({"box", "mesh"}, {}) == "box") {
-    tissue.shape = MapReader(entry, {"type", "min", "max"}).box(ranges::pickedPlace(), true);
+    tissue.shape =
+        MapReader(entry, {"type", "min", "max"}).box(ranges::pickedPlace(), FlatBox::kRefused);
   } else {
     tissue.mesh = std::make_shared<const TriangleMesh>(readMeshShape(entry, scene_folder));
   }
@@ -124,7 +125,7 @@ Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& gr
   const MapReader map(entry, keys);
   Region region;
   if (map["name"].given()) region.name = map["name"].word("a name");
-  region.box = map.box(ranges::pickedPlace(), false);
+  region.box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
   if (!grid.holdsCell(region.box)) {
     entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
   }
@@ -173,7 +174,7 @@ void readBoxes(const MapReader& map, TissueConfig& tissue, Remarks& remarks) {
 }  // namespace
 
 Box readNodeBox(const MapReader& map, const Grid& grid) {
-  const Box box = map.box(ranges::pickedPlace(), false);
+  const Box box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
   if (!grid.nodesIn(box).empty()) return box;
   map.entry().fail("the box holds no node, must hold at least one; " + nodesText(grid, 0.0));
 }

@@ -29,6 +29,9 @@ struct CutReport {
   SolveReport solve;    // balance after it; the last one when nothing was cut
 };
 
+// What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
+enum class Bedding { kFixedNodes, kSupports };
+
 class Tissue {
  public:
   // Called after each increment of a load: 1-based increment, how many there are as far as is
@@ -98,9 +101,9 @@ class Tissue {
   SolveReport release(const std::vector<std::string>& names);
   // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
   // left a patch. When the last tool has left, the shape is found anew from rest, unless the tissue
-  // `lies` on a support, which it may have slid along.
+  // is borne by supports, which it may have slid along.
   SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed,
-                     bool lies = false);
+                     Bedding bedding = Bedding::kFixedNodes);
   // The shape and its loads, to come back to; cuts are not part of it: those made since stay.
   struct Shape {
     Displacements displacement;
@@ -114,8 +117,9 @@ class Tissue {
     return {displacements(), state_.cells, patches_, named_patches_, last_report_, is_late_};
   }
   void restore(const Shape& shape);
-  // While true, solves teach the method nothing that later ones hang on.
-  void solveAside(bool aside);
+  // In between, solves teach the method nothing that later ones depend on.
+  void beginAside();
+  void endAside();
   // Severs the springs that cross the polygon in the deformed shape, then balances.
   CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape, bit for bit; cuts mended, loads gone.
@@ -126,6 +130,7 @@ class Tissue {
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
   void renewContacts();
+  void switchAside();
   void limitWays();
   bool goBack(const std::vector<Vec3>& before);
   void putToolPatches(std::vector<LoadingPatch> of_tools);

@@ -24,13 +24,14 @@ class TransformFeed {
                 std::function<bool()> time_went_back);
 
  private:
+  enum class Kind { kMoving, kStatic };
   struct Ahead {
     std::string frame;
     ros::Time stamp;
     ros::WallTime seen;
   };
 
-  void take(const tf2_msgs::TFMessage& message, bool is_static);
+  void take(const tf2_msgs::TFMessage& message, Kind kind);
   bool hasPlace(const geometry_msgs::TransformStamped& transform);
   void warnOfAhead();
 

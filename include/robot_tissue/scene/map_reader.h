@@ -10,6 +10,9 @@
 
 namespace robot_tissue {
 
+// Whether a box may have no extent along an axis.
+enum class FlatBox { kAllowed, kRefused };
+
 class MapReader {
  public:
   MapReader(const Entry& map, std::vector<std::string> keys);
@@ -18,8 +21,8 @@ class MapReader {
   Entry operator[](const std::string& key) const;
   const Entry& entry() const { return map_; }
 
-  // The keys `min` and `max`; `strict` asks for an extent > 0 along every axis.
-  Box box(const Range& range, bool strict) const;
+  // The keys `min` and `max`.
+  Box box(const Range& range, FlatBox flat) const;
 
  private:
   Entry map_;

@@ -154,7 +154,7 @@ int MeshPieces::gridPoint(const HalfIndex& point) {
 }
 
 // The part inside the mesh of an edge of the octants, half a spacing long.
-void MeshPieces::addEdge(const HalfIndex& start, int axis, bool forwards,
+void MeshPieces::addEdge(const HalfIndex& start, int axis, Direction direction,
                          std::vector<Segment>& border) {
   const auto line = lines_.find({axis, start[at(next(axis))], start[at(afterNext(axis))]});
   if (line == lines_.end()) return;  // all outside: a line inside enters and leaves
@@ -173,7 +173,7 @@ void MeshPieces::addEdge(const HalfIndex& start, int axis, bool forwards,
   int from = inside != 0 ? gridPoint(start) : -1;
   const auto go = [&](int to) {
     for (int times = 0; times < std::abs(inside); ++times) {
-      const bool as_axis = (inside > 0) == forwards;
+      const bool as_axis = (inside > 0) == (direction == Direction::kForwards);
       border.push_back(as_axis ? Segment{from, to} : Segment{to, from});
     }
     from = to;
@@ -193,10 +193,10 @@ std::vector<MeshPieces::Segment> MeshPieces::lid(const HalfIndex& octant, int ax
   HalfIndex right = low, up = low;
   ++right[at(next(axis))];
   ++up[at(afterNext(axis))];
-  addEdge(low, next(axis), true, border);
-  addEdge(right, afterNext(axis), true, border);
-  addEdge(up, next(axis), false, border);
-  addEdge(low, afterNext(axis), false, border);
+  addEdge(low, next(axis), Direction::kForwards, border);
+  addEdge(right, afterNext(axis), Direction::kForwards, border);
+  addEdge(up, next(axis), Direction::kBackwards, border);
+  addEdge(low, afterNext(axis), Direction::kBackwards, border);
   const auto seam = seams_.find({octant, axis});
   if (seam == seams_.end()) return border;
   for (const auto& [from, to] : seam->second) border.push_back({to, from});

@@ -63,6 +63,8 @@ class MeshPieces {
   };
   using LineKey = std::array<int, 3>;  // axis, and the half indices along the two next ones
 
+  enum class Direction { kForwards, kBackwards };  // along an axis
+
   bool isAbove(int vertex, int axis, int plane) const;
   int crossing(int from, int to, int axis, int plane);
   void split(const Polygon& polygon, int axis, int plane, Polygon& below, Polygon& above);
@@ -70,7 +72,7 @@ class MeshPieces {
   void cutAlong(int axis, Polygon rest, bool keep);
   void keepPiece(const Polygon& piece);
   int gridPoint(const HalfIndex& point);
-  void addEdge(const HalfIndex& start, int axis, bool forwards, std::vector<Segment>& border);
+  void addEdge(const HalfIndex& start, int axis, Direction direction, std::vector<Segment>& border);
 
   std::vector<Vec3> vertices_;
   HalfIndex octants_{};  // of the grid, along x, y, z

@@ -13,6 +13,8 @@
 namespace robot_tissue {
 namespace {
 
+enum class Face { kOuter, kOpened };  // opened by a cut
+
 // Parts of the split cells with ghosts, also for a model that has none: then a ghost moves as the
 // own corners nearest to it of the parts that have it.
 class Parts {
@@ -92,7 +94,7 @@ class CutMeshBuilder {
     }
     for (const MeshPieces::Piece& piece : pieces_.pieces()) {
       for (std::size_t i = 1; i + 1 < piece.outline.size(); ++i) {
-        add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, false);
+        add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, Face::kOuter);
       }
     }
     for (const auto& octant : region_) {
@@ -186,11 +188,11 @@ class CutMeshBuilder {
     surface_.opened.push_back(0);
   }
 
-  void add(const MeshTriangle& triangle, const HalfIndex& octant, bool opened) {
+  void add(const MeshTriangle& triangle, const HalfIndex& octant, Face face) {
     MeshTriangle corners{};
     for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(triangle[i], octant);
     surface_.triangles.push_back(corners);
-    surface_.opened.push_back(opened ? 1 : 0);
+    surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
   }
 
   // On the octant's upper face along the axis, one for each side. A fan from the middle has the
@@ -207,8 +209,8 @@ class CutMeshBuilder {
     for (const auto& segment : border) points.push_back(segment.first);
     const int middle = pieces_.addVertex(meanOf(points));
     for (const auto& [from, to] : border) {
-      add({middle, from, to}, octant, true);
-      add({middle, to, from}, upper, true);
+      add({middle, from, to}, octant, Face::kOpened);
+      add({middle, to, from}, upper, Face::kOpened);
     }
   }
 

@@ -9,6 +9,8 @@
 namespace robot_tissue {
 namespace {
 
+enum class Face { kOuter, kOpened };  // opened by a cut
+
 // Corners of each face, counter-clockwise seen from outside; faces in the order -x +x -y +y -z +z.
 constexpr int kFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
@@ -37,7 +39,7 @@ class SurfaceBuilder {
 
   Surface build() {
     for (const Cell& cell : lattice_.cells()) addCell(cell);
-    for (const auto& [key, quad] : between_cells_) addQuad(quad, true);
+    for (const auto& [key, quad] : between_cells_) addQuad(quad, Face::kOpened);
     return std::move(surface_);
   }
 
@@ -76,9 +78,9 @@ class SurfaceBuilder {
       touches_part = touches_part || quad[at(i)].own;
     }
     if (!touches_part) {
-      addQuad(quad, true);  // where the cut runs through the cell
+      addQuad(quad, Face::kOpened);  // where the cut runs through the cell
     } else if (outside) {
-      addQuad(quad, false);
+      addQuad(quad, Face::kOuter);
     } else {
       addBetweenCells(quad);
     }
@@ -119,7 +121,7 @@ class SurfaceBuilder {
   }
 
   // The diagonal joins the even nodes, so that the triangles are symmetric where the lattice is.
-  void addQuad(const Quad& quad, bool opened) {
+  void addQuad(const Quad& quad, Face face) {
     std::array<int, 4> vertices{};
     for (int i = 0; i < 4; ++i) vertices[at(i)] = vertex(quad[at(i)]);
     const auto index = lattice_.gridIndex(quad[0].node);
@@ -127,7 +129,7 @@ class SurfaceBuilder {
     for (const int start : {first, first + 2}) {
       surface_.triangles.push_back(
           {vertices[at(start % 4)], vertices[at((start + 1) % 4)], vertices[at((start + 2) % 4)]});
-      surface_.opened.push_back(opened ? 1 : 0);
+      surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
     }
   }
 

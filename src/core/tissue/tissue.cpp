@@ -96,7 +96,7 @@ Vec3 Tissue::forceOfFixedNodes() const {
 double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
 
 SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
-                           const std::vector<int>& disturbed, bool lies) {
+                           const std::vector<int>& disturbed, Bedding bedding) {
   const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
   const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
     return std::none_of(tool_patches.begin(), tool_patches.end(),
@@ -104,13 +104,14 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
   });
   putToolPatches(std::move(tool_patches));
   const bool last_left = one_left && patches_.size() == named_patches_;
-  const bool from_rest = method_->findsEquilibrium() ? last_left && !lies : one_left;
+  const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
+  const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
   if (from_rest) return solveFromRest();
   const bool one_there = patches_.size() > named_patches_;
   const SolveReport report = solve(disturbed);
   // The tissue left the last tool behind in the solve.
   const bool one_lost = one_there && patches_.size() == named_patches_;
-  return one_lost && method_->findsEquilibrium() && !lies ? solveFromRest() : report;
+  return one_lost && returns ? solveFromRest() : report;
 }
 
 void Tissue::restore(const Shape& shape) {
@@ -123,9 +124,16 @@ void Tissue::restore(const Shape& shape) {
   deformSurface();
 }
 
-void Tissue::solveAside(bool aside) {
-  if (aside == is_aside_) return;
-  is_aside_ = aside;
+void Tissue::beginAside() {
+  if (!is_aside_) switchAside();
+}
+
+void Tissue::endAside() {
+  if (is_aside_) switchAside();
+}
+
+void Tissue::switchAside() {
+  is_aside_ = !is_aside_;
   if (!method_->remembers()) return;
   if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
   std::swap(method_, other_method_);
@@ -155,7 +163,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
 
 void Tissue::reset() {
   const bool was_cut = state_.springs_cut > 0;
-  solveAside(false);
+  endAside();
   other_method_.reset();
   method_->forget();
   kept_.reset();

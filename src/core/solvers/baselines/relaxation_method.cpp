@@ -105,7 +105,7 @@ SolveStatus RelaxationMethod::run(Course& course) {
   begin(course.care);
   wayFromMark();
   findForces();
-  lookAtWave(true);
+  lookAtWave(WaveLook::kFirst);
   while (course.care <= kMostCare && !course.stalled &&
          course.iterations < options_.max_iterations) {
     iterate();
@@ -132,7 +132,7 @@ bool RelaxationMethod::look(Course& course) {
   if (std::isfinite(way) && !near && course.looks % kLooksApart != 0) return false;
   const bool surprised = std::isfinite(way) && field_->findSqueezed();
   findForces();
-  lookAtWave(course.ways.size() < 2);
+  lookAtWave(course.ways.size() < 2 ? WaveLook::kFirst : WaveLook::kAgain);
   if (near) course.error = std::min(relative(lengthToGo(course.ways)), 1.0);
   const double left = correctionNorm();
   if (left < course.least) keep(course);
@@ -198,14 +198,14 @@ void RelaxationMethod::findDepth() {
 }
 
 // Rayleigh's quotient of the way since forces were looked at before.
-void RelaxationMethod::lookAtWave(bool first) {
+void RelaxationMethod::lookAtWave(WaveLook look) {
   QuotientSums sums;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     addQuotient(field_->size(), field_->moved()[axis], field_->force()[axis], field_->compliance(),
                 field_->free()[axis], field_->spare(kLooked)[axis],
                 field_->spare(kLookedForce)[axis], sums);
   }
-  if (first || !(sums.work > 0.0 && sums.mass > 0.0)) return;
+  if (look == WaveLook::kFirst || !(sums.work > 0.0 && sums.mass > 0.0)) return;
   seen_wave_ = std::min(seen_wave_, std::max(sums.work / sums.mass, kLeastWave));
 }
 

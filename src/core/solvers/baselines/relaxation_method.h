@@ -82,12 +82,13 @@ class RelaxationMethod : public SolverMethod {
 
  private:
   struct Course;
+  enum class WaveLook { kFirst, kAgain };  // of a solve: the first one has none to compare with
 
   SolveStatus run(Course& course);
   bool look(Course& course);
   double lengthToGo(const std::vector<double>& ways) const;
   void findDepth();
-  void lookAtWave(bool first);
+  void lookAtWave(WaveLook look);
   double wayFromMark();
   double correctionNorm() const;
   double relative(double length) const;
