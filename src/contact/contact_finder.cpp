@@ -9,6 +9,7 @@
 #include "link_penetration.h"
 #include "placed_link.h"
 #include "shape_gap.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -185,7 +186,6 @@ std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& t
                                                  const Vec3& point, const Vec3& direction,
                                                  double clear, double reach,
                                                  double farthest) const {
-  constexpr double kLeastStep = 0.1;  // of `clear`
   double gone = 0.0;
   while (gone <= farthest) {
     const Vec3 probe = point + gone * direction;
@@ -194,7 +194,7 @@ std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& t
     if (out->depth_m <= -0.9 * clear) {
       return WayOut{out->depth_m + gone * out->normal.dot(direction), out->normal};
     }
-    gone += std::max(out->depth_m + clear, kLeastStep * clear);
+    gone += std::max(out->depth_m + clear, tuning::kLeastStep * clear);
   }
   return std::nullopt;
 }

@@ -5,13 +5,10 @@
 #include <optional>
 
 #include "mesh_minima.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kOnEdge = 1e-9;     // weight
-constexpr double kSameAlong = 0.02;  // share of an edge, of a mesh's contacts
-constexpr double kDeeper = 1e-12;    // m, than another shape of the link
 
 // One bit for each side of the box that the point is beyond.
 std::uint8_t sidesBeyond(const Vec3& point, const Box& box) {
@@ -147,7 +144,7 @@ void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, Con
     // Where another shape of the link is deeper, that one's deepest point speaks for both.
     if (link_->size() > 1) {
       const auto deepest = wayOut(*link_, pointOf(corners, minimum.weights), margin_);
-      if (deepest && deepest->depth_m > -minimum.distance.value + kDeeper) continue;
+      if (deepest && deepest->depth_m > -minimum.distance.value + tuning::kDeeper) continue;
     }
     if (isOnKnownEdge(minimum.weights, shape, triangle)) continue;
     add(minimum.weights, -minimum.distance.value,
@@ -178,7 +175,7 @@ bool LinkContacts::isVertexAlready(const TriangleMinimum& minimum, std::size_t s
 bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
                                  const MeshTriangle& triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
-    if (weights[static_cast<int>(k)] > kOnEdge) continue;
+    if (weights[static_cast<int>(k)] > tuning::kOnEdge) continue;
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     const bool ascending = triangle[next] < triangle[last];
     const double along = weights[static_cast<int>(ascending ? last : next)];
@@ -186,7 +183,7 @@ bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
     const bool is_mesh = (*link_)[shape].shape->isMesh();
     for (const EdgePlace& known : places) {
       if (known.shape != shape) continue;
-      if (!is_mesh || std::abs(known.along - along) <= kSameAlong) return true;
+      if (!is_mesh || std::abs(known.along - along) <= tuning::kSameAlong) return true;
     }
     places.push_back({shape, along});
     return false;

@@ -4,23 +4,17 @@
 #include <cmath>
 #include <limits>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr int kSpherePoints = 200;
-constexpr int kBoxSteps = 8;  // of an edge
-constexpr int kRimPoints = 16;
-constexpr int kSideRings = 8;
-constexpr int kCapRings = 2;
-constexpr int kMostMoves = 8;
-constexpr double kGain = 1e-7;  // m: a move that brings less is the last
 
 // Golden spiral.
 std::vector<Vec3> spherePoints(double radius) {
   std::vector<Vec3> points;
   const double turn = M_PI * (3.0 - std::sqrt(5.0));
-  for (int i = 0; i < kSpherePoints; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / kSpherePoints;
+  for (int i = 0; i < tuning::kSpherePoints; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / tuning::kSpherePoints;
     const double across = std::sqrt(1.0 - z * z);
     points.push_back(radius * Vec3(across * std::cos(turn * i), across * std::sin(turn * i), z));
   }
@@ -30,12 +24,13 @@ std::vector<Vec3> spherePoints(double radius) {
 // A grid on each face, edges and corners among them.
 std::vector<Vec3> boxPoints(const Vec3& size) {
   std::vector<Vec3> points;
-  const auto isEnd = [](int i) { return i == 0 || i == kBoxSteps; };
-  for (int i = 0; i <= kBoxSteps; ++i) {
-    for (int j = 0; j <= kBoxSteps; ++j) {
-      for (int k = 0; k <= kBoxSteps; ++k) {
+  const auto isEnd = [](int i) { return i == 0 || i == tuning::kBoxSteps; };
+  for (int i = 0; i <= tuning::kBoxSteps; ++i) {
+    for (int j = 0; j <= tuning::kBoxSteps; ++j) {
+      for (int k = 0; k <= tuning::kBoxSteps; ++k) {
         if (!isEnd(i) && !isEnd(j) && !isEnd(k)) continue;
-        points.push_back(size.cwiseProduct(Vec3(i, j, k) / kBoxSteps - Vec3::Constant(0.5)));
+        points.push_back(
+            size.cwiseProduct(Vec3(i, j, k) / tuning::kBoxSteps - Vec3::Constant(0.5)));
       }
     }
   }
@@ -44,15 +39,15 @@ std::vector<Vec3> boxPoints(const Vec3& size) {
 
 std::vector<Vec3> cylinderPoints(double radius, double length) {
   std::vector<Vec3> points = {Vec3(0.0, 0.0, 0.5 * length), Vec3(0.0, 0.0, -0.5 * length)};
-  for (int i = 0; i < kRimPoints; ++i) {
-    const double angle = 2.0 * M_PI * i / kRimPoints;
+  for (int i = 0; i < tuning::kRimPoints; ++i) {
+    const double angle = 2.0 * M_PI * i / tuning::kRimPoints;
     const Vec3 rim(radius * std::cos(angle), radius * std::sin(angle), 0.0);
-    for (int ring = 0; ring <= kSideRings; ++ring) {
-      const double share = static_cast<double>(ring) / kSideRings;
+    for (int ring = 0; ring <= tuning::kSideRings; ++ring) {
+      const double share = static_cast<double>(ring) / tuning::kSideRings;
       points.push_back(rim + Vec3(0.0, 0.0, (share - 0.5) * length));
     }
-    for (int ring = 1; ring < kCapRings; ++ring) {
-      const double share = static_cast<double>(ring) / kCapRings;
+    for (int ring = 1; ring < tuning::kCapRings; ++ring) {
+      const double share = static_cast<double>(ring) / tuning::kCapRings;
       points.push_back(share * rim + Vec3(0.0, 0.0, 0.5 * length));
       points.push_back(share * rim - Vec3(0.0, 0.0, 0.5 * length));
     }
@@ -123,10 +118,11 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
   };
   for (const Vec3& point : points) isDeeper(placed.tissue_T_shape * point, deepest);
   if (placed.shape->isMesh() || foot.triangle < 0) return deepest;
-  for (int move = 0; move < kMostMoves; ++move) {
+  for (int move = 0; move < tuning::kMostMoves; ++move) {
     const Vec3 inwards = (place - foot.point).normalized();
     const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
-    if (!isDeeper(placed.tissue_T_shape * placed.shape->farthest(direction), deepest + kGain)) {
+    if (!isDeeper(placed.tissue_T_shape * placed.shape->farthest(direction),
+                  deepest + tuning::kLeastGain)) {
       break;
     }
   }

@@ -3,17 +3,16 @@
 #include <algorithm>
 
 #include "mesh_seeds.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kSamePlace = 0.05;  // of the longest edge
 
 // Whether a place found before stands for another, too: the ball around it that is all inside the
 // mesh holds the other, or they are side by side.
 bool standsFor(const TriangleMinimum& known, const Vec3& point, const Corners& corners) {
   const double apart = (pointOf(corners, known.weights) - point).norm();
-  return apart <= std::max(kSamePlace * longestEdge(corners), -known.distance.value);
+  return apart <= std::max(tuning::kSamePlace * longestEdge(corners), -known.distance.value);
 }
 
 bool isKnown(const Vec3& point, double distance, const Corners& corners,

@@ -9,12 +9,10 @@
 
 #include "robot_tissue/core/disjoint_sets.h"
 #include "triangle_minimum.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kAtOnePoint = 1e-9;  // of the longest edge
-constexpr double kSquare = 1e-9;      // cosine that counts as a right angle
 
 // The triangle's plane: height over it, and weights of points in it.
 class TrianglePlane {
@@ -141,7 +139,7 @@ void seedsOfSlits(const std::vector<Slit>& slits, const ToolMesh& mesh, const Co
     if (part[number] != number) continue;
     Vec3 sum = Vec3::Zero();
     double length = 0.0;
-    const double least = kAtOnePoint * longestEdge(corners);
+    const double least = tuning::kAtOnePoint * longestEdge(corners);
     for (std::size_t i = number; i < slits.size(); ++i) {
       if (part[i] != number) continue;
       sum += (slits[i].length + least) * slits[i].middle;
@@ -158,7 +156,7 @@ void seedsOfSlits(const std::vector<Slit>& slits, const ToolMesh& mesh, const Co
 // Whether going from `place` to `other` leads, at first, not nearer to what is `away` from it.
 bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
   const Vec3 way = other - place;
-  return way.dot(away) <= kSquare * way.norm() * away.norm();
+  return way.dot(away) <= tuning::kSquare * way.norm() * away.norm();
 }
 
 // Which numbers were named since begin(); keeps its array from call to call.
@@ -210,7 +208,7 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
   const Vec3 ab = b - a, cd = d - c, ac = c - a;
   const double uu = ab.squaredNorm(), uv = ab.dot(cd), vv = cd.squaredNorm();
   const double determinant = uu * vv - uv * uv;
-  if (!(determinant > kSquare * uu * vv)) return std::nullopt;
+  if (!(determinant > tuning::kSquare * uu * vv)) return std::nullopt;
   const double u = (ac.dot(ab) * vv - ac.dot(cd) * uv) / determinant;
   const double v = (ac.dot(ab) * uv - ac.dot(cd) * uu) / determinant;
   if (u < 0.0 || u > 1.0 || v < 0.0 || v > 1.0) return std::nullopt;

@@ -2,10 +2,11 @@
 
 #include <limits>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr double kRigidSlack = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Box placedBounds(const CollisionShape& shape, const Pose& tissue_T_shape) {
@@ -21,7 +22,8 @@ Box placedBounds(const CollisionShape& shape, const Pose& tissue_T_shape) {
 bool isRigid(const Pose& pose) {
   if (!pose.matrix().allFinite()) return false;
   const Eigen::Matrix3d rotation = pose.linear();
-  return (rotation.transpose() * rotation).isIdentity(kRigidSlack) && rotation.determinant() > 0.0;
+  return (rotation.transpose() * rotation).isIdentity(tuning::kRigidSlack) &&
+         rotation.determinant() > 0.0;
 }
 
 bool boxesMeet(const Box& a, const Box& b, double margin) {

@@ -12,6 +12,8 @@
 #include <optional>
 #include <vector>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -20,12 +22,11 @@ using FclMesh = fcl::BVHModel<fcl::OBBRSSd>;
 
 // The tolerances of libccd are absolute and made for shapes about one unit wide: with 1, gaps would
 // be wrong by micrometers.
-constexpr double kUnitsPerM = 100.0;
 
 std::unique_ptr<fcl::CollisionGeometryd> makeMesh(const ToolMesh& mesh) {
   auto model = std::make_unique<FclMesh>();
   std::vector<Vec3> vertices;
-  for (const Vec3& vertex : mesh.vertices()) vertices.push_back(kUnitsPerM * vertex);
+  for (const Vec3& vertex : mesh.vertices()) vertices.push_back(tuning::kUnitsPerM * vertex);
   std::vector<fcl::Triangle> triangles;
   for (const MeshTriangle& t : mesh.triangles())
     triangles.emplace_back(at(t[0]), at(t[1]), at(t[2]));
@@ -39,10 +40,10 @@ std::unique_ptr<fcl::CollisionGeometryd> makeGeometry(const CollisionShape& shap
   const ToolShape& measures = shape.measures();
   switch (measures.type) {
     case Type::kBox:
-      return std::make_unique<fcl::Boxd>(kUnitsPerM * measures.size);
+      return std::make_unique<fcl::Boxd>(tuning::kUnitsPerM * measures.size);
     case Type::kCylinder:
-      return std::make_unique<fcl::Cylinderd>(kUnitsPerM * measures.radius,
-                                              kUnitsPerM * measures.length);
+      return std::make_unique<fcl::Cylinderd>(tuning::kUnitsPerM * measures.radius,
+                                              tuning::kUnitsPerM * measures.length);
     case Type::kMesh:
       return makeMesh(shape.mesh());
     case Type::kSphere:
@@ -89,7 +90,7 @@ bool isWithin(const PlacedShape& inner, const PlacedShape& outer) {
 
 fcl::Transform3d fclPlace(const PlacedShape& placed) {
   fcl::Transform3d place = placed.tissue_T_shape;
-  place.translation() *= kUnitsPerM;
+  place.translation() *= tuning::kUnitsPerM;
   return place;
 }
 
@@ -127,7 +128,7 @@ std::optional<double> gapByFcl(const GapSide& a, const GapSide& b) {
   } catch (const std::exception&) {
     return std::nullopt;
   }
-  const double gap = result.min_distance / kUnitsPerM;
+  const double gap = result.min_distance / tuning::kUnitsPerM;
   if (!std::isfinite(gap) || std::abs(gap) > 1e6) return std::nullopt;
   return std::max(0.0, gap) - a.placed->shape->padding() - b.placed->shape->padding();
 }

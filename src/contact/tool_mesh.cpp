@@ -8,14 +8,10 @@
 
 #include "robot_tissue/core/mesh_checks.h"
 #include "robot_tissue/mesh/mesh_file.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-// Nearer to the surface than this (m), the direction to its nearest point is rounding noise.
-constexpr double kOnSurface = 1e-10;
-constexpr std::size_t kWidthDirections = 400;
-constexpr double kPlainSide = 1e-6;  // of the distance: beyond, a side is no rounding noise
 
 // Turned outwards as a whole: which parts of a surface that crosses itself are cavities is not
 // told.
@@ -106,7 +102,7 @@ void ToolMesh::findNormals() {
 
 void ToolMesh::measureThickness() {
   thickness_ = std::numeric_limits<double>::infinity();
-  const std::size_t stride = 1 + normals_.size() / kWidthDirections;
+  const std::size_t stride = 1 + normals_.size() / tuning::kWidthDirections;
   for (std::size_t i = 0; i < normals_.size(); i += stride) {
     if (normals_[i].isZero()) continue;
     double low = std::numeric_limits<double>::infinity();
@@ -143,7 +139,7 @@ SignedDistance ToolMesh::distanceWithin(const Vec3& point, double bound) const {
 SignedDistance ToolMesh::signedBy(const Vec3& point, const AabbTree::Nearest& nearest) const {
   SignedDistance found;
   found.value = isInside(point, nearest) ? -nearest.distance : nearest.distance;
-  if (nearest.distance <= kOnSurface) {
+  if (nearest.distance <= tuning::kOnSurface) {
     found.slope = normals_[at(nearest.triangle)];
   } else {
     found.slope = (point - nearest.point) / found.value;
@@ -168,7 +164,7 @@ bool ToolMesh::isInside(const Vec3& point, const AabbTree::Nearest& nearest) con
         edges_of_triangles_[at(nearest.triangle)][(static_cast<std::size_t>(opposite) + 1) % 3])];
   }
   const double side = normal.dot(point - nearest.point);
-  if (std::abs(side) <= kPlainSide * nearest.distance) return tree_.isInside(point);
+  if (std::abs(side) <= tuning::kPlainSide * nearest.distance) return tree_.isInside(point);
   return side < 0.0;
 }
 

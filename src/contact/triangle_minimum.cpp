@@ -5,18 +5,9 @@
 #include <limits>
 #include <vector>
 
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kOfEdge = 0.005;  // accuracy, of the longest edge
-constexpr double kOfThickness = 0.02;
-constexpr double kLeastAccuracy = 1e-5;  // m
-constexpr double kCertain = 1e-3;        // of the accuracy: less or not less than the limit
-constexpr std::size_t kMostLocalSteps = 24;
-constexpr double kFirstPart = 0.125;  // of the longest edge
-constexpr double kGoodShare = 0.25;   // of the gain that the planes foretold
-constexpr double kRounding = 1e-12;   // m
-constexpr double kBeyondRounding = 1e-9;
 
 struct Cut {
   Vec3 point;
@@ -65,7 +56,7 @@ Forecast forecast(const std::vector<Cut>& cuts, const Corners& corners,
 }  // namespace
 
 double boundAfter(double distance, double way) {
-  return (std::abs(distance) + way) * (1.0 + kBeyondRounding) + kRounding;
+  return (std::abs(distance) + way) * (1.0 + tuning::kBeyondRounding) + tuning::kRounding;
 }
 
 double longestEdge(const Corners& corners) {
@@ -75,9 +66,9 @@ double longestEdge(const Corners& corners) {
 }
 
 double accuracyFor(const CollisionShape& shape, const Corners& corners) {
-  const double accuracy =
-      std::min(kOfEdge * longestEdge(corners), kOfThickness * shape.thickness());
-  return std::max(kLeastAccuracy, accuracy);
+  const double accuracy = std::min(tuning::kAccuracyOfEdge * longestEdge(corners),
+                                   tuning::kAccuracyOfThickness * shape.thickness());
+  return std::max(tuning::kLeastAccuracy, accuracy);
 }
 
 // The least point of the highest plane stays when the new plane is not above it; otherwise it moves
@@ -131,7 +122,7 @@ TriangleMinimum convexMinimum(const CollisionShape& shape, const Corners& corner
   bool foot_asked = false;
   while (bound.size() < HighestPlane::kMost && bound.least() < limit) {
     const double open = best.distance.value - bound.least();
-    if (open <= accuracy * (best.distance.value < limit ? 1.0 : kCertain)) break;
+    if (open <= accuracy * (best.distance.value < limit ? 1.0 : tuning::kAccuracyAtLimit)) break;
     const Vec3 weights =
         foot_asked ? bound.leastWeights() : nearestInTriangle(Vec3::Zero(), corners);
     foot_asked = true;
@@ -147,8 +138,8 @@ TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners
                              const TriangleMinimum& seed, double accuracy) {
   TriangleMinimum best = seed;
   std::vector<Cut> cuts = {{pointOf(corners, seed.weights), best.distance}};
-  double radius = std::max(kFirstPart * longestEdge(corners), -best.distance.value);
-  for (std::size_t step = 0; step < kMostLocalSteps; ++step) {
+  double radius = std::max(tuning::kFirstPart * longestEdge(corners), -best.distance.value);
+  for (std::size_t step = 0; step < tuning::kMostLocalSteps; ++step) {
     const Forecast next = forecast(cuts, corners, partAround(corners, best.weights, radius));
     const double gain = best.distance.value - next.least;
     if (gain <= accuracy) break;
@@ -157,16 +148,18 @@ TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners
     const Cut cut{point, shape.distanceWithin(point, boundAfter(best.distance.value, way))};
     cuts.push_back(cut);
     if (cut.distance.value < best.distance.value) {
-      if (cut.distance.value < best.distance.value - kGoodShare * gain) radius *= 2.0;
+      if (cut.distance.value < best.distance.value - tuning::kGoodShare * gain) radius *= 2.0;
       best = {next.weights, cut.distance};
-    } else if (cut.heightAt(pointOf(corners, best.weights)) > best.distance.value + kRounding) {
+    } else if (cut.heightAt(pointOf(corners, best.weights)) >
+               best.distance.value + tuning::kRounding) {
       radius *= 0.5;
     }
     // A plane above a value that was asked for belongs to another part of the shape.
     const Vec3 best_point = pointOf(corners, best.weights);
     cuts.erase(std::remove_if(cuts.begin(), cuts.end(),
                               [&](const Cut& old) {
-                                return old.heightAt(best_point) > best.distance.value + kRounding;
+                                return old.heightAt(best_point) >
+                                       best.distance.value + tuning::kRounding;
                               }),
                cuts.end());
   }

@@ -10,6 +10,7 @@
 #include "aabb_tree.h"
 #include "collision_shape.h"
 #include "signed_distance.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 
@@ -23,7 +24,7 @@ double longestEdge(const Corners& corners);
 // The highest of some planes over a triangle; a plane is given by its values at the corners.
 class HighestPlane {
  public:
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMost = tuning::kMostPlanes;
 
   // At most kMost of them.
   void add(const Vec3& corner_values);

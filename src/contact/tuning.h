@@ -1,0 +1,90 @@
+// The numbers of contact geometry in one place: unit, where each comes from, and what turning it
+// does. "edge" is the longest edge of a triangle of the tissue's surface, "thickness" that of a
+// shape. Chosen: by judgment, and kept as the tests of geometry passed; no other value was measured
+// against it. Rounding: above what double precision leaves, far below what a contact feels.
+#pragma once
+
+#include <cstddef>
+
+namespace robot_tissue::tuning {
+
+// Where on a triangle the distance to a shape is least.
+// Of the edge and of the thickness (1), whichever is less: how exact. Less: more distances asked
+// for. Chosen.
+constexpr double kAccuracyOfEdge = 0.005;
+constexpr double kAccuracyOfThickness = 0.02;
+// m: it is never finer. More: contacts of tiny tissues are coarse; less: more distances. Chosen.
+constexpr double kLeastAccuracy = 1e-5;
+// Of the accuracy (1): where nothing less than the limit was found, a bound so near to the best
+// ends the search. Less: more distances asked for in vain; more: contacts at the limit are missed.
+// Chosen.
+constexpr double kAccuracyAtLimit = 1e-3;
+// Planes over one triangle, and so distances, at most. More: searches that end here would come
+// nearer to their accuracy, the last planes being the dearest. Chosen.
+constexpr std::size_t kMostPlanes = 32;
+
+// The same of a mesh, which is convex in parts only: a search from each seed.
+// Steps of one search at most. More: exact in more cases, slower where a shape is rough. Chosen.
+constexpr std::size_t kMostLocalSteps = 24;
+// Of the edge (1): how far the planes are believed at first. More: fewer steps on smooth shapes,
+// but a search may leave its own hollow; less: more steps. Chosen.
+constexpr double kFirstPart = 0.125;
+// Of the gain that the planes foretold (1): with a larger one, they are believed twice as far.
+// More: shorter steps. Chosen.
+constexpr double kGoodShare = 0.25;
+// Of the edge (1): two least points that are nearer are one contact. More: fewer contacts of a
+// rough mesh; less: several where it touches once. Chosen.
+constexpr double kSamePlace = 0.05;
+// Of the edge of two triangles (1): contacts on it that are nearer along it are one. More: fewer;
+// less: each triangle adds its own. Chosen.
+constexpr double kSameAlong = 0.02;
+// Of the edge (1): a segment of a mesh in the triangle that is shorter is a point. Rounding.
+constexpr double kAtOnePoint = 1e-9;
+// Cosine, and its square's shortage from 1: two directions are square, or not parallel. Rounding.
+constexpr double kSquare = 1e-9;
+
+// Equal or not.
+// m, and of a distance (1): what a bound of a distance is widened by. Less: the nearest face may be
+// missed; more: more faces are asked. Rounding.
+constexpr double kRounding = 1e-12;
+constexpr double kBeyondRounding = 1e-9;
+// m: another shape of the link is deeper, and speaks for both. Rounding.
+constexpr double kDeeper = 1e-12;
+// Barycentric weight (1): with less of a corner, a point is on the edge across. Rounding.
+constexpr double kOnEdge = 1e-9;
+// m: nearer to a mesh, the direction from its nearest point is noise; the face's normal counts.
+constexpr double kOnSurface = 1e-10;
+// Of the distance to a mesh (1): with less height over the nearest face, a ray tells inside from
+// outside. More: more rays, slower; less: noise decides.
+constexpr double kPlainSide = 1e-6;
+// How far a rotation may be from one (1); beyond, a link has no pose and touches nothing. More:
+// shapes are slightly sheared; less: poses rounded by TF are refused. Chosen.
+constexpr double kRigidSlack = 1e-6;
+
+// How deep a shape is in the tissue: points of its surface, measured one by one.
+// Points of a sphere, steps of a box's edge, points around a cylinder, rings along its side and
+// from the middle of its ends to their rim. More: deep places between them are found, for as many
+// distances more at each look. Chosen.
+constexpr int kSpherePoints = 200;
+constexpr int kBoxSteps = 8;
+constexpr int kRimPoints = 16;
+constexpr int kSideRings = 8;
+constexpr int kCapRings = 2;
+// Moves from the deepest point to the shape's farthest along the way in, at most. More: deeper by
+// little, as a few moves meet the end. Chosen.
+constexpr int kMostMoves = 8;
+// m: a move that brings less is the last. Less: more moves. Chosen.
+constexpr double kLeastGain = 1e-7;
+
+// Others.
+// Of the clearance that is sought (1): the shortest step along a direction out of a shape. More:
+// fewer steps, and the way out is too long by up to as much; less: slow where it grazes. Chosen.
+constexpr double kLeastStep = 0.1;
+// Units of FCL in a meter: libccd's tolerances are absolute and made for shapes about one unit
+// wide. With 1, gaps would be wrong by micrometers; far more, and large shapes are. Chosen.
+constexpr double kUnitsPerM = 100.0;
+// Directions in which a mesh's thickness is measured, at most. More: thin places are found surely,
+// at loading only. Chosen.
+constexpr std::size_t kWidthDirections = 400;
+
+}  // namespace robot_tissue::tuning
