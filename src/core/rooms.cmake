@@ -8,7 +8,8 @@ robot_tissue_room(geometry
   USES base
   PUBLIC grid.h mesh_checks.h triangle_mesh.h
   FILES exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_pieces.cpp mesh_pieces.h
-    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp triangle_mesh.cpp)
+    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp triangle_mesh.cpp
+    tuning.h)
 robot_tissue_room(config
   USES base geometry
   PUBLIC scene.h
@@ -62,7 +63,7 @@ robot_tissue_room(solvers/multigrid/cycle
 robot_tissue_room(solvers/newton
   USES lattice material loads solvers
   FILES dof_map.cpp dof_map.h equilibrium.cpp equilibrium.h newton_method.cpp newton_method.h
-    sparse_factor.cpp sparse_factor.h)
+    sparse_factor.cpp sparse_factor.h tuning.h)
 robot_tissue_room(solvers/paper
   USES lattice material loads solvers
   FILES layers.cpp layers.h paper_method.cpp paper_method.h)
@@ -73,10 +74,11 @@ robot_tissue_room(solvers/baselines/kernels
 robot_tissue_room(solvers/baselines
   USES base simd material loads solvers solvers/baselines/kernels
   FILES explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
-    relaxation_method.h soa_field.cpp soa_field.h vbd_method.cpp vbd_method.h xpbd_method.cpp
-    xpbd_method.h)
+    relaxation_method.h soa_field.cpp soa_field.h tuning.h vbd_method.cpp vbd_method.h
+    xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue
   USES base config lattice cutting surface material loads solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
-  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp tissue_loads.cpp)
+  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp
+    tissue_loads.cpp tuning.h)

@@ -9,8 +9,13 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kOnPlane = 1e-3;    // of the spacing
-constexpr double kMostWarped = 0.5;  // of the spacing
+// Of the spacing (1): what is nearer to the blade's plane or outline is on it. More: more springs
+// are severed along the outline; less: nodes in the plane fall to either side by rounding. Chosen.
+constexpr double kOnPlane = 1e-3;
+// Of the spacing (1): a corner farther off the mean plane is refused. More: warped blades cut along
+// a plane that is not theirs. Chosen: beyond a half, other springs would be cut than the blade
+// meets.
+constexpr double kMostWarped = 0.5;
 
 // A polygon on its mean plane.
 class CutPolygon {

@@ -4,13 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/tuning.h"
+
 namespace robot_tissue {
-namespace {
-
-constexpr double kSlack = 1e-3;  // of the spacing
-
-}  // namespace
-
 bool NodeRange::empty() const {
   return first[0] > last[0] || first[1] > last[1] || first[2] > last[2];
 }
@@ -96,8 +92,10 @@ NodeRange Grid::pointsIn(const Box& box, double offset) const {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double end = size_[a] - (offset > 0.0 ? 1 : 0);  // a cell less than nodes
-    const double lower = (box.min()[axis] - shape_.min()[axis]) / spacing_ - offset - kSlack;
-    const double upper = (box.max()[axis] - shape_.min()[axis]) / spacing_ - offset + kSlack;
+    const double lower =
+        (box.min()[axis] - shape_.min()[axis]) / spacing_ - offset - tuning::kBoxSlack;
+    const double upper =
+        (box.max()[axis] - shape_.min()[axis]) / spacing_ - offset + tuning::kBoxSlack;
     range.first[a] = static_cast<int>(std::clamp(std::ceil(lower), 0.0, end));
     range.last[a] = static_cast<int>(std::clamp(std::floor(upper), -1.0, end - 1.0));
   }
@@ -108,7 +106,8 @@ bool spacingFits(const Vec3& extent, double spacing) {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = extent[axis] / spacing;
     // Written so that a spacing of 0 or NaN does not fit.
-    if (!(std::round(cells) >= 1.0) || !(std::abs(cells - std::round(cells)) <= kSlack)) {
+    if (!(std::round(cells) >= 1.0) ||
+        !(std::abs(cells - std::round(cells)) <= tuning::kBoxSlack)) {
       return false;
     }
   }
@@ -122,16 +121,15 @@ double nodeCount(const Vec3& extent, double spacing) {
 }
 
 std::vector<double> nearestSpacings(const Vec3& extent, double spacing) {
-  constexpr double kMostTried = 10000.0;
   const double shortest = extent.minCoeff();
   const double cells = shortest / spacing;  // may be below 1
   std::vector<double> found;
-  for (double n = std::max(1.0, std::ceil(cells)); n < cells + kMostTried; ++n) {
+  for (double n = std::max(1.0, std::ceil(cells)); n < cells + tuning::kMostTriedParts; ++n) {
     if (!spacingFits(extent, shortest / n)) continue;
     found.push_back(shortest / n);
     break;
   }
-  for (double n = std::floor(cells); n >= std::max(1.0, cells - kMostTried); --n) {
+  for (double n = std::floor(cells); n >= std::max(1.0, cells - tuning::kMostTriedParts); --n) {
     if (!spacingFits(extent, shortest / n)) continue;
     found.push_back(shortest / n);
     break;

@@ -5,13 +5,11 @@
 #include <sstream>
 
 #include "geometry/exact_points.h"
+#include "geometry/tuning.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
 namespace {
-
-// A mesh with less volume than this share of its largest extent cubed counts as flat.
-constexpr double kFlatShare = 1e-9;
 
 struct Edge {
   int low = 0;  // vertices
@@ -95,7 +93,7 @@ std::vector<std::vector<MeshTriangle>> shellsOf(const TriangleMesh& mesh) {
 bool isFlat(const TriangleMesh& mesh) {
   const Box box = boundsOf(mesh.vertices);
   const Vec3 extent = box.max() - box.min();
-  const double smallest = kFlatShare * std::pow(extent.maxCoeff(), 3);
+  const double smallest = tuning::kFlatShare * std::pow(extent.maxCoeff(), 3);
   if (!(extent.prod() > smallest)) return true;
   double volume = 0.0;
   for (const auto& shell : shellsOf(mesh)) volume += std::abs(enclosedVolume(mesh.vertices, shell));

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kSlack = 1e-3;     // of the spacing
-constexpr double kRounding = 1e-9;  // shares nearer to 0 or 1 are that
 
 using Polygon = std::vector<Vec3>;  // convex, in spacings from the grid's lowest node
 
@@ -54,8 +53,10 @@ class Slicer {
         result_.filled[cell] += shadow_[cell + layer];
       }
       double& filled = result_.filled[cell];
-      filled = filled < kRounding ? 0.0 : filled > 1.0 - kRounding ? 1.0 : filled;
-      if (filled > kSlack) result_.occupied[cell] = 1;
+      filled = filled < tuning::kShareRounding         ? 0.0
+               : filled > 1.0 - tuning::kShareRounding ? 1.0
+                                                       : filled;
+      if (filled > tuning::kCellSlack) result_.occupied[cell] = 1;
     }
     return std::move(result_);
   }
@@ -102,8 +103,8 @@ class Slicer {
       result_.filled[cell] += area * height;
       shadow_[cell] += area;
     }
-    const bool reaches_in = (max.array() > lowest.array() + kSlack).all() &&
-                            (min.array() < lowest.array() + 1.0 - kSlack).all();
+    const bool reaches_in = (max.array() > lowest.array() + tuning::kCellSlack).all() &&
+                            (min.array() < lowest.array() + 1.0 - tuning::kCellSlack).all();
     if (reaches_in) result_.occupied[cell] = 1;
   }
 
@@ -121,7 +122,7 @@ Grid gridAround(const TriangleMesh& mesh, double spacing) {
   Vec3 half;
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = (bounds.max()[axis] - bounds.min()[axis]) / spacing;
-    half[axis] = 0.5 * std::max(1.0, std::ceil(extent - kSlack)) * spacing;
+    half[axis] = 0.5 * std::max(1.0, std::ceil(extent - tuning::kCellSlack)) * spacing;
   }
   return Grid({middle - half, middle + half}, spacing);
 }

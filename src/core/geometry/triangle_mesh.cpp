@@ -5,12 +5,11 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/tuning.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kWeld = 1e-6;  // of the largest extent
 
 // For each vertex the one that stands for it: the first of those near it. Sweeps along a slanting
 // direction, as many vertices of a flat wall share a coordinate.
@@ -83,7 +82,8 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   TriangleMesh joined;
   if (mesh.vertices.empty()) return joined;
   const Box box = boundsOf(mesh.vertices);
-  const auto stands = representatives(mesh.vertices, kWeld * (box.max() - box.min()).maxCoeff());
+  const auto stands =
+      representatives(mesh.vertices, tuning::kWeld * (box.max() - box.min()).maxCoeff());
   std::vector<int> number(mesh.vertices.size(), -1);
   for (MeshTriangle triangle : mesh.triangles) {
     for (int& corner : triangle) corner = stands[at(corner)];

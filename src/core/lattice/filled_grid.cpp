@@ -9,6 +9,8 @@
 namespace robot_tissue {
 namespace {
 
+// Of a cell (1): one that the mesh touches counts as filled by as much at least. More: thin ends
+// are too stiff and heavy; less: nodes there are so soft that solves take longer. Chosen.
 constexpr double kLeastShare = 1e-3;
 
 Grid gridOf(const Box& shape, double spacing) {

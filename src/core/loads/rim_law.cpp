@@ -11,7 +11,9 @@ struct Measured {
   RimMode normal;
 };
 
-// rim_shift and rim_stiffness of doc/data/rim_strip.csv, cells "limit".
+// Shift in spacings, stiffness in shear moduli, a unit of the edge's length. More shift: larger
+// patches; more stiffness: harder edges. Measured: rim_shift and rim_stiffness of
+// doc/data/rim_strip.csv, cells "limit".
 constexpr Measured kMeasured[] = {
     {0.25, {0.241, 4.41}, {0.155, 6.18}},  {0.30, {0.243, 4.63}, {0.148, 6.74}},
     {0.35, {0.247, 4.86}, {0.141, 7.42}},  {0.40, {0.255, 5.10}, {0.135, 8.24}},

@@ -3,7 +3,8 @@
 namespace robot_tissue {
 namespace {
 
-// Two nodes closer than this share of the spacing have no direction of their own.
+// Of the spacing (1): two nodes that are closer have no direction of their own, and push along the
+// spring's at rest. Rounding.
 constexpr double kShortest = 1e-9;
 
 }  // namespace

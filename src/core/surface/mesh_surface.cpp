@@ -9,6 +9,8 @@
 namespace robot_tissue {
 namespace {
 
+// A node's weight (1) that is none, and spacings between two cells that are equally near. More:
+// points beside a cell's side are carried by that side alone. Rounding.
 constexpr double kNoWeight = 1e-9;
 
 Vec3 inCell(const Lattice& lattice, const Cell& cell, const Vec3& point) {

@@ -208,6 +208,8 @@ std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const V
 }
 
 int vertexAt(const Surface& surface, int triangle, const Vec3& barycentric) {
+  // Barycentric (1): a point that is off a corner by less is that vertex. Less: points rounded by
+  // the search for contacts are none. Chosen.
   constexpr double kOff = 1e-6;
   Eigen::Index corner = 0;
   if (barycentric.maxCoeff(&corner) <= 1.0 - kOff) return -1;

@@ -6,15 +6,10 @@
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/load_ramp.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kMostSteps = 100000.0;
-constexpr double kRounding = 1e-9;            // 5 steps of a fifth are 5, not 6
-constexpr double kTooFar = 2.0;               // steps that a patch goes at once: one spacing
-constexpr double kMostGrowth = 2.0;           // of an increment beside the one before
-constexpr double kLeastOfFirst = 1.0 / 16.0;  // of the first increment: none is smaller
 
 // Longest way of a patch's node between these displacements (m).
 double farthestWay(const std::vector<LoadRamp>& ramps, const std::vector<Vec3>& before,
@@ -49,7 +44,8 @@ void goAlong(const LoadRamp& ramp, double share, LoadingPatch& patch) {
 }  // namespace
 
 int wholeParts(double share) {
-  return std::max(1, static_cast<int>(std::ceil(std::min(share, kMostSteps) - kRounding)));
+  return std::max(
+      1, static_cast<int>(std::ceil(std::min(share, tuning::kMostSteps) - tuning::kRounding)));
 }
 
 // Out of time on the way of named patches: they stand there, and what they go to is due.
@@ -89,7 +85,7 @@ double Tissue::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
       steps = std::max(steps, way.norm() / method_->patchStep());
     }
   }
-  return std::min(steps, kMostSteps);
+  return std::min(steps, tuning::kMostSteps);
 }
 
 // With increments of its own choice. Those of a displacement are equal. Those of a force follow the
@@ -103,7 +99,7 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     return stepLoads(ramps, wholeParts(foreseenSteps(ramps)), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
-  const double first = 1.0 / foreseenSteps(ramps), least = kLeastOfFirst * first;
+  const double first = 1.0 / foreseenSteps(ramps), least = tuning::kLeastOfFirst * first;
   double share = 0.0, stride = first;
   for (int increment = 1; share < 1.0; ++increment) {
     const Shape good = shape();
@@ -112,8 +108,8 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     report = goTo(ramps, to);
     const double went =
         farthestWay(ramps, *good.displacement, state_.displacement) / method_->patchStep();
-    stride = std::max(least, part / std::max(went, 1.0 / kMostGrowth));
-    if (went > kTooFar && stride < part) {
+    stride = std::max(least, part / std::max(went, 1.0 / tuning::kMostGrowth));
+    if (went > tuning::kTooFar && stride < part) {
       restore(good);
       --increment;
       continue;
@@ -153,7 +149,7 @@ SolveReport Tissue::stepLoads(const std::vector<LoadRamp>& ramps, int increments
 // own steps: in one go the shape would be that of no way there.
 SolveReport Tissue::goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments) {
   const double steps = method_->findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
-  const int parts = steps > kTooFar ? wholeParts(steps) : 1;
+  const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
   for (int part = 1; part <= parts; ++part) {
     const SolveReport earlier = report;

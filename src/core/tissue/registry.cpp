@@ -10,13 +10,10 @@
 #include "solvers/multigrid/cycle/layered_method.h"
 #include "solvers/newton/newton_method.h"
 #include "solvers/paper/paper_method.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-// Of newton's factor: by nested dissection it grows as n^(4/3) in three dimensions. Measured: 105
-// MB at 4,851 nodes, 1,186 MB at 35,301.
-constexpr double kFactorBytes = 1150.0;
 
 std::string listed(const std::vector<std::string>& names) {
   std::string list;
@@ -129,7 +126,7 @@ const std::vector<ModelEntry>& models() {
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> all = {
       {"layered", makeLayered, {"elastic"}, {true, true, true, 0.0}},
-      {"newton", makeNewton, {"elastic"}, {false, false, true, kFactorBytes}},
+      {"newton", makeNewton, {"elastic"}, {false, false, true, tuning::kFactorBytes}},
       {"paper", makePaper, {"six_spring"}, {true, false, false, 0.0}},
       {"vbd", makeVbd, {"elastic"}, {}},
       {"xpbd", makeXpbd, {"elastic"}, {}},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robot_tissue/core/tissue.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 
@@ -19,20 +20,15 @@ class RoundGain {
     for (std::size_t node = 0; node < now.size(); ++node) {
       way += (now[node] - (*start_)[node]).squaredNorm();
     }
-    const bool gains =
-        whole || report.error_estimate < kNearer * least_ || way > kFarther * kFarther * farthest_;
-    idle_ = gains ? 0 : idle_ + std::max(report.iterations, kIdleRound);
+    const bool gains = whole || report.error_estimate < tuning::kNearer * least_ ||
+                       way > tuning::kFarther * tuning::kFarther * farthest_;
+    idle_ = gains ? 0 : idle_ + std::max(report.iterations, tuning::kIdleRound);
     least_ = std::min(least_, report.error_estimate);
     farthest_ = std::max(farthest_, way);
   }
-  bool isOver() const { return idle_ > kMostIdle; }
+  bool isOver() const { return idle_ > tuning::kMostIdle; }
 
  private:
-  static constexpr int kMostIdle = 300;    // cycles, in rounds that led neither nearer nor farther
-  static constexpr int kIdleRound = 12;    // cycles that a round counts for at least
-  static constexpr double kNearer = 0.7;   // of the least error: a round led nearer to balance
-  static constexpr double kFarther = 1.1;  // of the farthest way: it led on, as where tissue slips
-
   Tissue::Displacements start_;
   double least_ = std::numeric_limits<double>::infinity();
   double farthest_ = 0.0;  // squared (m^2)

@@ -12,16 +12,10 @@
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kToolStep = 0.2;      // of the spacing
-constexpr int kContactRounds = 16;     // in which the shape is what was solved for
-constexpr int kMostRounds = 200;       // with those that are cut short
-constexpr int kMostIterations = 1500;  // of the rounds of one load step
-constexpr double kLeastMs = 1e-6;      // of a solve: one cycle
-constexpr double kShareOfTime = 0.5;   // of what is left: the contacts are to be looked at again
 
 Vec3 forceOfPatches(const SolveReport& report) {
   Vec3 force = Vec3::Zero();
@@ -61,7 +55,7 @@ Vec3 Tissue::nodeForce(int node) const { return model_->nodeForce(state_, node);
 
 // Contacts are found anew after each step: what a tool meets on the way must not be far.
 double Tissue::stepLength() const {
-  return std::min(method_->patchStep(), kToolStep * lattice_.spacing());
+  return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
 }
 
 Tissue::Displacements Tissue::displacements() const {
@@ -246,15 +240,16 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   SolveReport report = solveOnce(disturbed);
   SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;
-  for (int whole_rounds = 0, rounds = 1; rounds <= kMostRounds; ++rounds) {
+  for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
     const bool late = deadline_ && deadline_->isOver();
     const bool hurried = deadline_ && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
     gain.note(of_round, state_.displacement, whole);
-    const bool last = late || whole_rounds == kContactRounds || rounds == kMostRounds ||
-                      report.iterations > kMostIterations || gain.isOver() ||
+    const bool last = late || whole_rounds == tuning::kContactRounds ||
+                      rounds == tuning::kMostRounds ||
+                      report.iterations > tuning::kMostIterations || gain.isOver() ||
                       (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_update_->renew(
         of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
@@ -309,7 +304,7 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
 // Of the next solve; 0: no bound.
 double Tissue::mostMs() const {
   if (!deadline_) return max_ms_;
-  const double left = std::max(kLeastMs, kShareOfTime * deadline_->leftMs());
+  const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());
   if (!std::isfinite(left)) return max_ms_;
   return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
 }

@@ -4,18 +4,13 @@
 #include <cmath>
 
 #include "solvers/baselines/soa_field.h"
+#include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr int kStart = 0, kVelocity = 2, kLastForce = 3;  // spare arrays of the field
 constexpr int kSoftness = 4;                              // the first of three
-constexpr int kWeighings = 16;                            // steps from one to the next
-constexpr double kMostStep = 0.25;                        // of a node in one step, in spacings
-constexpr int kPowers = 12;                               // iterations for the greatest eigenvalue
-constexpr double kProbe = 1e-2;                           // their motion, in spacings
-constexpr double kMargin = 1.15;                          // they find a little less
-constexpr double kCare = 1.5;
 
 }  // namespace
 
@@ -43,7 +38,7 @@ void ExplicitMethod::begin(int care) {
   if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
   cells_ = shape_.state.cells;
   held_ = hold_.dirichletMask();
-  if (care > 0) fastest_ *= kCare;
+  if (care > 0) fastest_ *= tuning::kCare;
   findForces();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     float* velocity = field_->spare(kVelocity)[axis];
@@ -56,13 +51,13 @@ void ExplicitMethod::begin(int care) {
 }
 
 void ExplicitMethod::iterate() {
-  if (steps_ % kWeighings == 0 && steps_ > 0) weigh();
+  if (steps_ % tuning::kWeighings == 0 && steps_ > 0) weigh();
   if (steps_ > 0) findForces();
   ++steps_;
   const double share = std::sqrt(slowest_ / fastest_);
   const double keep = std::pow((1.0 - share) / (1.0 + share), 2);
   const double push = 4.0 / (fastest_ * std::pow(1.0 + share, 2));
-  const double most = kMostStep * lattice_.spacing() / field_->unit();
+  const double most = tuning::kMostStep * lattice_.spacing() / field_->unit();
   QuotientSums sums;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     roll(static_cast<float>(keep), static_cast<float>(push), static_cast<float>(most),
@@ -105,7 +100,7 @@ void ExplicitMethod::weigh() {
 // By powers of the linearized motion, from a rough one; the shape is as before then.
 void ExplicitMethod::findFastest() {
   const int size = field_->size();
-  const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
+  const auto probe = static_cast<float>(tuning::kPowerProbe * lattice_.spacing() / field_->unit());
   findForces();
   std::uint32_t random = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -117,10 +112,10 @@ void ExplicitMethod::findFastest() {
       field_->spare(kVelocity)[axis][slot] = sign * field_->free()[axis][slot];
     }
   }
-  for (int power = 0; power < kPowers; ++power) {
+  for (int power = 0; power < tuning::kPowers; ++power) {
     const double eigenvalue = takePower();
     if (eigenvalue <= 0.0) break;
-    fastest_ = kMargin * eigenvalue;
+    fastest_ = tuning::kMargin * eigenvalue;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* start = field_->spare(kStart)[axis];
@@ -153,7 +148,7 @@ double ExplicitMethod::takePower() {
     }
   }
   if (!(before > 0.0 && after > 0.0)) return 0.0;
-  const auto probe = static_cast<float>(kProbe * lattice_.spacing() / field_->unit());
+  const auto probe = static_cast<float>(tuning::kPowerProbe * lattice_.spacing() / field_->unit());
   for (float* motions : field_->spare(kVelocity)) {
     for (int slot = 0; slot < size; ++slot) motions[slot] *= probe / greatest;
   }

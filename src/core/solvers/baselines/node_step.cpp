@@ -2,22 +2,18 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "solvers/baselines/tuning.h"
+
 namespace robot_tissue {
-namespace {
-
-constexpr double kSoftest = 0.05;  // of a node's stiffest direction: its others count as no less
-
-}  // namespace
-
 Eigen::Matrix3d firm(const Eigen::Matrix3d& block) {
   const double area = block(0, 0) * block(1, 1) - block(0, 1) * block(1, 0);
   const double stiffest = block.trace();
   if (block(0, 0) > 0.0 && area > 0.0 &&
-      block.determinant() > kSoftest * kSoftest * stiffest * stiffest * stiffest) {
+      block.determinant() > tuning::kSoftest * tuning::kSoftest * stiffest * stiffest * stiffest) {
     return block;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block);
-  const double least = kSoftest * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double least = tuning::kSoftest * solver.eigenvalues().cwiseAbs().maxCoeff();
   return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() *
          solver.eigenvectors().transpose();
 }

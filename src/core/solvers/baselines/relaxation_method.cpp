@@ -9,25 +9,12 @@
 #include "simd/field_kernel.h"
 #include "solvers/baselines/node_step.h"
 #include "solvers/baselines/soa_field.h"
+#include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kStill = 1e-6;     // of the spacing: off rest by less, a node is at rest
-constexpr double kRounding = 3e-7;  // of the spacing, a node: forces are rounded off by as much
-constexpr double kTiny = 1e-3;      // likewise, of the displacement: not resolved to 1e-3
-constexpr double kSame = 1.001;     // of the forces that the last solve left: nothing happened
-constexpr double kGrown = 10.0;     // times the least length left so far: astray
-constexpr int kLooksApart = 4;      // looks at the way from one look at the forces to the next
-constexpr int kPatience = 100;      // looks at the way without a better shape: likewise
-constexpr int kMostCare = 6;
-constexpr double kProbe = 1e-4;     // motion that measures a patch's stiffness, in spacings
-constexpr double kPatchStep = 0.5;  // most motion of a patch in one iteration, in spacings
-constexpr double kPatchTurn = 0.2;  // likewise (rad)
-// Of what a way would have to go did ways already shrink as they do in the end.
-constexpr double kShareOfEnd = 0.5;
 constexpr double kPi = 3.14159265358979;
-constexpr double kLeastWave = 1e-6;
 constexpr int kMark = 0, kBest = 1, kLooked = 6, kLookedForce = 7;  // spare arrays of the field
 
 }  // namespace
@@ -97,7 +84,8 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
 SolveStatus RelaxationMethod::run(Course& course) {
   findForces();
   keep(course);
-  const bool as_left = shape_.state.displacement == left_ && course.least <= kSame * left_length_;
+  const bool as_left =
+      shape_.state.displacement == left_ && course.least <= tuning::kSame * left_length_;
   if (as_left) course.error = left_error_;
   if (isRounding(course.least)) course.error = std::min(relative(course.least), options_.tolerance);
   if (course.error <= options_.tolerance) return SolveStatus::kOk;
@@ -106,7 +94,7 @@ SolveStatus RelaxationMethod::run(Course& course) {
   wayFromMark();
   findForces();
   lookAtWave(WaveLook::kFirst);
-  while (course.care <= kMostCare && !course.stalled &&
+  while (course.care <= tuning::kMostCare && !course.stalled &&
          course.iterations < options_.max_iterations) {
     iterate();
     ++course.iterations;
@@ -129,16 +117,16 @@ bool RelaxationMethod::look(Course& course) {
   const bool settled = settles(to_go);
   course.error = std::min(relative(to_go), 1.0);
   const bool near = course.error <= options_.tolerance;
-  if (std::isfinite(way) && !near && course.looks % kLooksApart != 0) return false;
+  if (std::isfinite(way) && !near && course.looks % tuning::kLooksApart != 0) return false;
   const bool surprised = std::isfinite(way) && field_->findSqueezed();
   findForces();
   lookAtWave(course.ways.size() < 2 ? WaveLook::kFirst : WaveLook::kAgain);
   if (near) course.error = std::min(relative(lengthToGo(course.ways)), 1.0);
   const double left = correctionNorm();
   if (left < course.least) keep(course);
-  const bool stuck = course.looks - course.best_look > kPatience;
+  const bool stuck = course.looks - course.best_look > tuning::kPatience;
   if (stuck && !balances()) course.stalled = true;
-  if (!(left <= kGrown * course.least) || (stuck && balances())) {
+  if (!(left <= tuning::kGrown * course.least) || (stuck && balances())) {
     goBack(course);
     course.best_look = course.looks;
     course.ways.clear();
@@ -147,7 +135,8 @@ bool RelaxationMethod::look(Course& course) {
     return false;
   }
   course.error = std::max(course.error, relative(left));
-  const bool tiny = movedLength() <= kTiny * lattice_.spacing() * std::sqrt(field_->nodeCount());
+  const bool tiny =
+      movedLength() <= tuning::kTiny * lattice_.spacing() * std::sqrt(field_->nodeCount());
   if (tiny && isRounding(left)) course.error = std::min(relative(left), options_.tolerance);
   return course.error <= options_.tolerance && settled && !surprised;
 }
@@ -162,7 +151,7 @@ double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   const double share = std::max(last / ways[count - 2], std::sqrt(last / ways[count - 3]));
   const double seen = share < 1.0 ? share / (1.0 - share) : kInfinity;
   const double in_the_end = std::pow(shrinkage(), stride());
-  return last * std::max(seen, kShareOfEnd * in_the_end / (1.0 - in_the_end));
+  return last * std::max(seen, tuning::kShareOfEnd * in_the_end / (1.0 - in_the_end));
 }
 
 // Breadth first, by cells, from fixed nodes; without any, from those of patches.
@@ -206,7 +195,7 @@ void RelaxationMethod::lookAtWave(WaveLook look) {
                 field_->spare(kLookedForce)[axis], sums);
   }
   if (look == WaveLook::kFirst || !(sums.work > 0.0 && sums.mass > 0.0)) return;
-  seen_wave_ = std::min(seen_wave_, std::max(sums.work / sums.mass, kLeastWave));
+  seen_wave_ = std::min(seen_wave_, std::max(sums.work / sums.mass, tuning::kLeastWave));
 }
 
 void RelaxationMethod::findForces() {
@@ -259,12 +248,12 @@ double RelaxationMethod::movedLength() const {
   for (std::size_t node = 0; node < hold_.carriers().size(); ++node) {
     if (hold_.carriers()[node] >= 0) squared += shape_.state.displacement[node].squaredNorm();
   }
-  const double still = kStill * lattice_.spacing();
+  const double still = tuning::kStill * lattice_.spacing();
   return std::sqrt(std::max(squared, still * still * (field_->nodeCount() + 1.0)));
 }
 
 bool RelaxationMethod::isRounding(double length) const {
-  return length <= kRounding * lattice_.spacing() * std::sqrt(field_->nodeCount());
+  return length <= tuning::kRounding * lattice_.spacing() * std::sqrt(field_->nodeCount());
 }
 
 // Since it was last asked.
@@ -311,8 +300,8 @@ Motion::OfPatch RelaxationMethod::patchAnswer(std::size_t index) const {
   const Eigen::VectorXd answer = answers_[index].ldlt().solve(load);
   Motion::OfPatch step;
   if (!answer.allFinite()) return step;
-  step.shift = capped(answer.head<3>(), kPatchStep * lattice_.spacing());
-  if (turns) step.turn = capped(answer.tail<3>(), kPatchTurn);
+  step.shift = capped(answer.head<3>(), tuning::kPatchStep * lattice_.spacing());
+  if (turns) step.turn = capped(answer.tail<3>(), tuning::kPatchTurn);
   return step;
 }
 
@@ -336,7 +325,7 @@ void RelaxationMethod::measurePatches() {
       reach = std::max(reach, hold_.armOf(shape_, index, node).norm());
     }
     for (int axis = 0; axis < size; ++axis) {
-      const double probe = kProbe * lattice_.spacing() / (axis < 3 ? 1.0 : reach);
+      const double probe = tuning::kPatchProbe * lattice_.spacing() / (axis < 3 ? 1.0 : reach);
       const Vec3 unit = probe * Vec3::Unit(axis % 3);
       ConstrainedState probed = shape_;
       robot_tissue::movePatch(lattice_, probed.patches[index], axis < 3 ? unit : Vec3(Vec3::Zero()),
@@ -379,7 +368,7 @@ void RelaxationMethod::describe(const Course& course, SolveReport& report) {
     const int index = static_cast<int>(node);
     const double force = hold_.freePart(index, field_->forceOn(index)).norm();
     unbalanced = std::max(unbalanced, force);
-    held = std::max(held, kStill * lattice_.spacing() * field_->restStiffness(index));
+    held = std::max(held, tuning::kStill * lattice_.spacing() * field_->restStiffness(index));
   }
   if (held > 0.0) report.residual = unbalanced / held;
 }

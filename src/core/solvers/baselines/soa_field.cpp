@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "material/elastic_law.h"
+#include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr float kSqueezed = static_cast<float>(elastic_law::kSqueezed);
-constexpr float kSoonSqueezed = 0.4F;  // may be so when looked at again
 // Of the colors: of all orders one of those whose over-relaxed sweeps converge fastest (over waves
 // in an endless lattice at rest; doc/baselines.md).
 constexpr int kOrder[kColors] = {0, 1, 7, 2, 5, 3, 6, 4};
@@ -190,7 +190,7 @@ bool SoaField::findSqueezed() {
       const auto tightest = std::min_element(tightest_ + block, tightest_ + block + kLanes);
       std::uint8_t& squeezed = squeezed_cells_[at(block / kLanes)];
       unexpected = unexpected || (squeezed == 0 && *tightest < kSqueezed);
-      squeezed = *tightest < kSoonSqueezed ? 1 : 0;
+      squeezed = *tightest < tuning::kSoonSqueezed ? 1 : 0;
       if (squeezed == 0) continue;
       for (const int corner : above.corner) {
         squeezed_nodes_[at((block + corner) / kLanes)] = 1;

@@ -7,15 +7,12 @@
 
 #include "solvers/baselines/node_step.h"
 #include "solvers/baselines/soa_field.h"
+#include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kOfBest = 0.97;  // of the radius, as not all that turns is of an endless lattice
 constexpr int kLast = 2, kBefore = 3;  // spare arrays of the field
-// Over-relaxation is 2 / (1 + slack / depth), with the slack that fits waves in an endless lattice.
-constexpr double kSlack = 1.75;         // at Poisson's ratio 0.25
-constexpr double kSlackOfRatio = 3.75;  // and what its excess adds
 // The eigenvalue of a sweep that Chebyshev's method with a great radius takes worst: of waves in an
 // endless lattice at rest, for Poisson's ratios 0.25, 0.35 and 0.45, between them a line.
 std::complex<double> turning(double poisson_ratio) {
@@ -45,13 +42,13 @@ VbdMethod::VbdMethod(const Lattice& lattice, const ElasticModel& model, const Vb
     : RelaxationMethod(lattice, model, options), vbd_(options) {}
 
 void VbdMethod::begin(int care) {
-  const double slack = kSlack + kSlackOfRatio * (poissonRatio() - 0.25);
+  const double slack = tuning::kSlack + tuning::kSlackOfRatio * (poissonRatio() - 0.25);
   relaxation_ = 1.0;
   if (vbd_.acceleration == Acceleration::kOverRelaxed) {
     relaxation_ = std::max(1.0, 2.0 / (1.0 + std::ldexp(slack, care) / depth()));
   }
-  radius_ =
-      std::ldexp(kOfBest * bestRadius(1.0 - 2.0 * slowestWave(), turning(poissonRatio())), -care);
+  radius_ = std::ldexp(
+      tuning::kOfBest * bestRadius(1.0 - 2.0 * slowestWave(), turning(poissonRatio())), -care);
   sweeps_ = 0;
   patch_moves_.assign(shape_.patches.size(), {});
   if (vbd_.acceleration != Acceleration::kChebyshev) return;

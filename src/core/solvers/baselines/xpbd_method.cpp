@@ -6,6 +6,7 @@
 
 #include "simd/field_kernel.h"
 #include "solvers/baselines/soa_field.h"
+#include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 // Spare arrays of the field: the shape before the step, mobilities, the shape when the step was
 // last shortened.
 constexpr int kBefore = 2, kMobility = 3, kShortened = 4;
-constexpr double kFirstStretch = 8.0;  // first of stretch_, over the tolerance
-constexpr double kMostStretch = 0.3;
-constexpr double kLeastStretch = 1e-4;
-constexpr double kShorter = 0.25;  // of stretch_, from one to the next
-constexpr double kSettled = 0.2;   // of the way since then: what is left before the next
 
 }  // namespace
 
@@ -36,7 +32,8 @@ void XpbdMethod::begin(int care) {
     const float* now = field_->moved()[axis];
     std::copy(now, now + field_->size(), field_->spare(kBefore)[axis]);
   }
-  takeStep(std::pow(kShorter, care) * std::min(kFirstStretch * options_.tolerance, kMostStretch));
+  takeStep(std::pow(tuning::kShorter, care) *
+           std::min(tuning::kFirstStretch * options_.tolerance, tuning::kMostStretch));
 }
 
 // Critical damping of the slowest wave.
@@ -177,7 +174,7 @@ bool XpbdMethod::settles(double& to_go) {
   if (refinements_ == 0) {
     to_go = std::numeric_limits<double>::infinity();
   } else {
-    to_go += (way + still) * kShorter / (1.0 - kShorter);
+    to_go += (way + still) * tuning::kShorter / (1.0 - tuning::kShorter);
   }
   if (sweeps_ * std::sqrt(stretch_ * slowestWave()) < 1.0) return false;
   const bool near = to_go <= allowed;
@@ -185,11 +182,12 @@ bool XpbdMethod::settles(double& to_go) {
     offered_ = true;
     return true;
   }
-  if ((!near && still > kSettled * std::max(way, allowed)) || stretch_ <= kLeastStretch) {
+  if ((!near && still > tuning::kSettled * std::max(way, allowed)) ||
+      stretch_ <= tuning::kLeastStretch) {
     return false;
   }
   ++refinements_;
-  takeStep(kShorter * stretch_);
+  takeStep(tuning::kShorter * stretch_);
   return false;
 }
 

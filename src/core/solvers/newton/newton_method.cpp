@@ -4,22 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/newton/tuning.h"
+
 namespace robot_tissue {
-namespace {
-
-// Added to the matrix's diagonal, in mean stiffnesses of a node: keeps pieces that nothing holds
-// from drifting with rounding errors. More where the matrix is not positive definite with it.
-constexpr double kHold = 1e-7;
-constexpr double kFirmestHold = 1e-2;
-constexpr double kFirmer = 100.0;
-
-constexpr double kRoundingForce = 1e-12;   // of a node's stiffness times the spacing
-constexpr double kRoundingEnergy = 1e-15;  // of the stiffness times the spacing squared, a node
-constexpr double kShareOfExpected = 1e-4;  // of the decrease that the slope promises
-constexpr int kHalvings = 30;
-
-}  // namespace
-
 NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
                            const NewtonOptions& options)
     : lattice_(lattice), model_(model), options_(options) {
@@ -117,13 +104,13 @@ bool NewtonMethod::factorize(const ConstrainedState& shape, const std::vector<Ve
     matrix_ = std::move(curvature.matrix);
     carried_ = std::move(curvature.carried);
     diagonal_shift_ = 0.0;
-    diagonalShift(kHold * stiffness_);
+    diagonalShift(tuning::kHold * stiffness_);
     if (!analyzed_) factor_->analyze(matrix_);
     analyzed_ = true;
     if (factor_->factorize(matrix_)) return true;
   }
-  while (diagonal_shift_ < kFirmestHold * stiffness_) {
-    diagonalShift(kFirmer * diagonal_shift_);
+  while (diagonal_shift_ < tuning::kFirmestHold * stiffness_) {
+    diagonalShift(tuning::kFirmer * diagonal_shift_);
     if (factor_->factorize(matrix_)) return true;
   }
   return false;
@@ -147,7 +134,7 @@ bool NewtonMethod::search(const Eigen::VectorXd& step, ConstrainedState& shape) 
   const double promised = balance_.unbalanced.dot(step);  // decrease a full step begins with (J)
   if (!std::isfinite(promised)) return false;
   double share = capped(shape, step);
-  for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
+  for (int halving = 0; halving < tuning::kHalvings; ++halving, share *= 0.5) {
     ConstrainedState trial = shape;
     unknowns_.move(trial, step, share);
     const Balance balance = balanceOf(model_, unknowns_, trial);
@@ -161,18 +148,18 @@ bool NewtonMethod::search(const Eigen::VectorXd& step, ConstrainedState& shape) 
 
 void NewtonMethod::takeBalance(const Balance& balance) {
   balance_ = balance;
-  const double floor = kRoundingForce * stiffness_ * lattice_.spacing();
+  const double floor = tuning::kRoundingForce * stiffness_ * lattice_.spacing();
   relative_ = balance.unbalanced.norm() / std::max(balance.holding, floor / options_.residual);
 }
 
 // Close to the equilibrium the potential changes by less than its rounding error: there the
 // unbalanced force decides.
 bool NewtonMethod::improves(const Balance& trial, double promised) const {
-  if (trial.potential <= balance_.potential - kShareOfExpected * promised) {
+  if (trial.potential <= balance_.potential - tuning::kShareOfExpected * promised) {
     return std::isfinite(trial.unbalanced.norm());
   }
   const double rounding =
-      kRoundingEnergy * stiffness_ * std::pow(lattice_.spacing(), 2) * lattice_.nodeCount();
+      tuning::kRoundingEnergy * stiffness_ * std::pow(lattice_.spacing(), 2) * lattice_.nodeCount();
   return trial.potential <= balance_.potential + rounding &&
          trial.unbalanced.norm() < balance_.unbalanced.norm();
 }

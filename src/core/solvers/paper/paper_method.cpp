@@ -6,8 +6,12 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kPatchBalance = 1e-6;  // of the loading force
-constexpr double kRounding = 1e-13;     // of a spring's stiffness times its length
+// Of the loading force (1): left on a patch by force, which counts as balance. Less: more moves of
+// the patch. Chosen: far below solver.tolerance.
+constexpr double kPatchBalance = 1e-6;
+// Of a spring's stiffness times its length (1): forces below are rounding, and count as balance.
+// Less: patches without a load move for ever. Chosen.
+constexpr double kRounding = 1e-13;
 
 std::uint8_t maskOf(const LoadingPatch& patch) {
   std::uint8_t mask = 0;

@@ -1,0 +1,62 @@
+// The numbers of load stepping and of the rounds between shape and contacts: unit, where each comes
+// from, and what turning it does. "spacing" is the lattice's; a "round" is a solve and the look at
+// the contacts after it. Chosen: by judgment, and kept as the tests of physics and the contact
+// study (doc/contact.md) passed; no other value was measured against it.
+#pragma once
+
+namespace robot_tissue::tuning {
+
+// Load steps.
+// Of the spacing (1): the longest motion of a tool between two solves. More: fewer solves, but what
+// slips depends more on the steps, and tools get through thin tissue. Chosen.
+constexpr double kToolStep = 0.2;
+// Of the method's step of a patch (1): a patch that goes farther at once goes in several steps, and
+// an increment of a force that moved it farther is taken back. More: longer steps, which may leap
+// or turn cells inside out. Chosen: one spacing for methods whose step is half of it.
+constexpr double kTooFar = 2.0;
+// Of an increment of a force (1): the next is at most as much longer. More: soft ends of a load
+// are reached sooner; leaps are taken back more often. Chosen.
+constexpr double kMostGrowth = 2.0;
+// Of the first increment of a force (1): none is shorter. Less: loads near a leap are followed more
+// closely, in up to as many more solves. Chosen.
+constexpr double kLeastOfFirst = 1.0 / 16.0;
+// Steps of one load at most. More: patches that go farther take steps of the same length. Chosen.
+constexpr double kMostSteps = 100000.0;
+// Steps (1): 5 steps of a fifth are 5, not 6. Rounding.
+constexpr double kRounding = 1e-9;
+
+// Rounds of a load step.
+// Rounds in which the shape is what was solved for, at most. More: contacts that change to and fro
+// settle in more cases, by longer load steps. Chosen.
+constexpr int kContactRounds = 16;
+// Rounds with those that are cut short, at most, and iterations of all. More: hopeless load steps
+// take longer, and a few more are solved. Chosen.
+constexpr int kMostRounds = 200;
+constexpr int kMostIterations = 1500;
+// Iterations in rounds that gained nothing, after which the load step is given up. More: the same
+// for load steps that stand still. Chosen.
+constexpr int kMostIdle = 300;
+// Iterations that a round without gain counts for at least. More: given up after fewer short
+// rounds. Chosen.
+constexpr int kIdleRound = 12;
+// Of the least error so far (1): with less, a round gained. More: slow progress counts, too.
+// Chosen.
+constexpr double kNearer = 0.7;
+// Of the farthest way of the tissue so far (1): with more, a round gained, as where tissue slips.
+// Less: creeping counts as gain. Chosen.
+constexpr double kFarther = 1.1;
+
+// Time.
+// Of what is left of the budget (1): the next solve has so much, as the contacts are to be looked
+// at again. More: fewer, longer solves; the last may leave none for the contacts. Chosen.
+constexpr double kShareOfTime = 0.5;
+// ms: a solve has so much at least; one cycle, however short. Chosen.
+constexpr double kLeastMs = 1e-6;
+
+// Memory.
+// Bytes of a sparse factor of n nodes over n^(4/3), the growth by nested dissection in three
+// dimensions. More: scenes are refused that the memory holds; less: the system ends the program.
+// Measured: 105 MB at 4,851 nodes, 1,186 MB at 35,301.
+constexpr double kFactorBytes = 1150.0;
+
+}  // namespace robot_tissue::tuning
