@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr std::size_t kMostSamples = 3;
 
 std::vector<std::uint8_t> heldByAll(const std::vector<Trial>& trials) {
   std::vector<std::uint8_t> held;
@@ -89,7 +89,7 @@ class Assessor {
   void findLimit(Assessment& result) {
     std::vector<Sample> fields, forces;
     for (const auto& [spacing, index] : tightest_) {
-      if (fields.size() == kMostSamples) break;
+      if (fields.size() == tuning::kMostSamples) break;
       fields.insert(fields.begin(), {spacing, answers_[index].field});
       forces.insert(forces.begin(), {spacing, answers_[index].force});
     }

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kOnFace = 1e-6;  // of a spacing: the point belongs to the cells on both sides
 
 // A cell of the lattice and where in it the point is, each coordinate 0 .. 1.
 struct PlaceInCell {
@@ -20,9 +20,9 @@ PlaceInCell placeOf(const Lattice& lattice, const Vec3& point) {
     bool holds = true;
     for (int axis = 0; axis < 3; ++axis) {
       const bool lower = (side >> axis & 1) != 0;  // the cell below the face that the point is on
-      const double whole = std::floor(grid[axis] + kOnFace);
+      const double whole = std::floor(grid[axis] + tuning::kOnFace);
       index[at(axis)] = static_cast<int>(whole) - (lower ? 1 : 0);
-      holds = holds && (!lower || grid[axis] - whole < kOnFace);
+      holds = holds && (!lower || grid[axis] - whole < tuning::kOnFace);
     }
     const int cell = holds ? lattice.cellAt(index) : -1;
     if (cell < 0) continue;

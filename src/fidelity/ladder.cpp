@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "robot_tissue/core/grid.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kFewestCells = 2.0;  // along the shortest edge
-constexpr double kLeastStep = 1.25;   // between two spacings
-constexpr double kMostStep = 3.2;
 
 Vec3 extentOf(const TissueConfig& tissue) {
   const Box box = boxOf(tissue);
@@ -27,8 +24,8 @@ double coarserThan(const TissueConfig& tissue, double spacing) {
   double best = 0.0;
   for (const double candidate : candidates) {
     const double step = candidate / spacing;
-    if (step < kLeastStep || step > kMostStep) continue;
-    if (extent.minCoeff() / candidate < kFewestCells - 1e-6) continue;
+    if (step < tuning::kLeastRatio || step > tuning::kMostRatio) continue;
+    if (extent.minCoeff() / candidate < tuning::kFewestCells - 1e-6) continue;
     const auto off = [&](double other) { return std::abs(std::log(other / (2.0 * spacing))); };
     if (best == 0.0 || off(candidate) < off(best)) best = candidate;
   }

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <map>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr int kUpdatesOfForce = 10;  // of a load whose way no one knows
-constexpr double kRounding = 1e-9;   // 5 mm are 5 updates of 1 mm, not 6
-
 int wholeParts(double way, double part) {
-  return std::max(1, static_cast<int>(std::ceil(std::min(way / part, 1e5) - kRounding)));
+  return std::max(1,
+                  static_cast<int>(std::ceil(std::min(way / part, 1e5) - tuning::kUpdateRounding)));
 }
 
 // Where patches and tools stand on the way through the steps.
@@ -43,7 +43,7 @@ class Pacer {
 
   int operator()(LoadStep& load) {
     const double way = wayOf(load, standing_);
-    const int otherwise = way < 0.0 ? kUpdatesOfForce : wholeParts(way, way_an_update_);
+    const int otherwise = way < 0.0 ? tuning::kUpdatesOfForce : wholeParts(way, way_an_update_);
     const int updates = load.increments.value_or(otherwise);
     const int parts = way > 0.0 ? wholeParts(way / updates, 0.5 * spacing_) : 1;
     load.increments = updates * parts;
@@ -59,7 +59,7 @@ class Pacer {
     return 1;
   }
   int operator()(PushStep& push) {
-    if (!push.increments) push.increments = kUpdatesOfForce;
+    if (!push.increments) push.increments = tuning::kUpdatesOfForce;
     return 1;
   }
   int operator()(ReleaseStep& release) {

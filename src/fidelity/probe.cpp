@@ -2,16 +2,11 @@
 
 #include "ladder.h"
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kDepth = 0.1;         // of the extent
-constexpr double kPatch = 0.4;         // of a face's edge
-constexpr double kRadius = 1.0 / 6.0;  // of the smallest extent
-constexpr double kHeld = 0.1;          // of a mesh's extent: its opposite end
-constexpr double kClearance = 0.01;    // of the radius, where the sphere appears
-constexpr double kBeyond = 1e-6;       // of the extent: nodes on a face are in the box
 const std::string kPatchName = "probe";
 const std::string kHeldName = "probe_hold";
 
@@ -40,7 +35,7 @@ Face farthestFromFixed(const TissueConfig& tissue, const Box& bounds) {
       const Face face{axis, upper};
       const double extent = bounds.max()[axis] - bounds.min()[axis];
       const double away = face.sign() * (face.coordinate(bounds) - center[axis]) / extent;
-      if (away <= distance + kBeyond) continue;
+      if (away <= distance + tuning::kBeyond) continue;
       distance = away;
       farthest = face;
     }
@@ -55,7 +50,7 @@ PatchConfig patchAt(const Face& face, const Box& bounds, double middle, double s
   patch.box.min() = bounds.min() + 0.5 * (1.0 - middle) * extent;
   patch.box.max() = bounds.max() - 0.5 * (1.0 - middle) * extent;
   const double edge = face.coordinate(bounds);
-  const double depth = (share + kBeyond) * extent[face.axis];
+  const double depth = (share + tuning::kBeyond) * extent[face.axis];
   patch.box.min()[face.axis] = face.upper ? edge - depth : edge - extent[face.axis];
   patch.box.max()[face.axis] = face.upper ? edge + extent[face.axis] : edge + depth;
   patch.displacement = {{0.0, 0.0, 0.0}};
@@ -63,16 +58,16 @@ PatchConfig patchAt(const Face& face, const Box& bounds, double middle, double s
 }
 
 PatchConfig heldAt(const Face& face, const Box& bounds, bool mesh) {
-  PatchConfig held = patchAt(face, bounds, 3.0, mesh ? kHeld : 0.0);
+  PatchConfig held = patchAt(face, bounds, 3.0, mesh ? tuning::kHeld : 0.0);
   held.name = kHeldName;
   return held;
 }
 
 LoadStep pressOf(const Face& face, const Box& bounds) {
   LoadStep press;
-  PatchConfig patch = patchAt(face, bounds, kPatch, 0.0);
+  PatchConfig patch = patchAt(face, bounds, tuning::kPatch, 0.0);
   patch.name = kPatchName;
-  const double depth = kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
+  const double depth = tuning::kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
   (*patch.displacement)[at(face.axis)] = -face.sign() * depth;
   press.patches.push_back(patch);
   return press;
@@ -96,11 +91,11 @@ MoveStep moveOf(const Face& face, const TriangleMesh& mesh, const Box& bounds, d
   for (const Vec3& vertex : mesh.vertices) {
     if (vertex.dot(outwards) > outermost.dot(outwards)) outermost = vertex;
   }
-  const double depth = kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
+  const double depth = tuning::kDepth * (bounds.max()[face.axis] - bounds.min()[face.axis]);
   MoveStep move;
   move.tool = kPatchName;
   move.from = MoveStep::Place();
-  move.from->pose.translation() = outermost + (1.0 + kClearance) * radius * outwards;
+  move.from->pose.translation() = outermost + (1.0 + tuning::kClearance) * radius * outwards;
   move.to.pose.translation() = outermost + (radius - depth) * outwards;
   return move;
 }
@@ -123,7 +118,7 @@ Scene probed(const Scene& scene) {
     result.steps.emplace_back(pressOf(face, bounds));
     return result;
   }
-  const double radius = kRadius * (bounds.max() - bounds.min()).minCoeff();
+  const double radius = tuning::kRadius * (bounds.max() - bounds.min()).minCoeff();
   result.tools.push_back(sphereOf(radius));
   result.steps.emplace_back(moveOf(face, *scene.tissue.mesh, bounds, radius));
   return result;

@@ -7,14 +7,13 @@
 #include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 // Of the solver. The last one also says what the lattice itself answers.
 const std::vector<double> kTolerances = {0.1, 0.03, 0.01, 0.003, 0.001};
-// Cost grows with the nodes and, as the load steps get shorter, with the spacing: nodes^(4/3).
-constexpr double kCostExponent = 4.0 / 3.0;
 
 class ResolutionSweep {
  public:
@@ -66,7 +65,7 @@ class ResolutionSweep {
     if (nearest == nullptr) return 0.0;
     const double growth =
         nodesAt(scene_.tissue, spacing) / nodesAt(scene_.tissue, nearest->rung.spacing);
-    return nearest->seconds * std::pow(growth, kCostExponent);
+    return nearest->seconds * std::pow(growth, tuning::kCostExponent);
   }
 
   // Half of what is left, so that something is left for the looser tolerances.

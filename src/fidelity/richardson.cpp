@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr double kLowestSought = -1.0;
-constexpr double kHighestSought = 4.0;
 
 // (h1^p - h2^p) / (h2^p - h3^p), which grows with p.
 double ratioAt(double order, double h1, double h2, double h3) {
@@ -18,8 +17,8 @@ double ratioAt(double order, double h1, double h2, double h3) {
 double observedOrder(const std::vector<Sample>& samples) {
   const double coarse = (samples[0].value - samples[1].value).norm();
   const double fine = (samples[1].value - samples[2].value).norm();
-  if (!(fine > 0.0)) return kHighestSought;
-  double low = kLowestSought, high = kHighestSought;
+  if (!(fine > 0.0)) return tuning::kHighestSought;
+  double low = tuning::kLowestSought, high = tuning::kHighestSought;
   while (high - low > 1e-6) {
     const double middle = 0.5 * (low + high);
     const double ratio =

@@ -3,12 +3,10 @@
 #include <algorithm>
 
 #include "run_scene.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr std::size_t kEnoughUpdates = 30;
-constexpr double kShortSeconds = 0.5;  // runs are repeated for no longer than this
 
 struct OutOfTime {};
 
@@ -106,7 +104,8 @@ void repeatForTimes(const PacedScene& paced, double seconds_of_one, Clock::time_
   Stopwatch watch(paced, deadline, silent);
   try {
     double seconds = seconds_of_one;
-    while (trial.update_ms.size() < kEnoughUpdates && seconds + seconds_of_one < kShortSeconds) {
+    while (trial.update_ms.size() < tuning::kEnoughUpdates &&
+           seconds + seconds_of_one < tuning::kShortSeconds) {
       run(paced, {}, Keep::kTimes, watch, trial);
       seconds += seconds_of_one;
     }

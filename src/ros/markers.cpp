@@ -4,19 +4,13 @@
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/tool_forces.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
-
-constexpr double kWireWidth = 0.0004;    // m
-constexpr double kNodeDiameter = 0.2;    // of the spacing
-constexpr double kNormalLength = 3.0;    // spacings
-constexpr double kShaftDiameter = 0.25;  // of the spacing
-constexpr double kPlaneThickness = 0.2;  // of the spacing
-constexpr double kSmallestForce = 1e-9;  // N; no arrow below
 
 void setColor(Marker& marker, double red, double green, double blue, double alpha = 1.0) {
   marker.color.r = static_cast<float>(red);
@@ -108,7 +102,7 @@ void MarkerBuilder::addSurface(const Tissue& tissue, MarkerArray& array) const {
 void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
   if (springs_version_ != tissue.surfaceVersion()) findSurfaceSprings(tissue);
   Marker wires = make("wireframe", 0, Marker::LINE_LIST);
-  wires.scale.x = kWireWidth;
+  wires.scale.x = tuning::kWireWidth;
   setColor(wires, 0.30, 0.13, 0.12);
   wires.points.reserve(2 * surface_springs_.size());
   for (const int spring : surface_springs_) {
@@ -138,7 +132,7 @@ void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
 
 void MarkerBuilder::addFixedNodes(const Tissue& tissue, MarkerArray& array) const {
   Marker fixed = make("fixed_nodes", 0, Marker::SPHERE_LIST);
-  fixed.scale = sphereScale(kNodeDiameter * tissue.lattice().spacing());
+  fixed.scale = sphereScale(tuning::kNodeDiameter * tissue.lattice().spacing());
   setColor(fixed, 0.25, 0.25, 0.30);
   for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
     if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
@@ -149,7 +143,7 @@ void MarkerBuilder::addFixedNodes(const Tissue& tissue, MarkerArray& array) cons
 void MarkerBuilder::addLoadedNodes(const Pipeline& pipeline, MarkerArray& array) const {
   const Tissue& tissue = pipeline.tissue();
   Marker loaded = make("loading_patches", 0, Marker::SPHERE_LIST);
-  loaded.scale = sphereScale(2.0 * kNodeDiameter * tissue.lattice().spacing());
+  loaded.scale = sphereScale(2.0 * tuning::kNodeDiameter * tissue.lattice().spacing());
   setColor(loaded, 1.0, 0.80, 0.10);
   const auto addNodes = [&](const std::vector<int>& nodes) {
     for (const int node : nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
@@ -170,7 +164,7 @@ void MarkerBuilder::addSupports(const Lattice& lattice, MarkerArray& array) cons
     Vec3 center = shape.pose.translation();
     if (shape.type == ToolShape::Type::kPlane) {
       const double length = (bounds.max() - bounds.min()).norm();
-      size = Vec3(length, length, kPlaneThickness * lattice.spacing());
+      size = Vec3(length, length, tuning::kPlaneThickness * lattice.spacing());
       Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min() + bounds.max()));
       in_plane.z() = -0.5 * size.z();
       center = shape.pose * in_plane;
@@ -195,17 +189,17 @@ void MarkerBuilder::addContacts(const Pipeline& pipeline, MarkerArray& array) co
     Marker normal = make("contact_normals", static_cast<int>(tool), Marker::ARROW);
     Marker force = make("contact_forces", static_cast<int>(tool), Marker::ARROW);
     for (Marker* arrow : {&normal, &force}) {
-      arrow->scale.x = kShaftDiameter * spacing;
-      arrow->scale.y = 2.0 * kShaftDiameter * spacing;
+      arrow->scale.x = tuning::kShaftDiameter * spacing;
+      arrow->scale.y = 2.0 * tuning::kShaftDiameter * spacing;
       arrow->scale.z = 0.0;
     }
     setColor(normal, 0.10, 0.45, 0.85);
     setColor(force, 0.10, 0.65, 0.20);
     if (report.contacts > 0) {
       const Vec3 force_on_tissue = forceOnTissue(pipeline, tool);
-      const Vec3 start = report.point - kNormalLength * spacing * report.normal;
+      const Vec3 start = report.point - tuning::kNormalLength * spacing * report.normal;
       if (!report.normal.isZero()) normal.points = {toPoint(start), toPoint(report.point)};
-      if (force_on_tissue.norm() > kSmallestForce) {
+      if (force_on_tissue.norm() > tuning::kSmallestForce) {
         force.points = {toPoint(report.point - force_scale_ * force_on_tissue),
                         toPoint(report.point)};
       }

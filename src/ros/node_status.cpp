@@ -3,13 +3,12 @@
 
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/tissue_node.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-constexpr double kMostMissed = 0.1;  // of the poses that are due
 
 // Of TissueState.msg. Jaws that meet, or hold nothing, are no fault by themselves: so do those that
 // close on nothing.
@@ -64,7 +63,7 @@ void TissueNode::diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& statu
   const double seconds = (now - rate_told_).toSec();
   rate_told_ = now;
   const PoseWatch::Counts counts = watch_.counts();
-  const bool keeps_up = counts.missed <= 1 || counts.missed <= kMostMissed * counts.came;
+  const bool keeps_up = counts.missed <= 1 || counts.missed <= tuning::kMostMissed * counts.came;
   if (keeps_up) {
     status.summary(DiagnosticStatus::OK, counts.came > 0 ? "keeps up" : "no new poses");
   } else {

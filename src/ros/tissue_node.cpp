@@ -10,15 +10,14 @@
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 const ros::WallDuration kRobotLookUpPeriod(1.0);
-constexpr double kLongestUpdate = 0.1;      // s, without a budget of the solver
 const ros::WallDuration kGrace(2.0);        // after a start or a jump of time
 const ros::WallDuration kClockPeriod(0.5);  // between looks for a clock
-constexpr double kWatchPeriod = 0.1;        // s, of the timer while nothing waits for it
 
 }  // namespace
 
@@ -35,7 +34,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   grace_end_ = ros::WallTime::now() + kGrace;
   const double budget_ms = parameters_.scene.solver.max_ms;
-  const double budget_s = budget_ms > 0.0 ? 1e-3 * budget_ms : kLongestUpdate;
+  const double budget_s = budget_ms > 0.0 ? 1e-3 * budget_ms : tuning::kLongestUpdate;
   pipeline_.setBudget(budget_s);
   robotIsKnown();
   settleFromRest();
@@ -65,7 +64,7 @@ void TissueNode::tick(Ticks ticks) {
   ticks_ = ticks;
   const double period = 1.0 / parameters_.rate_hz;
   timer_.setPeriod(
-      ros::Duration(ticks == Ticks::kSeldom ? std::max(period, kWatchPeriod) : period));
+      ros::Duration(ticks == Ticks::kSeldom ? std::max(period, tuning::kWatchPeriod) : period));
 }
 
 // Timers of simulated time stand still without a clock.

@@ -8,12 +8,12 @@
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/tool_forces.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 const ros::Duration kStatePeriod(1.0);  // of the state while nothing changes
-constexpr unsigned kMarkerQueue = 10;   // arrays of changes: none may be dropped lightly
 
 void addBalance(const ForceBalance& balance, TissueState& message) {
   message.force_of_tools = toVector3(balance.tools);
@@ -65,8 +65,8 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
     shapeChanged();
   };
   markers_ = private_node_.advertise<visualization_msgs::MarkerArray>(
-      "markers", kMarkerQueue, someone_came, ros::SubscriberStatusCallback(), ros::VoidConstPtr(),
-      true);
+      "markers", tuning::kMarkerQueue, someone_came, ros::SubscriberStatusCallback(),
+      ros::VoidConstPtr(), true);
   contacts_ = private_node_.advertise<ContactArray>("contacts", 1, someone_came);
   state_ = private_node_.advertise<TissueState>("state", 10);
 }

@@ -7,12 +7,11 @@
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-// What is left when the time of an update is over is carried on in the next ones.
-constexpr int kMostIncrements = 300;
 constexpr std::size_t kMostCorners = 1000;
 
 std::string solved(const SolveReport& report, bool is_late) {
@@ -153,7 +152,7 @@ void TissueServices::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Res
   LoadStep step;
   step.patches.push_back(patchOf(request));
   const auto keep = [&](int, int, const SolveReport& report) { last = report; };
-  pipeline_.load(step, keep, kMostIncrements);
+  pipeline_.load(step, keep, tuning::kMostIncrements);
   const PatchAnswer answer = pipeline_.tissue().answerOf(request.name, last);
   response.force = toVector3(answer.force);
   response.displacement = toVector3(answer.displacement);

@@ -6,11 +6,10 @@
 #include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_forces.h"
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kMet = 0.95;  // of the force: the tissue answers with it
 
 std::string inQuotes(const std::string& name) { return "'" + shortText(name) + "'"; }
 
@@ -113,7 +112,7 @@ std::string TissueServices::followPush(std::size_t tool, const Vec3& force) {
   const ToolReport& report = pipeline_.report().tools[tool];
   if (pipeline_.report().changed) return "on its way";
   if (force.isZero()) return "at its pose";
-  const bool met = forceOnTissue(pipeline_, tool).dot(force) >= kMet * force.squaredNorm();
+  const bool met = forceOnTissue(pipeline_, tool).dot(force) >= tuning::kMet * force.squaredNorm();
   if (report.saturated) return "pushed; the force told is limited by the tool's max_force";
   return met ? "pushed" : "pushed; nothing answers with the force on the tool's way";
 }

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr unsigned kQueue = 100;         // messages, as tf2_ros has it
 const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
 const ros::WallDuration kWarnPeriod(10.0);
 
@@ -25,7 +25,8 @@ TransformFeed::TransformFeed(tf2_ros::Buffer& buffer, ros::CallbackQueueInterfac
   const auto subscribe = [&](const char* topic, Kind kind) {
     const boost::function<void(const tf2_msgs::TFMessageConstPtr&)> take =
         [this, kind](const tf2_msgs::TFMessageConstPtr& message) { this->take(*message, kind); };
-    return node.subscribe<tf2_msgs::TFMessage>(topic, kQueue, take, ros::VoidConstPtr(),
+    return node.subscribe<tf2_msgs::TFMessage>(topic, tuning::kTransformQueue, take,
+                                               ros::VoidConstPtr(),
                                                ros::TransportHints().tcpNoDelay());
   };
   moving_ = subscribe("/tf", Kind::kMoving);

@@ -6,14 +6,9 @@
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/tool_poses.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr unsigned kQueue = 10;  // messages that a busy socket may hold up
-
-}  // namespace
-
 WrenchPublisher::WrenchPublisher(const ros::NodeHandle& private_node, double rate_hz)
     : private_node_(private_node), rate_hz_(rate_hz) {}
 
@@ -31,8 +26,8 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
   };
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
     const std::string topic = tools[tool].name + "/measured_cf";
-    publishers_.push_back(
-        private_node_.advertise<geometry_msgs::WrenchStamped>(topic, kQueue, someone_came));
+    publishers_.push_back(private_node_.advertise<geometry_msgs::WrenchStamped>(
+        topic, tuning::kWrenchQueue, someone_came));
     messages_[tool].header.frame_id = linkFrames(tools[tool]).front();
   }
   if (rate_hz_ <= 0.0 || tools.empty()) return;

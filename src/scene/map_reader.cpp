@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -29,9 +30,8 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed) {
-  constexpr std::size_t kLongestWord = 40;  // longer ones are no misspellings
   std::string nearest;
-  if (word.size() > kLongestWord) return nearest;
+  if (word.size() > tuning::kLongestWord) return nearest;
   std::size_t smallest = 3;
   for (const std::string& candidate : allowed) {
     const std::size_t distance = editDistance(word, candidate);

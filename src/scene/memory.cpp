@@ -10,17 +10,13 @@
 
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/method_names.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-// Measured with some reserve: lattice, springs, shape and surface, and the shapes kept along a
-// tool's way.
-constexpr double kBytesPerNode = 3000.0;
-constexpr double kBytesPerGridCell = 40.0;
-constexpr double kBytesPerTriangle = 500.0;
 constexpr double kSpringsPerNode = 3.0;
 
 // Nothing where there is no such file or no number in it ("max").
@@ -115,7 +111,7 @@ double freeMemory(const std::string& root) {
 }
 
 double memoryOf(double nodes, const std::string& method) {
-  return kBytesPerNode * nodes + factorBytes(nodes, method);
+  return tuning::kBytesPerNode * nodes + factorBytes(nodes, method);
 }
 
 double mostNodes(double bytes, const std::string& method) {
@@ -157,7 +153,7 @@ double memoryAround(const TriangleMesh& mesh, double spacing) {
     }
     triangles += 1.0 + 4.0 * squares + 4.0 * longest;
   }
-  return kBytesPerGridCell * around.prod() + kBytesPerTriangle * triangles;
+  return tuning::kBytesPerGridCell * around.prod() + tuning::kBytesPerTriangle * triangles;
 }
 
 }  // namespace robot_tissue

@@ -5,10 +5,10 @@
 #include <locale>
 #include <sstream>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
-
-constexpr std::size_t kLongestValue = 60;
 
 void append(const YAML::Node& node, std::string& text);
 
@@ -16,7 +16,7 @@ void appendSequence(const YAML::Node& node, std::string& text) {
   text += '[';
   bool first = true;
   for (const auto& item : node) {
-    if (text.size() > kLongestValue) return;  // also ends a list that contains itself
+    if (text.size() > tuning::kLongestValue) return;  // also ends a list that contains itself
     if (!first) text += ", ";
     first = false;
     append(item, text);
@@ -28,7 +28,7 @@ void appendMap(const YAML::Node& node, std::string& text) {
   text += '{';
   bool first = true;
   for (const auto& item : node) {
-    if (text.size() > kLongestValue) return;
+    if (text.size() > tuning::kLongestValue) return;
     if (!first) text += ", ";
     first = false;
     append(item.first, text);
@@ -97,8 +97,8 @@ bool isUtf8(const std::string& text) {
 
 std::string shortText(const std::string& text) {
   std::string line = onOneLine(text);
-  if (line.size() <= kLongestValue) return line;
-  std::size_t end = kLongestValue;
+  if (line.size() <= tuning::kLongestValue) return line;
+  std::size_t end = tuning::kLongestValue;
   while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;  // whole UTF-8
   return line.substr(0, end) + "...";
 }

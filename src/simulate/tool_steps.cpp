@@ -5,18 +5,9 @@
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/scene/value_text.h"
 #include "runner.h"
+#include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr double kMostLoadSteps = 100000.0;                      // of one move
-constexpr double kLongestFree = Pipeline::kMostLoadSteps / 2.0;  // load steps: far from a jump
-constexpr int kMostUpdates = 50;    // until all pushed tools have met their forces
-constexpr double kMetForce = 0.01;  // of the force: it is met
-constexpr double kRounding = 1e-9;  // 5 steps of a fifth are 5, not 6
-
-}  // namespace
-
 void Runner::perform(const MoveStep& step) {
   const std::size_t tool = tools_.indexOf(step.tool);
   if (pushes_[tool]) {
@@ -31,7 +22,7 @@ void Runner::perform(const MoveStep& step) {
   for (int increment = 1; increment <= increments; ++increment) {
     const double share = static_cast<double>(increment) / increments;
     walkTo(way, share);
-    const bool is_between = !is_cut_short_ && way.gone + kRounding < share * way.steps;
+    const bool is_between = !is_cut_short_ && way.gone + tuning::kStepRounding < share * way.steps;
     if (is_between) {
       pipeline_.beginTrial();
       place(way, share);
@@ -44,13 +35,13 @@ void Runner::perform(const MoveStep& step) {
 }
 
 int Runner::loadSteps(double steps) const {
-  if (!(steps <= kMostLoadSteps)) {
+  if (!(steps <= tuning::kMostLoadSteps)) {
     throw InputError("the way takes " + numberText(std::ceil(steps)) + " load steps of " +
                      numberText(pipeline_.tissue().stepLength()) +
-                     " m or less, must take at most " + numberText(kMostLoadSteps) +
+                     " m or less, must take at most " + numberText(tuning::kMostLoadSteps) +
                      ", so a shorter way");
   }
-  return std::max(1, static_cast<int>(std::ceil(steps - kRounding)));
+  return std::max(1, static_cast<int>(std::ceil(steps - tuning::kStepRounding)));
 }
 
 // What slips hangs on the way to it: whole load steps, where nothing is near several at once, whose
@@ -60,9 +51,9 @@ void Runner::walkTo(Way& way, double share) {
     is_cut_short_ = deadline_.isOver();
     if (is_cut_short_) return place(way, static_cast<double>(way.gone) / way.steps);
     tools_.put(way.tool, way.to);
-    const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), kLongestFree);
+    const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), tuning::kLongestFree);
     const int next = std::min(way.gone + std::max(1, static_cast<int>(free)), way.steps);
-    const bool is_beyond = next > share * way.steps + kRounding;
+    const bool is_beyond = next > share * way.steps + tuning::kStepRounding;
     if (!is_beyond) way.gone = next;
     place(way, static_cast<double>(way.gone) / way.steps);
     if (is_beyond) return;
@@ -124,7 +115,7 @@ void Runner::follow() {
 // Tools by a force follow the tissue.
 void Runner::followPushes() {
   const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });
-  for (int i = 0; any && i < kMostUpdates; ++i) {
+  for (int i = 0; any && i < tuning::kMostUpdates; ++i) {
     if (i > 0 && (!pipeline_.report().changed || deadline_.isOver())) break;
     update();
   }
@@ -160,7 +151,7 @@ void Runner::judgePush(std::size_t tool) {
   const double wanted = pushes_[tool]->norm();
   const Vec3 force = -(tissue_T_link.linear() * report.force_on_tool);
   const double met = force.dot(*pushes_[tool]) / wanted + 0.0;  // not -0
-  if (std::abs(met - wanted) <= kMetForce * wanted) return;
+  if (std::abs(met - wanted) <= tuning::kMetForce * wanted) return;
   updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
   remark("tool '" + tools_.name(tool) + "' met " + numberText(met) + " N on its way of " +
          numberText(report.offset.norm()) + " m, not the force of " + numberText(wanted) + " N");

@@ -1,0 +1,46 @@
+// The numbers of the node in one place: unit, where each comes from, and what turning it does. What
+// a user sets is a parameter (robot_tissue/ros/node_parameters.h). Chosen: by judgment, and kept as
+// the node's tests passed; no other value was measured against it.
+#pragma once
+
+namespace robot_tissue::tuning {
+
+// Updates.
+// s: of one update, where the scene gives the solver no budget. More: fewer LATE, and services wait
+// longer. Chosen.
+constexpr double kLongestUpdate = 0.1;
+// s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
+// lost is told of later. Chosen.
+constexpr double kWatchPeriod = 0.1;
+// Of the poses that are due (1): with more missed, /diagnostics warns. Chosen.
+constexpr double kMostMissed = 0.1;
+// Increments of a load that a service asks for; what is left when the time of an update is over is
+// carried on in the next ones. More: longer loads are solved to their end. Chosen.
+constexpr int kMostIncrements = 300;
+// Of the force of ~apply_load on a tool (1): with as much, the tissue answers with it. More: tools
+// that are nearly there are told of as unanswered. Chosen.
+constexpr double kMet = 0.95;
+
+// Queues, in messages. More: nothing is lost where a reader is slow, and it reads what is older.
+// Of transforms: as tf2_ros has it.
+constexpr unsigned kTransformQueue = 100;
+// Of arrays of changed markers, of which none may be dropped lightly. Chosen.
+constexpr unsigned kMarkerQueue = 10;
+// Of wrenches, a topic each: what a busy socket may hold up. Chosen.
+constexpr unsigned kWrenchQueue = 10;
+
+// Markers. More: larger, and more of the tissue is hidden. Chosen.
+// m: width of the lines of the wireframe.
+constexpr double kWireWidth = 0.0004;
+// Of the spacing (1): diameter of a fixed node; of a loaded one it is twice as much.
+constexpr double kNodeDiameter = 0.2;
+// Spacings: length of a normal's arrow.
+constexpr double kNormalLength = 3.0;
+// Of the spacing (1): diameter of an arrow's shaft; its head is twice as wide.
+constexpr double kShaftDiameter = 0.25;
+// Of the spacing (1): thickness of the box that shows a plane.
+constexpr double kPlaneThickness = 0.2;
+// N: no arrow up to here, as rviz complains of one without length. More: weak touches show none.
+constexpr double kSmallestForce = 1e-9;
+
+}  // namespace robot_tissue::tuning

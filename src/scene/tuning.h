@@ -1,0 +1,25 @@
+// The numbers of the scene gate that are no legal ranges (those: robot_tissue/scene/ranges.h), in
+// one place: unit, where each comes from, and what turning it does.
+#pragma once
+
+#include <cstddef>
+
+namespace robot_tissue::tuning {
+
+// Memory that a scene is foreseen to take; more: scenes are refused that would fit, less: the
+// system ends a program whose scene does not. Bytes a node: lattice, springs, shape and surface,
+// and the shapes kept along a tool's way. Measured, with some reserve.
+constexpr double kBytesPerNode = 3000.0;
+// Bytes a cell of the grid around a mesh, filled or not, and a triangle of the mesh. Measured, with
+// some reserve.
+constexpr double kBytesPerGridCell = 40.0;
+constexpr double kBytesPerTriangle = 500.0;
+
+// Refusals.
+// Letters of a value that are shown. More: longer lines. Chosen.
+constexpr std::size_t kLongestValue = 60;
+// Letters of an unknown key for which a nearest one is looked for. More: slow refusals of long
+// keys, which are no misspellings. Chosen.
+constexpr std::size_t kLongestWord = 40;
+
+}  // namespace robot_tissue::tuning
