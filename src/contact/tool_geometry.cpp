@@ -187,8 +187,7 @@ LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std:
 
 // A grasper's own link is its frame, and touches nothing without shapes of the scene.
 bool isFrameOnly(const ToolConfig& tool, std::size_t link) {
-  return tool.role == ToolConfig::Role::kGrasper && link + 2 < tool.links.size() &&
-         tool.links[link].shapes.empty();
+  return tool.role.has_jaws && link + 2 < tool.links.size() && tool.links[link].shapes.empty();
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ robot_tissue_room(geometry
     tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC scene.h
-  FILES material.cpp material.h)
+  PUBLIC scene.h tool_role.h
+  FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h filled_grid.h lattice.h lattice_state.h

@@ -133,7 +133,7 @@ bool OverlapResolver::resolveOverlap(const Links& links, RobotPose& pose) const 
 void OverlapResolver::resolveOverlap(std::size_t tool, RobotPose& pose) {
   const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
   bool was_inside = false;
-  if (world_.tools[tool].role == ToolConfig::Role::kGrasper) {
+  if (world_.tools[tool].role.has_jaws) {
     for (std::size_t link = first; link < end; ++link) {
       was_inside = resolveOverlap(Links{link, link + 1}, pose) || was_inside;
     }

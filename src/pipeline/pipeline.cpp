@@ -219,8 +219,9 @@ void Pipeline::touch() {
 
 void Pipeline::grasp(std::size_t tool) {
   const std::string name = "tool '" + world_.tools.nameOf(tool) + "'";
-  if (world_.tools[tool].role != ToolConfig::Role::kGrasper) {
-    throw InputError(name + ": its role is push; allowed: a tool with the role grasper");
+  if (!world_.tools[tool].role.has_jaws) {
+    throw InputError(name + ": its role is " + world_.tools[tool].role.name +
+                     "; allowed: a tool with the role " + toolRolesWith(&ToolRole::has_jaws));
   }
   if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
   if (!parts_->grasping.grasp(tool)) {

@@ -29,7 +29,7 @@ Vec3 normalOf(const World& world, std::size_t tool) {
       pushes[touch.link].push_back(force * touch.spring.normal);
     }
   }
-  const bool first_only = world.tools[tool].role == ToolConfig::Role::kGrasper;
+  const bool first_only = world.tools[tool].role.has_jaws;
   Vec3 sum = Vec3::Zero(), hardest = Vec3::Zero();
   double all = 0.0;
   for (const auto& [link, of_link] : pushes) {

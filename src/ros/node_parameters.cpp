@@ -11,24 +11,21 @@
 #include <vector>
 
 #include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/key_table.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kLowestRate = 0.01;           // Hz
-constexpr double kHighestRate = 10000.0;       // Hz
+constexpr double kLowestRate = 0.01;      // Hz
+constexpr double kHighestRate = 10000.0;  // Hz
+const Range kRates{kLowestRate, kHighestRate, "Hz"};
 constexpr double kHighestWrenchRate = 1000.0;  // Hz
 constexpr double kShortestTimeout = 1e-3;      // s
 constexpr double kLongestTimeout = 1e6;        // s
 constexpr double kLeastForceScale = 1e-9;      // m/N
 constexpr double kMostForceScale = 1e9;        // m/N
-
-const std::vector<std::string> kOwnKeys = {
-    "rate",       "marker_rate",      "wrench_rate",
-    "tf_timeout", "force_scale",      "robot_description_param",
-    "scene_file", "diagnostic_period"};  // read by diagnostic_updater
 
 // The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
 std::string shortestText(double value) {
@@ -92,6 +89,40 @@ std::string readSceneFolder(const Entry& entry) {
   return file.parent_path().string();
 }
 
+// Beside those of the scene.
+const KeyTable<NodeParameters> kOwnKeys = {
+    {"rate",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.rate_hz = entry.numberOr(parameters.rate_hz, kRates);
+     }},
+    {"marker_rate",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.marker_rate_hz = entry.numberOr(parameters.marker_rate_hz, kRates);
+     }},
+    {"wrench_rate",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.wrench_rate_hz =
+           entry.numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, "Hz"});
+     }},
+    {"tf_timeout",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.tf_timeout_s =
+           entry.numberOr(parameters.tf_timeout_s, {kShortestTimeout, kLongestTimeout, "s"});
+     }},
+    {"force_scale",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.force_scale =
+           entry.numberOr(parameters.force_scale, {kLeastForceScale, kMostForceScale, "m/N"});
+     }},
+    {"robot_description_param",
+     [](const Entry& entry, NodeParameters& parameters) {
+       if (!entry.given()) return;
+       parameters.robot_description_param = entry.word("the name of a parameter that holds a URDF");
+     }},
+    {"scene_file"},         // the scene is read against it
+    {"diagnostic_period"},  // read by diagnostic_updater
+};
+
 }  // namespace
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
@@ -102,27 +133,16 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
     root = toYaml(all);
   }
   const std::string name = private_node.getNamespace();
-  const auto own = [&](const char* key) { return Entry(root[key], key, name); };
+  const auto own = [&](const std::string& key) { return Entry(root[key], key, name); };
   SceneSource source;
   source.name = name;
   source.user = SceneUser::kNode;
   source.folder = readSceneFolder(own("scene_file"));
-  source.other_keys = kOwnKeys;
+  source.other_keys = namesOf(kOwnKeys);
 
   NodeParameters parameters;
-  const Range rate{kLowestRate, kHighestRate, "Hz"};
-  parameters.rate_hz = own("rate").numberOr(parameters.rate_hz, rate);
-  parameters.marker_rate_hz = own("marker_rate").numberOr(parameters.marker_rate_hz, rate);
-  parameters.wrench_rate_hz =
-      own("wrench_rate").numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, "Hz"});
-  parameters.tf_timeout_s =
-      own("tf_timeout").numberOr(parameters.tf_timeout_s, {kShortestTimeout, kLongestTimeout, "s"});
-  parameters.force_scale =
-      own("force_scale")
-          .numberOr(parameters.force_scale, {kLeastForceScale, kMostForceScale, "m/N"});
-  if (own("robot_description_param").given()) {
-    parameters.robot_description_param =
-        own("robot_description_param").word("the name of a parameter that holds a URDF");
+  for (const Key<NodeParameters>& key : kOwnKeys) {
+    if (key.read != nullptr) key.read(own(key.name), parameters);
   }
   parameters.scene = parseScene(root, source);
   return parameters;

@@ -54,9 +54,16 @@ void readDrive(const MapReader& map, const Range& range, PatchConfig& patch) {
   }
 }
 
+struct PatchReading {
+  const SolverConfig& solver;
+  PatchConfig patch;
+};
+
 // Only what a force moves may also turn until no moment is left.
-void readTurns(const Entry& entry, const SolverConfig& solver, PatchConfig& patch) {
+void readTurns(const Entry& entry, PatchReading& reading) {
   if (!entry.given()) return;
+  PatchConfig& patch = reading.patch;
+  const SolverConfig& solver = reading.solver;
   patch.turns = entry.truth();
   if (patch.turns && !patch.force) entry.fail("the patch has a displacement, must have a force");
   if (patch.turns && !traitsOf(solver.method).turns_patches) {
@@ -64,6 +71,34 @@ void readTurns(const Entry& entry, const SolverConfig& solver, PatchConfig& patc
                " moves patches without turning them, must be false or left out");
   }
 }
+
+const KeyTable<PatchReading> kPatchKeys = {
+    {"name",
+     [](const Entry& entry, PatchReading& reading) { reading.patch.name = readPatchName(entry); }},
+    {"min"},
+    {"max"},
+    {"displacement"},
+    {"force"},
+    {"turns", readTurns},
+};
+
+PatchConfig readPatch(const Entry& entry, const Grid& grid, const SolverConfig& solver,
+                      const Range& displacement) {
+  const MapReader map(entry, namesOf(kPatchKeys));
+  PatchReading reading{solver, {}};
+  reading.patch.box = readNodeBox(map, grid);
+  readDrive(map, displacement, reading.patch);
+  readKeys(map, kPatchKeys, reading);
+  return reading.patch;
+}
+
+const KeyTable<LoadStep> kLoadKeys = {
+    {"increments",
+     [](const Entry& entry, LoadStep& step) {
+       if (entry.given()) step.increments = entry.integer(1, kMostIncrements);
+     }},
+    {"patches"},
+};
 
 // Against the fixed nodes and against the patches that stand already.
 void checkNodes(const Entry& entry, const Grid& grid, const StandingPatch& patch,
@@ -90,22 +125,17 @@ void checkNodes(const Entry& entry, const Grid& grid, const StandingPatch& patch
 LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRange>& fixed,
                   const SolverConfig& solver, const Range& displacement,
                   std::vector<StandingPatch>& standing) {
-  const MapReader map(entry, {"increments", "patches"});
+  const MapReader map(entry, namesOf(kLoadKeys));
   LoadStep step;
-  if (map["increments"].given()) step.increments = map["increments"].integer(1, kMostIncrements);
+  readKeys(map, kLoadKeys, step);
   std::vector<std::string> names;
   for (const Entry& patch_entry : map["patches"].list(1, "patches")) {
-    const MapReader patch_map(patch_entry,
-                              {"name", "min", "max", "displacement", "force", "turns"});
-    PatchConfig patch;
-    patch.name = readPatchName(patch_map["name"]);
+    const PatchConfig patch = readPatch(patch_entry, grid, solver, displacement);
     if (std::find(names.begin(), names.end(), patch.name) != names.end()) {
-      patch_map["name"].fail("an earlier patch of this load has the name, must be unique");
+      const MapReader map_of_patch(patch_entry, namesOf(kPatchKeys));
+      map_of_patch["name"].fail("an earlier patch of this load has the name, must be unique");
     }
     names.push_back(patch.name);
-    patch.box = readNodeBox(patch_map, grid);
-    readDrive(patch_map, displacement, patch);
-    readTurns(patch_map["turns"], solver, patch);
     const StandingPatch stands{patch.name, grid.nodesIn(patch.box)};
     checkNodes(patch_entry, grid, stands, fixed, standing);
     const bool again = std::any_of(standing.begin(), standing.end(),

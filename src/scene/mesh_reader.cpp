@@ -65,8 +65,7 @@ Vec3 readScale(const Entry& entry) {
   return Vec3::Constant(entry.number(ranges::scale()));
 }
 
-TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder) {
-  const MapReader map(entry, {"type", "resource", "scale"});
+TriangleMesh readMeshShape(const MapReader& map, const std::string& scene_folder) {
   const Entry resource = map["resource"];
   const std::string address = readResource(resource, scene_folder);
   TriangleMesh mesh = load(resource, address, readScale(map["scale"]));

@@ -25,34 +25,60 @@ void requireMemoryOfMethod(const Entry& tissue, const Scene& scene) {
                 scene.solver.method);
 }
 
-void readSteps(const Entry& steps, const SceneSource& source, Scene& scene) {
-  if (!steps.given()) return;
-  if (source.user == SceneUser::kRunner) {
-    scene.steps = readSteps(steps, scene.tissue, scene.solver, scene.tools);
-  } else if (!steps.list(0, "steps").empty()) {
-    scene.remarks.push_back(steps.line("ignored, only the offline runner takes steps"));
+struct SceneReading {
+  const SceneSource& source;
+  const MapReader& map;
+  Scene scene;
+};
+
+void readTissuePart(const Entry& entry, SceneReading& reading) {
+  const Entry supports = reading.map["supports"];
+  const bool supported = supports.given() && supports.node().size() > 0;
+  reading.scene.tissue = readTissue(entry, reading.source.folder, supported, reading.scene.remarks);
+}
+
+void readSolverPart(const Entry& entry, SceneReading& reading) {
+  Scene& scene = reading.scene;
+  scene.solver = readSolver(entry, scene.tissue.model, reading.source.overrides, scene.remarks);
+  requireMemoryOfMethod(reading.map["tissue"], scene);
+}
+
+void readStepsPart(const Entry& entry, SceneReading& reading) {
+  if (!entry.given()) return;
+  Scene& scene = reading.scene;
+  if (reading.source.user == SceneUser::kRunner) {
+    scene.steps = readSteps(entry, scene.tissue, scene.solver, scene.tools);
+  } else if (!entry.list(0, "steps").empty()) {
+    scene.remarks.push_back(entry.line("ignored, only the offline runner takes steps"));
   }
 }
+
+const KeyTable<SceneReading> kSceneKeys = {
+    {"tissue", readTissuePart},
+    {"solver", readSolverPart},
+    {"tools",
+     [](const Entry& entry, SceneReading& reading) {
+       Scene& scene = reading.scene;
+       if (!entry.given()) return;
+       scene.tools = readTools(entry, reading.source, scene.tissue, scene.remarks);
+     }},
+    {"supports",
+     [](const Entry& entry, SceneReading& reading) {
+       if (!entry.given()) return;
+       reading.scene.supports = readSupports(entry, reading.scene.tissue);
+     }},
+    {"steps", readStepsPart},
+};
 
 }  // namespace
 
 Scene parseScene(const YAML::Node& root, const SceneSource& source) {
-  std::vector<std::string> keys = {"tissue", "solver", "tools", "supports", "steps"};
+  std::vector<std::string> keys = namesOf(kSceneKeys);
   keys.insert(keys.end(), source.other_keys.begin(), source.other_keys.end());
   const MapReader map(Entry(root, "", source.name), keys);
-  Scene scene;
-  const bool supported = map["supports"].given() && map["supports"].node().size() > 0;
-  scene.tissue = readTissue(map["tissue"], source.folder, supported, scene.remarks);
-  scene.solver = readSolver(map["solver"], scene.tissue.model, source.overrides, scene.remarks);
-  requireMemoryOfMethod(map["tissue"], scene);
-  if (map["tools"].given()) {
-    scene.tools = readTools(map["tools"], source, scene.tissue, scene.remarks);
-  }
-  if (map["supports"].given()) {
-    scene.supports = readSupports(map["supports"], scene.tissue);
-  }
-  readSteps(map["steps"], source, scene);
-  return scene;
+  SceneReading reading{source, map, {}};
+  readKeys(map, kSceneKeys, reading);
+  return std::move(reading.scene);
 }
 
 Scene loadScene(const std::string& path, const SolverOverrides& overrides) {

@@ -1,6 +1,4 @@
 // Shapes, poses and directions of tools and supports.
-#include <map>
-
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -17,34 +15,76 @@ Pose readPose(const MapReader& map, const Range& place) {
   return pose;
 }
 
-ToolShape readToolShape(const Entry& entry, const Surroundings& surroundings) {
-  const MapReader any_type(
-      entry, {"type", "radius", "length", "size", "resource", "scale", "padding", "xyz", "rpy"});
-  const std::string type = any_type["type"].choice({"sphere", "cylinder", "box", "mesh"}, {});
-  static const std::map<std::string, std::vector<std::string>> kKeys = {
-      {"sphere", {"type", "radius", "padding", "xyz", "rpy"}},
-      {"cylinder", {"type", "radius", "length", "padding", "xyz", "rpy"}},
-      {"box", {"type", "size", "padding", "xyz", "rpy"}},
-      {"mesh", {"type", "resource", "scale", "padding", "xyz", "rpy"}}};
-  const MapReader map(entry, kKeys.at(type));
+namespace {
+
+struct ShapeReading {
+  const Surroundings& surroundings;
   ToolShape shape;
-  const LengthRanges& lengths = surroundings.lengths;
-  shape.pose = readPose(map, lengths.place);
-  shape.padding = map["padding"].numberOr(shape.padding, lengths.gap);
-  if (type == "box") {
-    shape.type = ToolShape::Type::kBox;
-    shape.size = map["size"].vec3(lengths.length);
-  } else if (type == "mesh") {
-    shape.type = ToolShape::Type::kMesh;
-    shape.resource = readResource(map["resource"], surroundings.scene_folder);
-    shape.scale = readScale(map["scale"]);
-    requireToolMesh(map["resource"], shape.resource, shape.scale, lengths);
-  } else {
-    shape.type = type == "sphere" ? ToolShape::Type::kSphere : ToolShape::Type::kCylinder;
-    shape.radius = map["radius"].number(lengths.length);
-    if (type == "cylinder") shape.length = map["length"].number(lengths.length);
-  }
-  return shape;
+};
+
+const Range& lengthRange(const ShapeReading& reading) {
+  return reading.surroundings.lengths.length;
+}
+
+void readRadius(const Entry& entry, ShapeReading& reading) {
+  reading.shape.radius = entry.number(lengthRange(reading));
+}
+
+// Of all types.
+const KeyTable<ShapeReading> kShapeKeys = {
+    {"type"},
+    {"xyz"},
+    {"rpy"},
+    {"padding",
+     [](const Entry& entry, ShapeReading& reading) {
+       reading.shape.padding =
+           entry.numberOr(reading.shape.padding, reading.surroundings.lengths.gap);
+     }},
+};
+
+template <ToolShape::Type type>
+void setType(const MapReader&, ShapeReading& reading) {
+  reading.shape.type = type;
+}
+
+void checkMesh(const MapReader& map, ShapeReading& reading) {
+  ToolShape& shape = reading.shape;
+  shape.type = ToolShape::Type::kMesh;
+  requireToolMesh(map["resource"], shape.resource, shape.scale, reading.surroundings.lengths);
+}
+
+const std::vector<MapType<ShapeReading>> kShapeTypes = {
+    {"sphere", {{"radius", readRadius}}, setType<ToolShape::Type::kSphere>},
+    {"cylinder",
+     {{"radius", readRadius},
+      {"length",
+       [](const Entry& entry, ShapeReading& reading) {
+         reading.shape.length = entry.number(lengthRange(reading));
+       }}},
+     setType<ToolShape::Type::kCylinder>},
+    {"box",
+     {{"size",
+       [](const Entry& entry, ShapeReading& reading) {
+         reading.shape.size = entry.vec3(lengthRange(reading));
+       }}},
+     setType<ToolShape::Type::kBox>},
+    {"mesh",
+     {{"resource",
+       [](const Entry& entry, ShapeReading& reading) {
+         reading.shape.resource = readResource(entry, reading.surroundings.scene_folder);
+       }},
+      {"scale",
+       [](const Entry& entry, ShapeReading& reading) { reading.shape.scale = readScale(entry); }}},
+     checkMesh},
+};
+
+}  // namespace
+
+ToolShape readToolShape(const Entry& entry, const Surroundings& surroundings) {
+  ShapeReading reading{surroundings, {}};
+  const MapReader map = readTyped(entry, kShapeKeys, kShapeTypes, reading);
+  reading.shape.pose = readPose(map, surroundings.lengths.place);
+  return reading.shape;
 }
 
 }  // namespace robot_tissue

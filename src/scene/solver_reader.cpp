@@ -20,31 +20,59 @@ void requireFit(const Entry& entry, const std::string& method, const std::string
              " does not fit this model");
 }
 
+struct SolverReading {
+  const std::string& model;
+  const SolverOverrides& overrides;
+  Remarks& remarks;
+  SolverConfig solver;
+};
+
+void readMethod(const Entry& entry, SolverReading& reading) {
+  const Entry method = overridden(entry, reading.overrides.method, "--method");
+  if (!method.given()) return;
+  reading.solver.method = method.choice(methodNames(), {});
+  requireFit(method, reading.solver.method, reading.model);
+}
+
+void readTolerance(const Entry& entry, SolverReading& reading) {
+  SolverConfig& solver = reading.solver;
+  const Entry tolerance = overridden(entry, reading.overrides.tolerance, "--tolerance");
+  solver.tolerance = tolerance.numberOr(solver.tolerance, ranges::tolerance());
+  if (tolerance.given() && !traitsOf(solver.method).uses_tolerance) {
+    reading.remarks.push_back(
+        tolerance.line("ignored, method " + solver.method + " solves exactly"));
+  }
+}
+
+void readThreads(const Entry& entry, SolverReading& reading) {
+  SolverConfig& solver = reading.solver;
+  const Entry threads = overridden(entry, reading.overrides.threads, "--threads");
+  solver.threads = threads.integerOr(solver.threads, 1, 256);
+  if (solver.threads > 1 && !traitsOf(solver.method).uses_threads) {
+    reading.remarks.push_back(
+        threads.line("ignored, method " + solver.method + " uses one thread"));
+  }
+}
+
+const KeyTable<SolverReading> kSolverKeys = {
+    {"method", readMethod},
+    {"tolerance", readTolerance},
+    {"max_ms",
+     [](const Entry& entry, SolverReading& reading) {
+       reading.solver.max_ms = entry.numberOr(reading.solver.max_ms, ranges::budget());
+     }},
+    {"threads", readThreads},
+};
+
 }  // namespace
 
 SolverConfig readSolver(const Entry& entry, const std::string& model,
                         const SolverOverrides& overrides, Remarks& remarks) {
   const Entry map_entry = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
-  const MapReader map(map_entry, {"method", "tolerance", "max_ms", "threads"});
-  SolverConfig solver;
-  solver.method = methodsFor(model).front();
-  const Entry method = overridden(map["method"], overrides.method, "--method");
-  if (method.given()) {
-    solver.method = method.choice(methodNames(), {});
-    requireFit(method, solver.method, model);
-  }
-  const Entry tolerance = overridden(map["tolerance"], overrides.tolerance, "--tolerance");
-  solver.tolerance = tolerance.numberOr(solver.tolerance, ranges::tolerance());
-  if (tolerance.given() && !traitsOf(solver.method).uses_tolerance) {
-    remarks.push_back(tolerance.line("ignored, method " + solver.method + " solves exactly"));
-  }
-  solver.max_ms = map["max_ms"].numberOr(solver.max_ms, ranges::budget());
-  const Entry threads = overridden(map["threads"], overrides.threads, "--threads");
-  solver.threads = threads.integerOr(solver.threads, 1, 256);
-  if (solver.threads > 1 && !traitsOf(solver.method).uses_threads) {
-    remarks.push_back(threads.line("ignored, method " + solver.method + " uses one thread"));
-  }
-  return solver;
+  SolverReading reading{model, overrides, remarks, {}};
+  reading.solver.method = methodsFor(model).front();
+  readKeys(MapReader(map_entry, namesOf(kSolverKeys)), kSolverKeys, reading);
+  return reading.solver;
 }
 
 }  // namespace robot_tissue

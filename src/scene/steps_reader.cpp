@@ -8,8 +8,6 @@
 namespace robot_tissue {
 namespace {
 
-const std::vector<std::string> kSteps = {"settle", "load",  "cut",     "move",
-                                         "push",   "grasp", "release", "reset"};
 constexpr std::size_t kMostSteps = 1000000;
 constexpr std::size_t kMostCorners = 1000;
 const std::vector<std::string> kPlannedSteps = {"suture"};
@@ -58,14 +56,25 @@ void checkPolygon(const Entry& entry, const std::vector<Vec3>& corners, double s
   }
 }
 
-CutStep readCut(const Entry& entry, const LengthRanges& lengths, double spacing) {
-  const MapReader map(entry, {"corners"});
+struct CutReading {
+  const Program& program;
   CutStep step;
-  for (const Entry& corner : map["corners"].list(3, "corners", kMostCorners)) {
-    step.corners.push_back(corner.vec3(lengths.place));
-  }
-  checkPolygon(map["corners"], step.corners, spacing);
-  return step;
+};
+
+const KeyTable<CutReading> kCutKeys = {
+    {"corners",
+     [](const Entry& entry, CutReading& reading) {
+       for (const Entry& corner : entry.list(3, "corners", kMostCorners)) {
+         reading.step.corners.push_back(corner.vec3(reading.program.lengths.place));
+       }
+       checkPolygon(entry, reading.step.corners, reading.program.tissue.spacing);
+     }},
+};
+
+CutStep readCut(const Entry& entry, const Program& program) {
+  CutReading reading{program, {}};
+  readKeys(MapReader(entry, namesOf(kCutKeys)), kCutKeys, reading);
+  return reading.step;
 }
 
 std::string readReleasedPatch(const Entry& entry, std::vector<StandingPatch>& standing) {
@@ -82,57 +91,107 @@ std::string readReleasedPatch(const Entry& entry, std::vector<StandingPatch>& st
   return name;
 }
 
-ReleaseStep readRelease(const Entry& entry, Program& program) {
-  const MapReader map(entry, {"patches", "tools"});
-  const Entry patches = map["patches"];
-  const Entry tools = map["tools"];
-  if (!patches.given() && !tools.given()) entry.fail("must have patches, tools or both");
+struct ReleaseReading {
+  Program& program;
   ReleaseStep step;
-  if (patches.given()) {
-    for (const Entry& name : patches.list(1, "patch names")) {
-      step.patches.push_back(readReleasedPatch(name, program.patches));
-    }
+};
+
+void readReleasedPatches(const Entry& entry, ReleaseReading& reading) {
+  if (!entry.given()) return;
+  for (const Entry& name : entry.list(1, "patch names")) {
+    reading.step.patches.push_back(readReleasedPatch(name, reading.program.patches));
   }
-  if (tools.given()) {
-    for (const Entry& name_entry : tools.list(1, "tool names")) {
-      const std::string name = name_entry.word("the name of a tool");
-      requireStands(name_entry, name, program.placed_tools);
-      if (contains(step.tools, name))
-        name_entry.fail("the tool stands here twice, must stand once");
-      step.tools.push_back(name);
-    }
-  }
-  return step;
 }
 
-// The name of the step, the only key of its map.
-std::string readKind(const Entry& entry) {
-  const std::string allowed = "must be a map with exactly one key of " + joined(kSteps);
-  if (!entry.node().IsMap() || entry.node().size() != 1) entry.fail(allowed);
-  const YAML::Node key = entry.node().begin()->first;
-  const std::string kind = key.IsScalar() ? key.Scalar() : "";
-  if (contains(kPlannedSteps, kind)) {
-    entry.child(entry.node().begin()->second, kind)
-        .fail("not available yet, must be one of " + joined(kSteps));
+void readReleasedTools(const Entry& entry, ReleaseReading& reading) {
+  if (!entry.given()) return;
+  std::vector<std::string>& tools = reading.step.tools;
+  for (const Entry& name_entry : entry.list(1, "tool names")) {
+    const std::string name = name_entry.word("the name of a tool");
+    requireStands(name_entry, name, reading.program.placed_tools);
+    if (contains(tools, name)) name_entry.fail("the tool stands here twice, must stand once");
+    tools.push_back(name);
   }
-  return kind;
 }
 
-Step readStep(const std::string& kind, const Entry& entry, Program& program) {
-  if (kind == "load") {
-    return readLoad(entry, program.grid, program.fixed, program.solver,
-                    program.lengths.displacement, program.patches);
+const KeyTable<ReleaseReading> kReleaseKeys = {{"patches", readReleasedPatches},
+                                               {"tools", readReleasedTools}};
+
+ReleaseStep readRelease(const Entry& entry, Program& program) {
+  const MapReader map(entry, namesOf(kReleaseKeys));
+  if (!map["patches"].given() && !map["tools"].given()) {
+    entry.fail("must have patches, tools or both");
   }
-  if (kind == "cut") return readCut(entry, program.lengths, program.tissue.spacing);
-  if (kind == "move") return readMove(entry, program.tools, program.lengths, program.placed_tools);
-  if (kind == "push") return readPush(entry, program.tools, program.placed_tools);
-  if (kind == "grasp") return readGraspStep(entry, program.tools, program.placed_tools);
-  if (kind == "release") return readRelease(entry, program);
+  ReleaseReading reading{program, {}};
+  readKeys(map, kReleaseKeys, reading);
+  return reading.step;
+}
+
+Step readReset(const Entry& entry, Program& program) {
   MapReader(entry, {});
-  if (kind == "settle") return SettleStep();
   program.patches.clear();
   program.placed_tools.clear();
   return ResetStep();
+}
+
+struct StepKind {
+  std::string name;
+  Step (*read)(const Entry&, Program&);
+};
+
+const std::vector<StepKind>& stepKinds() {
+  static const std::vector<StepKind> kinds = {
+      {"settle",
+       [](const Entry& entry, Program&) -> Step {
+         MapReader(entry, {});
+         return SettleStep();
+       }},
+      {"load",
+       [](const Entry& entry, Program& program) -> Step {
+         return readLoad(entry, program.grid, program.fixed, program.solver,
+                         program.lengths.displacement, program.patches);
+       }},
+      {"cut", [](const Entry& entry, Program& program) -> Step { return readCut(entry, program); }},
+      {"move",
+       [](const Entry& entry, Program& program) -> Step {
+         return readMove(entry, program.tools, program.lengths, program.placed_tools);
+       }},
+      {"push",
+       [](const Entry& entry, Program& program) -> Step {
+         return readPush(entry, program.tools, program.placed_tools);
+       }},
+      {"grasp",
+       [](const Entry& entry, Program& program) -> Step {
+         return readGraspStep(entry, program.tools, program.placed_tools);
+       }},
+      {"release",
+       [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},
+      {"reset", readReset},
+  };
+  return kinds;
+}
+
+std::vector<std::string> stepNames() {
+  std::vector<std::string> names;
+  for (const StepKind& kind : stepKinds()) names.push_back(kind.name);
+  return names;
+}
+
+// The name of the step is the only key of its map.
+Step readStep(const Entry& entry, Program& program) {
+  const std::vector<std::string> names = stepNames();
+  const std::string allowed = "must be a map with exactly one key of " + joined(names);
+  if (!entry.node().IsMap() || entry.node().size() != 1) entry.fail(allowed);
+  const YAML::Node key = entry.node().begin()->first;
+  const std::string name = key.IsScalar() ? key.Scalar() : "";
+  if (contains(kPlannedSteps, name)) {
+    entry.child(entry.node().begin()->second, name)
+        .fail("not available yet, must be one of " + joined(names));
+  }
+  const MapReader map(entry, names);
+  const auto kind = std::find_if(stepKinds().begin(), stepKinds().end(),
+                                 [&name](const StepKind& each) { return each.name == name; });
+  return kind->read(map[name], program);
 }
 
 }  // namespace
@@ -143,9 +202,7 @@ std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
   for (const Box& box : tissue.fixed) program.fixed.push_back(program.grid.nodesIn(box));
   std::vector<Step> steps;
   for (const Entry& step_entry : entry.list(0, "steps", kMostSteps)) {
-    const std::string kind = readKind(step_entry);
-    const MapReader map(step_entry, kSteps);
-    steps.push_back(readStep(kind, map[kind], program));
+    steps.push_back(readStep(step_entry, program));
   }
   return steps;
 }

@@ -29,18 +29,43 @@ ToolShape readBox(const MapReader& map, const LengthRanges& lengths) {
   return shape;
 }
 
+struct SupportReading {
+  const LengthRanges& lengths;
+  SupportConfig support;
+};
+
+// Of all types.
+const KeyTable<SupportReading> kSupportKeys = {
+    {"name",
+     [](const Entry& entry, SupportReading& reading) {
+       if (entry.given()) reading.support.name = readGraphName(entry);
+     }},
+    {"type"},
+    {"friction",
+     [](const Entry& entry, SupportReading& reading) {
+       reading.support.friction = entry.numberOr(reading.support.friction, ranges::friction());
+     }},
+};
+
+const std::vector<MapType<SupportReading>> kSupportTypes = {
+    {"plane",
+     {{"point"}, {"normal"}},
+     [](const MapReader& map, SupportReading& reading) {
+       reading.support.shape = readPlane(map, reading.lengths.place);
+     }},
+    {"box",
+     {{"min"}, {"max"}},
+     [](const MapReader& map, SupportReading& reading) {
+       reading.support.shape = readBox(map, reading.lengths);
+     }},
+};
+
 SupportConfig readSupport(const Entry& entry, const std::string& default_name,
                           const LengthRanges& lengths) {
-  const MapReader any_type(entry, {"name", "type", "point", "normal", "min", "max", "friction"});
-  const bool plane = any_type["type"].choice({"plane", "box"}, {}) == "plane";
-  const MapReader map(
-      entry, plane ? std::vector<std::string>{"name", "type", "point", "normal", "friction"}
-                   : std::vector<std::string>{"name", "type", "min", "max", "friction"});
-  SupportConfig support;
-  support.name = map["name"].given() ? readGraphName(map["name"]) : default_name;
-  support.shape = plane ? readPlane(map, lengths.place) : readBox(map, lengths);
-  support.friction = map["friction"].numberOr(support.friction, ranges::friction());
-  return support;
+  SupportReading reading{lengths, {}};
+  reading.support.name = default_name;
+  readTyped(entry, kSupportKeys, kSupportTypes, reading);
+  return reading.support;
 }
 
 }  // namespace

@@ -10,17 +10,33 @@
 namespace robot_tissue {
 namespace {
 
-const std::vector<std::string> kMaterialKeys = {"young_modulus", "poisson_ratio", "density",
-                                                "spring_stiffness"};
+struct TissueReading {
+  const std::string& scene_folder;
+  const bool supported;
+  Remarks& remarks;
+  TissueConfig tissue;
+  std::optional<Grid> grid;
+};
 
-void readShape(const Entry& entry, const std::string& scene_folder, TissueConfig& tissue) {
-  const MapReader any_type(entry, {"type", "min", "max", "resource", "scale"});
-  if (any_type["type"].choice({"box", "mesh"}, {}) == "box") {
-    tissue.shape =
-        MapReader(entry, {"type", "min", "max"}).box(ranges::pickedPlace(), FlatBox::kRefused);
-  } else {
-    tissue.mesh = std::make_shared<const TriangleMesh>(readMeshShape(entry, scene_folder));
-  }
+const std::vector<MapType<TissueReading>>& shapeTypes() {
+  static const std::vector<MapType<TissueReading>> types = {
+      {"box",
+       {{"min"}, {"max"}},
+       [](const MapReader& map, TissueReading& reading) {
+         reading.tissue.shape = map.box(ranges::pickedPlace(), FlatBox::kRefused);
+       }},
+      {"mesh",
+       {{"resource"}, {"scale"}},
+       [](const MapReader& map, TissueReading& reading) {
+         reading.tissue.mesh =
+             std::make_shared<const TriangleMesh>(readMeshShape(map, reading.scene_folder));
+       }},
+  };
+  return types;
+}
+
+void readShape(const Entry& entry, TissueReading& reading) {
+  readTyped(entry, {{"type"}}, shapeTypes(), reading);
 }
 
 // The tissue must not stand so far off that its spacing drowns in rounding.
@@ -59,33 +75,54 @@ double readSpacing(const Entry& entry, const Box& shape) {
   return spacing;
 }
 
-// Entries of `map` replace those of `material`.
-void readMaterialEntries(const MapReader& map, const std::string& model, Material& material,
-                         Remarks& remarks) {
-  const Entry poisson = map["poisson_ratio"];
-  material.poisson_ratio = poisson.numberOr(material.poisson_ratio, ranges::poissonRatio());
-  if (poisson.given() && model == "six_spring") {
-    remarks.push_back(poisson.line("ignored, model six_spring has no Poisson's ratio"));
-  }
-  material.density = map["density"].numberOr(material.density, ranges::density());
-  material.young_modulus =
-      map["young_modulus"].numberOr(material.young_modulus, ranges::youngModulus());
-  if (map["spring_stiffness"].given()) {
-    material.spring_stiffness = map["spring_stiffness"].number(ranges::springStiffness());
+struct MaterialReading {
+  const std::string& model;
+  Remarks& remarks;
+  Material& material;  // what is not given stays
+};
+
+void readPoissonRatio(const Entry& entry, MaterialReading& reading) {
+  Material& material = reading.material;
+  material.poisson_ratio = entry.numberOr(material.poisson_ratio, ranges::poissonRatio());
+  if (entry.given() && !traitsOfModel(reading.model).has_poisson_ratio) {
+    reading.remarks.push_back(
+        entry.line("ignored, model " + reading.model + " has no Poisson's ratio"));
   }
 }
 
+const KeyTable<MaterialReading> kMaterialKeys = {
+    {"young_modulus",
+     [](const Entry& entry, MaterialReading& reading) {
+       double& modulus = reading.material.young_modulus;
+       modulus = entry.numberOr(modulus, ranges::youngModulus());
+     }},
+    {"poisson_ratio", readPoissonRatio},
+    {"density",
+     [](const Entry& entry, MaterialReading& reading) {
+       double& density = reading.material.density;
+       density = entry.numberOr(density, ranges::density());
+     }},
+    {"spring_stiffness",
+     [](const Entry& entry, MaterialReading& reading) {
+       if (!entry.given()) return;
+       reading.material.spring_stiffness = entry.number(ranges::springStiffness());
+     }},
+};
+
 Material readMaterial(const Entry& entry, const std::string& model, Remarks& remarks) {
-  const MapReader map(entry, kMaterialKeys);
+  const MapReader map(entry, namesOf(kMaterialKeys));
   const Entry stiffness = map["spring_stiffness"];
-  if (stiffness.given() && model != "six_spring") {
-    stiffness.fail("must be left out, only model six_spring has it; give young_modulus in Pa");
+  if (stiffness.given() && !traitsOfModel(model).has_spring_stiffness) {
+    stiffness.fail("must be left out, only model " +
+                   modelsWith(&ModelTraits::has_spring_stiffness) +
+                   " has it; give young_modulus in Pa");
   }
   if (stiffness.given() && map["young_modulus"].given()) {
     stiffness.fail("must not stand beside young_modulus, give one of the two");
   }
   Material material;
-  readMaterialEntries(map, model, material, remarks);
+  MaterialReading reading{model, remarks, material};
+  readKeys(map, kMaterialKeys, reading);
   if (!stiffness.given())
     material.young_modulus = map["young_modulus"].number(ranges::youngModulus());
   return material;
@@ -98,11 +135,6 @@ void requireContrast(const MapReader& region, const Material& around, const Mate
   if (std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast) return;
   region[material.spring_stiffness ? "spring_stiffness" : "young_modulus"].fail(
       "must be within a factor of " + numberText(ranges::kMostContrast) + " of tissue.material's");
-}
-
-Vec3 readGravity(const Entry& entry) {
-  if (!entry.given()) return Vec3::Zero();
-  return readVector(entry, ranges::gravity(), ranges::kLeastGravity);
 }
 
 // Where the nodes stand, or with an offset of half a spacing the cells' centers.
@@ -118,13 +150,20 @@ std::string nodesText(const Grid& grid, double offset) {
   return text;
 }
 
+const KeyTable<Region> kRegionKeys = {
+    {"name",
+     [](const Entry& entry, Region& region) {
+       if (entry.given()) region.name = entry.word("a name");
+     }},
+    {"min"},
+    {"max"},
+};
+
 Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& grid,
                   Remarks& remarks) {
-  std::vector<std::string> keys = {"name", "min", "max"};
-  keys.insert(keys.end(), kMaterialKeys.begin(), kMaterialKeys.end());
-  const MapReader map(entry, keys);
+  const MapReader map(entry, namesOfAll(kRegionKeys, kMaterialKeys));
   Region region;
-  if (map["name"].given()) region.name = map["name"].word("a name");
+  readKeys(map, kRegionKeys, region);
   region.box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
   if (!grid.holdsCell(region.box)) {
     entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
@@ -137,11 +176,12 @@ Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& gr
                  ", as in tissue.material");
   }
   if (std::none_of(kMaterialKeys.begin(), kMaterialKeys.end(),
-                   [&map](const std::string& key) { return map[key].given(); })) {
-    entry.fail("must change the material by at least one of " + joined(kMaterialKeys));
+                   [&map](const auto& key) { return map[key.name].given(); })) {
+    entry.fail("must change the material by at least one of " + joined(namesOf(kMaterialKeys)));
   }
   region.material = tissue.material;
-  readMaterialEntries(map, tissue.model, region.material, remarks);
+  MaterialReading reading{tissue.model, remarks, region.material};
+  readKeys(map, kMaterialKeys, reading);
   requireContrast(map, tissue.material, region.material);
   return region;
 }
@@ -157,19 +197,63 @@ std::string readFrame(const Entry& entry, const std::string& otherwise) {
   return frame;
 }
 
-void readBoxes(const MapReader& map, TissueConfig& tissue, Remarks& remarks) {
-  const Grid grid = filledGrid(tissue).grid;
-  if (map["regions"].given()) {
-    for (const Entry& entry : map["regions"].list(0, "regions")) {
-      tissue.regions.push_back(readRegion(entry, tissue, grid, remarks));
-    }
-  }
-  if (map["fixed"].given()) {
-    for (const Entry& entry : map["fixed"].list(0, "boxes with min and max")) {
-      tissue.fixed.push_back(readNodeBox(MapReader(entry, {"min", "max"}), grid));
-    }
+void readSpacing(const Entry& entry, TissueReading& reading) {
+  TissueConfig& tissue = reading.tissue;
+  tissue.spacing =
+      tissue.mesh ? readMeshSpacing(entry, *tissue.mesh) : readSpacing(entry, tissue.shape);
+}
+
+void readMaterial(const Entry& entry, TissueReading& reading) {
+  TissueConfig& tissue = reading.tissue;
+  tissue.material = readMaterial(entry, tissue.model, reading.remarks);
+  if (!tissue.mesh || !tissue.material.spring_stiffness) return;
+  reading.remarks.push_back(MapReader(entry, namesOf(kMaterialKeys))["spring_stiffness"].line(
+      "every spring has it, also those of cells that the mesh fills only in part"));
+}
+
+void readRegions(const Entry& entry, TissueReading& reading) {
+  if (!entry.given()) return;
+  for (const Entry& region : entry.list(0, "regions")) {
+    reading.tissue.regions.push_back(
+        readRegion(region, reading.tissue, *reading.grid, reading.remarks));
   }
 }
+
+void readFixed(const Entry& entry, TissueReading& reading) {
+  if (!entry.given()) return;
+  for (const Entry& box : entry.list(0, "boxes with min and max")) {
+    reading.tissue.fixed.push_back(readNodeBox(MapReader(box, {"min", "max"}), *reading.grid));
+  }
+}
+
+void readGravity(const Entry& entry, TissueReading& reading) {
+  TissueConfig& tissue = reading.tissue;
+  if (entry.given()) tissue.gravity = readVector(entry, ranges::gravity(), ranges::kLeastGravity);
+  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty() && !reading.supported) {
+    entry.fail(
+        "must be zero unless tissue.fixed holds nodes or supports bear it, the tissue would fall");
+  }
+}
+
+// What makes the grid, and what is read against it.
+const KeyTable<TissueReading> kBodyKeys = {
+    {"frame_id",
+     [](const Entry& entry, TissueReading& reading) {
+       reading.tissue.frame_id = readFrame(entry, reading.tissue.frame_id);
+     }},
+    {"shape", readShape},
+    {"spacing", readSpacing},
+    {"model",
+     [](const Entry& entry, TissueReading& reading) {
+       if (entry.given()) reading.tissue.model = entry.choice(modelNames(), {});
+     }},
+    {"material", readMaterial},
+};
+const KeyTable<TissueReading> kGridKeys = {
+    {"regions", readRegions},
+    {"fixed", readFixed},
+    {"gravity", readGravity},
+};
 
 }  // namespace
 
@@ -196,27 +280,14 @@ void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::
 
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
                         Remarks& remarks) {
-  const MapReader map(
-      entry, {"frame_id", "shape", "spacing", "model", "material", "regions", "fixed", "gravity"});
-  TissueConfig tissue;
-  tissue.frame_id = readFrame(map["frame_id"], tissue.frame_id);
-  readShape(map["shape"], scene_folder, tissue);
-  tissue.spacing = tissue.mesh ? readMeshSpacing(map["spacing"], *tissue.mesh)
-                               : readSpacing(map["spacing"], tissue.shape);
-  if (map["model"].given()) tissue.model = map["model"].choice(modelNames(), {});
-  tissue.material = readMaterial(map["material"], tissue.model, remarks);
-  if (tissue.mesh && tissue.material.spring_stiffness) {
-    remarks.push_back(MapReader(map["material"], kMaterialKeys)["spring_stiffness"].line(
-        "every spring has it, also those of cells that the mesh fills only in part"));
-  }
-  requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());  // before the grid
-  readBoxes(map, tissue, remarks);
-  tissue.gravity = readGravity(map["gravity"]);
-  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty() && !supported) {
-    map["gravity"].fail(
-        "must be zero unless tissue.fixed holds nodes or supports bear it, the tissue would fall");
-  }
-  return tissue;
+  const MapReader map(entry, namesOfAll(kBodyKeys, kGridKeys));
+  TissueReading reading{scene_folder, supported, remarks, {}, {}};
+  readKeys(map, kBodyKeys, reading);
+  const TissueConfig& tissue = reading.tissue;
+  requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());
+  reading.grid = filledGrid(tissue).grid;
+  readKeys(map, kGridKeys, reading);
+  return reading.tissue;
 }
 
 }  // namespace robot_tissue

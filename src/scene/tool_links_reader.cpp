@@ -1,4 +1,4 @@
-// The links of a tool: its own or several, and the jaws of a grasper.
+// The links of a tool: its own or several, and its jaws.
 #include <algorithm>
 #include <optional>
 
@@ -8,7 +8,6 @@ namespace robot_tissue {
 namespace {
 
 const std::string kLinkName = "the name of a link of the URDF";
-const std::vector<std::string> kLinkKeys = {"link", "padding", "collision_padding", "shapes"};
 
 // A link with the entry that names it, given or not.
 struct NamedLink {
@@ -29,30 +28,52 @@ std::map<std::string, double> readCollisionPadding(const Entry& entry, const Ran
   return padding;
 }
 
+struct LinkReading {
+  const Surroundings& surroundings;
+  Remarks& remarks;
+  ToolLink link;
+};
+
+void readShapes(const Entry& entry, LinkReading& reading) {
+  if (!entry.given()) return;
+  ToolLink& link = reading.link;
+  for (const Entry& shape : entry.list(0, "shapes")) {
+    link.shapes.push_back(readToolShape(shape, reading.surroundings));
+  }
+  // Nothing else says what the tool is made of.
+  if (link.link.empty() && link.shapes.empty()) entry.list(1, "shapes");
+}
+
+const KeyTable<LinkReading> kLinkKeys = {
+    {"link",
+     [](const Entry& entry, LinkReading& reading) {
+       if (entry.given()) reading.link.link = entry.word(kLinkName);
+     }},
+    {"padding",
+     [](const Entry& entry, LinkReading& reading) {
+       const Range& gap = reading.surroundings.lengths.gap;
+       reading.link.padding = entry.numberOr(reading.link.padding, gap);
+     }},
+    {"shapes", readShapes},
+    {"collision_padding",
+     [](const Entry& entry, LinkReading& reading) {
+       const Range& gap = reading.surroundings.lengths.gap;
+       reading.link.collision_padding = readCollisionPadding(entry, gap);
+       if (!entry.given() || reading.link.shapes.empty()) return;
+       reading.remarks.push_back(
+           entry.line("ignored, shapes take the place of the URDF's collisions"));
+     }},
+};
+
 NamedLink readLink(const MapReader& map, const Surroundings& surroundings, Remarks& remarks) {
-  NamedLink named{{}, map["link"]};
-  ToolLink& link = named.link;
-  if (named.name.given()) link.link = named.name.word(kLinkName);
-  link.padding = map["padding"].numberOr(link.padding, surroundings.lengths.gap);
-  if (map["shapes"].given()) {
-    for (const Entry& shape : map["shapes"].list(0, "shapes")) {
-      link.shapes.push_back(readToolShape(shape, surroundings));
-    }
-  }
-  if (link.link.empty() && link.shapes.empty() && map["shapes"].given()) {
-    map["shapes"].list(1, "shapes");  // nothing else says what the tool is made of
-  }
-  const Entry collisions = map["collision_padding"];
-  link.collision_padding = readCollisionPadding(collisions, surroundings.lengths.gap);
-  if (collisions.given() && !link.shapes.empty()) {
-    remarks.push_back(collisions.line("ignored, shapes take the place of the URDF's collisions"));
-  }
-  return named;
+  LinkReading reading{surroundings, remarks, {}};
+  readKeys(map, kLinkKeys, reading);
+  return {reading.link, map["link"]};
 }
 
 NamedLink readListedLink(const Entry& entry, const Surroundings& surroundings, Remarks& remarks) {
   if (entry.node().IsScalar()) return {{entry.word(kLinkName), 0.0, {}, {}}, entry};
-  const MapReader map(entry, kLinkKeys);
+  const MapReader map(entry, namesOf(kLinkKeys));
   if (!map["link"].given() && !map["shapes"].given()) {
     entry.fail("must have link, shapes or both");
   }
@@ -76,14 +97,16 @@ std::vector<NamedLink> readLinkList(const Entry& entry, const Surroundings& surr
 
 // Beside `links` the keys of a single link have no place.
 void requireSingleLinkKeysAbsent(const MapReader& map) {
-  for (const std::string& key : kLinkKeys) {
+  for (const std::string& key : namesOf(kLinkKeys)) {
     if (map[key].given()) map[key].fail("must not stand beside links, but with one of them");
   }
 }
 
-std::vector<NamedLink> readPushLinks(const MapReader& tool, const Surroundings& surroundings,
-                                     SceneUser user, Remarks& remarks) {
-  if (tool["jaws"].given()) tool["jaws"].fail("must be left out, only role grasper has jaws");
+std::vector<NamedLink> readPlainLinks(const MapReader& tool, const Surroundings& surroundings,
+                                      SceneUser user, Remarks& remarks) {
+  if (tool["jaws"].given())
+    tool["jaws"].fail("must be left out, only role " + toolRolesWith(&ToolRole::has_jaws) +
+                      " has jaws");
   if (tool["links"].given()) {
     requireSingleLinkKeysAbsent(tool);
     return readLinkList(tool["links"], surroundings, remarks, 1, kMostEntries);
@@ -95,15 +118,15 @@ std::vector<NamedLink> readPushLinks(const MapReader& tool, const Surroundings& 
 }
 
 // The tool's own link, which touches nothing without shapes, then the jaws.
-std::vector<NamedLink> readGrasperLinks(const MapReader& tool, const Surroundings& surroundings,
-                                        Remarks& remarks) {
+std::vector<NamedLink> readLinksWithJaws(const MapReader& tool, const ToolRole& role,
+                                         const Surroundings& surroundings, Remarks& remarks) {
   if (tool["links"].given()) {
-    tool["links"].fail("must be left out, role grasper has one link of its own and jaws");
+    tool["links"].fail("must be left out, role " + role.name + " has one link of its own and jaws");
   }
   std::vector<NamedLink> links = {readLink(tool, surroundings, remarks)};
   for (const char* key : {"padding", "collision_padding"}) {
     if (!tool[key].given() || !links.front().link.shapes.empty()) continue;
-    tool[key].fail("the grasper's own link has no shapes, must stand with the jaws");
+    tool[key].fail("the " + role.name + "'s own link has no shapes, must stand with the jaws");
   }
   const std::vector<NamedLink> jaws = readLinkList(tool["jaws"], surroundings, remarks, 2, 2);
   links.insert(links.end(), jaws.begin(), jaws.end());
@@ -111,12 +134,12 @@ std::vector<NamedLink> readGrasperLinks(const MapReader& tool, const Surrounding
 }
 
 // All links or none are of the URDF; the node has all of their poses from there.
-void checkNames(const std::vector<NamedLink>& links, SceneUser user, bool grasper) {
+void checkNames(const std::vector<NamedLink>& links, SceneUser user, bool jaws) {
   const bool any_named = std::any_of(links.begin(), links.end(),
                                      [](const auto& link) { return !link.link.link.empty(); });
   if (user == SceneUser::kRunner && !any_named) return;
   for (const NamedLink& named : links) {
-    const bool frame_only = grasper && &named == &links.front() && named.link.shapes.empty();
+    const bool frame_only = jaws && &named == &links.front() && named.link.shapes.empty();
     if (!named.link.link.empty() || (frame_only && !named.name.given())) continue;
     named.name.fail("must be " + kLinkName +
                     (user == SceneUser::kNode ? "" : ", as other links of the tool have one"));
@@ -125,12 +148,18 @@ void checkNames(const std::vector<NamedLink>& links, SceneUser user, bool graspe
 
 }  // namespace
 
+std::vector<std::string> toolLinkKeys() {
+  std::vector<std::string> keys = namesOf(kLinkKeys);
+  keys.insert(keys.end(), {"links", "jaws"});
+  return keys;
+}
+
 ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
-                        ToolConfig::Role role, Remarks& remarks) {
-  const bool grasper = role == ToolConfig::Role::kGrasper;
-  const std::vector<NamedLink> named = grasper ? readGrasperLinks(tool, surroundings, remarks)
-                                               : readPushLinks(tool, surroundings, user, remarks);
-  checkNames(named, user, grasper);
+                        const ToolRole& role, Remarks& remarks) {
+  const std::vector<NamedLink> named = role.has_jaws
+                                           ? readLinksWithJaws(tool, role, surroundings, remarks)
+                                           : readPlainLinks(tool, surroundings, user, remarks);
+  checkNames(named, user, role.has_jaws);
   ToolLinks links;
   for (const NamedLink& link : named) {
     links.links.push_back(link.link);

@@ -7,12 +7,12 @@
 namespace robot_tissue {
 namespace {
 
-bool isGrasper(const ToolConfig& tool) { return tool.role == ToolConfig::Role::kGrasper; }
+bool hasJaws(const ToolConfig& tool) { return tool.role.has_jaws; }
 
-// What the runner needs of a tool: some shapes, of a grasper both jaws'.
+// What the runner needs of a tool: some shapes, of one with jaws those of both.
 bool hasShapes(const ToolConfig& tool) {
   const auto with_shapes = [](const ToolLink& link) { return !link.shapes.empty(); };
-  if (!isGrasper(tool)) return std::any_of(tool.links.begin(), tool.links.end(), with_shapes);
+  if (!hasJaws(tool)) return std::any_of(tool.links.begin(), tool.links.end(), with_shapes);
   return std::all_of(tool.links.end() - 2, tool.links.end(), with_shapes);
 }
 
@@ -32,26 +32,54 @@ const ToolConfig& readTool(const Entry& entry, const std::vector<ToolConfig>& to
                                  [&name](const auto& other) { return other.name == name; });
   if (tool == tools.end()) entry.fail("must be " + allowed);
   if (!hasShapes(*tool)) {
-    entry.fail((isGrasper(*tool) ? "a jaw has no shapes, must be " : "has no shapes, must be ") +
+    entry.fail((hasJaws(*tool) ? "a jaw has no shapes, must be " : "has no shapes, must be ") +
                allowed);
   }
   return *tool;
 }
 
-MoveStep::Place readPlace(const Entry& entry, bool grasper, const LengthRanges& lengths) {
-  const MapReader map(entry, {"xyz", "rpy", "opening"});
-  map["xyz"].vec3(lengths.place);  // unlike a shape's it has to be given
+struct PlaceReading {
+  bool jaws = false;
+  const LengthRanges& lengths;
   MoveStep::Place place;
-  place.pose = readPose(map, lengths.place);
-  const Entry opening = map["opening"];
-  if (opening.given() && !grasper) opening.fail("must be left out, only role grasper opens");
-  place.opening = opening.numberOr(place.opening, lengths.gap);
-  return place;
+};
+
+void readOpening(const Entry& entry, PlaceReading& reading) {
+  if (entry.given() && !reading.jaws) {
+    entry.fail("must be left out, only role " + toolRolesWith(&ToolRole::has_jaws) + " opens");
+  }
+  reading.place.opening = entry.numberOr(reading.place.opening, reading.lengths.gap);
 }
 
-std::optional<int> readIncrements(const Entry& entry) {
-  return entry.given() ? std::optional<int>(entry.integer(1, kMostIncrements)) : std::nullopt;
+const KeyTable<PlaceReading> kPlaceKeys = {{"xyz"}, {"rpy"}, {"opening", readOpening}};
+
+MoveStep::Place readPlace(const Entry& entry, bool jaws, const LengthRanges& lengths) {
+  const MapReader map(entry, namesOf(kPlaceKeys));
+  map["xyz"].vec3(lengths.place);  // unlike a shape's it has to be given
+  PlaceReading reading{jaws, lengths, {}};
+  reading.place.pose = readPose(map, lengths.place);
+  readKeys(map, kPlaceKeys, reading);
+  return reading.place;
 }
+
+template <class ToolStep>
+void readIncrements(const Entry& entry, ToolStep& step) {
+  if (entry.given()) step.increments = entry.integer(1, kMostIncrements);
+}
+
+const KeyTable<MoveStep> kMoveKeys = {
+    {"tool"}, {"from"}, {"to"}, {"increments", readIncrements<MoveStep>}};
+
+const KeyTable<PushStep> kPushKeys = {
+    {"tool"},
+    {"force",
+     [](const Entry& entry, PushStep& step) {
+       step.force = readNonZero(entry, ranges::force(), ranges::kLeastForce);
+     }},
+    {"increments", readIncrements<PushStep>},
+};
+
+const KeyTable<GraspStep> kGraspKeys = {{"tool"}};
 
 }  // namespace
 
@@ -65,42 +93,44 @@ void requireStands(const Entry& entry, const std::string& tool,
 
 MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const LengthRanges& lengths, std::set<std::string>& standing) {
-  const MapReader map(entry, {"tool", "from", "to", "increments"});
+  const MapReader map(entry, namesOf(kMoveKeys));
   const ToolConfig& tool = readTool(map["tool"], tools);
   MoveStep step;
   step.tool = tool.name;
   const Entry from = map["from"];
   if (from.given()) {
-    step.from = readPlace(from, isGrasper(tool), lengths);
+    step.from = readPlace(from, hasJaws(tool), lengths);
   } else if (standing.count(tool.name) == 0) {
     from.fail("the tool stands nowhere at this step, must be a map of xyz, rpy, opening");
   }
-  step.to = readPlace(map["to"], isGrasper(tool), lengths);
-  step.increments = readIncrements(map["increments"]);
+  step.to = readPlace(map["to"], hasJaws(tool), lengths);
+  readKeys(map, kMoveKeys, step);
   standing.insert(tool.name);
   return step;
 }
 
 PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing) {
-  const MapReader map(entry, {"tool", "force", "increments"});
+  const MapReader map(entry, namesOf(kPushKeys));
   PushStep step;
   step.tool = readTool(map["tool"], tools).name;
   requireStands(map["tool"], step.tool, standing);
-  step.force = readNonZero(map["force"], ranges::force(), ranges::kLeastForce);
-  step.increments = readIncrements(map["increments"]);
+  readKeys(map, kPushKeys, step);
   return step;
 }
 
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
                         const std::set<std::string>& standing) {
-  const MapReader map(entry, {"tool"});
+  const MapReader map(entry, namesOf(kGraspKeys));
   const ToolConfig& tool = readTool(map["tool"], tools);
-  if (!isGrasper(tool)) {
-    map["tool"].fail("must be one of the tools of role grasper: " + namesOf(tools, isGrasper));
+  if (!hasJaws(tool)) {
+    map["tool"].fail("must be one of the tools of role " + toolRolesWith(&ToolRole::has_jaws) +
+                     ": " + namesOf(tools, hasJaws));
   }
   requireStands(map["tool"], tool.name, standing);
-  return {tool.name};
+  GraspStep step{tool.name};
+  readKeys(map, kGraspKeys, step);
+  return step;
 }
 
 }  // namespace robot_tissue

@@ -25,14 +25,17 @@ std::string readToolName(const Entry& entry, const ToolLinks& links) {
   return link;
 }
 
-ToolConfig::Role readRole(const Entry& entry, const std::string& model) {
-  if (!entry.given() || entry.choice({"push", "grasper"}, {"blade"}) == "push") {
-    return ToolConfig::Role::kPush;
+ToolRole readRole(const Entry& entry, const std::string& model) {
+  if (!entry.given()) return {};
+  std::vector<std::string> names;
+  for (const ToolRole& role : toolRoles()) names.push_back(role.name);
+  const ToolRole& role = toolRole(entry.choice(names, plannedToolRoles()));
+  if (hardPatchesOnly(model) && !role.fits_hard_patches) {
+    entry.fail("with tissue.model " + model + " must be " +
+               toolRolesWith(&ToolRole::fits_hard_patches) +
+               ", its method moves hard patches only");
   }
-  if (hardPatchesOnly(model)) {
-    entry.fail("with tissue.model " + model + " must be push, its method moves hard patches only");
-  }
-  return ToolConfig::Role::kGrasper;
+  return role;
 }
 
 ToolConfig::Patch readPatch(const Entry& entry, const std::string& model) {
@@ -46,43 +49,89 @@ ToolConfig::Patch readPatch(const Entry& entry, const std::string& model) {
   return ToolConfig::Patch::kConforming;
 }
 
-void readContact(const MapReader& map, const std::string& model, ToolConfig& tool,
-                 Remarks& remarks) {
-  tool.patch = readPatch(map["patch"], model);
-  const Entry friction = map["friction"];
-  tool.friction = friction.numberOr(tool.friction, ranges::friction());
-  if (friction.given() && tool.patch == ToolConfig::Patch::kRigid) {
-    remarks.push_back(friction.line("ignored, a rigid patch sticks to its tool"));
-  }
-  tool.max_force = map["max_force"].numberOr(tool.max_force, ranges::forceLimit());
+struct GraspReading {
+  const LengthRanges& lengths;
+  SceneUser user;
+  Remarks& remarks;
+  GraspConfig grasp;
+};
+
+void readOpeningAxis(const Entry& entry, GraspReading& reading) {
+  if (!entry.given()) return;
+  reading.grasp.opening_axis =
+      readNonZero(entry, ranges::direction(), ranges::kLeastDirection).normalized();
+  if (reading.user != SceneUser::kNode) return;
+  reading.remarks.push_back(entry.line("ignored, the robot's joints move the jaws"));
 }
 
-GraspConfig readGrasp(const Entry& entry, const TissueConfig& tissue, SceneUser user,
-                      Remarks& remarks) {
-  const LengthRanges lengths = lengthsOf(tissue);
-  const Entry given = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
-  const MapReader map(given, {"close_gap", "open_gap", "max_force", "opening_axis"});
-  GraspConfig grasp;
-  grasp.close_gap = map["close_gap"].numberOr(tissue.spacing, lengths.length);
-  grasp.open_gap = map["open_gap"].numberOr(
-      1.5 * grasp.close_gap, {grasp.close_gap, lengths.gap.highest, "m, not below the close_gap"});
-  grasp.max_force = map["max_force"].numberOr(grasp.max_force, ranges::forceLimit());
-  const Entry axis = map["opening_axis"];
-  if (axis.given())
-    grasp.opening_axis =
-        readNonZero(axis, ranges::direction(), ranges::kLeastDirection).normalized();
-  if (axis.given() && user == SceneUser::kNode) {
-    remarks.push_back(axis.line("ignored, the robot's joints move the jaws"));
+const KeyTable<GraspReading> kGraspKeys = {
+    {"close_gap",
+     [](const Entry& entry, GraspReading& reading) {
+       reading.grasp.close_gap = entry.numberOr(reading.grasp.close_gap, reading.lengths.length);
+     }},
+    {"open_gap",
+     [](const Entry& entry, GraspReading& reading) {
+       GraspConfig& grasp = reading.grasp;
+       grasp.open_gap = entry.numberOr(
+           1.5 * grasp.close_gap,
+           {grasp.close_gap, reading.lengths.gap.highest, "m, not below the close_gap"});
+     }},
+    {"max_force",
+     [](const Entry& entry, GraspReading& reading) {
+       reading.grasp.max_force = entry.numberOr(reading.grasp.max_force, ranges::forceLimit());
+     }},
+    {"opening_axis", readOpeningAxis},
+};
+
+struct ToolReading {
+  const TissueConfig& tissue;
+  SceneUser user;
+  Remarks& remarks;
+  ToolConfig tool;
+};
+
+void readGrasp(const Entry& entry, ToolReading& reading) {
+  if (!reading.tool.role.has_jaws) {
+    if (!entry.given()) return;
+    entry.fail("must be left out, only role " + toolRolesWith(&ToolRole::has_jaws) +
+               " holds tissue");
   }
-  return grasp;
+  const Entry given = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
+  const LengthRanges lengths = lengthsOf(reading.tissue);
+  GraspReading grasp{lengths, reading.user, reading.remarks, {}};
+  grasp.grasp.close_gap = reading.tissue.spacing;
+  readKeys(MapReader(given, namesOf(kGraspKeys)), kGraspKeys, grasp);
+  reading.tool.grasp = grasp.grasp;
 }
+
+void readFriction(const Entry& entry, ToolReading& reading) {
+  reading.tool.friction = entry.numberOr(reading.tool.friction, ranges::friction());
+  if (!entry.given() || reading.tool.patch != ToolConfig::Patch::kRigid) return;
+  reading.remarks.push_back(entry.line("ignored, a rigid patch sticks to its tool"));
+}
+
+// Beside the keys of its links.
+const KeyTable<ToolReading> kToolKeys = {
+    {"name"},
+    {"role"},
+    {"patch",
+     [](const Entry& entry, ToolReading& reading) {
+       reading.tool.patch = readPatch(entry, reading.tissue.model);
+     }},
+    {"friction", readFriction},
+    {"max_force",
+     [](const Entry& entry, ToolReading& reading) {
+       reading.tool.max_force = entry.numberOr(reading.tool.max_force, ranges::forceLimit());
+     }},
+    {"grasp", readGrasp},
+};
 
 // A link of two tools: where both touch, each feels but a part of the force. With the same surface
 // they touch everywhere.
 void checkLinksAreOnce(const ToolLinks& links, const ToolConfig& tool,
                        const std::vector<ToolConfig>& earlier, Remarks& remarks) {
   const auto touches = [](const ToolConfig& of, std::size_t link) {
-    const bool is_frame = of.role == ToolConfig::Role::kGrasper && link + 2 < of.links.size();
+    const bool is_frame = of.role.has_jaws && link + 2 < of.links.size();
     return !of.links[link].link.empty() && (!is_frame || !of.links[link].shapes.empty());
   };
   const auto check = [&](std::size_t i, const ToolConfig& other, std::size_t j) {
@@ -106,10 +155,11 @@ void checkLinksAreOnce(const ToolLinks& links, const ToolConfig& tool,
 
 ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueConfig& tissue,
                     const std::vector<ToolConfig>& earlier, Remarks& remarks) {
-  const MapReader map(
-      entry, {"name", "link", "links", "jaws", "role", "padding", "collision_padding", "friction",
-              "patch", "max_force", "grasp", "shapes"});
-  ToolConfig tool;
+  std::vector<std::string> keys = namesOf(kToolKeys);
+  for (const std::string& key : toolLinkKeys()) keys.push_back(key);
+  const MapReader map(entry, keys);
+  ToolReading reading{tissue, source.user, remarks, {}};
+  ToolConfig& tool = reading.tool;
   tool.role = readRole(map["role"], tissue.model);
   const ToolLinks links =
       readToolLinks(map, {source.folder, lengthsOf(tissue)}, source.user, tool.role, remarks);
@@ -120,12 +170,7 @@ ToolConfig readTool(const Entry& entry, const SceneSource& source, const TissueC
     entry.fail("the name " + tool.name + " is an earlier tool's, must be unique");
   }
   checkLinksAreOnce(links, tool, earlier, remarks);
-  readContact(map, tissue.model, tool, remarks);
-  if (tool.role == ToolConfig::Role::kGrasper) {
-    tool.grasp = readGrasp(map["grasp"], tissue, source.user, remarks);
-  } else if (map["grasp"].given()) {
-    map["grasp"].fail("must be left out, only role grasper holds tissue");
-  }
+  readKeys(map, kToolKeys, reading);
   return tool;
 }
 

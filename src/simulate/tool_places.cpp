@@ -48,7 +48,7 @@ Vec3 ToolPlaces::originInFirstLink(std::size_t tool) const { return -shift(tool,
 Vec3 ToolPlaces::shift(std::size_t tool, std::size_t link) const {
   const ToolConfig& config = tools_[tool];
   const std::size_t jaw = config.links.size() - 2;
-  if (config.role != ToolConfig::Role::kGrasper || link < jaw) return Vec3::Zero();
+  if (!config.role.has_jaws || link < jaw) return Vec3::Zero();
   return (link == jaw ? 0.5 : -0.5) * places_[tool]->opening * config.grasp.opening_axis;
 }
 

@@ -30,7 +30,7 @@ class Lift {
     if (grasps) {
       tools.push_back(toolOf("grasper", boxOf(kJaw), friction));
       tools.front().links.push_back(tools.front().links.front());
-      tools.front().role = ToolConfig::Role::kGrasper;
+      tools.front().role = toolRole("grasper");
     } else {
       tools = {toolOf("left", boxOf(kJaw), friction), toolOf("right", boxOf(kJaw), friction)};
     }

@@ -206,7 +206,7 @@ TEST(ToolGeometry, EveryLinkAndEntryIsTakenOver) {
   config.links.resize(3, config.links[0]);
   config.links[2].link = "tip";
   for (ToolLink& link : config.links) link.shapes = {sphere(0.01)};
-  config.role = ToolConfig::Role::kGrasper;
+  config.role = toolRole("grasper");
   config.patch = ToolConfig::Patch::kRigid;
   config.friction = 0.7;
   config.max_force = 5.0;
@@ -216,7 +216,7 @@ TEST(ToolGeometry, EveryLinkAndEntryIsTakenOver) {
     EXPECT_EQ(tool.name, "base");
     ASSERT_EQ(tool.links.size(), 3U);
     EXPECT_EQ(tool.links[2].link, "tip");
-    EXPECT_EQ(tool.role, ToolConfig::Role::kGrasper);
+    EXPECT_TRUE(tool.role.has_jaws);
     EXPECT_EQ(tool.patch, ToolConfig::Patch::kRigid);
     EXPECT_EQ(tool.friction, 0.7);
     EXPECT_EQ(tool.max_force, 5.0);
@@ -226,7 +226,7 @@ TEST(ToolGeometry, EveryLinkAndEntryIsTakenOver) {
 
 TEST(ToolGeometry, GraspersOwnLinkIsAFrameUnlessItHasShapes) {
   ToolConfig grasper = toolOn("tip");
-  grasper.role = ToolConfig::Role::kGrasper;
+  grasper.role = toolRole("grasper");
   grasper.links = {{"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}};
   LoadedTools loaded = loadTools(kRobot, {grasper});
   EXPECT_TRUE(loaded.warnings.empty());

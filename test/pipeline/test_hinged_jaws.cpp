@@ -15,7 +15,7 @@ const Vec3 kHinge(0.015, 0.5 * kRidge, kRidgeTop + 0.027);
 ToolGeometry forceps(const ToolShape& left, const ToolShape& right) {
   ToolGeometry tool;
   tool.name = "forceps";
-  tool.role = ToolConfig::Role::kGrasper;
+  tool.role = toolRole("grasper");
   tool.links = {{"left", {left}}, {"right", {right}}};
   tool.grasp.close_gap = kCloseGap;
   tool.grasp.open_gap = kOpenGap;

@@ -60,7 +60,7 @@ class Grasper : public ::testing::TestWithParam<const char*> {
   static ToolGeometry gripper(double max_force = 0.0) {
     ToolGeometry tool;
     tool.name = "gripper";
-    tool.role = ToolConfig::Role::kGrasper;
+    tool.role = toolRole("grasper");
     const Vec3 plate(0.016, 0.004, 0.01);
     tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
                   {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};

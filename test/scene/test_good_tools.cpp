@@ -55,7 +55,7 @@ TEST(GoodTools, AToolOfTheRunnerNeedsNoLink) {
   ASSERT_EQ(tools.size(), 5U);
   const ToolConfig& probe = tools[0];
   EXPECT_EQ(probe.name, "probe");
-  EXPECT_EQ(probe.role, ToolConfig::Role::kPush);
+  EXPECT_EQ(probe.role.name, "push");
   EXPECT_EQ(probe.patch, ToolConfig::Patch::kConforming);
   EXPECT_EQ(probe.friction, 0.4);
   EXPECT_EQ(probe.max_force, 5.0);
@@ -90,7 +90,7 @@ TEST(GoodTools, SeveralLinksKeepTheirOrderAndPaddings) {
 TEST(GoodTools, AGrasperIsItsOwnLinkThenItsJaws) {
   const std::vector<ToolConfig> tools = toolScene().tools;
   const ToolConfig& forceps = tools.at(2);
-  EXPECT_EQ(forceps.role, ToolConfig::Role::kGrasper);
+  EXPECT_EQ(forceps.role.name, "grasper");
   ASSERT_EQ(forceps.links.size(), 3U);
   EXPECT_EQ(forceps.links[0].link, "");
   EXPECT_TRUE(forceps.links[0].shapes.empty());

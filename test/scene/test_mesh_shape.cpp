@@ -17,7 +17,7 @@ Entry shapeEntry(const std::string& keys) {
 }
 
 TriangleMesh read(const std::string& keys, const std::string& folder = meshFolder()) {
-  return readMeshShape(shapeEntry(keys), folder);
+  return readMeshShape(MapReader(shapeEntry(keys), {"type", "resource", "scale"}), folder);
 }
 
 std::string refusal(const std::string& keys, const std::string& folder = meshFolder()) {
@@ -114,8 +114,7 @@ TEST(MeshShape, OrgansAreClosedAndOfTheStatedSize) {
 
 TEST(MeshShape, EntriesThatAreNotAllowed) {
   writeFile("box.stl", stlText(boxMesh(kBoxMin, kBoxMax)));
-  expectRefusal(refusal("resource: box.stl, min: [0, 0, 0]"),
-                {"shape.min = [0, 0, 0]", "unknown"});
+  expectRefusal(refusal("resource: box.stl, min: [0, 0, 0]"), {"shape.min = [0, 0, 0]", "unknown"});
   expectRefusal(refusal("scale: 1"), {"tissue.shape.resource is missing", "package://"});
   expectRefusal(refusal("resource: [a]"), {"tissue.shape.resource = [a]", "a path"});
   expectRefusal(refusal("resource: none.stl"),

@@ -17,7 +17,7 @@ struct LinkGeometry {
 struct ToolGeometry {
   std::string name;
   std::vector<LinkGeometry> links;  // as in ToolConfig
-  ToolConfig::Role role = ToolConfig::Role::kPush;
+  ToolRole role;
   ToolConfig::Patch patch = ToolConfig::Patch::kConforming;
   double friction = 0.3;
   double max_force = 0.0;  // N, 0 = none

@@ -1,11 +1,17 @@
-// The models and methods that there are, and what of a scene's keys they use. A new one is a line of
-// a table in src/core/tissue/registry.cpp and nowhere else.
+// The models and methods that there are, and what of a scene's keys they use. A new one is a line
+// of a table in src/core/tissue/registry.cpp and nowhere else.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace robot_tissue {
+
+struct ModelTraits {
+  bool has_poisson_ratio = true;
+  bool has_spring_stiffness = false;  // as another way to give its stiffness
+  bool hard_patches_only = false;     // its methods move patches in one piece, and nothing slides
+};
 
 struct MethodTraits {
   bool uses_tolerance = true;  // else it solves exactly
@@ -16,8 +22,12 @@ struct MethodTraits {
 
 const std::vector<std::string>& modelNames();
 const std::vector<std::string>& methodNames();
-// Throws InputError: no method of this name.
+// Throw InputError: no model, no method of this name.
+const ModelTraits& traitsOfModel(const std::string& model);
 const MethodTraits& traitsOf(const std::string& method);
+
+// The models that have what is asked for: "a, b".
+std::string modelsWith(bool ModelTraits::*trait);
 
 // The methods that fit the model; the first is the default.
 std::vector<std::string> methodsFor(const std::string& model);

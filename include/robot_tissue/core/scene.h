@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "robot_tissue/core/tool_role.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
 
@@ -125,19 +126,18 @@ struct GraspConfig {
 };
 
 struct ToolConfig {
-  enum class Role { kPush, kGrasper };
   // kConforming: each point of the tissue slides along the tool in its friction cone.
   // kRigid: what it touches moves with it as one hard piece (paper, section 4.3).
   enum class Patch { kConforming, kRigid };
 
   std::string name;  // the first link's name when the scene names none
   std::vector<ToolLink>
-      links;  // the first one's frame is the tool's; a grasper's last two: its jaws
-  Role role = Role::kPush;
+      links;  // the first one's frame is the tool's; the last two of a role with jaws: these
+  ToolRole role;
   Patch patch = Patch::kConforming;
   double friction = 0.3;   // Coulomb's, >= 0
   double max_force = 0.0;  // N: a stronger wrench is told as this one, and flagged; 0 = none
-  GraspConfig grasp;       // role grasper
+  GraspConfig grasp;       // roles with jaws
 };
 
 // What the tissue rests on: a box or a plane that never moves.

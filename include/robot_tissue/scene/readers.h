@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "robot_tissue/core/grid.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/key_table.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/ranges.h"
 #include "robot_tissue/scene/scene_parser.h"
@@ -18,8 +20,9 @@ namespace robot_tissue {
 
 using Remarks = std::vector<std::string>;
 
-// The paper's method moves patches as one hard piece: nothing slides, nothing is held by contact.
-inline bool hardPatchesOnly(const std::string& model) { return model == "six_spring"; }
+inline bool hardPatchesOnly(const std::string& model) {
+  return traitsOfModel(model).hard_patches_only;
+}
 
 // `scene_folder`: where relative paths of a mesh start. `supported`: the scene has supports.
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
@@ -73,8 +76,9 @@ struct ToolLinks {
   std::vector<ToolLink> links;
   std::vector<Entry> names;  // where their names stand, or would
 };
+std::vector<std::string> toolLinkKeys();  // of a tool's map, that readToolLinks reads
 ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
-                        ToolConfig::Role role, Remarks& remarks);
+                        const ToolRole& role, Remarks& remarks);
 
 std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue);
 
@@ -92,8 +96,8 @@ std::string readResource(const Entry& entry, const std::string& scene_folder);
 // One factor for all axes or three; 1 when not given.
 Vec3 readScale(const Entry& entry);
 
-// Shape of type mesh: loaded, joined at its corners, closed, facing outwards.
-TriangleMesh readMeshShape(const Entry& entry, const std::string& scene_folder);
+// Keys resource and scale of a shape: loaded, joined at its corners, closed, facing outwards.
+TriangleMesh readMeshShape(const MapReader& map, const std::string& scene_folder);
 
 // Refuses a tool's mesh that is not closed, has no volume or cannot be read. One of a package is
 // left to those who make a tool of it: a scene may be read where the package is not.

@@ -105,6 +105,7 @@ using MakeMethod = std::unique_ptr<SolverMethod> (*)(const SolverConfig&, const 
 struct ModelEntry {
   const char* name;
   MakeModel make;
+  ModelTraits traits;
 };
 
 struct MethodEntry {
@@ -115,8 +116,10 @@ struct MethodEntry {
 };
 
 const std::vector<ModelEntry>& models() {
-  static const std::vector<ModelEntry> all = {{"elastic", makeElastic},
-                                              {"six_spring", makeSixSpring}};
+  static const std::vector<ModelEntry> all = {
+      {"elastic", makeElastic, {true, false, false}},
+      {"six_spring", makeSixSpring, {false, true, true}},
+  };
   return all;
 }
 
@@ -161,6 +164,18 @@ const std::vector<std::string>& modelNames() {
 const std::vector<std::string>& methodNames() {
   static const std::vector<std::string> names = namesOf(methods());
   return names;
+}
+
+const ModelTraits& traitsOfModel(const std::string& model) {
+  return named(model, "tissue.model", models()).traits;
+}
+
+std::string modelsWith(bool ModelTraits::*trait) {
+  std::vector<std::string> names;
+  for (const ModelEntry& model : models()) {
+    if (model.traits.*trait) names.emplace_back(model.name);
+  }
+  return listed(names);
 }
 
 const MethodTraits& traitsOf(const std::string& method) {

@@ -1,0 +1,25 @@
+// What a tool may do to the tissue beside pushing it. A role is a line of the table in
+// src/core/config/tool_role.cpp and nowhere else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace robot_tissue {
+
+struct ToolRole {
+  std::string name = "push";
+  bool has_jaws = false;  // its last two links; when they are close, they hold what is between them
+  bool fits_hard_patches = true;  // a method that moves tissue in hard pieces only can follow it
+};
+
+const std::vector<ToolRole>& toolRoles();
+// Names that are known but not available yet.
+const std::vector<std::string>& plannedToolRoles();
+// Throws InputError: no role of this name.
+const ToolRole& toolRole(const std::string& name);
+
+// Of the roles that have what is asked for, e.g. &ToolRole::has_jaws: "a, b".
+std::string toolRolesWith(bool ToolRole::*trait);
+
+}  // namespace robot_tissue
