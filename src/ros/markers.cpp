@@ -12,13 +12,6 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-void setColor(Marker& marker, double red, double green, double blue, double alpha = 1.0) {
-  marker.color.r = static_cast<float>(red);
-  marker.color.g = static_cast<float>(green);
-  marker.color.b = static_cast<float>(blue);
-  marker.color.a = static_cast<float>(alpha);
-}
-
 geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Constant(diameter)); }
 
 // But for the stamp. Of one namespace and id all else is always the same.
@@ -35,6 +28,170 @@ void add(Marker marker, MarkerArray& array) {
   array.markers.push_back(std::move(marker));
 }
 
+// What markers are drawn from.
+struct Drawn {
+  const Pipeline& pipeline;
+  const std::vector<SupportConfig>& supports;
+  const std::vector<int>& surface_springs;
+  double force_scale;  // m/N
+
+  const Tissue& tissue() const { return pipeline.tissue(); }
+  double spacing() const { return tissue().lattice().spacing(); }
+};
+
+// Each takes a marker with all but its places and sizes.
+using Draw = void (*)(const Drawn& drawn, Marker marker, MarkerArray& array);
+
+template <bool opened>
+void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
+  const Surface& surface = drawn.tissue().surface();
+  marker.points.reserve(opened ? 0 : 3 * surface.triangles.size());
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    if ((surface.opened[triangle] != 0) != opened) continue;
+    for (const int vertex : surface.triangles[triangle]) {
+      marker.points.push_back(toPoint(drawn.tissue().vertices()[at(vertex)]));
+    }
+  }
+  add(std::move(marker), array);
+}
+
+void drawWireframe(const Drawn& drawn, Marker wires, MarkerArray& array) {
+  const Tissue& tissue = drawn.tissue();
+  wires.scale.x = tuning::kWireWidth;
+  wires.points.reserve(2 * drawn.surface_springs.size());
+  for (const int spring : drawn.surface_springs) {
+    const Spring& ends = tissue.lattice().springs()[at(spring)];
+    wires.points.push_back(toPoint(tissue.nodePosition(ends.a)));
+    wires.points.push_back(toPoint(tissue.nodePosition(ends.b)));
+  }
+  add(std::move(wires), array);
+}
+
+void drawFixedNodes(const Drawn& drawn, Marker fixed, MarkerArray& array) {
+  const Tissue& tissue = drawn.tissue();
+  fixed.scale = sphereScale(tuning::kNodeDiameter * drawn.spacing());
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
+  }
+  add(std::move(fixed), array);
+}
+
+void drawLoadedNodes(const Drawn& drawn, Marker loaded, MarkerArray& array) {
+  const Tissue& tissue = drawn.tissue();
+  loaded.scale = sphereScale(2.0 * tuning::kNodeDiameter * drawn.spacing());
+  const auto addNodes = [&](const std::vector<int>& nodes) {
+    for (const int node : nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
+  };
+  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
+    addNodes(tissue.patches()[patch].nodes);
+  }
+  for (const ToolReport& tool : drawn.pipeline.report().tools) addNodes(tool.nodes);
+  add(std::move(loaded), array);
+}
+
+// An arrow a tool, along what `ends` gives: its start and its tip, or nothing.
+template <class Ends>
+void drawArrows(const Drawn& drawn, const Marker& marker, MarkerArray& array, const Ends& ends) {
+  const std::vector<ToolReport>& tools = drawn.pipeline.report().tools;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    Marker arrow = marker;
+    arrow.id = static_cast<int>(tool);
+    arrow.scale.x = tuning::kShaftDiameter * drawn.spacing();
+    arrow.scale.y = 2.0 * tuning::kShaftDiameter * drawn.spacing();
+    arrow.scale.z = 0.0;
+    if (tools[tool].contacts > 0) arrow.points = ends(tool, tools[tool]);
+    add(std::move(arrow), array);
+  }
+}
+
+using Points = std::vector<geometry_msgs::Point>;
+
+void drawNormals(const Drawn& drawn, Marker marker, MarkerArray& array) {
+  drawArrows(drawn, marker, array, [&](std::size_t, const ToolReport& tool) {
+    if (tool.normal.isZero()) return Points();
+    const Vec3 start = tool.point - tuning::kNormalLength * drawn.spacing() * tool.normal;
+    return Points{toPoint(start), toPoint(tool.point)};
+  });
+}
+
+void drawForces(const Drawn& drawn, Marker marker, MarkerArray& array) {
+  drawArrows(drawn, marker, array, [&](std::size_t index, const ToolReport& tool) {
+    const Vec3 force_on_tissue = forceOnTissue(drawn.pipeline, index);
+    if (force_on_tissue.norm() <= tuning::kSmallestForce) return Points();
+    return Points{toPoint(tool.point - drawn.force_scale * force_on_tissue), toPoint(tool.point)};
+  });
+}
+
+// They never move; the planes' boxes are as long as the tissue's diagonal.
+void drawSupports(const Drawn& drawn, Marker marker, MarkerArray& array) {
+  const Lattice& lattice = drawn.tissue().lattice();
+  const Box bounds = lattice.bounds();
+  for (std::size_t i = 0; i < drawn.supports.size(); ++i) {
+    const ToolShape& shape = drawn.supports[i].shape;
+    Vec3 size = shape.size;
+    Vec3 center = shape.pose.translation();
+    if (shape.type == ToolShape::Type::kPlane) {
+      const double length = (bounds.max() - bounds.min()).norm();
+      size = Vec3(length, length, tuning::kPlaneThickness * lattice.spacing());
+      Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min() + bounds.max()));
+      in_plane.z() = -0.5 * size.z();
+      center = shape.pose * in_plane;
+    }
+    Marker support = marker;
+    support.id = static_cast<int>(i);
+    const Eigen::Quaterniond turn(shape.pose.linear());
+    support.pose.position = toPoint(center);
+    support.pose.orientation.x = turn.x();
+    support.pose.orientation.y = turn.y();
+    support.pose.orientation.z = turn.z();
+    support.pose.orientation.w = turn.w();
+    support.scale = toVector3(size);
+    array.markers.push_back(std::move(support));
+  }
+}
+
+struct Color {
+  double red, green, blue;
+};
+
+// kForces: with the time of the pose that the forces are of.
+enum class Stamp { kShape, kForces };
+
+struct Namespace {
+  const char* name;
+  int type;
+  Color color;
+  Stamp stamp;
+  Draw draw;
+};
+
+const Namespace kNamespaces[] = {
+    {"surface", Marker::TRIANGLE_LIST, {0.85, 0.47, 0.43}, Stamp::kShape, drawSurface<false>},
+    {"cut_faces", Marker::TRIANGLE_LIST, {0.55, 0.06, 0.10}, Stamp::kShape, drawSurface<true>},
+    {"wireframe", Marker::LINE_LIST, {0.30, 0.13, 0.12}, Stamp::kShape, drawWireframe},
+    {"fixed_nodes", Marker::SPHERE_LIST, {0.25, 0.25, 0.30}, Stamp::kShape, drawFixedNodes},
+    {"loading_patches", Marker::SPHERE_LIST, {1.0, 0.80, 0.10}, Stamp::kShape, drawLoadedNodes},
+    {"contact_normals", Marker::ARROW, {0.10, 0.45, 0.85}, Stamp::kForces, drawNormals},
+    {"contact_forces", Marker::ARROW, {0.10, 0.65, 0.20}, Stamp::kForces, drawForces},
+    {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Stamp::kShape, drawSupports},
+};
+
+Marker blankOf(const Namespace& of, const std::string& frame_id, const ros::Time& stamp) {
+  Marker marker;
+  marker.header.frame_id = frame_id;
+  marker.header.stamp = stamp;
+  marker.ns = of.name;
+  marker.type = of.type;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  marker.color.r = static_cast<float>(of.color.red);
+  marker.color.g = static_cast<float>(of.color.green);
+  marker.color.b = static_cast<float>(of.color.blue);
+  marker.color.a = 1.0F;
+  return marker;
+}
+
 }  // namespace
 
 MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
@@ -43,16 +200,13 @@ MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
 
 MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
                                  const ros::Time& reached) {
-  stamp_ = stamp;
+  if (springs_version_ != pipeline.tissue().surfaceVersion()) findSurfaceSprings(pipeline.tissue());
+  const Drawn drawn{pipeline, supports_, surface_springs_, force_scale_};
   MarkerArray array;
-  addSurface(pipeline.tissue(), array);
-  addWireframe(pipeline.tissue(), array);
-  addFixedNodes(pipeline.tissue(), array);
-  addLoadedNodes(pipeline, array);
-  stamp_ = reached;
-  addContacts(pipeline, array);
-  stamp_ = stamp;
-  addSupports(pipeline.tissue().lattice(), array);
+  for (const Namespace& each : kNamespaces) {
+    const ros::Time& time = each.stamp == Stamp::kForces ? reached : stamp;
+    each.draw(drawn, blankOf(each, frame_id_, time), array);
+  }
   return array;
 }
 
@@ -67,50 +221,6 @@ MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Tim
     told_[i] = std::move(all.markers[i]);
   }
   return changed;
-}
-
-Marker MarkerBuilder::make(const std::string& ns, int id, int type) const {
-  Marker marker;
-  marker.header.frame_id = frame_id_;
-  marker.header.stamp = stamp_;
-  marker.ns = ns;
-  marker.id = id;
-  marker.type = type;
-  marker.action = Marker::ADD;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  return marker;
-}
-
-void MarkerBuilder::addSurface(const Tissue& tissue, MarkerArray& array) const {
-  Marker outside = make("surface", 0, Marker::TRIANGLE_LIST);
-  setColor(outside, 0.85, 0.47, 0.43);
-  Marker opened = make("cut_faces", 0, Marker::TRIANGLE_LIST);
-  setColor(opened, 0.55, 0.06, 0.10);
-  const Surface& surface = tissue.surface();
-  outside.points.reserve(3 * surface.triangles.size());
-  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
-    Marker& marker = surface.opened[triangle] != 0 ? opened : outside;
-    for (const int vertex : surface.triangles[triangle]) {
-      marker.points.push_back(toPoint(tissue.vertices()[at(vertex)]));
-    }
-  }
-  add(std::move(outside), array);
-  add(std::move(opened), array);
-}
-
-void MarkerBuilder::addWireframe(const Tissue& tissue, MarkerArray& array) {
-  if (springs_version_ != tissue.surfaceVersion()) findSurfaceSprings(tissue);
-  Marker wires = make("wireframe", 0, Marker::LINE_LIST);
-  wires.scale.x = tuning::kWireWidth;
-  setColor(wires, 0.30, 0.13, 0.12);
-  wires.points.reserve(2 * surface_springs_.size());
-  for (const int spring : surface_springs_) {
-    const Spring& ends = tissue.lattice().springs()[at(spring)];
-    wires.points.push_back(toPoint(tissue.nodePosition(ends.a)));
-    wires.points.push_back(toPoint(tissue.nodePosition(ends.b)));
-  }
-  add(std::move(wires), array);
 }
 
 void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
@@ -128,85 +238,6 @@ void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
     }
   }
   springs_version_ = tissue.surfaceVersion();
-}
-
-void MarkerBuilder::addFixedNodes(const Tissue& tissue, MarkerArray& array) const {
-  Marker fixed = make("fixed_nodes", 0, Marker::SPHERE_LIST);
-  fixed.scale = sphereScale(tuning::kNodeDiameter * tissue.lattice().spacing());
-  setColor(fixed, 0.25, 0.25, 0.30);
-  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
-    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
-  }
-  add(std::move(fixed), array);
-}
-
-void MarkerBuilder::addLoadedNodes(const Pipeline& pipeline, MarkerArray& array) const {
-  const Tissue& tissue = pipeline.tissue();
-  Marker loaded = make("loading_patches", 0, Marker::SPHERE_LIST);
-  loaded.scale = sphereScale(2.0 * tuning::kNodeDiameter * tissue.lattice().spacing());
-  setColor(loaded, 1.0, 0.80, 0.10);
-  const auto addNodes = [&](const std::vector<int>& nodes) {
-    for (const int node : nodes) loaded.points.push_back(toPoint(tissue.nodePosition(node)));
-  };
-  for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
-    addNodes(tissue.patches()[patch].nodes);
-  }
-  for (const ToolReport& tool : pipeline.report().tools) addNodes(tool.nodes);
-  add(std::move(loaded), array);
-}
-
-// They never move; the planes' boxes are as long as the tissue's diagonal.
-void MarkerBuilder::addSupports(const Lattice& lattice, MarkerArray& array) const {
-  const Box bounds = lattice.bounds();
-  for (std::size_t i = 0; i < supports_.size(); ++i) {
-    const ToolShape& shape = supports_[i].shape;
-    Vec3 size = shape.size;
-    Vec3 center = shape.pose.translation();
-    if (shape.type == ToolShape::Type::kPlane) {
-      const double length = (bounds.max() - bounds.min()).norm();
-      size = Vec3(length, length, tuning::kPlaneThickness * lattice.spacing());
-      Vec3 in_plane = shape.pose.inverse() * Vec3(0.5 * (bounds.min() + bounds.max()));
-      in_plane.z() = -0.5 * size.z();
-      center = shape.pose * in_plane;
-    }
-    Marker support = make("supports", static_cast<int>(i), Marker::CUBE);
-    const Eigen::Quaterniond turn(shape.pose.linear());
-    support.pose.position = toPoint(center);
-    support.pose.orientation.x = turn.x();
-    support.pose.orientation.y = turn.y();
-    support.pose.orientation.z = turn.z();
-    support.pose.orientation.w = turn.w();
-    support.scale = toVector3(size);
-    setColor(support, 0.45, 0.50, 0.55);
-    array.markers.push_back(std::move(support));
-  }
-}
-
-void MarkerBuilder::addContacts(const Pipeline& pipeline, MarkerArray& array) const {
-  const double spacing = pipeline.tissue().lattice().spacing();
-  for (std::size_t tool = 0; tool < pipeline.report().tools.size(); ++tool) {
-    const ToolReport& report = pipeline.report().tools[tool];
-    Marker normal = make("contact_normals", static_cast<int>(tool), Marker::ARROW);
-    Marker force = make("contact_forces", static_cast<int>(tool), Marker::ARROW);
-    for (Marker* arrow : {&normal, &force}) {
-      arrow->scale.x = tuning::kShaftDiameter * spacing;
-      arrow->scale.y = 2.0 * tuning::kShaftDiameter * spacing;
-      arrow->scale.z = 0.0;
-    }
-    setColor(normal, 0.10, 0.45, 0.85);
-    setColor(force, 0.10, 0.65, 0.20);
-    if (report.contacts > 0) {
-      const Vec3 force_on_tissue = forceOnTissue(pipeline, tool);
-      const Vec3 start = report.point - tuning::kNormalLength * spacing * report.normal;
-      if (!report.normal.isZero()) normal.points = {toPoint(start), toPoint(report.point)};
-      if (force_on_tissue.norm() > tuning::kSmallestForce) {
-        force.points = {toPoint(report.point - force_scale_ * force_on_tissue),
-                        toPoint(report.point)};
-      }
-    }
-    add(std::move(normal), array);
-    add(std::move(force), array);
-  }
 }
 
 }  // namespace robot_tissue

@@ -1,10 +1,6 @@
-// The tissue as rviz markers, lists in namespaces that rviz can switch each:
-//   surface, cut_faces            triangles of the displayed surface
-//   wireframe                     springs between surface nodes, cut ones left out
-//   fixed_nodes, loading_patches  nodes as spheres
-//   contact_normals, contact_forces   an arrow a tool; normal into the tissue, force on the tissue
-//   supports                      a box each; of a plane a thin one under the tissue
-// Loading patches are the named ones and what each tool holds or touches.
+// The tissue as rviz markers, lists in namespaces that rviz can switch each. A new one is an entry
+// of the table in src/ros/markers.cpp. Loading patches are the named ones and what each tool holds
+// or touches.
 #pragma once
 
 #include <ros/time.h>
@@ -32,19 +28,11 @@ class MarkerBuilder {
   void tellAll() { told_.clear(); }
 
  private:
-  visualization_msgs::Marker make(const std::string& ns, int id, int type) const;
-  void addSurface(const Tissue& tissue, visualization_msgs::MarkerArray& array) const;
-  void addWireframe(const Tissue& tissue, visualization_msgs::MarkerArray& array);
-  void addFixedNodes(const Tissue& tissue, visualization_msgs::MarkerArray& array) const;
-  void addLoadedNodes(const Pipeline& pipeline, visualization_msgs::MarkerArray& array) const;
-  void addContacts(const Pipeline& pipeline, visualization_msgs::MarkerArray& array) const;
-  void addSupports(const Lattice& lattice, visualization_msgs::MarkerArray& array) const;
   void findSurfaceSprings(const Tissue& tissue);
 
   std::string frame_id_;
   double force_scale_;
   std::vector<SupportConfig> supports_;
-  ros::Time stamp_;
   unsigned springs_version_ = 0;
   std::vector<int> surface_springs_;
   std::vector<visualization_msgs::Marker> told_;  // in the order of build(), as last told
