@@ -87,5 +87,22 @@ TEST(PassingTool, OnItsWayThroughTheTissueItDoesNotPass) {
   EXPECT_GT(report.substeps, 10);
 }
 
+// It asks for no more rounds of what the others press: how deep they are is the solver's answer.
+TEST(PassingTool, WithARigidPatchChangesNothingOfWhatOthersPress) {
+  const auto pressBeside = [](ToolConfig::Patch patch) {
+    ToolGeometry other = probe("other");
+    other.patch = patch;
+    Pipeline pipeline(block(), methodOf("elastic"), {probe(), other});
+    for (const double depth : {-0.001, 0.004}) {
+      RobotPose pose = pressed(depth);
+      pose.links.push_back(at({Vec3::Ones()}).links.front());
+      pipeline.step(pose);
+    }
+    EXPECT_GT(pipeline.report().tools.front().max_penetration, 0.01 * kSpacing);
+    return pipeline.tissue().state().displacement;
+  };
+  EXPECT_EQ(pressBeside(ToolConfig::Patch::kRigid), pressBeside(ToolConfig::Patch::kConforming));
+}
+
 }  // namespace
 }  // namespace robot_tissue

@@ -149,6 +149,15 @@ TEST(MeshFiles, LargeFilesAreRefusedWithTheLimit) {
   expectRefused("large.stl", "has more than 100 MB");
 }
 
+// A few bytes a triangle: many more than the files' own limit allows in other formats.
+TEST(MeshFiles, TooManyTrianglesAreRefusedWithTheLimit) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i <= 2000000; ++i) text += "f 1 2 3\n";
+  writeFile("many.obj", text);
+  expectRefused("many.obj", "has more than 2000000 triangles");
+  fs::remove(path("many.obj"));
+}
+
 TEST(MeshFiles, AddressOfAPackageDoesNotLeaveIt) {
   fs::create_directories(path("soft_parts/meshes"));
   writeFile("soft_parts/package.xml", "<package><name>soft_parts</name></package>");
