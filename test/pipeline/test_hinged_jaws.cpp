@@ -192,5 +192,27 @@ TEST(EmptyJaws, ToldToLetGoAreLeftByTissueThatWentThroughThem) {
   EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
 }
 
+// On its way back, past a tool that stays, the tissue goes farther than any load step takes it.
+TEST(EmptyJaws, ToldToLetGoAreLeftByTissueThatSpringsBackFar) {
+  TissueConfig fine = ridge();
+  fine.spacing = 0.5 * kSpacing;
+  constexpr double kLift = 0.03;  // m: 12 spacings
+  constexpr double kDepth = 0.006;
+  const auto beside = [](std::vector<Vec3> jaws) {
+    jaws.push_back(Vec3(0.03 + kRadius - kDepth, 0.5 * kRidge, 0.01));
+    return jaws;
+  };
+  Pipeline pipeline(fine, {}, {plates(), probe()});
+  walk(pipeline, beside(apart(0.014)), beside(apart(0.008)));
+  walk(pipeline, beside(apart(0.008)), beside(apart(0.008, kLift)), 0.001);
+  ASSERT_TRUE(toolOf(pipeline).grasps);
+  ASSERT_FALSE(pipeline.report().lost);
+  pipeline.letGo(0);
+  const StepReport& report = pipeline.step(robot_tissue::at(beside(apart(0.008, kLift))));
+  EXPECT_FALSE(report.lost);
+  EXPECT_FALSE(toolOf(pipeline).grasps);
+  EXPECT_NEAR(greatestDisplacement(pipeline.tissue()), kDepth, 0.1 * kDepth);
+}
+
 }  // namespace
 }  // namespace robot_tissue
