@@ -1,14 +1,21 @@
 #include "robot_tissue/contact/contact_finder.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <numeric>
 #include <optional>
 
+#include "bounds_of_numbers.h"
+#include "broad_phase.h"
 #include "collision_shape.h"
 #include "link_contacts.h"
 #include "link_penetration.h"
 #include "placed_link.h"
 #include "shape_gap.h"
+#include "surface_traversal.h"
+#include "triangle_bvh.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -50,28 +57,53 @@ void requireLinks(const RobotPose& pose, std::size_t links) {
                    " links of the scene's tools");
 }
 
-// The tree over a surface: made from its rest shape, so that it depends on nothing before, and
-// moved to the deformed one.
+bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+// FCL's tree over a surface: made from its rest shape, so that it depends on nothing before, and
+// refitted to the deformed one.
 class SurfaceTree {
  public:
-  const AabbTree& of(const Surface& surface, const std::vector<Vec3>& vertices) {
-    if (!tree_ || surface.rest != rest_ || surface.triangles != triangles_) {
+  const TriangleBvh& of(const Surface& surface, const std::vector<Vec3>& vertices) {
+    if (!isOf(surface)) {
+      revision_ = surface.revision;
       rest_ = surface.rest;
-      triangles_ = surface.triangles;
-      tree_.emplace(rest_, triangles_);
-      vertices_.clear();
+      tree_.emplace(rest_, surface.triangles);
+      ++moves_;
     }
-    if (vertices != vertices_) {
-      vertices_ = vertices;
-      tree_->moveTo(vertices_);
-    }
+    if (tree_->moveTo(vertices)) ++moves_;
     return *tree_;
   }
+  bool exists() const { return tree_.has_value(); }
+  const TriangleBvh& last() const { return *tree_; }
+  // Goes up whenever a surface is another one, or elsewhere.
+  std::uint64_t moves() const { return moves_; }
 
  private:
-  std::vector<Vec3> rest_, vertices_;
-  std::vector<MeshTriangle> triangles_;
-  std::optional<AabbTree> tree_;
+  bool isOf(const Surface& surface) const {
+    if (!tree_) return false;
+    if (surface.revision != 0 || revision_ != 0) return surface.revision == revision_;
+    return surface.triangles == tree_->triangles() && areSame(surface.rest, rest_);
+  }
+
+  std::uint64_t revision_ = 0;
+  std::vector<Vec3> rest_;
+  std::optional<TriangleBvh> tree_;
+  std::uint64_t moves_ = 0;
+};
+
+Box finiteBounds(const std::vector<Vec3>& vertices) {
+  BoundsOfNumbers bounds;
+  for (const Vec3& vertex : vertices) bounds.add(vertex);
+  return bounds.box();
+}
+
+// What the last find() met.
+struct Found {
+  std::uint64_t move = 0;  // of the surface
+  RobotPose pose;
+  std::vector<double> deepest;  // per link (m)
 };
 
 }  // namespace
@@ -79,25 +111,27 @@ class SurfaceTree {
 struct ContactFinder::Impl {
   std::vector<Link> links;
   std::vector<std::string> warnings;
+  BroadPhase broad_phase;
 
-  // What the last find() met.
-  struct Found {
-    RobotPose pose;
-    std::vector<Vec3> vertices;
-    std::vector<MeshTriangle> triangles;
-    std::vector<double> deepest;  // per link (m)
-  };
-  std::optional<double> deepestFound(std::size_t link, const Pose& tissue_T_link,
-                                     const Surface& surface,
-                                     const std::vector<Vec3>& vertices) const {
-    const bool same = link < found.deepest.size() && found.vertices == vertices &&
-                      found.triangles == surface.triangles &&
-                      found.pose.links[link].matrix() == tissue_T_link.matrix();
-    return same ? std::optional<double>(found.deepest[link]) : std::nullopt;
+  std::vector<PlacedLink> placedAt(const RobotPose& pose) const;
+  // Of one link, some of whose shapes are near the surface.
+  void addContacts(const PlacedLink& here, std::size_t link,
+                   const std::vector<std::size_t>& near_shapes, const Surface& surface,
+                   const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
+  // Around the surface; nobody may ever come near.
+  Box boundsOf(const Surface& surface, const std::vector<Vec3>& vertices) {
+    return surface_tree.exists() ? surface_tree.of(surface, vertices).bounds()
+                                 : finiteBounds(vertices);
+  }
+
+  // The last find() was of that link there, and of the surface that the tree is of.
+  bool knows(std::size_t link, const Pose& tissue_T_link) const {
+    return link < found.deepest.size() && found.move == surface_tree.moves() &&
+           found.pose.links[link].matrix() == tissue_T_link.matrix();
   }
 
   // Scratch.
-  LinkContacts contacts;
+  LinkContacts link_contacts;
   SurfaceTree surface_tree;
   Found found;
 };
@@ -111,6 +145,7 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
   for (std::size_t t = 0; t < tools.size(); ++t) {
     for (const LinkGeometry& link : tools[t].links) {
       impl_->links.push_back(makeLink(static_cast<int>(t), tools[t].name, link, impl_->warnings));
+      impl_->broad_phase.addLink(impl_->links.back().shapes);
     }
   }
 }
@@ -155,20 +190,51 @@ Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {
 
 const std::vector<std::string>& ContactFinder::warnings() const { return impl_->warnings; }
 
+std::vector<PlacedLink> ContactFinder::Impl::placedAt(const RobotPose& pose) const {
+  std::vector<PlacedLink> here;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    here.push_back(placed(links[i].shapes, pose.links[i]));
+  }
+  return here;
+}
+
+void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
+                                      const std::vector<std::size_t>& near_shapes,
+                                      const Surface& surface, const std::vector<Vec3>& vertices,
+                                      double margin, ContactSet& contacts) {
+  const TriangleBvh& tree = surface_tree.last();
+  std::vector<int> triangles;
+  std::vector<FacePairs> faces(here.size());
+  for (const std::size_t shape : near_shapes) {
+    const std::vector<int> near = trianglesNear(here[shape], tree, margin);
+    triangles.insert(triangles.end(), near.begin(), near.end());
+    if (here[shape].shape->isMesh()) faces[shape] = FacePairs(here[shape], tree, margin);
+  }
+  if (near_shapes.size() > 1) {
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  }
+  const LinkContacts::Asked asked{here,  links[link].tool, static_cast<int>(link), triangles, faces,
+                                  margin};
+  link_contacts.find(asked, surface, vertices, contacts);
+}
+
 ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
                                const std::vector<Vec3>& vertices, double margin) const {
   requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);
+  const std::vector<PlacedLink> links = impl_->placedAt(pose);
+  std::vector<std::vector<std::size_t>> near_shapes(links.size());
+  const Box bounds = impl_->boundsOf(surface, vertices);
+  const auto near = impl_->broad_phase.nearTo(bounds, links, margin);
+  if (!near.empty() && !impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
+  for (const auto& [link, shape] : near) near_shapes[link].push_back(shape);
   ContactSet found;
-  for (std::size_t i = 0; i < impl_->links.size(); ++i) {
-    const Link& link = impl_->links[i];
-    impl_->contacts.find(placed(link.shapes, pose.links[i]), link.tool, static_cast<int>(i),
-                         surface, vertices, margin, found);
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    if (near_shapes[link].empty()) continue;
+    impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin, found);
   }
-  impl_->found.pose = pose;
-  impl_->found.vertices = vertices;
-  impl_->found.triangles = surface.triangles;
-  impl_->found.deepest.assign(impl_->links.size(), 0.0);
+  impl_->found = {impl_->surface_tree.moves(), pose, std::vector<double>(links.size(), 0.0)};
   for (const Contact& contact : found.contacts) {
     double& deepest = impl_->found.deepest[at(contact.link)];
     deepest = std::max(deepest, contact.depth_m);
@@ -203,19 +269,20 @@ double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
                                   const Surface& surface, const std::vector<Vec3>& vertices) const {
   requireVertices(surface, vertices);
   const PlacedLink here = placed(impl_->links[link].shapes, tissue_T_link);
-  Box surface_box;
-  for (const Vec3& vertex : vertices) {
-    if (vertex.allFinite()) surface_box.extend(vertex);
+  const Box bounds = impl_->boundsOf(surface, vertices);
+  if (here.empty() || !boxesMeet(robot_tissue::boundsOf(here), bounds, 0.0)) return 0.0;
+  if (!impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
+  const TriangleBvh& tree = impl_->surface_tree.last();
+  double deepest = 0.0;
+  if (impl_->knows(link, tissue_T_link)) {
+    deepest = impl_->found.deepest[link];
+  } else {
+    std::vector<std::size_t> shapes(here.size());
+    std::iota(shapes.begin(), shapes.end(), std::size_t{0});
+    ContactSet contacts;
+    impl_->addContacts(here, link, shapes, surface, vertices, 0.0, contacts);
+    deepest = robot_tissue::deepest(contacts);
   }
-  if (here.empty() || !boxesMeet(boundsOf(here), surface_box, 0.0)) return 0.0;
-  const auto known = impl_->deepestFound(link, tissue_T_link, surface, vertices);
-  double deepest = known.value_or(0.0);
-  if (!known) {
-    ContactSet found;
-    impl_->contacts.find(here, 0, 0, surface, vertices, 0.0, found);
-    for (const Contact& contact : found.contacts) deepest = std::max(deepest, contact.depth_m);
-  }
-  const AabbTree& tree = impl_->surface_tree.of(surface, vertices);
   for (std::size_t i = 0; i < here.size(); ++i) {
     deepest = deepestInside(here[i], impl_->links[link].surface_points[i], tree, deepest);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "mesh_minima.h"
 #include "tuning.h"
@@ -10,15 +11,6 @@
 namespace robot_tissue {
 namespace {
 
-// One bit for each side of the box that the point is beyond.
-std::uint8_t sidesBeyond(const Vec3& point, const Box& box) {
-  unsigned sides = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    sides |= (point[axis] < box.min()[axis] ? 1U : 0U) << (2 * axis);
-    sides |= (point[axis] > box.max()[axis] ? 1U : 0U) << (2 * axis + 1);
-  }
-  return static_cast<std::uint8_t>(sides);
-}
 
 // Into the tissue: for a point that every way leads out of the tool alike.
 Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -29,31 +21,24 @@ Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-void LinkContacts::find(const PlacedLink& link, int tool_index, int link_index,
-                        const Surface& surface, const std::vector<Vec3>& vertices, double margin,
-                        ContactSet& found) {
-  if (link.empty()) return;
-  link_ = &link;
+void LinkContacts::find(const Asked& asked, const Surface& surface,
+                        const std::vector<Vec3>& vertices, ContactSet& found) {
+  link_ = &asked.link;
+  faces_ = &asked.faces;
   surface_ = &surface;
   vertices_ = &vertices;
-  margin_ = margin;
-  tool_ = tool_index;
-  link_index_ = link_index;
-  Box box = boundsOf(link);
-  box.min().array() -= margin;
-  box.max().array() += margin;
-  beyond_.resize(vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) beyond_[i] = sidesBeyond(vertices[i], box);
-  vertex_asked_.assign(vertices.size(), 0);
+  margin_ = asked.margin;
+  tool_ = asked.tool_index;
+  link_index_ = asked.link_index;
+  box_ = boundsOf(asked.link);
+  box_.min().array() -= margin_;
+  box_.max().array() += margin_;
   ++search_;
-  seen_.resize(std::max(seen_.size(), link.size()));
-  for (std::size_t i = 0; i < link.size(); ++i) seen_[i].resize(vertices.size());
+  vertex_asked_in_.resize(vertices.size());
+  seen_.resize(std::max(seen_.size(), link_->size()));
+  for (std::size_t i = 0; i < link_->size(); ++i) seen_[i].resize(vertices.size());
   edge_places_.clear();
-  for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
-    const auto& [a, b, c] = surface.triangles[k];
-    if ((beyond_[at(a)] & beyond_[at(b)] & beyond_[at(c)]) != 0) continue;
-    askTriangle(static_cast<int>(k), found);
-  }
+  for (const int triangle : asked.triangles) askTriangle(triangle, found);
 }
 
 void LinkContacts::askTriangle(int triangle, ContactSet& found) {
@@ -67,9 +52,8 @@ void LinkContacts::askTriangle(int triangle, ContactSet& found) {
   }
   for (int k = 0; k < 3; ++k) {
     const int vertex = corners[at(k)];
-    if (vertex_asked_[at(vertex)] != 0) continue;
-    vertex_asked_[at(vertex)] = 1;
-    if (beyond_[at(vertex)] == 0) askVertex(vertex, Vec3::Unit(k), found);
+    if (std::exchange(vertex_asked_in_[at(vertex)], search_) == search_) continue;
+    if (box_.contains((*vertices_)[at(vertex)])) askVertex(vertex, Vec3::Unit(k), found);
   }
   if ((box.max() - box.min()).isZero(0.0)) return;
   for (std::size_t shape = 0; shape < link_->size(); ++shape) {
@@ -123,7 +107,11 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
   const double accuracy = 0.5 * accuracyFor(asked, corners);
   std::vector<TriangleMinimum> minima;
   if (asked.isMesh()) {
-    minima = meshMinima(asked, corners, accuracy, margin_);
+    (*faces_)[shape].facesNear(triangle_, near_faces_);
+    // No face comes near: all of the triangle is inside, or all of it outside.
+    const Seen& corner = seen(shape, triangle[0]);
+    if (near_faces_.empty() && (!corner.is_near || corner.distance.value > 0.0)) return minima;
+    minima = meshMinima(asked, corners, near_faces_, accuracy, margin_);
   } else {
     minima = {convexMinimum(asked, corners, distances, accuracy, margin_)};
   }

@@ -10,16 +10,24 @@
 #include "placed_link.h"
 #include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/surface.h"
+#include "surface_traversal.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
 
 class LinkContacts {
  public:
-  // Adds the contacts with depth > -margin (m) of a link to `found`; tool and link are written into
+  // Adds the contacts with depth > -margin of a link to `found`; tool and link are written into
   // them. Keeps its arrays from call to call, to spare allocations.
-  void find(const PlacedLink& link, int tool_index, int link_index, const Surface& surface,
-            const std::vector<Vec3>& vertices, double margin, ContactSet& found);
+  struct Asked {
+    const PlacedLink& link;
+    int tool_index, link_index;
+    const std::vector<int>& triangles;    // that may touch it, ascending
+    const std::vector<FacePairs>& faces;  // per shape; of meshes
+    double margin;                        // m
+  };
+  void find(const Asked& asked, const Surface& surface, const std::vector<Vec3>& vertices,
+            ContactSet& found);
 
  private:
   // A vertex seen from a shape, asked once.
@@ -41,6 +49,7 @@ class LinkContacts {
   void add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found);
 
   const PlacedLink* link_ = nullptr;
+  const std::vector<FacePairs>* faces_ = nullptr;
   const Surface* surface_ = nullptr;
   const std::vector<Vec3>* vertices_ = nullptr;
   double margin_ = 0.0;  // m
@@ -49,9 +58,11 @@ class LinkContacts {
   int triangle_ = 0;
   std::uint64_t search_ = 0;  // number of the present one
 
-  std::vector<std::uint8_t> beyond_;        // per vertex: the sides of the link's box it is beyond
-  std::vector<std::uint8_t> vertex_asked_;  // per vertex, 1 = contact told or none
-  std::vector<std::vector<Seen>> seen_;     // per shape and vertex
+  Box box_;  // around the link and the margin (m)
+  std::vector<std::uint64_t>
+      vertex_asked_in_;                  // per vertex: the search in which its contact was told
+  std::vector<std::vector<Seen>> seen_;  // per shape and vertex
+  std::vector<int> near_faces_;
   struct EdgePlace {
     std::size_t shape;
     double along;  // share of the edge

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "aabb_tree.h"
 #include "placed_link.h"
+#include "triangle_bvh.h"
 
 namespace robot_tissue {
 
@@ -18,6 +18,6 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape);
 // moves on to where the shape reaches farthest from that triangle, so that it is exact over a flat
 // surface.
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const AabbTree& surface, double known);
+                     const TriangleBvh& surface, double known);
 
 }  // namespace robot_tissue

@@ -37,7 +37,8 @@ void keep(const TriangleMinimum& found, const Corners& corners,
 }  // namespace
 
 std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
-                                        double accuracy, double limit) {
+                                        const std::vector<int>& faces, double accuracy,
+                                        double limit) {
   std::vector<TriangleMinimum> minima;
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   if (!(area.norm() > 0.0)) return minima;
@@ -51,10 +52,7 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
 
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);
-  std::vector<int> faces;
-  mesh.tree().collectNear(corners, reach, faces);
   if (faces.empty() && at_center >= limit) return minima;
-  std::sort(faces.begin(), faces.end());
   for (const Vec3& seed : seedsOn(corners, mesh, faces, reach)) {
     const Vec3 start = pointOf(corners, seed);
     const double bound = boundAfter(at_center, (start - center).norm());

@@ -10,8 +10,9 @@
 namespace robot_tissue {
 
 // Local least distances below `limit` (m), the least first; corners in the frame of the shape,
-// which is a mesh.
+// which is a mesh. In: the mesh's faces that are nearer than the limit and the padding, ascending.
 std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
-                                        double accuracy, double limit);
+                                        const std::vector<int>& faces, double accuracy,
+                                        double limit);
 
 }  // namespace robot_tissue

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "aabb_tree.h"
 #include "tool_mesh.h"
+#include "triangle_bvh.h"
 
 namespace robot_tissue {
 

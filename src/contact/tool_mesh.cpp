@@ -45,7 +45,8 @@ TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const s
 ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
                    std::vector<std::string>& warnings)
     : mesh_(checkedMesh(resource, scale, owner, warnings, crosses_itself_)),
-      tree_(mesh_.vertices, mesh_.triangles) {
+      tree_(mesh_.vertices, mesh_.triangles),
+      bounds_(tree_.bounds()) {
   findEdges();
   findNormals();
   measureThickness();
@@ -136,7 +137,7 @@ SignedDistance ToolMesh::distanceWithin(const Vec3& point, double bound) const {
   return distance(point, infinity).value_or(SignedDistance{infinity, Vec3::Zero()});
 }
 
-SignedDistance ToolMesh::signedBy(const Vec3& point, const AabbTree::Nearest& nearest) const {
+SignedDistance ToolMesh::signedBy(const Vec3& point, const TriangleBvh::Nearest& nearest) const {
   SignedDistance found;
   found.value = isInside(point, nearest) ? -nearest.distance : nearest.distance;
   if (nearest.distance <= tuning::kOnSurface) {
@@ -150,7 +151,7 @@ SignedDistance ToolMesh::signedBy(const Vec3& point, const AabbTree::Nearest& ne
 // By the side of the face that is nearest, or of the mean of the two at an edge (Baerentzen and
 // Aanaes 2005). At a vertex, where more than one fan of faces may meet, and where that does not
 // tell, by how often the surface goes around the point.
-bool ToolMesh::isInside(const Vec3& point, const AabbTree::Nearest& nearest) const {
+bool ToolMesh::isInside(const Vec3& point, const TriangleBvh::Nearest& nearest) const {
   const Box& box = bounds();
   const bool in_box =
       (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "aabb_tree.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "signed_distance.h"
+#include "triangle_bvh.h"
 
 namespace robot_tissue {
 
@@ -38,8 +38,8 @@ class ToolMesh {
   const std::vector<std::vector<int>>& neighbors() const { return neighbors_; }
   // Mean of the normals around a vertex, weighted by their angles; unit.
   const std::vector<Vec3>& vertexNormals() const { return vertex_normals_; }
-  const AabbTree& tree() const { return tree_; }
-  const Box& bounds() const { return tree_.bounds(); }
+  const TriangleBvh& tree() const { return tree_; }
+  const Box& bounds() const { return bounds_; }
   // Smallest width over the directions of some hundred faces (m).
   double thickness() const { return thickness_; }
   Corners corners(int triangle) const;
@@ -48,12 +48,13 @@ class ToolMesh {
   void findEdges();
   void findNormals();
   void measureThickness();
-  SignedDistance signedBy(const Vec3& point, const AabbTree::Nearest& nearest) const;
-  bool isInside(const Vec3& point, const AabbTree::Nearest& nearest) const;
+  SignedDistance signedBy(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
+  bool isInside(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
 
   bool crosses_itself_ = false;
   TriangleMesh mesh_;  // frame of the shape (m), facing outwards
-  AabbTree tree_;
+  TriangleBvh tree_;
+  Box bounds_;
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edges_of_triangles_;
   std::vector<std::vector<int>> neighbors_;

@@ -7,9 +7,9 @@
 #include <array>
 #include <cstddef>
 
-#include "aabb_tree.h"
 #include "collision_shape.h"
 #include "signed_distance.h"
+#include "triangle_bvh.h"
 #include "tuning.h"
 
 namespace robot_tissue {

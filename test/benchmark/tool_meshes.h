@@ -10,19 +10,12 @@
 
 namespace robot_tissue {
 
-// An ellipsoid of 2,000 triangles about the origin, as ASCII STL. Returns its address.
-inline std::string writeEllipsoid(const Vec3& semi_axes) {
-  constexpr int kSides = 40, kRings = 25;
+// A closed surface of rings of points, around and down, as ASCII STL. Returns its address.
+template <typename Vertex>
+std::string writeRings(const std::string& name, int rings, int sides, Vertex vertex) {
   const char* folder = std::getenv("TMPDIR");
-  const std::string path = std::string(folder ? folder : "/tmp") + "/robot_tissue_ellipsoid.stl";
+  const std::string path = std::string(folder ? folder : "/tmp") + "/robot_tissue_" + name + ".stl";
   std::ofstream stl(path);
-  const auto vertex = [&](int ring, int side) -> Vec3 {
-    const double down = M_PI * ring / kRings, round = 2.0 * M_PI * (side % kSides) / kSides;
-    if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? semi_axes.z() : -semi_axes.z()};
-    const Vec3 unit(std::sin(down) * std::cos(round), std::sin(down) * std::sin(round),
-                    std::cos(down));
-    return semi_axes.cwiseProduct(unit);
-  };
   const auto facet = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     if (a == b || b == c || c == a) return;
     stl << "facet normal 0 0 0\nouter loop\n";
@@ -32,17 +25,41 @@ inline std::string writeEllipsoid(const Vec3& semi_axes) {
     stl << "endloop\nendfacet\n";
   };
   stl.precision(9);
-  stl << "solid ellipsoid\n";
-  for (int ring = 0; ring < kRings; ++ring) {
-    for (int side = 0; side < kSides; ++side) {
+  stl << "solid " << name << "\n";
+  for (int ring = 0; ring < rings; ++ring) {
+    for (int side = 0; side < sides; ++side) {
       const Vec3 a = vertex(ring, side), b = vertex(ring + 1, side), c = vertex(ring + 1, side + 1),
                  d = vertex(ring, side + 1);
       facet(a, b, c);
       facet(a, c, d);
     }
   }
-  stl << "endsolid ellipsoid\n";
+  stl << "endsolid " << name << "\n";
   return "file://" + path;
+}
+
+// An ellipsoid of 2,000 triangles about the origin.
+inline std::string writeEllipsoid(const Vec3& semi_axes) {
+  constexpr int kSides = 40, kRings = 25;
+  return writeRings("ellipsoid", kRings, kSides, [&](int ring, int side) -> Vec3 {
+    const double down = M_PI * ring / kRings, round = 2.0 * M_PI * (side % kSides) / kSides;
+    if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? semi_axes.z() : -semi_axes.z()};
+    const Vec3 unit(std::sin(down) * std::cos(round), std::sin(down) * std::sin(round),
+                    std::cos(down));
+    return semi_axes.cwiseProduct(unit);
+  });
+}
+
+// A torus of 3,200 triangles that stands upright, about the origin: radii of its middle line and of
+// its tube (m).
+inline std::string writeRing(double radius, double tube) {
+  constexpr int kSides = 25, kRings = 64;
+  return writeRings("ring", kRings, kSides, [&](int ring, int side) -> Vec3 {
+    const double along = 2.0 * M_PI * (ring % kRings) / kRings;
+    const double round = 2.0 * M_PI * (side % kSides) / kSides;
+    const double out = radius + tube * std::cos(round);
+    return {out * std::cos(along), tube * std::sin(round), out * std::sin(along)};
+  });
 }
 
 }  // namespace robot_tissue

@@ -19,7 +19,10 @@ struct Surface {
                                         // beside; -1 = beside several
   std::vector<MeshTriangle> triangles;  // counter-clockwise seen from outside
   std::vector<std::uint8_t> opened;     // per triangle, 1 = face opened by a cut
+  // Surfaces with the same number have the same rest and triangles; 0: that is not known.
+  std::uint64_t revision = 0;
 };
+
 
 // Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half
 // way to each corner it lost. What is there is carried half by the part's own corners nearest to it

@@ -1,6 +1,7 @@
 #include "robot_tissue/core/tissue.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -30,6 +31,12 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
          std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
            return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
          });
+}
+
+// That no surface of the program has had.
+std::uint64_t newRevision() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 }  // namespace
@@ -382,6 +389,7 @@ void Tissue::describeShape(SolveReport& report) {
 void Tissue::rebuildSurface() {
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);
+  surface_.revision = newRevision();
   ++surface_version_;
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;

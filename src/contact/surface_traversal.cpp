@@ -1,0 +1,159 @@
+#include "surface_traversal.h"
+
+#include <fcl/narrowphase/detail/traversal/collision/collision_traversal_node_base.h>
+#include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
+
+#include <algorithm>
+
+#include "tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+using Traversal = fcl::detail::CollisionTraversalNodeBase<double>;
+
+struct CenteredBox {
+  Vec3 center = Vec3::Zero(), half = Vec3::Zero();  // m
+};
+
+CenteredBox centered(const fcl::AABBd& box) {
+  return {0.5 * (box.min_ + box.max_), 0.5 * (box.max_ - box.min_)};
+}
+
+// Around the box as seen from another frame.
+CenteredBox seenFrom(const Pose& frame_T_box, const CenteredBox& box) {
+  return {frame_T_box * box.center, frame_T_box.linear().cwiseAbs() * box.half};
+}
+
+bool areApart(const CenteredBox& box, const Vec3& low, const Vec3& high, double margin) {
+  return ((box.center - box.half).array() > high.array() + margin).any() ||
+         ((box.center + box.half).array() < low.array() - margin).any();
+}
+
+// The surface's tree is the first one.
+class SurfaceTraversal : public Traversal {
+ public:
+  explicit SurfaceTraversal(const TriangleBvh& surface) : surface_(surface) {}
+  bool isFirstNodeLeaf(int b) const override { return TriangleBvh::isLeaf(surface_.node(b)); }
+  int getFirstLeftChild(int b) const override {
+    surface_.open(b);
+    return surface_.node(b).first_child;
+  }
+  int getFirstRightChild(int b) const override { return surface_.node(b).first_child + 1; }
+  bool canStop() const override { return false; }
+
+ protected:
+  const TriangleBvh& surface_;
+};
+
+// Beside one shape as a whole.
+class BesideShape : public SurfaceTraversal {
+ public:
+  BesideShape(const PlacedShape& shape, const TriangleBvh& surface, double margin,
+              std::vector<int>& triangles)
+      : SurfaceTraversal(surface), shape_(shape), margin_(margin), triangles_(triangles) {}
+
+  bool isSecondNodeLeaf(int) const override { return true; }
+  bool firstOverSecond(int, int) const override { return true; }
+  // Apart in either's frame; and, of what has a distance by formula, a ball around the box is.
+  bool BVTesting(int b, int) const override {
+    const CenteredBox box = centered(surface_.node(b).bv);
+    if (areApart(box, shape_.bounds.min(), shape_.bounds.max(), margin_)) return true;
+    if (!shape_.shape->isMesh()) {
+      const double distance = shape_.shape->distance(shape_.shape_T_tissue * box.center).value;
+      return distance > (box.half.norm() + margin_) * (1.0 + tuning::kBeyondRounding);
+    }
+    const Box& bounds = shape_.shape->bounds();
+    return areApart(seenFrom(shape_.shape_T_tissue, box), bounds.min(), bounds.max(), margin_);
+  }
+  void leafTesting(int b, int) const override {
+    triangles_.push_back(TriangleBvh::triangleOf(surface_.node(b)));
+  }
+
+ private:
+  const PlacedShape& shape_;
+  double margin_;
+  std::vector<int>& triangles_;
+};
+
+// Beside a mesh, face by face; boxes in its frame.
+class BesideMesh : public SurfaceTraversal {
+ public:
+  BesideMesh(const PlacedShape& mesh, const TriangleBvh& surface, double reach,
+             std::vector<std::pair<int, int>>& pairs)
+      : SurfaceTraversal(surface),
+        mesh_T_tissue_(mesh.shape_T_tissue),
+        faces_(mesh.shape->mesh().tree()),
+        reach_(reach),
+        pairs_(pairs) {}
+
+  bool isSecondNodeLeaf(int b) const override { return TriangleBvh::isLeaf(faces_.node(b)); }
+  int getSecondLeftChild(int b) const override { return faces_.node(b).first_child; }
+  int getSecondRightChild(int b) const override { return faces_.node(b).first_child + 1; }
+  bool firstOverSecond(int first, int second) const override {
+    if (isSecondNodeLeaf(second)) return true;
+    const fcl::AABBd &one = surface_.node(first).bv, &other = faces_.node(second).bv;
+    return !isFirstNodeLeaf(first) &&
+           (one.max_ - one.min_).squaredNorm() > (other.max_ - other.min_).squaredNorm();
+  }
+  bool BVTesting(int first, int second) const override {
+    if (first != seen_) see(first);
+    const fcl::AABBd& box = faces_.node(second).bv;
+    return areApart(box_, box.min_, box.max_, reach_);
+  }
+  void leafTesting(int first, int second) const override {
+    pairs_.emplace_back(TriangleBvh::triangleOf(surface_.node(first)),
+                        TriangleBvh::triangleOf(faces_.node(second)));
+  }
+
+ private:
+  void see(int first) const {
+    seen_ = first;
+    const auto& node = surface_.node(first);
+    if (!TriangleBvh::isLeaf(node)) {
+      box_ = seenFrom(mesh_T_tissue_, centered(node.bv));
+      return;
+    }
+    Box box;
+    for (const Vec3& corner : surface_.corners(TriangleBvh::triangleOf(node))) {
+      box.extend(mesh_T_tissue_ * corner);
+    }
+    box_ = {box.center(), 0.5 * box.diagonal()};
+  }
+
+  const Pose& mesh_T_tissue_;
+  const TriangleBvh& faces_;
+  double reach_;
+  std::vector<std::pair<int, int>>& pairs_;
+  mutable int seen_ = -1;    // node of the surface
+  mutable CenteredBox box_;  // its
+};
+
+}  // namespace
+
+std::vector<int> trianglesNear(const PlacedShape& shape, const TriangleBvh& surface,
+                               double margin) {
+  std::vector<int> triangles;
+  if (surface.isEmpty()) return triangles;
+  BesideShape beside(shape, surface, margin, triangles);
+  fcl::detail::collisionRecurse<double>(&beside, 0, 0, nullptr);
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+FacePairs::FacePairs(const PlacedShape& mesh, const TriangleBvh& surface, double margin) {
+  if (surface.isEmpty() || mesh.shape->mesh().tree().isEmpty()) return;
+  BesideMesh beside(mesh, surface, margin + mesh.shape->padding(), pairs_);
+  fcl::detail::collisionRecurse<double>(&beside, 0, 0, nullptr);
+  std::sort(pairs_.begin(), pairs_.end());
+}
+
+void FacePairs::facesNear(int triangle, std::vector<int>& faces) const {
+  faces.clear();
+  for (auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(triangle, 0));
+       pair != pairs_.end() && pair->first == triangle; ++pair) {
+    faces.push_back(pair->second);
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,284 @@
+#include "triangle_bvh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bounds_of_numbers.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+// Of the ray; along no edge or face of a lattice.
+constexpr double kRayX = 0.41421356;
+constexpr double kRayY = 0.23606798;
+constexpr double kRaySlack = 1e-9;  // of the ray's parameter (m), for rounding
+
+double squaredDistance(const fcl::AABBd& box, const Vec3& point) {
+  return (box.min_ - point).cwiseMax(point - box.max_).cwiseMax(0.0).squaredNorm();
+}
+
+bool rayMeets(const fcl::AABBd& box, const Vec3& from) {
+  double near = 0.0;
+  double far = std::numeric_limits<double>::infinity();
+  const double direction[3] = {kRayX, kRayY, 1.0};
+  for (int k = 0; k < 3; ++k) {
+    near = std::max(near, (box.min_[k] - from[k]) / direction[k] - kRaySlack);
+    far = std::min(far, (box.max_[k] - from[k]) / direction[k] + kRaySlack);
+  }
+  return near <= far;
+}
+
+// A corner seen along the ray, from its start.
+Vec3 sheared(const Vec3& corner, const Vec3& from) {
+  const Vec3 d = corner - from;
+  return {d.x() - kRayX * d.z(), d.y() - kRayY * d.z(), d.z()};
+}
+
+// Twice the area that the edge and the ray span: > 0 with the ray on the left. Computed alike for
+// both triangles of an edge.
+double spanned(int vertex_a, const Vec3& a, int vertex_b, const Vec3& b) {
+  if (vertex_a < vertex_b) return a.x() * b.y() - a.y() * b.x();
+  return -(b.x() * a.y() - b.y() * a.x());
+}
+
+bool onLeft(int vertex_a, int vertex_b, double area) {
+  return area > 0.0 || (area == 0.0 && vertex_a < vertex_b);
+}
+
+// How often the triangle leads out of the surface ahead on the ray: 1, -1 where it leads in, 0
+// where the ray misses it.
+int crossingOf(const MeshTriangle& triangle, const Corners& corners, const Vec3& from) {
+  const auto& [va, vb, vc] = triangle;
+  const Vec3 a = sheared(corners[0], from), b = sheared(corners[1], from),
+             c = sheared(corners[2], from);
+  const double ab = spanned(va, a, vb, b), bc = spanned(vb, b, vc, c), ca = spanned(vc, c, va, a);
+  const bool left = onLeft(va, vb, ab);
+  if (onLeft(vb, vc, bc) != left || onLeft(vc, va, ca) != left) return 0;
+  const double height = (bc * a.z() + ca * b.z() + ab * c.z()) * (left ? 1.0 : -1.0);
+  if (!(height > 0.0)) return 0;
+  return left ? 1 : -1;
+}
+
+}  // namespace
+
+// Ericson, "Real-Time Collision Detection", section 5.1.5: Voronoi regions of the triangle.
+Vec3 nearestInTriangle(const Vec3& p, const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  const Vec3 ab = b - a;
+  const Vec3 ac = c - a;
+  const double d1 = ab.dot(p - a);
+  const double d2 = ac.dot(p - a);
+  if (d1 <= 0.0 && d2 <= 0.0) return Vec3(1.0, 0.0, 0.0);
+  const double d3 = ab.dot(p - b);
+  const double d4 = ac.dot(p - b);
+  if (d3 >= 0.0 && d4 <= d3) return Vec3(0.0, 1.0, 0.0);
+  const double area_c = d1 * d4 - d3 * d2;
+  if (area_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    const double t = d1 / (d1 - d3);
+    return Vec3(1.0 - t, t, 0.0);
+  }
+  const double d5 = ab.dot(p - c);
+  const double d6 = ac.dot(p - c);
+  if (d6 >= 0.0 && d5 <= d6) return Vec3(0.0, 0.0, 1.0);
+  const double area_b = d5 * d2 - d1 * d6;
+  if (area_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    const double t = d2 / (d2 - d6);
+    return Vec3(1.0 - t, 0.0, t);
+  }
+  const double area_a = d3 * d6 - d5 * d4;
+  if (area_a <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return Vec3(0.0, 1.0 - t, t);
+  }
+  return Vec3(area_a, area_b, area_c) / (area_a + area_b + area_c);
+}
+
+TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
+                         const std::vector<MeshTriangle>& triangles)
+    : triangles_(triangles) {
+  if (triangles.empty()) return;
+  model_ = std::make_shared<Model>();
+  model_->bv_splitter =
+      std::make_shared<fcl::detail::BVSplitter<fcl::AABBd>>(fcl::detail::SPLIT_METHOD_BV_CENTER);
+  std::vector<fcl::Triangle> indices;
+  indices.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) indices.emplace_back(at(a), at(b), at(c));
+  model_->beginModel(static_cast<int>(indices.size()), static_cast<int>(vertices.size()));
+  model_->addSubModel(vertices, indices);
+  model_->endModel();
+  nodes_ = &model_->getBV(0);
+  corners_.resize(triangles.size());
+  slots_.resize(triangles.size());
+  findParts();
+  places_.assign(vertices_.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  moveTo(vertices);
+}
+
+void TriangleBvh::findParts() {
+  part_at_.assign(at(model_->getNumBVs()), -1);
+  const int most = std::max(tuning::kTrianglesOfPart, static_cast<int>(triangles_.size()) / tuning::kParts);
+  std::vector<int> waiting = {0};
+  while (!waiting.empty()) {
+    const int number = waiting.back();
+    waiting.pop_back();
+    if (nodes_[number].num_primitives <= most) {
+      part_at_[at(number)] = addPart(number);
+      continue;
+    }
+    above_.push_back(number);
+    waiting.push_back(nodes_[number].first_child + 1);
+    waiting.push_back(nodes_[number].first_child);
+  }
+}
+
+int TriangleBvh::addPart(int root) {
+  Part part;
+  part.root = root;
+  part.first = isLeaf(nodes_[root]) ? root + 1 : nodes_[root].first_child;
+  part.end = part.first + 2 * (nodes_[root].num_primitives - 1);
+  addSlots(part);
+  parts_.push_back(part);
+  return static_cast<int>(parts_.size()) - 1;
+}
+
+void TriangleBvh::addSlots(Part& part) {
+  std::vector<int> triangles, vertices;
+  for (int number = part.root; number < part.end; ++number) {
+    const bool is_of_part = number == part.root || number >= part.first;
+    if (is_of_part && isLeaf(nodes_[number])) triangles.push_back(triangleOf(nodes_[number]));
+  }
+  for (const int triangle : triangles) {
+    const MeshTriangle& corners = triangles_[at(triangle)];
+    vertices.insert(vertices.end(), corners.begin(), corners.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  part.first_slot = static_cast<int>(vertices_.size());
+  for (const int triangle : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto found =
+          std::lower_bound(vertices.begin(), vertices.end(), triangles_[at(triangle)][k]);
+      slots_[at(triangle)][k] = part.first_slot + static_cast<int>(found - vertices.begin());
+    }
+  }
+  vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
+  part.end_slot = static_cast<int>(vertices_.size());
+}
+
+bool TriangleBvh::moveTo(const std::vector<Vec3>& vertices) {
+  bool moved = false;
+  for (Part& part : parts_) moved = movePart(part, vertices) || moved;
+  for (std::size_t i = above_.size(); moved && i-- > 0;) fit(above_[i]);
+  return moved;
+}
+
+bool TriangleBvh::movePart(Part& part, const std::vector<Vec3>& vertices) {
+  BoundsOfNumbers bounds;
+  bool is_same = true;
+  for (int slot = part.first_slot; slot < part.end_slot; ++slot) {
+    const Vec3& now = vertices[at(vertices_[at(slot)])];
+    Vec3& here = places_[at(slot)];
+    is_same &= (now.x() == here.x()) & (now.y() == here.y()) & (now.z() == here.z());
+    here = now;
+    bounds.add(now);
+  }
+  if (is_same) return false;
+  const Box box = bounds.box();
+  nodes_[part.root].bv.min_ = box.min();
+  nodes_[part.root].bv.max_ = box.max();
+  part.is_stale = true;
+  if (isLeaf(nodes_[part.root])) refit(part);
+  return true;
+}
+
+void TriangleBvh::refit(Part& part) const {
+  for (int number = part.end; number-- > part.first;) fit(number);
+  fit(part.root);
+  part.is_stale = false;
+}
+
+// From its triangle or its children.
+void TriangleBvh::fit(int number) const {
+  Node& node = nodes_[number];
+  if (!isLeaf(node)) {
+    const fcl::AABBd& left = nodes_[node.first_child].bv;
+    const fcl::AABBd& right = nodes_[node.first_child + 1].bv;
+    node.bv.min_ = left.min_.cwiseMin(right.min_);
+    node.bv.max_ = left.max_.cwiseMax(right.max_);
+    return;
+  }
+  Corners& here = corners_[at(triangleOf(node))];
+  const auto& [a, b, c] = slots_[at(triangleOf(node))];
+  here = {places_[at(a)], places_[at(b)], places_[at(c)]};
+  Box box;
+  if ((here[0] + here[1] + here[2]).allFinite()) {
+    for (const Vec3& corner : here) box.extend(corner);
+  }
+  node.bv.min_ = box.min();
+  node.bv.max_ = box.max();
+}
+
+Box TriangleBvh::bounds() const {
+  if (isEmpty()) return Box();
+  return {nodes_[0].bv.min_, nodes_[0].bv.max_};
+}
+
+std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, double reach,
+                                                         double enough) const {
+  if (isEmpty()) return std::nullopt;
+  Search search{point, reach * reach, enough * enough, {}};
+  // Written so that a point that is not finite has none.
+  if (squaredDistance(nodes_[0].bv, point) < search.best) searchBelow(0, search);
+  if (search.found.triangle < 0) return std::nullopt;
+  search.found.distance = std::sqrt(search.best);
+  return search.found;
+}
+
+// The nearer child first.
+void TriangleBvh::searchBelow(int number, Search& search) const {
+  const Node& node = nodes_[number];
+  if (isLeaf(node)) return searchTriangle(triangleOf(node), search);
+  open(number);
+  int near = node.first_child, far = node.first_child + 1;
+  double to_near = squaredDistance(nodes_[near].bv, search.point);
+  double to_far = squaredDistance(nodes_[far].bv, search.point);
+  if (to_far < to_near) {
+    std::swap(near, far);
+    std::swap(to_near, to_far);
+  }
+  if (to_near < search.best) searchBelow(near, search);
+  if (to_far < search.best && search.best > search.enough) searchBelow(far, search);
+}
+
+void TriangleBvh::searchTriangle(int triangle, Search& search) const {
+  const Corners& here = corners_[at(triangle)];
+  const Vec3 weights = nearestInTriangle(search.point, here);
+  const Vec3 foot = weights[0] * here[0] + weights[1] * here[1] + weights[2] * here[2];
+  const double squared = (search.point - foot).squaredNorm();
+  if (!(squared < search.best)) return;
+  search.best = squared;
+  search.found.triangle = triangle;
+  search.found.weights = weights;
+  search.found.point = foot;
+}
+
+bool TriangleBvh::isInside(const Vec3& point) const {
+  return !isEmpty() && crossingsBelow(0, point) > 0;
+}
+
+// How often the surface leads out along the ray from the point, less how often in.
+int TriangleBvh::crossingsBelow(int number, const Vec3& point) const {
+  const Node& node = nodes_[number];
+  if (!rayMeets(node.bv, point)) return 0;
+  if (isLeaf(node)) {
+    const int triangle = triangleOf(node);
+    return crossingOf(triangles_[at(triangle)], corners_[at(triangle)], point);
+  }
+  open(number);
+  return crossingsBelow(node.first_child, point) + crossingsBelow(node.first_child + 1, point);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,113 @@
+// FCL's tree of boxes over the triangles of a closed surface, refitted as they move, and what FCL
+// does not tell reliably of it: nearest point, inside or outside.
+//
+// Only the boxes of parts of some dozen triangles are made anew when the surface moves; what is in
+// a part, when someone comes there. So a move costs a look at each vertex, and where no tool is, no
+// more.
+#pragma once
+
+#include <fcl/geometry/bvh/BVH_model.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+using Corners = std::array<Vec3, 3>;
+
+// Weights of the triangle's point that is nearest to p; sum to 1.
+Vec3 nearestInTriangle(const Vec3& p, const Corners& corners);
+
+class TriangleBvh {
+ public:
+  using Model = fcl::BVHModel<fcl::AABBd>;
+  using Node = fcl::BVNode<fcl::AABBd>;
+
+  struct Nearest {
+    int triangle = -1;
+    Vec3 weights = Vec3::Zero();  // of its corners; 0 for those of the other edge or vertex
+    Vec3 point = Vec3::Zero();
+    double distance = 0.0;
+  };
+
+  // All vertices finite. No triangles: nothing is near, and all is outside.
+  TriangleBvh(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles);
+
+  // The same triangles with their vertices elsewhere. Those with a corner that is not finite are
+  // left out. False: none has moved.
+  bool moveTo(const std::vector<Vec3>& vertices);
+
+  // Nearest point of the surface, among those nearer than `reach`. As soon as one is found that is
+  // not farther than `enough`, that one.
+  std::optional<Nearest> nearest(const Vec3& point, double reach, double enough = 0.0) const;
+
+  // Whether the surface goes around the point more often outwards than inwards: right also where it
+  // crosses or touches itself. Counts the triangles that a ray meets; neighbors take the same side
+  // of their edge (after Woop, Benthin, Wald 2013), so that none slips between them.
+  bool isInside(const Vec3& point) const;
+
+  TriangleBvh(const TriangleBvh&) = delete;
+  TriangleBvh& operator=(const TriangleBvh&) = delete;
+
+  Box bounds() const;  // empty (min > max) without triangles
+  const std::vector<MeshTriangle>& triangles() const { return triangles_; }
+
+  // For FCL's traversals: numbers of nodes as FCL's, 0 the root.
+  bool isEmpty() const { return nodes_ == nullptr; }
+  const std::shared_ptr<Model>& model() const { return model_; }
+  // Its box is right, those below it once it is open.
+  const Node& node(int number) const { return nodes_[number]; }
+  void open(int number) const {
+    const int part = part_at_[at(number)];
+    if (part >= 0 && parts_[at(part)].is_stale) refit(parts_[at(part)]);
+  }
+  static bool isLeaf(const Node& node) { return node.first_child < 0; }
+  static int triangleOf(const Node& leaf) { return -leaf.first_child - 1; }
+  // Of a triangle whose leaf is below what is open.
+  const Corners& corners(int triangle) const { return corners_[at(triangle)]; }
+
+ private:
+  // A subtree; below its root its nodes follow each other, parents first. It has its own copies of
+  // the vertices: places from one slot to another.
+  struct Part {
+    int root = 0, first = 0, end = 0;
+    int first_slot = 0, end_slot = 0;
+    bool is_stale = true;
+  };
+
+  struct Search {
+    const Vec3& point;
+    double best, enough;  // squared distances (m^2)
+    Nearest found;
+  };
+
+  void searchBelow(int number, Search& search) const;
+  void searchTriangle(int triangle, Search& search) const;
+  int crossingsBelow(int number, const Vec3& point) const;
+  void findParts();
+  int addPart(int root);
+  void addSlots(Part& part);
+  bool movePart(Part& part, const std::vector<Vec3>& vertices);
+  void refit(Part& part) const;
+  void fit(int number) const;
+
+  std::vector<MeshTriangle> triangles_;
+  std::vector<int> vertices_;        // per slot
+  std::vector<Vec3> places_;         // theirs (m)
+  std::vector<MeshTriangle> slots_;  // of the triangles' corners
+  std::shared_ptr<Model> model_;
+  Node* nodes_ = nullptr;                 // the model's
+  mutable std::vector<Corners> corners_;  // per triangle
+  mutable std::vector<Part> parts_;
+  std::vector<int> part_at_;  // per node: the part whose root it is, or -1
+  std::vector<int> above_;    // nodes above the parts, parents first
+};
+
+}  // namespace robot_tissue
