@@ -11,7 +11,6 @@
 namespace robot_tissue {
 namespace {
 
-
 // Into the tissue: for a point that every way leads out of the tool alike.
 Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 area = (b - a).cross(c - a);

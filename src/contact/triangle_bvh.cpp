@@ -119,7 +119,8 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
 
 void TriangleBvh::findParts() {
   part_at_.assign(at(model_->getNumBVs()), -1);
-  const int most = std::max(tuning::kTrianglesOfPart, static_cast<int>(triangles_.size()) / tuning::kParts);
+  const int most =
+      std::max(tuning::kTrianglesOfPart, static_cast<int>(triangles_.size()) / tuning::kParts);
   std::vector<int> waiting = {0};
   while (!waiting.empty()) {
     const int number = waiting.back();

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-
 namespace robot_tissue {
 namespace {
 
