@@ -103,7 +103,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
     contacts_.ride(pose_, *tissue_);
     contacts_.meet(contacts(), pose_, *tissue_, held_);
     rounds_ = 0;
-    report_ = tissue_->follow({patch()}, {}, true);
+    report_ = tissue_->follow({patch()}, {}, Bedding::kSupports);
     contacts_.commit(pose_, *tissue_);
   }
 
