@@ -106,4 +106,18 @@ constexpr double kFarthestPush = 200.0;
 // m: where a link is that stands nowhere; beyond every legal place of a scene.
 constexpr double kFarAway = 1e6;
 
+// Wrenches between solves (WrenchPrediction).
+// m: arm of a turn, at least, for tools that are all at their origin. Chosen.
+constexpr double kLeastArm = 1e-3;
+// Of a wrench (1): how exact a solved one is. More: the stiffness lags behind; less: it is noisier.
+// And m: the way on which a stiffness of one wrench a way may change by as much. More: as more of
+// the first. A pressed and a circling sphere: 0.5 to 2 % and 5 to 10 mm differ by a tenth.
+constexpr double kWrenchError = 0.01;
+constexpr double kWayOfStiffness = 0.01;
+// m: a longer step teaches nothing, as the contact became another. More: secants of jumps. Chosen.
+constexpr double kFarthestLearned = 5e-3;
+// m: the farthest that is predicted. More: bolder where a solve takes long; the error grows with
+// the square. Chosen: twice what is asked for.
+constexpr double kFarthestPredicted = 1e-3;
+
 }  // namespace robot_tissue::tuning

@@ -26,7 +26,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       parameters_(readNodeParameters(private_node_)),
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
-      publisher_(private_node_, parameters_),
+      publisher_(private_node_, parameters_, tool_poses_),
       watch_(
           buffer_, tool_poses_, parameters_.rate_hz, *ros::getGlobalCallbackQueue(),
           [this](const ros::Time& stamp) { onStill(stamp); },

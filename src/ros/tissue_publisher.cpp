@@ -54,12 +54,13 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
 
 }  // namespace
 
-TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters)
+TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters,
+                                 const ToolPoses& poses)
     : private_node_(private_node),
       frame_id_(parameters.scene.tissue.frame_id),
       marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
       marker_period_(1.0 / parameters.marker_rate_hz),
-      wrenches_(private_node_, parameters.wrench_rate_hz) {
+      wrenches_(private_node_, poses, parameters.wrench_rate_hz) {
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
     marker_builder_.tellAll();
     shapeChanged();
@@ -77,7 +78,7 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
   if (pipeline.report().changed) shapeChanged();
   if (status.message != last_status_.message) last_state_ = ros::Time();
   if (pipeline.hasArrived()) {
-    wrenches_.publish(pipeline.report().tools, stamp);
+    wrenches_.publish(pipeline, stamp);
   } else {
     wrenches_.publishOld();
   }

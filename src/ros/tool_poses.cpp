@@ -70,6 +70,18 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
   return found;
 }
 
+std::optional<ToolPoses::Newest> ToolPoses::newest(const std::string& frame) const {
+  try {
+    const auto transform = buffer_.lookupTransform(tissue_frame_, frame, ros::Time(0));
+    const ros::Time now = ros::Time::now();
+    const ros::Time stamp = isStatic(transform.header.stamp) ? now : transform.header.stamp;
+    if (std::abs((now - stamp).toSec()) > timeout_s_) return std::nullopt;
+    return Newest{tf2::transformToEigen(transform), stamp};
+  } catch (const tf2::TransformException&) {
+    return std::nullopt;
+  }
+}
+
 Pose ToolPoses::frame(const std::string& frame_id) const {
   if (frame_id.empty() || frame_id == tissue_frame_) return Pose::Identity();
   try {

@@ -43,4 +43,8 @@ constexpr double kPlaneThickness = 0.2;
 // N: no arrow up to here, as rviz complains of one without length. More: weak touches show none.
 constexpr double kSmallestForce = 1e-9;
 
+// m: arm of a turn in the prediction of wrenches. More: turns teach and foretell less. Chosen, as
+// long as tips of instruments are.
+constexpr double kArmOfTurn = 0.01;
+
 }  // namespace robot_tissue::tuning

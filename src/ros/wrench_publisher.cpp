@@ -9,38 +9,53 @@
 #include "tuning.h"
 
 namespace robot_tissue {
-WrenchPublisher::WrenchPublisher(const ros::NodeHandle& private_node, double rate_hz)
-    : private_node_(private_node), rate_hz_(rate_hz) {}
+WrenchPublisher::WrenchPublisher(const ros::NodeHandle& private_node, const ToolPoses& poses,
+                                 double rate_hz)
+    : private_node_(private_node), poses_(poses), rate_hz_(rate_hz) {}
 
 WrenchPublisher::~WrenchPublisher() { stop(); }
 
 void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
   stop();
-  publishers_.clear();
-  messages_.assign(tools.size(), {});
+  tools_.clear();
   silent_ = true;
   has_told_ = false;
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
     const std::lock_guard<std::mutex> lock(mutex_);
     listener_came_.notify_one();
   };
-  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
-    const std::string topic = tools[tool].name + "/measured_cf";
-    publishers_.push_back(private_node_.advertise<geometry_msgs::WrenchStamped>(
-        topic, tuning::kWrenchQueue, someone_came));
-    messages_[tool].header.frame_id = linkFrames(tools[tool]).front();
+  const auto advertise = [&](const std::string& topic) {
+    return private_node_.advertise<geometry_msgs::WrenchStamped>(topic, tuning::kWrenchQueue,
+                                                                 someone_came);
+  };
+  std::size_t link = 0;
+  for (const ToolGeometry& tool : tools) {
+    Told told{advertise(tool.name + "/measured_cf"),
+              advertise(tool.name + "/predicted_cf"),
+              {},
+              link,
+              WrenchPrediction(tuning::kArmOfTurn)};
+    told.message.header.frame_id = linkFrames(tool).front();
+    tools_.push_back(told);
+    link += tool.links.size();
   }
   if (rate_hz_ <= 0.0 || tools.empty()) return;
   stops_ = false;
   thread_ = std::thread([this] { repeat(); });
 }
 
-void WrenchPublisher::publish(const std::vector<ToolReport>& reports, const ros::Time& stamp) {
+void WrenchPublisher::publish(const Pipeline& pipeline, const ros::Time& stamp) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (std::size_t tool = 0; tool < messages_.size(); ++tool) {
-    messages_[tool].header.stamp = stamp;
-    messages_[tool].wrench.force = toVector3(reports[tool].force_on_tool);
-    messages_[tool].wrench.torque = toVector3(reports[tool].torque_on_tool);
+  for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
+    const ToolReport& report = pipeline.report().tools[tool];
+    Told& told = tools_[tool];
+    told.message.header.stamp = stamp;
+    told.message.wrench.force = toVector3(report.force_on_tool);
+    told.message.wrench.torque = toVector3(report.torque_on_tool);
+    if (!pipeline.pose()) continue;
+    const Pose& pose = pipeline.pose()->links[told.first_link];
+    told.prediction.learn(
+        pose, {pose.linear() * report.force_on_tool, pose.linear() * report.torque_on_tool});
   }
   silent_ = false;
   has_told_ = true;
@@ -55,7 +70,7 @@ void WrenchPublisher::publishOld() {
 
 void WrenchPublisher::publishAgain(const ros::Time& stamp) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (geometry_msgs::WrenchStamped& message : messages_) message.header.stamp = stamp;
+  for (Told& told : tools_) told.message.header.stamp = stamp;
   if (rate_hz_ <= 0.0) send();
 }
 
@@ -68,13 +83,36 @@ void WrenchPublisher::forget() {
   const std::lock_guard<std::mutex> lock(mutex_);
   silent_ = true;
   has_told_ = false;
+  for (Told& told : tools_) told.prediction.forget();
 }
 
 // With the mutex locked.
 void WrenchPublisher::send() {
   if (silent_) return;
-  for (std::size_t tool = 0; tool < messages_.size(); ++tool) {
-    if (publishers_[tool].getNumSubscribers() > 0) publishers_[tool].publish(messages_[tool]);
+  for (const Told& told : tools_) {
+    if (told.solved.getNumSubscribers() > 0) told.solved.publish(told.message);
+    // Without a rate of its own it is of the pose that was solved for.
+    if (rate_hz_ <= 0.0 && told.predicted.getNumSubscribers() > 0) {
+      told.predicted.publish(told.message);
+    }
+  }
+}
+
+// Transforms are looked up without the mutex: who receives them may wait for it.
+void WrenchPublisher::sendPredicted() {
+  for (Told& told : tools_) {
+    if (told.predicted.getNumSubscribers() == 0) continue;
+    const auto newest = poses_.newest(told.message.header.frame_id);
+    if (!newest) continue;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (silent_) return;
+    const ToolWrench wrench = told.prediction.at(newest->tissue_T_frame);
+    const Eigen::Matrix3d tool_R_tissue = newest->tissue_T_frame.linear().transpose();
+    geometry_msgs::WrenchStamped message = told.message;
+    message.header.stamp = newest->stamp;
+    message.wrench.force = toVector3(tool_R_tissue * wrench.force);
+    message.wrench.torque = toVector3(tool_R_tissue * wrench.torque);
+    told.predicted.publish(message);
   }
 }
 
@@ -85,6 +123,7 @@ void WrenchPublisher::repeat() {
     if (isListenedTo()) {
       send();
       lock.unlock();
+      sendPredicted();
       rate.sleep();
       lock.lock();
     } else {
@@ -95,8 +134,8 @@ void WrenchPublisher::repeat() {
 }
 
 bool WrenchPublisher::isListenedTo() const {
-  return std::any_of(publishers_.begin(), publishers_.end(), [](const ros::Publisher& publisher) {
-    return publisher.getNumSubscribers() > 0;
+  return std::any_of(tools_.begin(), tools_.end(), [](const Told& told) {
+    return told.solved.getNumSubscribers() > 0 || told.predicted.getNumSubscribers() > 0;
   });
 }
 

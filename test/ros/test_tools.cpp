@@ -92,6 +92,34 @@ TEST_F(Tools, WrenchesKeepTheirRateWhileShapesAreSolved) {
   EXPECT_GT(greatest, 0.05);
 }
 
+TEST_F(Tools, PredictedWrenchesAreOfTheNewestPoses) {
+  std::vector<geometry_msgs::WrenchStamped> predicted;
+  const auto subscriber = node_.subscribe<geometry_msgs::WrenchStamped>(
+      "/tissue/probe/predicted_cf", 2000,
+      [&](const geometry_msgs::WrenchStampedConstPtr& wrench) { predicted.push_back(*wrench); });
+  ASSERT_TRUE(waitFor([&] { return !predicted.empty(); }));
+  const ros::Time start = ros::Time::now();
+  ASSERT_TRUE(waitFor([&] {
+    const double passed = (ros::Time::now() - start).toSec();
+    places_["probe"] = pressed(0.003 * passed);
+    return passed >= 1.0;
+  }));
+  ros::Time last;
+  for (const auto& wrench : predicted) {
+    const auto& force = wrench.wrench.force;
+    EXPECT_TRUE(std::isfinite(force.x + force.y + force.z));
+    EXPECT_GE(wrench.header.stamp, last);
+    last = wrench.header.stamp;
+  }
+  EXPECT_GT(last, start);
+  follow();
+  predicted.clear();
+  ASSERT_TRUE(waitFor([&] {
+    return !predicted.empty() && wrench_->wrench.force.z > 0.05 &&
+           std::abs(predicted.back().wrench.force.z - wrench_->wrench.force.z) < 1e-9;
+  })) << "where the tool stands both are the same";
+}
+
 TEST_F(Tools, FrictionIsTheTools) {
   const auto drag = [&](const std::string& tool) {
     for (const double aside : {0.0, 0.0, 0.001, 0.002, 0.003, 0.004}) {

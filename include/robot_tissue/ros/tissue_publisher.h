@@ -27,9 +27,11 @@ struct NodeStatus {
 
 class TissuePublisher {
  public:
-  TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters);
+  // The poses must outlive it.
+  TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters,
+                  const ToolPoses& poses);
 
-  // One wrench topic a tool.
+  // Two wrench topics a tool.
   void setTools(const std::vector<ToolGeometry>& tools) { wrenches_.setTools(tools); }
 
   // After an update at a good pose. `stamp` is the pose's.

@@ -35,6 +35,13 @@ class ToolPoses {
   // In the order of RobotPose::links.
   void setLinks(const std::vector<std::string>& links) { links_ = links; }
   PoseLookUp lookUp(const ros::Time& now) const;
+  // Of one frame at its newest stamp, which is now where it is static; none where there is no
+  // transform, or an old one. In any thread.
+  struct Newest {
+    Pose tissue_T_frame;
+    ros::Time stamp;
+  };
+  std::optional<Newest> newest(const std::string& frame) const;
   // tissue_T_frame at the newest stamp; throws InputError when there is none.
   Pose frame(const std::string& frame_id) const;
 

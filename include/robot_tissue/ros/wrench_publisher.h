@@ -1,8 +1,9 @@
 // The wrench of the tissue on each tool, in the tool's frame, about its origin (N, N m).
 //
 // With a rate of its own a thread sends the last wrench solved again and again, so that the rate
-// stays while a solve takes long; the stamp is that of the pose that was solved. While nobody
-// listens it sleeps.
+// stays while a solve takes long; the stamp is that of the pose that was solved. Beside it, on a
+// topic of its own, what the contact's stiffness makes of it at the tool's newest pose
+// (WrenchPrediction), with that pose's stamp. While nobody listens it sleeps.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -16,21 +17,23 @@
 #include <vector>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "robot_tissue/pipeline/wrench_prediction.h"
+#include "robot_tissue/ros/tool_poses.h"
 
 namespace robot_tissue {
 
 class WrenchPublisher {
  public:
-  // rate_hz 0: once an update.
-  WrenchPublisher(const ros::NodeHandle& private_node, double rate_hz);
+  // rate_hz 0: once an update. The poses must outlive it.
+  WrenchPublisher(const ros::NodeHandle& private_node, const ToolPoses& poses, double rate_hz);
   ~WrenchPublisher();
   WrenchPublisher(const WrenchPublisher&) = delete;
   WrenchPublisher& operator=(const WrenchPublisher&) = delete;
 
-  // One topic a tool.
+  // Two topics a tool.
   void setTools(const std::vector<ToolGeometry>& tools);
-  // After an update at a good pose; one report a tool. `stamp` is the pose's.
-  void publish(const std::vector<ToolReport>& reports, const ros::Time& stamp);
+  // After an update at a good pose. `stamp` is the pose's.
+  void publish(const Pipeline& pipeline, const ros::Time& stamp);
   // The last ones hold at this pose as well. In any thread.
   void publishAgain(const ros::Time& stamp);
   // The tissue is behind the tools: the last ones are told as they were, with the stamp of the pose
@@ -43,15 +46,24 @@ class WrenchPublisher {
   bool isListenedTo() const;
 
  private:
+  // What one tool feels.
+  struct Told {
+    ros::Publisher solved, predicted;  // do not change while the thread runs
+    geometry_msgs::WrenchStamped message;
+    std::size_t first_link = 0;
+    WrenchPrediction prediction;
+  };
+
   void repeat();
   void send();
+  void sendPredicted();
   void stop();
 
   ros::NodeHandle private_node_;
+  const ToolPoses& poses_;
   double rate_hz_;
-  std::vector<ros::Publisher> publishers_;  // do not change while the thread runs
-  std::mutex mutex_;                        // of the members up to the thread
-  std::vector<geometry_msgs::WrenchStamped> messages_;
+  std::mutex mutex_;  // of the members up to the thread
+  std::vector<Told> tools_;
   bool silent_ = true;
   bool has_told_ = false;
   bool stops_ = false;

@@ -1,0 +1,59 @@
+// How a tool's wrench follows its pose between two solves, for loops that are faster than a solve:
+//
+//   w(x) = w0 + K (x - x0)
+//
+// from the last solved pose x0 and wrench w0, with the contact's stiffness K as the last solves
+// show it. Each step s teaches its change of the wrench, r beyond K s, by recursive least squares
+// (a Kalman filter whose state is K, the same for each row of it; Kalman 1960):
+//
+//   P += q^2 |s| I,   g = P s / (s^T P s + 2 e^2),   K += r g^T,   P -= g (P s)^T
+//
+// e is how exact a solved wrench is, q how much the stiffness changes on its way: both in shares of
+// the wrench. So a step far longer than the noise counts as it is, and what wanders with the
+// touches is smoothed. Along ways that the tool has not gone K is none.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+// Of the tissue on a tool, about the tool's origin, tissue frame.
+struct ToolWrench {
+  Vec3 force = Vec3::Zero();   // N
+  Vec3 torque = Vec3::Zero();  // N m
+};
+
+class WrenchPrediction {
+ public:
+  // The way of a point so far from the tool's origin (m) is what a turn counts: the tool's reach.
+  explicit WrenchPrediction(double arm);
+
+  // What a solve told at that pose (tissue_T_tool).
+  void learn(const Pose& pose, const ToolWrench& solved);
+  // The tissue is another one, or the tool came from elsewhere.
+  void forget();
+
+  // At a pose near the last one solved for; farther off, as at the farthest place on the way there
+  // that still counts. A tool that touched nothing feels nothing, and none is pulled.
+  ToolWrench at(const Pose& pose) const;
+
+ private:
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+  void learnStep(const Vec6& step, const Vec6& change);
+  // Of the pose from another one, and of a wrench: ways in m, forces in N.
+  Vec6 wayFrom(const Pose& from, const Pose& to) const;
+  Vec6 stacked(const ToolWrench& wrench) const;
+
+  double arm_;
+  bool touches_ = false;
+  Pose pose_ = Pose::Identity();
+  Vec6 wrench_ = Vec6::Zero();
+  Mat6 stiffness_ = Mat6::Zero();   // K (N/m)
+  Mat6 covariance_ = Mat6::Zero();  // P ((N/m)^2)
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,63 @@
+#include "robot_tissue/pipeline/wrench_prediction.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "tuning.h"
+
+namespace robot_tissue {
+
+WrenchPrediction::WrenchPrediction(double arm) : arm_(std::max(arm, tuning::kLeastArm)) {}
+
+void WrenchPrediction::forget() {
+  touches_ = false;
+  stiffness_.setZero();
+  covariance_.setZero();
+}
+
+void WrenchPrediction::learn(const Pose& pose, const ToolWrench& solved) {
+  const Vec6 wrench = stacked(solved);
+  const Vec6 step = wayFrom(pose_, pose), change = wrench - wrench_;
+  pose_ = pose;
+  wrench_ = wrench;
+  if (wrench_.isZero(0.0)) return forget();
+  const double length = step.norm();
+  if (touches_ && length > 0.0 && length < tuning::kFarthestLearned) learnStep(step, change);
+  touches_ = true;
+}
+
+void WrenchPrediction::learnStep(const Vec6& step, const Vec6& change) {
+  const double force = wrench_.norm();
+  const double wander = force / tuning::kWayOfStiffness;
+  covariance_.diagonal().array() += wander * wander * step.norm() / tuning::kWayOfStiffness;
+  const double noise = tuning::kWrenchError * force;
+  const Vec6 spread = covariance_ * step;
+  const Vec6 gain = spread / (step.dot(spread) + 2.0 * noise * noise);
+  stiffness_ += (change - stiffness_ * step) * gain.transpose();
+  covariance_ -= gain * spread.transpose();
+}
+
+ToolWrench WrenchPrediction::at(const Pose& pose) const {
+  if (!touches_) return {};
+  Vec6 way = wayFrom(pose_, pose);
+  if (way.norm() > tuning::kFarthestPredicted) way *= tuning::kFarthestPredicted / way.norm();
+  const Vec6 predicted = wrench_ + stiffness_ * way;
+  const bool pulls = predicted.head<3>().dot(wrench_.head<3>()) < 0.0;
+  if (pulls || !predicted.allFinite()) return {};
+  return {predicted.head<3>(), arm_ * predicted.tail<3>()};
+}
+
+WrenchPrediction::Vec6 WrenchPrediction::wayFrom(const Pose& from, const Pose& to) const {
+  const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
+  Vec6 way;
+  way << to.translation() - from.translation(), arm_ * turn.angle() * turn.axis();
+  return way;
+}
+
+WrenchPrediction::Vec6 WrenchPrediction::stacked(const ToolWrench& wrench) const {
+  Vec6 stacked;
+  stacked << wrench.force, wrench.torque / arm_;
+  return stacked;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,146 @@
+// Wrenches between solves.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "pipeline_fixtures.h"
+#include "robot_tissue/pipeline/wrench_prediction.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kArm = 0.01;  // m
+
+ToolWrench wrenchOf(const Pipeline& pipeline) {
+  const Eigen::Matrix3d turn = pipeline.pose()->links.front().linear();
+  const ToolReport& tool = pipeline.report().tools.front();
+  return {turn * tool.force_on_tool, turn * tool.torque_on_tool};
+}
+
+Pose poseAt(const Vec3& origin) {
+  Pose pose = Pose::Identity();
+  pose.translation() = origin;
+  return pose;
+}
+
+SolverConfig exact() {
+  SolverConfig solver;
+  solver.tolerance = 1e-3;
+  return solver;
+}
+
+struct Ahead {
+  double predicted = 0.0, held = 0.0;  // root of the mean square error, of the greatest force
+};
+
+// Of a force half a millimeter ahead, as predicted and as the last one solved, along a way that is
+// told by its length; once it has gone for `from` updates.
+Ahead errorAhead(const std::function<Vec3(double)>& way, int updates, int from) {
+  constexpr double kStep = 2.5e-4;  // m
+  constexpr int kStepsAhead = 2;
+  Pipeline pipeline(block(), exact(), {withFriction(0.0, probe())});
+  WrenchPrediction prediction(kArm);
+  std::vector<Vec3> predicted, solved;
+  double greatest = 0.0;
+  Ahead error;
+  for (int update = 0; update < updates; ++update) {
+    const Vec3 place = way(kStep * update);
+    pipeline.step(at({place}));
+    const ToolWrench wrench = wrenchOf(pipeline);
+    greatest = std::max(greatest, wrench.force.norm());
+    if (update >= from) {
+      const std::size_t then = static_cast<std::size_t>(update - kStepsAhead);
+      error.predicted += (predicted[then] - wrench.force).squaredNorm();
+      error.held += (solved[then] - wrench.force).squaredNorm();
+    }
+    prediction.learn(poseAt(place), wrench);
+    solved.push_back(wrench.force);
+    predicted.push_back(prediction.at(poseAt(way(kStep * (update + kStepsAhead)))).force);
+  }
+  error.predicted = std::sqrt(error.predicted / (updates - from)) / greatest;
+  error.held = std::sqrt(error.held / (updates - from)) / greatest;
+  return error;
+}
+
+Vec3 above(double depth) { return pressed(depth).links.front().translation(); }
+
+TEST(WrenchPrediction, FollowsALinearContactOnceItsWaysAreKnown) {
+  Eigen::Matrix3d stiffness;
+  stiffness << 50, 0, 5, 0, 60, 0, 5, 0, 120;
+  const auto wrench = [&](const Vec3& place) {
+    return ToolWrench{Vec3(0, 0, 1) - stiffness * place, Vec3::Zero()};
+  };
+  WrenchPrediction prediction(kArm);
+  Vec3 place = Vec3::Zero();
+  prediction.learn(poseAt(place), wrench(place));
+  for (int round = 0; round < 20; ++round) {
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = (round % 2 == 0 ? 1e-3 : -1e-3);
+      prediction.learn(poseAt(place), wrench(place));
+    }
+  }
+  const Vec3 way(2e-4, -3e-4, 1e-4);
+  const Vec3 change = prediction.at(poseAt(place + way)).force - wrench(place).force;
+  EXPECT_LT((change + stiffness * way).norm(), 0.02 * (stiffness * way).norm());
+}
+
+TEST(WrenchPrediction, FollowsATurn) {
+  WrenchPrediction prediction(kArm);
+  const auto turned = [](double angle) {
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
+    return pose;
+  };
+  const auto wrench = [](double angle) {
+    return ToolWrench{Vec3(0.0, 0.0, 1.0), Vec3(0.0, -0.05 * angle, 0.0)};
+  };
+  for (int step = 0; step < 20; ++step) prediction.learn(turned(0.02 * step), wrench(0.02 * step));
+  const double change = prediction.at(turned(0.40)).torque.y() - wrench(0.38).torque.y();
+  EXPECT_NEAR(change, -0.05 * 0.02, 0.1 * 0.05 * 0.02);
+}
+
+TEST(WrenchPrediction, IsFarBetterThanTheLastWrenchWhereATipIsPressed) {
+  const Ahead error = errorAhead([](double way) { return above(way - 0.001); }, 60, 12);
+  EXPECT_LT(error.predicted, 0.015);
+  EXPECT_LT(error.predicted, 0.4 * error.held);
+}
+
+// Round a circle at one depth the force hardly changes but for the steps of the lattice.
+TEST(WrenchPrediction, IsNoWorseThanTheLastWrenchWhereNothingIsToBeForetold) {
+  const auto circle = [](double way) {
+    constexpr double kDepth = 0.006, kTurn = 0.004;  // m
+    if (way < kDepth) return above(way);
+    const double angle = (way - kDepth) / kTurn;
+    return Vec3(above(kDepth) + kTurn * Vec3(std::sin(angle), 1.0 - std::cos(angle), 0.0));
+  };
+  const Ahead error = errorAhead(circle, 200, 60);
+  EXPECT_LT(error.predicted, 0.03);
+  EXPECT_LT(error.predicted, 1.25 * error.held);
+}
+
+TEST(WrenchPrediction, WhatTouchesNothingFeelsNothingAndNoneIsPulled) {
+  constexpr double kStiffness = 2000.0, kTouch = 5e-4;  // N/m, m
+  const auto at_depth = [](double depth) { return poseAt(Vec3(0.0, 0.0, -depth)); };
+  WrenchPrediction prediction(kArm);
+  EXPECT_TRUE(prediction.at(at_depth(0.0)).force.isZero());
+  for (int step = 1; step <= 40; ++step) {
+    const double depth = kTouch + 2e-5 * (step <= 20 ? step : 40 - step + 1);
+    prediction.learn(at_depth(depth), {Vec3(0.0, 0.0, kStiffness * (depth - kTouch)), Vec3::Zero()});
+  }
+  EXPECT_GT(prediction.at(at_depth(kTouch + 1e-4)).force.z(), 0.1);
+  EXPECT_TRUE(prediction.at(at_depth(kTouch - 4e-4)).force.isZero());
+  prediction.learn(at_depth(0.0), {});
+  EXPECT_TRUE(prediction.at(at_depth(kTouch + 1e-4)).force.isZero());
+}
+
+TEST(WrenchPrediction, FarOffItStaysWhereItStillCounts) {
+  WrenchPrediction prediction(kArm);
+  prediction.learn(poseAt(Vec3::Zero()), {Vec3(0.0, 0.0, 1.0), Vec3::Zero()});
+  prediction.learn(poseAt(Vec3(0.0, 0.0, -1e-3)), {Vec3(0.0, 0.0, 1.1), Vec3::Zero()});
+  const double far = prediction.at(poseAt(Vec3(0.0, 0.0, -0.1))).force.z();
+  EXPECT_NEAR(far, prediction.at(poseAt(Vec3(0.0, 0.0, -0.2))).force.z(), 1e-9);
+  EXPECT_LT(far, 1.5);
+}
+
+}  // namespace
+}  // namespace robot_tissue
