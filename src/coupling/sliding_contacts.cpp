@@ -54,10 +54,26 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   }
   for (ContactConstraint& touch : touches_) {
     const Pose moved = pose.links[at(touch.link)] * since_links_[at(touch.link)].inverse();
+    const double times = growth_.times(at(touch.link), pose.links[at(touch.link)]);
+    touch.spring.multiplier *= times;
+    touch.spring.friction_bound *= times;
     touch.spring.plane_point = moved * touch.spring.plane_point;
     touch.spring.normal = moved.linear() * touch.spring.normal;
     anchor(pose, touch);
   }
+}
+
+std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) const {
+  std::vector<PressGrowth::Press> presses(links);
+  for (const ContactConstraint& touch : touches_) {
+    PressGrowth::Press& press = presses[at(touch.link)];
+    press.force += touch.spring.multiplier;
+    press.place += touch.spring.multiplier * touch.spring.plane_point;
+  }
+  for (PressGrowth::Press& press : presses) {
+    if (press.force > 0.0) press.place /= press.force;
+  }
+  return presses;
 }
 
 // Where the point stuck at the last commit, gone with the link since. Its drag follows the normal
@@ -310,6 +326,7 @@ void SlidingContacts::carry(const Tissue& tissue, const Held& held, ContactConst
 void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   since_links_ = pose.links;
   since_displacement_ = tissue.displacements();
+  growth_.note(pose.links, presses(pose.links.size()));
   cut_rounds_ = 0;
   for (ContactConstraint& touch : touches_) {
     const ContactSpring& spring = touch.spring;

@@ -31,6 +31,9 @@ constexpr double kMostSlack = 0.03;
 constexpr double kLittleForce = 0.05;
 // Of the greatest friction force of all touches (1): its change in an update that is none. Chosen.
 constexpr double kSameFriction = 0.03;
+// Of what a link presses with (1): the most that it is taken to grow or fall by in a load step.
+// More: bolder first guesses where contacts begin or end. Chosen.
+constexpr double kMostGrowth = 0.5;
 // Updates in a row on the way to balance, after which planes no longer turn: some turn to and fro
 // for ever. Chosen.
 constexpr int kMostTurningRounds = 12;

@@ -18,6 +18,7 @@
 #include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
+#include "robot_tissue/coupling/press_growth.h"
 
 namespace robot_tissue {
 
@@ -47,7 +48,7 @@ class SlidingContacts {
   static bool givesWay(const std::vector<NodeWeight>& carriers,
                        const std::vector<std::uint8_t>& held);
 
-  // The links go to where they are now, and planes and anchors with them.
+  // The links go to where they are now, and planes and anchors with them; forces go on as they went.
   void ride(const RobotPose& pose, const Tissue& tissue);
 
   // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
@@ -91,6 +92,7 @@ class SlidingContacts {
              ContactConstraint& touch);
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
   static void carry(const Tissue& tissue, const Held& held, ContactConstraint& touch);
+  std::vector<PressGrowth::Press> presses(std::size_t links) const;
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);
@@ -100,6 +102,7 @@ class SlidingContacts {
   std::vector<std::optional<double>> friction_;
   std::vector<double> thickness_;
   std::vector<double> pressed_;               // per tool: its normal forces in the last update (N)
+  PressGrowth growth_;
   int cut_rounds_ = 0;                        // in a row, that ended on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
   std::vector<Pose> since_links_;             // at the last commit

@@ -1,0 +1,33 @@
+// How hard links press goes on as it went in the last load step (own): where a link goes on, its
+// touches begin with the forces that they will about have, and bounds of drag are those of the
+// shape that the solver begins with, which goes on likewise.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+class PressGrowth {
+ public:
+  // Of a link: the sum of its normal forces (N), and their mean place (m).
+  struct Press {
+    double force = 0.0;
+    Vec3 place = Vec3::Zero();
+  };
+
+  // At the end of a load step; one press a link.
+  void note(const std::vector<Pose>& links, std::vector<Press> presses);
+  // What the link presses with, once it has gone to that pose, over what it pressed with at the end
+  // of the last load step.
+  double times(std::size_t link, const Pose& pose) const;
+
+ private:
+  std::vector<Pose> links_, links_before_;
+  std::vector<Press> presses_, presses_before_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,51 @@
+// How hard links press goes on as it went.
+#include <gtest/gtest.h>
+
+#include "robot_tissue/coupling/press_growth.h"
+
+namespace robot_tissue {
+namespace {
+
+Pose atX(double x) { return Pose(Eigen::Translation3d(x, 0.0, 0.0)); }
+
+// One link that pressed with 1 N at -1 mm and with 1.2 N at 0.
+PressGrowth grownByAFifth() {
+  PressGrowth growth;
+  growth.note({atX(-0.001)}, {{1.0, Vec3(0.009, 0.0, 0.0)}});
+  growth.note({atX(0.0)}, {{1.2, Vec3(0.01, 0.0, 0.0)}});
+  return growth;
+}
+
+TEST(PressGrowth, GoesOnAsTheLinkDoes) {
+  const PressGrowth growth = grownByAFifth();
+  EXPECT_NEAR(1.2 * growth.times(0, atX(0.001)), 1.4, 1e-12);
+  EXPECT_NEAR(1.2 * growth.times(0, atX(0.0005)), 1.3, 1e-12);
+  EXPECT_NEAR(1.2 * growth.times(0, atX(-0.001)), 1.0, 1e-12);
+}
+
+TEST(PressGrowth, StaysWhereTheLinkStandsOrGoesAside) {
+  const PressGrowth growth = grownByAFifth();
+  EXPECT_EQ(growth.times(0, atX(0.0)), 1.0);
+  EXPECT_EQ(growth.times(0, Pose(Eigen::Translation3d(0.0, 0.001, 0.0))), 1.0);
+}
+
+TEST(PressGrowth, NeedsTwoLoadStepsInWhichTheLinkPressed) {
+  PressGrowth growth;
+  EXPECT_EQ(growth.times(0, atX(0.001)), 1.0);
+  growth.note({atX(-0.001)}, {{}});
+  EXPECT_EQ(growth.times(0, atX(0.001)), 1.0);
+  growth.note({atX(0.0)}, {{1.2, Vec3(0.01, 0.0, 0.0)}});
+  EXPECT_EQ(growth.times(0, atX(0.001)), 1.0);
+}
+
+TEST(PressGrowth, AFarWayOrAFirstTouchIsBounded) {
+  const PressGrowth growth = grownByAFifth();
+  EXPECT_NEAR(1.2 * growth.times(0, atX(1.0)), 1.4, 1e-12);
+  PressGrowth first;
+  first.note({atX(-0.001)}, {{1e-9, Vec3::Zero()}});
+  first.note({atX(0.0)}, {{1.0, Vec3::Zero()}});
+  EXPECT_LE(first.times(0, atX(0.001)), 1.5);
+}
+
+}  // namespace
+}  // namespace robot_tissue
