@@ -125,7 +125,8 @@ TEST(WrenchPrediction, WhatTouchesNothingFeelsNothingAndNoneIsPulled) {
   EXPECT_TRUE(prediction.at(at_depth(0.0)).force.isZero());
   for (int step = 1; step <= 40; ++step) {
     const double depth = kTouch + 2e-5 * (step <= 20 ? step : 40 - step + 1);
-    prediction.learn(at_depth(depth), {Vec3(0.0, 0.0, kStiffness * (depth - kTouch)), Vec3::Zero()});
+    prediction.learn(at_depth(depth),
+                     {Vec3(0.0, 0.0, kStiffness * (depth - kTouch)), Vec3::Zero()});
   }
   EXPECT_GT(prediction.at(at_depth(kTouch + 1e-4)).force.z(), 0.1);
   EXPECT_TRUE(prediction.at(at_depth(kTouch - 4e-4)).force.isZero());
