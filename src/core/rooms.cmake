@@ -81,4 +81,4 @@ robot_tissue_room(tissue
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
   FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp
-    tissue_loads.cpp tuning.h)
+    tissue_loads.cpp tissue_surface.cpp tuning.h)

@@ -1,7 +1,6 @@
 #include "robot_tissue/core/tissue.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -31,12 +30,6 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
          std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
            return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
          });
-}
-
-// That no surface of the program has had.
-std::uint64_t newRevision() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
 }
 
 }  // namespace
@@ -182,32 +175,6 @@ void Tissue::reset() {
 
 Vec3 Tissue::nodePosition(int node) const {
   return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
-}
-
-std::vector<Vec3> Tissue::shownDisplacement() const {
-  std::vector<Vec3> shown = state_.displacement;
-  for (const LoadingPatch& patch : patches_) {
-    if (patch.rim.empty()) continue;
-    const std::vector<Vec3> own = ownDisplacement(patch, state_.displacement);
-    for (std::size_t i = 0; i < own.size(); ++i) shown[at(patch.nodes[i])] = own[i];
-  }
-  return shown;
-}
-
-// Where patches have rims their nodes are shown as their own (shownDisplacement).
-void Tissue::deformSurface() {
-  std::vector<std::pair<int, Vec3>> own;
-  for (const LoadingPatch& patch : patches_) {
-    if (patch.rim.empty()) continue;
-    const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
-    for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
-  }
-  const auto exchange = [&](std::pair<int, Vec3>& of_node) {
-    std::swap(state_.displacement[at(of_node.first)], of_node.second);
-  };
-  std::for_each(own.begin(), own.end(), exchange);
-  bounds_ = deform(surface_, state_.displacement, vertices_);
-  std::for_each(own.rbegin(), own.rend(), exchange);
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -376,24 +343,12 @@ SolveReport Tissue::solveFromRest() {
   return report;
 }
 
-double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
-
 void Tissue::describeShape(SolveReport& report) {
   deformSurface();
   const GridBox* visited = method_->visited();
   report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
                                              : countInvertedCells(lattice_, state_, *visited);
   if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
-}
-
-void Tissue::rebuildSurface() {
-  surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
-                                     : meshSurface(lattice_, state_, mesh_);
-  surface_.revision = newRevision();
-  ++surface_version_;
-  rest_volume_ = enclosedVolume(surface_, surface_.rest);
-  vertices_ = surface_.rest;
-  bounds_ = boundsOf(vertices_);
 }
 
 std::vector<int> Tissue::freeNodes() const {
