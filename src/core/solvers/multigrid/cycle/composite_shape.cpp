@@ -53,6 +53,11 @@ double workOf(const CompositeVector<Real>& force, const CompositeVector<Real>& s
 }
 
 template <typename Real>
+double workInPart(const CompositeVector<Real>& force, const CompositeVector<Real>& step) {
+  return withWork(0.0, force.nodes, force.groups, step);
+}
+
+template <typename Real>
 void CompositeShape<Real>::reset(std::unique_ptr<GridHierarchy<Real>> levels) {
   levels_ = std::move(levels);
 }
@@ -66,9 +71,14 @@ void CompositeShape<Real>::keepPlaces(Vector& places) const {
 
 template <typename Real>
 void CompositeShape<Real>::keepForces(Vector& forces) {
+  keepForcesInPart(forces);
+  forces.uncovered = levels_->uncovered().findForces();
+}
+
+template <typename Real>
+void CompositeShape<Real>::keepForcesInPart(Vector& forces) const {
   forces.nodes = finest().force;
   forces.groups = finest().constrained.force;
-  forces.uncovered = levels_->uncovered().findForces();
 }
 
 template <typename Real>
@@ -180,6 +190,8 @@ double CompositeShape<Real>::squared(const Field<Real>& field) const {
 
 template double workOf(const CompositeVector<float>&, const CompositeVector<float>&);
 template double workOf(const CompositeVector<double>&, const CompositeVector<double>&);
+template double workInPart(const CompositeVector<float>&, const CompositeVector<float>&);
+template double workInPart(const CompositeVector<double>&, const CompositeVector<double>&);
 template struct CompositeVector<float>;
 template struct CompositeVector<double>;
 template class CompositeShape<float>;

@@ -26,6 +26,10 @@ struct CompositeVector {
 template <typename Real>
 double workOf(const CompositeVector<Real>& force, const CompositeVector<Real>& step);
 
+// Likewise, without what is beyond the open part.
+template <typename Real>
+double workInPart(const CompositeVector<Real>& force, const CompositeVector<Real>& step);
+
 template <typename Real>
 class CompositeShape {
  public:
@@ -41,6 +45,7 @@ class CompositeShape {
 
   void keepPlaces(Vector& places) const;
   void keepForces(Vector& forces);
+  void keepForcesInPart(Vector& forces) const;
   void restore(const Vector& places);
   void move(const Vector& step, double alpha);                            // x += alpha * step
   void moveFrom(const Vector& places, const Vector& step, double alpha);  // x = places + ...

@@ -43,7 +43,11 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   const double share = longest > longest_step_ ? longest_step_ / longest : 1.0;
   const int steps = smootherSteps(solve);
   if (share == 1.0 && isSteady(solve, left)) {
-    shape_.correctAndSmooth(1.0, steps);
+    if (solve.in_contact) {
+      goFurther(steps);
+    } else {
+      shape_.correctAndSmooth(1.0, steps);
+    }
     return begin();
   }
   shape_.keepForces(force_);
@@ -64,11 +68,35 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   }
 }
 
+// What slips, or hangs by little, a cycle leaves behind: where the forces at its end still work
+// along it, it goes on, or back. By the forces in the open part alone: those in the
+// uncovered part cost more than a look.
+template <typename Real>
+void FasCgCycle<Real>::goFurther(int steps) {
+  shape_.keepForcesInPart(force_);
+  shape_.correctAndSmooth(1.0, steps);
+  shape_.keepPlaces(direction_);
+  direction_.add(start_, -1.0);
+  const double slope = workInPart(force_, direction_);
+  const double here = shape_.workOfForcesInPart(direction_);
+  SlopeBracket bracket(slope);
+  if (!(slope > 0.0) || bracket.isFlat(here)) return;
+  bracket.add(1.0, here);
+  shape_.move(direction_, bracket.next(1.0) - 1.0);
+}
+
 // Where a part is open, cycles that get on are not searched along: the forces in the uncovered
-// part, which the slope takes, cost more than the search gains.
+// part, which the slope takes, cost more than the search gains. In contact they get on slower, as springs begin and end; not where a force
+// moves a patch against them. Where all is open the first one, which may be all that a solve cut
+// short has, is searched along.
 template <typename Real>
 bool FasCgCycle<Real>::isSteady(const SolveContext& solve, const MotionLeft& left) const {
-  return !shape_.levels().isWhole() && (solve.cycles == 0 || left.isAtMost(tuning::kSlow));
+  const auto& patches = solve.shape.patches;
+  const bool slides = solve.in_contact && std::none_of(patches.begin(), patches.end(), byForce);
+  const bool whole = shape_.levels().isWhole();
+  if (solve.cycles == 0) return !whole;
+  if (slides) return left.isAtMost(tuning::kSlowInContact);
+  return !whole && left.isAtMost(tuning::kSlow);
 }
 
 // Goes on along the last direction, too, if the forces work along it. The slope there.

@@ -5,6 +5,10 @@
 //   beta = (f . s - f' . s) / (f' . s')           Polak and Ribiere; ' of the step before
 //   d = s + beta d'                               where cycles alone are slow
 //   x + a d,  f(x + a d) . d about 0              line search, from a = 1 on
+//
+// Where cycles get on, they stand alone; in contact each is gone on with by one secant,
+//
+//   x + a s,  a = f(x) . s / (f(x) - f(x + s)) . s,   not farther than four times
 #pragma once
 
 #include "solvers/multigrid/cycle/composite_shape.h"
@@ -40,6 +44,7 @@ class FasCgCycle {
  private:
   using Vector = CompositeVector<Real>;
 
+  void goFurther(int steps);
   bool isSteady(const SolveContext& solve, const MotionLeft& left) const;
   double joinLastDirection(double own_slope);
   bool searchAlong(double slope);

@@ -30,6 +30,10 @@ constexpr int kPlainSteps = 8;
 // |x| after a cycle over |x| before: above it, cycles are slow and conjugate gradients help
 // (model.md). Up: more cycles stand alone.
 constexpr double kSlow = 0.3;
+// Likewise in contact, where cycles alone get on, each gone on with by one secant (model.md). Up:
+// fewer conjugate gradients: quicker, but what slips slowly is left behind, and drags count too
+// much.
+constexpr double kSlowInContact = 0.7;
 // Of the slope at the start of a search: flat enough to end there (model.md). Up: shorter searches.
 constexpr double kFlatEnough = 0.3;
 // beta, share of the last direction: below, it is left out (chosen). Up: more begin anew.
