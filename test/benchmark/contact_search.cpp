@@ -115,7 +115,7 @@ std::vector<Case> cases() {
   const ToolShape ellipsoid = mesh(writeEllipsoid({0.012, 0.01, 0.01}));
   const ToolShape ring = mesh(writeRing(0.014, 0.005));
   std::vector<Case> all = {one("sphere", sphere), one("cylinder", cylinder), one("box", box),
-                           one("mesh, ball", ellipsoid), one("mesh, ring", ring)};
+                           one("mesh ball", ellipsoid), one("mesh ring", ring)};
   Case arm{"arm of ten meshes", {}, {}};
   for (int link = 0; link < 10; ++link) {
     const std::string name = "link" + std::to_string(link);
