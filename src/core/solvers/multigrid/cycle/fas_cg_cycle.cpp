@@ -86,16 +86,16 @@ void FasCgCycle<Real>::goFurther(int steps) {
 }
 
 // Where a part is open, cycles that get on are not searched along: the forces in the uncovered
-// part, which the slope takes, cost more than the search gains. In contact they get on slower, as springs begin and end; not where a force
-// moves a patch against them. Where all is open the first one, which may be all that a solve cut
-// short has, is searched along.
+// part, which the slope takes, cost more than the search gains. In contact they get on slower, as
+// springs begin and end; not where a force moves a patch against them. Where all is open the first
+// one, which may be all that a solve cut short has, is searched along.
 template <typename Real>
 bool FasCgCycle<Real>::isSteady(const SolveContext& solve, const MotionLeft& left) const {
   const auto& patches = solve.shape.patches;
   const bool slides = solve.in_contact && std::none_of(patches.begin(), patches.end(), byForce);
   const bool whole = shape_.levels().isWhole();
   if (solve.cycles == 0) return !whole;
-  if (slides) return left.isAtMost(tuning::kSlowInContact);
+  if (slides && solve.cycles < tuning::kCyclesAlone) return left.isAtMost(tuning::kSlowInContact);
   return !whole && left.isAtMost(tuning::kSlow);
 }
 
