@@ -15,9 +15,10 @@ using namespace vectors;
 // A block of cells. `mode` holds the displacements of the corners, then m_s = M_s / 4 of these,
 // then the energy's gradients in the corners. Near rest F, I1 and J are stored less their values
 // there, so that no digits cancel: F = 1 + H, H e_a = -m_a.
-template <typename Real>
+template <typename V>
 struct Block {
-  using L = Lanes<Real>;
+  using Real = typename V::Real;
+  using L = typename V::Lanes;
 
   L mode[kCorners][3];
   L shear, bulk;
@@ -81,9 +82,9 @@ struct Block {
   template <bool kWithStiffness>
   ROBOT_TISSUE_INLINE void stiffen() {
     const L all_of_it = volume + Real(1.0);
-    const L from = greater(all_of_it, all<Real>(Real(elastic_law::kFlattest)));
+    const L from = greater(all_of_it, all<V>(Real(elastic_law::kFlattest)));
     const L beyond = all_of_it - from;
-    const L root = inverseCubeRoot<Real>(from);
+    const L root = inverseCubeRoot<V>(from);
     const L inverse = root * root * root;
     const L value = shear * root * root;
     const L slope = Real(-2.0 / 3.0) * value * inverse;
@@ -238,66 +239,69 @@ ROBOT_TISSUE_INLINE int offsetOf(const CellGrid<Real>& grid, int corner) {
 }
 
 // 1 in the lanes whose bit is set, else 0.
-template <typename Real>
-ROBOT_TISSUE_INLINE Lanes<Real> onesOf(unsigned bits) {
-  typename Vector<Real>::Bits lanes{};
-  for (int lane = 0; lane < Vector<Real>::kSize; ++lane) lanes[lane] = bits >> lane & 1U;
-  return __builtin_convertvector(lanes, Lanes<Real>);
+template <typename V>
+ROBOT_TISSUE_INLINE typename V::Lanes onesOf(unsigned bits) {
+  typename V::Bits lanes{};
+  for (int lane = 0; lane < V::kSize; ++lane) lanes[lane] = bits >> lane & 1U;
+  return __builtin_convertvector(lanes, typename V::Lanes);
 }
 
-template <typename Real, bool kWithStiffness>
-ROBOT_TISSUE_INLINE void addBlock(const CellGrid<Real>& grid, const CellBlock& of, int lane) {
-  constexpr unsigned kAll = (1U << Vector<Real>::kSize) - 1U;
+// A node's sum takes its cells in ascending order, however long the vectors are: corners go from
+// the highest down.
+template <typename V, bool kWithStiffness>
+ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const CellBlock& of,
+                                  int lane) {
+  constexpr unsigned kAll = (1U << V::kSize) - 1U;
   const unsigned cells = of.cells >> lane & kAll, standing = of.standing >> lane & kAll;
   const int first = of.first + lane;
-  Block<Real> block;
+  Block<V> block;
   for (int corner = 0; corner < kCorners; ++corner) {
     const int node = first + offsetOf(grid, corner);
     for (int axis = 0; axis < 3; ++axis) {
-      block.mode[corner][axis] = load(grid.displacement[axis] + node);
+      block.mode[corner][axis] = load<V>(grid.displacement[axis] + node);
     }
   }
-  block.shear = load(grid.shear + first);
-  block.bulk = load(grid.bulk + first);
+  block.shear = load<V>(grid.shear + first);
+  block.bulk = load<V>(grid.bulk + first);
   if (cells != kAll) {
-    block.shear *= onesOf<Real>(cells);
-    block.bulk *= onesOf<Real>(cells);
+    block.shear *= onesOf<V>(cells);
+    block.bulk *= onesOf<V>(cells);
   }
   block.has_parts = standing != 0;
-  if (block.has_parts) block.parts = block.bulk * onesOf<Real>(standing);
+  if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
   block.template solve<kWithStiffness>();
-  for (int corner = 0; corner < kCorners; ++corner) {
+  for (int corner = kCorners - 1; corner >= 0; --corner) {
     const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
     const bool low = corner < kCorners / 2;
     for (int axis = 0; axis < 3; ++axis) {
-      subtract(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + sum);
+      subtract<V>(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + sum);
     }
     if constexpr (kWithStiffness) {
-      subtract<Real>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
+      subtract<V>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
     }
   }
 }
 
-template <typename Real>
-ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<Real>& grid, const CellBlock* blocks,
-                                      int count) {
+template <typename V>
+ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<typename V::Real>& grid,
+                                      const CellBlock* blocks, int count) {
   for (int block = 0; block < count; ++block) {
-    for (int lane = 0; lane < kLanes; lane += Vector<Real>::kSize) {
+    for (int lane = 0; lane < kLanes; lane += V::kSize) {
       if (grid.lower_stiffness != nullptr) {
-        addBlock<Real, true>(grid, blocks[block], lane);
+        addBlock<V, true>(grid, blocks[block], lane);
       } else {
-        addBlock<Real, false>(grid, blocks[block], lane);
+        addBlock<V, false>(grid, blocks[block], lane);
       }
     }
   }
 }
 
-template <typename Real>
-ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<Real>& grid, const LooseCell<Real>* cells,
-                                       int count) {
-  Block<Real> block;
-  block.shear = block.bulk = Lanes<Real>{};
-  for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = Lanes<Real>{};
+template <typename V>
+ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
+                                       const LooseCell<typename V::Real>* cells, int count) {
+  Block<V> block;
+  block.shear = block.bulk = typename V::Lanes{};
+  for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = typename V::Lanes{};
   for (int cell = 0; cell < count; ++cell) {
     block.shear[cell] = cells[cell].shear;
     block.bulk[cell] = cells[cell].bulk;
@@ -321,35 +325,51 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<Real>& grid, const LooseCe
   }
 }
 
-template <typename Real>
-ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<Real>& grid, const LooseCell<Real>* cells,
-                                     int count) {
-  constexpr int kSize = Vector<Real>::kSize;
+template <typename V>
+ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<typename V::Real>& grid,
+                                     const LooseCell<typename V::Real>* cells, int count) {
+  constexpr int kSize = V::kSize;
   for (int cell = 0; cell < count; cell += kSize) {
-    addLooseBlock(grid, cells + cell, std::min(kSize, count - cell));
+    addLooseBlock<V>(grid, cells + cell, std::min(kSize, count - cell));
   }
 }
 
 }  // namespace
 
-ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks,
-                                   int count) {
-  addAllBlocks(grid, blocks, count);
+// For one kind of processor.
+#define ROBOT_TISSUE_KERNELS(kind, bytes)                                                      \
+  kind void addBlocksHere(const CellGrid<float>& grid, const CellBlock* blocks, int count) {   \
+    addAllBlocks<Vector<float, bytes>>(grid, blocks, count);                                   \
+  }                                                                                            \
+  kind void addBlocksHere(const CellGrid<double>& grid, const CellBlock* blocks, int count) {  \
+    addAllBlocks<Vector<double, bytes>>(grid, blocks, count);                                  \
+  }                                                                                            \
+  kind void addLooseHere(const CellGrid<float>& grid, const LooseCell<float>* cells,           \
+                         int count) {                                                          \
+    addAllLoose<Vector<float, bytes>>(grid, cells, count);                                     \
+  }                                                                                            \
+  kind void addLooseHere(const CellGrid<double>& grid, const LooseCell<double>* cells,         \
+                         int count) {                                                          \
+    addAllLoose<Vector<double, bytes>>(grid, cells, count);                                    \
+  }
+
+ROBOT_TISSUE_FOR_EACH_PROCESSOR(ROBOT_TISSUE_KERNELS)
+
+// Which kind is asked only where all are seen.
+void addBlocks(const CellGrid<float>& grid, const CellBlock* blocks, int count) {
+  addBlocksHere(grid, blocks, count);
 }
 
-ROBOT_TISSUE_CLONES void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks,
-                                   int count) {
-  addAllBlocks(grid, blocks, count);
+void addBlocks(const CellGrid<double>& grid, const CellBlock* blocks, int count) {
+  addBlocksHere(grid, blocks, count);
 }
 
-ROBOT_TISSUE_CLONES void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells,
-                                  int count) {
-  addAllLoose(grid, cells, count);
+void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int count) {
+  addLooseHere(grid, cells, count);
 }
 
-ROBOT_TISSUE_CLONES void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells,
-                                  int count) {
-  addAllLoose(grid, cells, count);
+void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count) {
+  addLooseHere(grid, cells, count);
 }
 
 }  // namespace robot_tissue
