@@ -1,6 +1,7 @@
 #include "tool_contact_update.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "stopwatch.h"
@@ -8,8 +9,9 @@
 
 namespace robot_tissue {
 
-// Where a thin tool slips off, the tissue springs past it in one solve. So that it meets the tool,
-// no vertex near a link goes farther at once than half a spacing, or half the link's thickness.
+// Where tissue slips off a tool, it springs far in one solve. So that it meets the tool again where
+// it would, no vertex near a link goes farther at once than half a spacing; so that it does not
+// spring past a thin link, its way is looked at after each stride of a part of the thickness.
 std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() const {
   const double spacing = world_.tissue.lattice().spacing();
   std::vector<Surroundings> all;
@@ -19,8 +21,9 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
     here.box = world_.finder.bounds(link, world_.pose.links[link]);
     here.box.min().array() -= spacing;
     here.box.max().array() += spacing;
-    here.longest = std::min(tuning::kLongestWay * spacing,
-                            tuning::kLongestWayOfThickness * world_.finder.thickness(link));
+    here.longest = tuning::kLongestWay * spacing;
+    here.stride =
+        std::min(here.longest, tuning::kStrideOfThickness * world_.finder.thickness(link));
     all.push_back(here);
   }
   return all;
@@ -43,39 +46,52 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), before, vertices_);
   const std::vector<Vec3>& now = world_.tissue.vertices();
-  double share = 1.0;
+  double share = 1.0, strides = 1.0;
   for (const Surroundings& near : surroundings()) {
     for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
       if (!near.box.contains(now[vertex]) && !near.box.contains(vertices_[vertex])) continue;
       const double way = (now[vertex] - vertices_[vertex]).norm();
       if (way > near.longest) share = std::min(share, near.longest / way);
+      strides = std::max(strides, way / near.stride);
     }
   }
-  return shareOutside(share);
+  return shareOutside(share, static_cast<int>(std::ceil(share * strides)));
 }
 
 // Of that share of the way from `vertices_` to the shape, as much as takes no point deep into a
 // link: from its middle on, nothing tells on which side it came in.
-double ToolContactUpdate::shareOutside(double share) const {
-  const std::vector<Vec3>& now = world_.tissue.vertices();
-  std::vector<Vec3> there(now.size());
-  std::vector<double> before;
-  for (int trial = 0; trial < tuning::kDepthTrials; ++trial, share *= 0.5) {
-    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-      there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
-    }
-    const std::vector<double> depths = depthsIn(there);
-    bool deep = false;
+double ToolContactUpdate::shareOutside(double share, int strides) const {
+  const std::vector<double> before = depthsIn(vertices_);
+  const auto is_deep = [&](double part) {
+    const std::vector<double> depths = depthsAt(part);
     for (std::size_t link = 0; link < depths.size(); ++link) {
       const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
                                    tuning::kDeepestOfThickness * world_.finder.thickness(link));
-      if (depths[link] <= most) continue;
-      if (before.empty()) before = depthsIn(vertices_);
-      deep = deep || depths[link] > before[link] + tuning::kDepthGrowth * most;
+      if (depths[link] > std::max(most, before[link] + tuning::kDepthGrowth * most)) return true;
     }
-    if (!deep) break;
+    return false;
+  };
+  for (int stride = 1; stride <= strides; ++stride) {
+    if (!is_deep(share * stride / strides)) continue;
+    if (stride > 1) return share * (stride - 1) / strides;
+    share /= strides;
+    for (int trial = 1; trial < tuning::kDepthTrials; ++trial) {
+      share *= 0.5;
+      if (!is_deep(share)) return share;
+    }
+    return 0.5 * share;
   }
   return share;
+}
+
+// On that share of the way.
+std::vector<double> ToolContactUpdate::depthsAt(double share) const {
+  const std::vector<Vec3>& now = world_.tissue.vertices();
+  std::vector<Vec3> there(now.size());
+  for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
+    there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
+  }
+  return depthsIn(there);
 }
 
 // Of the deepest point that gives way in each of the tools' links (m).

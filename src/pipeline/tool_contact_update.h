@@ -22,14 +22,17 @@ class ToolContactUpdate : public ContactUpdate {
   double leftInside() const { return left_inside_; }
 
  private:
-  // Of a link: in the box a vertex goes so far at once (m) and no farther.
+  // Of a link: in the box a vertex goes so far at once and no farther (m), and on that way it is
+  // looked for in the link after each stride (m).
   struct Surroundings {
     Box box;
     double longest = 0.0;
+    double stride = 0.0;
   };
 
   std::vector<Surroundings> surroundings() const;
-  double shareOutside(double share) const;
+  double shareOutside(double share, int strides) const;
+  std::vector<double> depthsAt(double share) const;
   std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
 
   World& world_;

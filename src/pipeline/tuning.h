@@ -74,10 +74,12 @@ constexpr double kSameSide = 0.3;
 constexpr double kInsideTriangle = 1e-3;
 
 // Contacts: how far tissue goes between two looks at them.
-// Of the spacing and of the thickness (1), whichever is less: the longest way of a vertex beside a
-// tool. More: fewer rounds, but tissue springs past a thin tool. Chosen.
+// Of the spacing (1): the longest way of a vertex beside a tool. More: fewer rounds, but what slips
+// meets the tool again elsewhere. Chosen.
 constexpr double kLongestWay = 0.5;
-constexpr double kLongestWayOfThickness = 0.25;
+// Of the thickness (1): where a vertex is looked for in the link on that way. More: fewer looks,
+// but tissue springs past a thin tool. Chosen.
+constexpr double kStrideOfThickness = 0.25;
 // Of the spacing and of the thickness (1), whichever is less: how deep a point may go on it. From a
 // link's middle on, its nearest way out leads to the wrong side. Chosen.
 constexpr double kDeepestOnWay = 0.1;
