@@ -41,8 +41,8 @@ robot_tissue_room(solvers
   FILES solver_method.h)
 robot_tissue_room(solvers/multigrid/level
   USES base simd lattice material loads
-  FILES cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h constrained_nodes.cpp
-    constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
+  FILES cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h
+    constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
     skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
     woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy

@@ -2,236 +2,12 @@
 
 #include <algorithm>
 
-#include "material/elastic_cell.h"
-#include "material/elastic_law.h"
-#include "simd/vector_clones.h"
-#include "solvers/multigrid/level/vectors.h"
+#include "solvers/multigrid/level/cell_block.h"
 
 namespace robot_tissue {
 namespace {
 
 using namespace vectors;
-
-// A block of cells. `mode` holds the displacements of the corners, then m_s = M_s / 4 of these,
-// then the energy's gradients in the corners. Near rest F, I1 and J are stored less their values
-// there, so that no digits cancel: F = 1 + H, H e_a = -m_a.
-template <typename V>
-struct Block {
-  using Real = typename V::Real;
-  using L = typename V::Lanes;
-
-  L mode[kCorners][3];
-  L shear, bulk;
-  L cofactor[3][3];     // of F, less 1, by axes
-  L invariant, volume;  // I1 - 3, J - 1
-  L slight;             // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
-  L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
-  L stiffness;
-  L parts{};  // bulk where the volumes of a cell's parts are held
-  bool has_parts = false;
-
-  // From corners to modes, M_s = sum over k of (-1)^(bits in k and s) x_k, by sums and differences
-  // along one axis after another (Walsh-Hadamard). Twice gives eight times what was: it also goes
-  // back.
-  ROBOT_TISSUE_INLINE void transform() {
-#pragma GCC unroll 3
-    for (int bit = 1; bit < kCorners; bit <<= 1) {
-#pragma GCC unroll 8
-      for (int k = 0; k < kCorners; ++k) {
-        if ((k & bit) != 0) continue;
-#pragma GCC unroll 3
-        for (int axis = 0; axis < 3; ++axis) {
-          const L low = mode[k][axis], high = mode[k | bit][axis];
-          mode[k][axis] = low + high;
-          mode[k | bit][axis] = low - high;
-        }
-      }
-    }
-  }
-
-  ROBOT_TISSUE_INLINE void measure() {
-    slight = invariant = L{};
-#pragma GCC unroll 3
-    for (int axis = 0; axis < 3; ++axis) {
-#pragma GCC unroll 7
-      for (int s = 1; s < kCorners; ++s) mode[s][axis] *= Real(0.25);
-      const L bent = mode[3][axis] * mode[3][axis] + mode[5][axis] * mode[5][axis] +
-                     mode[6][axis] * mode[6][axis];
-      const L twisted = mode[7][axis] * mode[7][axis];
-      const L strained = mode[1][axis] * mode[1][axis] + mode[2][axis] * mode[2][axis] +
-                         mode[4][axis] * mode[4][axis];
-      slight += strained + Real(6.0) * bent + Real(9.0) * twisted;
-      invariant += strained + (bent + bent + twisted) * Real(1.0 / 3.0);
-    }
-    invariant -= Real(2.0) * (mode[1][0] + mode[2][1] + mode[4][2]);
-#pragma GCC unroll 3
-    for (int a0 = 0; a0 < 3; ++a0) {
-      const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
-      const L(&mb)[3] = mode[1 << b];
-      const L(&mc)[3] = mode[1 << c];
-      cofactor[a0][a0] = mb[b] * mc[c] - mb[c] * mc[b] - mb[b] - mc[c];
-      cofactor[a0][b] = mb[c] * mc[a0] - mb[a0] * mc[c] + mb[a0];
-      cofactor[a0][c] = mb[a0] * mc[b] - mb[b] * mc[a0] + mc[a0];
-    }
-    volume = cofactor[0][0] - mode[1][0] - mode[1][0] * cofactor[0][0] -
-             mode[1][1] * cofactor[0][1] - mode[1][2] * cofactor[0][2];
-  }
-
-  // a(J) = mu J^(-2/3); below J = kFlattest its Taylor polynomial of second order there, so that it
-  // stays finite (elastic_law.h).
-  template <bool kWithStiffness>
-  ROBOT_TISSUE_INLINE void stiffen() {
-    const L all_of_it = volume + Real(1.0);
-    const L from = greater(all_of_it, all<V>(Real(elastic_law::kFlattest)));
-    const L beyond = all_of_it - from;
-    const L root = inverseCubeRoot<V>(from);
-    const L inverse = root * root * root;
-    const L value = shear * root * root;
-    const L slope = Real(-2.0 / 3.0) * value * inverse;
-    const L curvature = Real(-5.0 / 3.0) * slope * inverse;
-    a = value + beyond * (slope + Real(0.5) * beyond * curvature);
-    const L near_rest = value * inverse * (volume - invariant * Real(1.0 / 3.0));
-    const L flat = a + Real(0.5) * (slope + beyond * curvature) * (invariant + Real(3.0));
-    pressure = (beyond < Real(0.0) ? flat : near_rest) + bulk * volume;
-    if constexpr (kWithStiffness) {
-      const L steepest = greater(greater(square(0), square(1)), square(2));
-      stiffness = a * Real(1.0 / 3.0) + (Real(0.5) * curvature * (invariant + Real(3.0)) + bulk) *
-                                            steepest * Real(1.0 / 16.0);
-    }
-  }
-
-  ROBOT_TISSUE_INLINE L square(int along) const {
-    const L whole = cofactor[along][along] + Real(1.0);
-    const int b = (along + 1) % 3, c = (along + 2) % 3;
-    return whole * whole + cofactor[along][b] * cofactor[along][b] +
-           cofactor[along][c] * cofactor[along][c];
-  }
-
-  ROBOT_TISSUE_INLINE void scale() {
-    const L one = a * Real(0.25), two = a * Real(0.5 / 3.0), three = a * Real(0.25 / 3.0);
-    const L push = Real(0.25) * pressure, pull = one - push;
-#pragma GCC unroll 3
-    for (int axis = 0; axis < 3; ++axis) {
-      mode[0][axis] = L{};
-      mode[1][axis] = one * mode[1][axis] + pull * cofactor[0][axis];
-      mode[2][axis] = one * mode[2][axis] + pull * cofactor[1][axis];
-      mode[4][axis] = one * mode[4][axis] + pull * cofactor[2][axis];
-      mode[1 << axis][axis] -= push;
-      mode[3][axis] *= two;
-      mode[5][axis] *= two;
-      mode[6][axis] *= two;
-      mode[7][axis] *= three;
-    }
-  }
-
-  // Coarse cells: K/2 sum over the eight parts p of (J_p - J)^2 / 8, where J_p is the volume ratio
-  // of part p, to first order in the modes of two and three axes (doc/model.md, "Volume on coarse
-  // lattices").
-  ROBOT_TISSUE_INLINE void addParts(L (&push)[kCorners][3]) {
-    const auto product = [](const L(&x)[3], const L(&y)[3]) {
-      return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-    };
-    L whole[3][3];
-    for (int along = 0; along < 3; ++along) {
-      for (int axis = 0; axis < 3; ++axis) {
-        whole[along][axis] = cofactor[along][axis] + Real(along == axis ? 1.0 : 0.0);
-      }
-    }
-    const L firm = parts * Real(1.0 / 16.0), firmer = parts * Real(1.0 / 64.0);
-    const L x = firm * (product(whole[1], mode[3]) + product(whole[2], mode[5]));
-    const L y = firm * (product(whole[0], mode[3]) + product(whole[2], mode[6]));
-    const L z = firm * (product(whole[0], mode[5]) + product(whole[1], mode[6]));
-    const L xy = firmer * product(whole[2], mode[7]);
-    const L xz = firmer * product(whole[1], mode[7]);
-    const L yz = firmer * product(whole[0], mode[7]);
-    for (int axis = 0; axis < 3; ++axis) {
-      push[3][axis] += x * whole[1][axis] + y * whole[0][axis];
-      push[5][axis] += x * whole[2][axis] + z * whole[0][axis];
-      push[6][axis] += y * whole[2][axis] + z * whole[1][axis];
-      push[7][axis] += yz * whole[0][axis] + xz * whole[1][axis] + xy * whole[2][axis];
-    }
-  }
-  // Adds the barrier's gradient in the modes to `push`. `edge` is minus the edge along an axis at a
-  // corner with signs x, y, z (-1 at the high end): along x it is
-  // m_x + y m_xy + z m_xz + y z m_xyz - e_x.
-  template <bool kWithStiffness>
-  ROBOT_TISSUE_INLINE void addBarrier(L (&push)[kCorners][3]) {
-    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const Real x = (corner & 1) != 0 ? Real(-1) : Real(1);
-      const Real y = (corner & 2) != 0 ? Real(-1) : Real(1);
-      const Real z = (corner & 4) != 0 ? Real(-1) : Real(1);
-      L edge[3][3], across[3][3];
-      for (int axis = 0; axis < 3; ++axis) {
-        edge[0][axis] =
-            mode[1][axis] + y * mode[3][axis] + z * mode[5][axis] + y * z * mode[7][axis];
-        edge[1][axis] =
-            mode[2][axis] + x * mode[3][axis] + z * mode[6][axis] + x * z * mode[7][axis];
-        edge[2][axis] =
-            mode[4][axis] + x * mode[5][axis] + y * mode[6][axis] + x * y * mode[7][axis];
-        edge[axis][axis] -= Real(1.0);
-      }
-      for (int along = 0; along < 3; ++along) {
-        const auto& b = edge[(along + 1) % 3];
-        const auto& c = edge[(along + 2) % 3];
-        for (int axis = 0; axis < 3; ++axis) {
-          const int v = (axis + 1) % 3, w = (axis + 2) % 3;
-          across[along][axis] = b[w] * c[v] - b[v] * c[w];
-        }
-      }
-      const L determinant =
-          edge[0][0] * across[0][0] + edge[0][1] * across[0][1] + edge[0][2] * across[0][2];
-      const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
-      const L height = shear * Real(elastic_law::kBarrier / kCorners);
-      const L slope = height * depth * depth * Real(-3.0 * 0.25 / kSqueezed);
-      for (int axis = 0; axis < 3; ++axis) {
-        const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
-                along_z = slope * across[2][axis];
-        push[1][axis] += along_x;
-        push[2][axis] += along_y;
-        push[4][axis] += along_z;
-        push[3][axis] += y * along_x + x * along_y;
-        push[5][axis] += z * along_x + x * along_z;
-        push[6][axis] += z * along_y + y * along_z;
-        push[7][axis] += y * z * along_x + x * z * along_y + x * y * along_z;
-      }
-      if constexpr (kWithStiffness) {
-        L widest = L{};
-        for (const auto& area : across) {
-          widest = greater(widest, area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
-        }
-        stiffness += height * depth * widest * Real(3.0 * 6.0 / (kSqueezed * kSqueezed));
-      }
-    }
-  }
-
-  // From the corners' displacements to the energy's gradients in them.
-  template <bool kWithStiffness>
-  ROBOT_TISSUE_INLINE void solve() {
-    transform();
-    measure();
-    stiffen<kWithStiffness>();
-    // |G - 1|^2 of a corner's edges G below which det G > kSqueezed, as then no singular value is
-    // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
-    // its two parts.
-    constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
-    const bool squeezed = any((slight > kSlight) & (shear > Real(0)));
-    L push[kCorners][3];
-    const bool more = squeezed || has_parts;
-    if (more) {
-      for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
-      if (squeezed) addBarrier<kWithStiffness>(push);
-      if (has_parts) addParts(push);
-    }
-    scale();
-    if (more) {
-      for (int s = 1; s < kCorners; ++s) {
-        for (int axis = 0; axis < 3; ++axis) mode[s][axis] += push[s][axis];
-      }
-    }
-    transform();
-  }
-};
 
 template <typename Real>
 ROBOT_TISSUE_INLINE int offsetOf(const CellGrid<Real>& grid, int corner) {
@@ -337,20 +113,19 @@ ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<typename V::Real>& grid,
 }  // namespace
 
 // For one kind of processor.
-#define ROBOT_TISSUE_KERNELS(kind, bytes)                                                      \
-  kind void addBlocksHere(const CellGrid<float>& grid, const CellBlock* blocks, int count) {   \
-    addAllBlocks<Vector<float, bytes>>(grid, blocks, count);                                   \
-  }                                                                                            \
-  kind void addBlocksHere(const CellGrid<double>& grid, const CellBlock* blocks, int count) {  \
-    addAllBlocks<Vector<double, bytes>>(grid, blocks, count);                                  \
-  }                                                                                            \
-  kind void addLooseHere(const CellGrid<float>& grid, const LooseCell<float>* cells,           \
-                         int count) {                                                          \
-    addAllLoose<Vector<float, bytes>>(grid, cells, count);                                     \
-  }                                                                                            \
-  kind void addLooseHere(const CellGrid<double>& grid, const LooseCell<double>* cells,         \
-                         int count) {                                                          \
-    addAllLoose<Vector<double, bytes>>(grid, cells, count);                                    \
+#define ROBOT_TISSUE_KERNELS(kind, bytes)                                                         \
+  kind void addBlocksHere(const CellGrid<float>& grid, const CellBlock* blocks, int count) {      \
+    addAllBlocks<Vector<float, bytes>>(grid, blocks, count);                                      \
+  }                                                                                               \
+  kind void addBlocksHere(const CellGrid<double>& grid, const CellBlock* blocks, int count) {     \
+    addAllBlocks<Vector<double, bytes>>(grid, blocks, count);                                     \
+  }                                                                                               \
+  kind void addLooseHere(const CellGrid<float>& grid, const LooseCell<float>* cells, int count) { \
+    addAllLoose<Vector<float, bytes>>(grid, cells, count);                                        \
+  }                                                                                               \
+  kind void addLooseHere(const CellGrid<double>& grid, const LooseCell<double>* cells,            \
+                         int count) {                                                             \
+    addAllLoose<Vector<double, bytes>>(grid, cells, count);                                       \
   }
 
 ROBOT_TISSUE_FOR_EACH_PROCESSOR(ROBOT_TISSUE_KERNELS)
