@@ -16,38 +16,46 @@ Bedding beddingOf(const World& world) {
 
 }  // namespace
 
-// One load step, the line of the package. Later rounds only if the solve moved nodes into a tool
-// with a rigid patch; for the others the solver asks for the contacts itself (ContactUpdate).
+// One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   ++world_.report.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  for (int round = 0; round < tuning::kRigidRounds; ++round) {
-    world_.sticking.ride(pose, world_.tissue);
-    if (round == 0) meet(pose);
-    pushRigid(pose);  // robot pose -> contacts -> loading patches
-    std::vector<LoadingPatch> patches = patchesOfTools(world_);
-    const std::vector<LoadingPatch>& before = world_.tissue.patches();
-    if (!anyToolIn(patches, world_) && !anyToolIn(before, world_)) break;
-    if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
-    if (round == 0) good.shape = world_.tissue.shape();
-    follow(std::move(patches));  // loading patches -> solve
-    if (world_.tools.anyRigid() ? leaptFrom(good) : !settlesFrom(good, otherwise)) {
-      goBackTo(good);
-      return false;
-    }
-    if (!world_.tools.anyRigid()) break;
-    if (deepestInRigid(pose) <= tuning::kDeepEnough * world_.tissue.lattice().spacing()) break;
-    world_.unfinished = round + 1 < tuning::kRigidRounds && world_.deadline.isOver();
-    if (world_.unfinished) break;
+  if (!followTools(pose, good, otherwise)) {
+    goBackTo(good);
+    return false;
   }
   grasping_.closeJaws();
   world_.sliding.commit(pose, world_.tissue);
   tearOff();
   world_.dead_end.reset();
   return true;
+}
+
+// Later rounds only if the solve moved nodes into a tool with a rigid patch; for the others the
+// solver asks for the contacts itself (ContactUpdate). False: no shape followed.
+bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
+  const double spacing = world_.tissue.lattice().spacing();
+  for (int round = 1;; ++round) {
+    world_.sticking.ride(pose, world_.tissue);
+    if (round == 1) meet(pose);
+    pushRigid(pose);  // robot pose -> contacts -> loading patches
+    std::vector<LoadingPatch> patches = patchesOfTools(world_);
+    const std::vector<LoadingPatch>& before = world_.tissue.patches();
+    if (!anyToolIn(patches, world_) && !anyToolIn(before, world_)) return true;
+    if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
+    if (round == 1) good.shape = world_.tissue.shape();
+    follow(std::move(patches));  // loading patches -> solve
+    if (!world_.tools.anyRigid()) return settlesFrom(good, otherwise);
+    if (leaptFrom(good) || turnedOver(good)) return false;
+    const double deepest = deepestInRigid(pose);
+    if (deepest <= tuning::kDeepEnough * spacing) return true;
+    if (round == tuning::kRigidRounds) return deepest <= tuning::kThrough * spacing;
+    world_.unfinished = world_.deadline.isOver();
+    if (world_.unfinished) return true;
+  }
 }
 
 // Goes on where the solve ended on its way. False: no shape followed.
@@ -88,9 +96,14 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
 
 // No tissue gets into this shape from the last good one, as where tools squeeze it flat.
 bool LoadStepper::isLost(const Checkpoint& good) const {
-  if (leaptFrom(good)) return true;
-  if (world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells) return true;
-  return wentThrough(good) || SlidingContacts::pushesAbsurdly(world_.tissue);
+  return leaptFrom(good) || turnedOver(good) || wentThrough(good) ||
+         SlidingContacts::pushesAbsurdly(world_.tissue);
+}
+
+// More cells than before are inside out.
+bool LoadStepper::turnedOver(const Checkpoint& good) const {
+  return world_.tissue.resistsInversion() &&
+         world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells;
 }
 
 // Into what gives way, deeper than it was.

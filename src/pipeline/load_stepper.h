@@ -54,9 +54,11 @@ class LoadStepper {
   double deepestInRigid(const RobotPose& pose);
   std::vector<LoadingPatch> lastTouches() const;
   void follow(std::vector<LoadingPatch> patches);
+  bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
   bool isLost(const Checkpoint& good) const;
   bool leaptFrom(const Checkpoint& good) const;
+  bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
   bool isUnsettled() const;
   void tearOff();

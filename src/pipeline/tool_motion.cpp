@@ -72,38 +72,30 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   while (gone < steps) {
     const double free = ways_.freeSteps(came(), pose);
     const double stride = std::max(longest, free);
-    const bool whole = gone + stride < steps;
-    if (!whole && world_.tools.anyRigid()) break;
-    const double there = whole ? gone + stride : steps;
-    const RobotPose on_the_way = whole ? between(start, pose, there / steps) : pose;
+    const bool is_last = gone + stride >= steps;
+    const double there = is_last ? steps : gone + stride;
+    const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
     const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
-    const bool followed =
-        load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse);
-    if (!followed) {
-      const bool is_hopeless = load_step_.cyclesInVain() > tuning::kMostCyclesInVain;
-      if (is_short || is_hopeless) {
-        world_.report.lost = true;
-        const double next = std::min(gone + tuning::kShortestStep, there);
-        world_.dead_end =
-            DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
-        return came();
-      }
-      longest = tuning::kShortestStep;
-    }
-    if (followed) {
+    if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
       if (longest == 1.0) load_step_.forgetCyclesInVain();
       gone = there;
       longest = std::min(1.0, 2.0 * longest);
-    }
-    if (world_.tools.anyRigid()) checkIn(on_the_way);
-    if (followed && gone < steps && world_.deadline.isOver()) {
+      if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
+      if (is_last || !world_.deadline.isOver()) continue;
       world_.report.too_fast = true;
       return came();
     }
+    const bool is_hopeless = load_step_.cyclesInVain() > tuning::kMostCyclesInVain;
+    if (is_short || is_hopeless) {
+      world_.report.lost = true;
+      const double next = std::min(gone + tuning::kShortestStep, there);
+      world_.dead_end =
+          DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
+      return came();
+    }
+    longest = tuning::kShortestStep;
   }
-  if ((world_.tools.anyRigid() || steps == 0.0) && !load_step_.advance(pose)) {
-    world_.report.lost = true;
-  }
+  if (steps == 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
   if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
   return pose;
 }

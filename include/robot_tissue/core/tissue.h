@@ -63,6 +63,8 @@ class Tissue {
   using Displacements = std::shared_ptr<const std::vector<Vec3>>;
   Displacements displacements() const;
 
+  // Cells of the model that turned inside out are a wrong shape.
+  bool resistsInversion() const;
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
   // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.

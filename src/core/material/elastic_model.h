@@ -20,6 +20,7 @@ class ElasticModel : public EnergyModel {
   ElasticModel(const Lattice& lattice, const TissueConfig& config);
 
   SplitCells splitCells() const override { return SplitCells::kParted; }
+  bool resistsInversion() const override { return true; }
   Vec3 nodeForce(const LatticeState& state, int node) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
   Moduli moduliAt(const LatticeState& state, int node) const override;

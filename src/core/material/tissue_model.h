@@ -22,6 +22,9 @@ class TissueModel {
   // A model of cells needs their parts; one of springs needs no ghosts, which have none.
   virtual SplitCells splitCells() const { return SplitCells::kLost; }
 
+  // Whether a cell that is pressed flat pushes back: else cells turn inside out without a force.
+  virtual bool resistsInversion() const { return false; }
+
   // Moduli behind a node of the surface: a quarter of the sum over its cells, so the material's own
   // where it meets four full ones. Zero where the model has none.
   virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }

@@ -173,6 +173,8 @@ void Tissue::reset() {
   bounds_ = boundsOf(vertices_);
 }
 
+bool Tissue::resistsInversion() const { return model_->resistsInversion(); }
+
 Vec3 Tissue::nodePosition(int node) const {
   return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
 }
