@@ -102,10 +102,12 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   } else {
     parts_->motion.comeAndGo(there);
   }
+  const auto last_good = parts_->motion.lastGood();
   parts_->motion.goBackTo(there);
   world_.last_pose = parts_->motion.walk(there);
   if (world_.report.lost) parts_->motion.leaveStuck(there);
   if (world_.report.lost) parts_->motion.leaveReleased(there);
+  if (world_.report.lost && last_good) parts_->motion.stayAt(*last_good, there);
   parts_->motion.unhook(there);
   world_.asked = goal;
   touched_ = world_.report.too_fast || drive(pose);  // there is a way left to go

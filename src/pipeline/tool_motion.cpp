@@ -302,6 +302,19 @@ void ToolMotion::goBackTo(RobotPose& pose) {
   }
 }
 
+std::optional<Checkpoint> ToolMotion::lastGood() const {
+  return world_.tools.anyRigid() ? std::optional(load_step_.checkpoint()) : std::nullopt;
+}
+
+// Unless the way from the checkpoint came nearer to the goal.
+void ToolMotion::stayAt(const Checkpoint& last_good, const RobotPose& goal) {
+  const bool came_nearer =
+      ways_.stepsBetween(*world_.last_pose, goal) < ways_.stepsBetween(last_good.pose, goal);
+  if (came_nearer || !world_.report.jumped.empty()) return;
+  load_step_.goBackTo(last_good);
+  world_.last_pose = last_good.pose;
+}
+
 void ToolMotion::checkInAnew() {
   checkpoints_.clear();
   if (world_.last_pose) checkIn(*world_.last_pose);

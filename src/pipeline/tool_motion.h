@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "load_stepper.h"
@@ -20,6 +21,10 @@ class ToolMotion {
   void startAnew(RobotPose& pose);
   void comeAndGo(RobotPose& pose);
   void goBackTo(RobotPose& pose);
+  // Where the tools are now, to stay there if no shape follows from a checkpoint; absent: these
+  // tools have none.
+  std::optional<Checkpoint> lastGood() const;
+  void stayAt(const Checkpoint& last_good, const RobotPose& goal);
   void leaveStuck(RobotPose& pose);
   void leaveReleased(RobotPose& pose);
   void unhook(RobotPose& pose);

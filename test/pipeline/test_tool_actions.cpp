@@ -172,6 +172,27 @@ TEST_P(RigidGrasper, HoldsWhatItHasPressedAside) {
   EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), -0.15);  // 0.35 of conforming ones
 }
 
+// Whatever it is asked for, what it tells is a shape that tissue has: jaws that close on, and leave
+// the tissue no way.
+TEST_P(RigidGrasper, KeepsTheLastGoodShapeWhereNoneFollows) {
+  ToolGeometry rigid = gripper();
+  rigid.patch = ToolConfig::Patch::kRigid;
+  Pipeline pipeline(ridge(), solver(), {rigid});
+  double pressed = 0.0;
+  bool lost = false;
+  for (int i = 0; i <= 28 && !lost; ++i) {
+    const StepReport& report = pipeline.step(at(jaws(0.014 - 0.0005 * i)));
+    const ToolReport& tool = report.tools.front();
+    EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
+    EXPECT_LT(tool.force_on_tool.norm(), 5.0);  // N: E times the area of a jaw
+    lost = report.lost;
+    if (!lost) pressed = greatestDisplacement(pipeline.tissue());
+  }
+  ASSERT_TRUE(lost);
+  EXPECT_GT(pressed, 0.0005);
+  EXPECT_GE(greatestDisplacement(pipeline.tissue()), 0.9 * pressed);
+}
+
 // Its jaws come back around the ridge, not down on it.
 TEST_P(Grasper, ThatAppearsClosedAroundTissueHoldsIt) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
