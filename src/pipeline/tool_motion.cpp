@@ -89,8 +89,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     if (is_short || is_hopeless) {
       world_.report.lost = true;
       const double next = std::min(gone + tuning::kShortestStep, there);
-      world_.dead_end =
-          DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
+      world_.dead_end = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
       return came();
     }
     longest = tuning::kShortestStep;

@@ -143,11 +143,8 @@ TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   }
 }
 
-// These end by themselves, but not within the processor time of a test.
-bool isLong(const std::string& name) {
-  return name == "press40_nu49" || name == "rigid_plate_drawn_away_slow" ||
-         name == "three_tools_slow_h5";
-}
+// It ends by itself, but not within the processor time of a test.
+bool isLong(const std::string& name) { return name == "three_tools_slow_h5"; }
 
 // Scenes that once crashed, hung or took minutes (test/data/repro/README.md).
 TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {

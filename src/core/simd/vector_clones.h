@@ -7,9 +7,9 @@
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 // Likewise of functions that know how long the vectors are: DEFINE(kind, bytes) defines them for
 // one kind of processor.
-#define ROBOT_TISSUE_FOR_EACH_PROCESSOR(DEFINE)             \
-  DEFINE(__attribute__((target("arch=x86-64-v4"))), 64)     \
-  DEFINE(__attribute__((target("arch=x86-64-v3"))), 32)     \
+#define ROBOT_TISSUE_FOR_EACH_PROCESSOR(DEFINE)         \
+  DEFINE(__attribute__((target("arch=x86-64-v4"))), 64) \
+  DEFINE(__attribute__((target("arch=x86-64-v3"))), 32) \
   DEFINE(__attribute__((target("default"))), 16)
 #else
 #define ROBOT_TISSUE_CLONES
