@@ -1,135 +1,18 @@
 // The runner as a program and as a function: exit codes, files and their content.
 #include <gtest/gtest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "result_text.h"
-#include "simulate.h"
+#include "simulate_program.h"
 
 namespace robot_tissue {
 namespace {
-
-namespace fs = std::filesystem;
-
-const std::vector<std::string> kFiles = {"increments.csv", "nodes.csv", "patches.csv",
-                                         "surface.stl", "tools.csv"};
-
-const std::string kScene = R"(tissue:
-  shape: {type: box, min: [0.0, 0.0, 0.0], max: [0.04, 0.03, 0.02]}
-  spacing: 0.01
-  material: {young_modulus: 10000.0}
-  fixed:
-    - {min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 0.0]}
-steps:
-  - settle: {}
-  - load:
-      increments: 3
-      patches:
-        - {name: punch, min: [0.01, 0.01, 0.02], max: [0.02, 0.02, 0.02], displacement: [0.0, 0.0, -0.003]}
-  - load:
-      increments: 2
-      patches:
-        - {name: pull, min: [0.04, 0.03, 0.02], max: [0.04, 0.03, 0.02], displacement: [0.0, 0.0, 0.001]}
-  - release: {patches: [punch]}
-  - reset: {}
-  - load:
-      increments: 1
-      patches:
-        - {name: last, min: [0.01, 0.01, 0.02], max: [0.01, 0.01, 0.02], displacement: [0.0, 0.0, 0.002]}
-)";
-
-// The patch is pushed through the block: cells turn inside out.
-const std::string kInvertingScene = R"(tissue:
-  shape: {type: box, min: [0.0, 0.0, 0.0], max: [0.04, 0.04, 0.02]}
-  spacing: 0.01
-  model: six_spring
-  material: {young_modulus: 10000.0}
-  fixed:
-    - {min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 0.0]}
-steps:
-  - load:
-      increments: 4
-      patches:
-        - {name: punch, min: [0.02, 0.02, 0.02], max: [0.02, 0.02, 0.02], displacement: [0.0, 0.0, -0.1]}
-)";
-
-using Rows = std::vector<std::vector<std::string>>;
-
-std::string readText(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-Rows readCsv(const fs::path& path) {
-  Rows rows;
-  std::istringstream lines(readText(path));
-  for (std::string line; std::getline(lines, line);) {
-    rows.emplace_back();
-    std::istringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
-  }
-  return rows;
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-class Simulate : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "simulate_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-    write("block.yaml", kScene);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-  // Runs the program in the test's folder.
-  Outcome program(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" + SIMULATE_PATH + "' " +
-                                arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(folder_ / "stdout.txt"),
-                    readText(folder_ / "stderr.txt")};
-    return outcome;
-  }
-  std::vector<std::string> entries(const std::string& name) const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_ / name)) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  void expectRefused(const std::string& arguments, const std::string& fragment) const {
-    const Outcome outcome = program(arguments);
-    EXPECT_EQ(outcome.code, 2) << arguments;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_NE(outcome.err.find(fragment), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_FALSE(fs::exists(folder_ / "out")) << arguments;
-  }
-
-  fs::path folder_;
-};
 
 TEST_F(Simulate, WritesAllFilesAndNothingElse) {
   const Outcome outcome = program("block.yaml --out out/deep/");
@@ -292,64 +175,6 @@ TEST_F(Simulate, IncrementsThatAreNotOkGiveExitCode3AndAllFiles) {
   EXPECT_EQ(quiet.err, "");
 }
 
-TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
-  expectRefused("", "SCENE.yaml is missing");
-  expectRefused("block.yaml", "--out is missing");
-  expectRefused("--out out", "SCENE.yaml is missing");
-  expectRefused("block.yaml --out", "--out: must be followed by a value");
-  expectRefused("block.yaml --out=", "--out: must be followed by a value");
-  expectRefused("block.yaml other.yaml --out out", "\"other.yaml\"");
-  expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
-  expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
-  expectRefused("block.yaml --out out --out out", "--out: stands twice");
-  expectRefused("block.yaml --out out --method magic",
-                "--method = magic: must be one of layered, newton, paper, vbd, "
-                "xpbd, explicit");
-  expectRefused("block.yaml --out out --tolerance 1",
-                "--tolerance = 1: must be a number from 1e-09 to 0.5");
-  expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
-  expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
-  expectRefused("none.yaml --out out", "none.yaml: No such file");
-}
-
-TEST_F(Simulate, BadScenesAreRefusedAndOldResultsStay) {
-  write("bad.yaml", kScene + "  - suture: {}\n");
-  expectRefused("bad.yaml --out out", "bad.yaml:23: steps[6].suture");
-  ASSERT_EQ(program("block.yaml --out kept").code, 0);
-  const std::string nodes = readText(folder_ / "kept/nodes.csv");
-  EXPECT_EQ(program("bad.yaml --out kept").code, 2);
-  EXPECT_EQ(readText(folder_ / "kept/nodes.csv"), nodes);
-  EXPECT_EQ(entries("kept"), kFiles);
-}
-
-TEST_F(Simulate, FoldersThatCannotBeWrittenAreRefused) {
-  write("file", "");
-  expectRefused("block.yaml --out file", "is no folder");
-  expectRefused("block.yaml --out file/out", "is no folder");
-  expectRefused("block.yaml --out /proc/none/out", "--out = /proc/none/out");
-  fs::create_directories(folder_ / "odd/nodes.csv");
-  expectRefused("block.yaml --out odd", "is no plain file");
-  EXPECT_EQ(entries("odd"), std::vector<std::string>({"nodes.csv"}));
-}
-
-TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
-  EXPECT_EQ(program("block.yaml --out=out --threads=4 --method newton").err,
-            "simulate: --threads = 4: ignored, method newton uses one thread\n");
-  EXPECT_EQ(program("block.yaml --out out --threads 4 --method newton --quiet").err, "");
-  EXPECT_EQ(program("block.yaml --out out --threads 2").err, "");
-}
-
-TEST_F(Simulate, ARefusalInTheRunIsToldWithoutRemarks) {
-  std::string scene = kInvertingScene;
-  scene.replace(scene.find("steps:"), 6, R"(
-solver: {method: paper, threads: 4}
-tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.015, 0.015, 0.01]}]}]
-steps:
-  - move: {tool: plate, from: {xyz: [0.02, 0.02, 0.05]}, to: {xyz: [0.02, 0.02, 0.024]}})");
-  write("held.yaml", scene);
-  expectRefused("held.yaml --out out", "shares nodes");
-}
-
 TEST_F(Simulate, SolvesTheElasticModelExactly) {
   std::string scene = kScene;
   const std::string place = "  material: {";
@@ -376,39 +201,6 @@ TEST_F(Simulate, WritesTheLatticesNodesAlsoAfterACutOfElasticTissue) {
   const Outcome outcome = program("elastic.yaml --out out");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(readCsv(folder_ / "out/nodes.csv").size(), 1U + 5U * 4U * 3U);
-}
-
-TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
-  std::string scene = kScene;
-  const std::string place = "  material: {";
-  scene.replace(scene.find(place), place.size(), "  model: six_spring\n" + place);
-  write("springs.yaml", scene);
-  expectRefused("springs.yaml --out out --method newton", "--method = newton: with tissue.model");
-}
-
-TEST_F(Simulate, ListsMethodsAndModels) {
-  EXPECT_EQ(program("--list-methods").out, "layered\nnewton\npaper\nvbd\nxpbd\nexplicit\n");
-  EXPECT_EQ(program("--list-models").out, "elastic\nsix_spring\n");
-  EXPECT_EQ(program("--list-methods").code, 0);
-  const Outcome help = program("--help");
-  EXPECT_EQ(help.code, 0);
-  EXPECT_NE(help.out.find("--tolerance X"), std::string::npos);
-}
-
-TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
-  const std::string scene = (folder_ / "block.yaml").string();
-  const std::string out = (folder_ / "out").string();
-  const auto progress = [&](std::vector<std::string> arguments, bool terminal) {
-    arguments.insert(arguments.end(), {scene, "--out", out});
-    std::ostringstream out_stream;
-    std::ostringstream err_stream;
-    EXPECT_EQ(simulate(arguments, out_stream, err_stream, terminal), kExitOk);
-    EXPECT_EQ(out_stream.str(), "");
-    return err_stream.str();
-  };
-  EXPECT_NE(progress({}, true).find("increment 2 of 3: OK"), std::string::npos);
-  EXPECT_EQ(progress({}, false), "");
-  EXPECT_EQ(progress({"--quiet"}, true), "");
 }
 
 }  // namespace

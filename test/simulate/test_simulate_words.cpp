@@ -1,0 +1,102 @@
+// The runner as a program: what it refuses, and what it says on the way.
+#include <gtest/gtest.h>
+
+#include "simulate.h"
+#include "simulate_program.h"
+
+namespace robot_tissue {
+namespace {
+
+TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
+  expectRefused("", "SCENE.yaml is missing");
+  expectRefused("block.yaml", "--out is missing");
+  expectRefused("--out out", "SCENE.yaml is missing");
+  expectRefused("block.yaml --out", "--out: must be followed by a value");
+  expectRefused("block.yaml --out=", "--out: must be followed by a value");
+  expectRefused("block.yaml other.yaml --out out", "\"other.yaml\"");
+  expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
+  expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
+  expectRefused("block.yaml --out out --out out", "--out: stands twice");
+  expectRefused("block.yaml --out out --method magic",
+                "--method = magic: must be one of layered, newton, paper, vbd, "
+                "xpbd, explicit");
+  expectRefused("block.yaml --out out --tolerance 1",
+                "--tolerance = 1: must be a number from 1e-09 to 0.5");
+  expectRefused("block.yaml --out out --tolerance=nan", "--tolerance = nan");
+  expectRefused("block.yaml --out out --threads 0", "--threads = 0: must be a whole number");
+  expectRefused("none.yaml --out out", "none.yaml: No such file");
+}
+
+TEST_F(Simulate, BadScenesAreRefusedAndOldResultsStay) {
+  write("bad.yaml", kScene + "  - suture: {}\n");
+  expectRefused("bad.yaml --out out", "bad.yaml:23: steps[6].suture");
+  ASSERT_EQ(program("block.yaml --out kept").code, 0);
+  const std::string nodes = readText(folder_ / "kept/nodes.csv");
+  EXPECT_EQ(program("bad.yaml --out kept").code, 2);
+  EXPECT_EQ(readText(folder_ / "kept/nodes.csv"), nodes);
+  EXPECT_EQ(entries("kept"), kFiles);
+}
+
+TEST_F(Simulate, FoldersThatCannotBeWrittenAreRefused) {
+  write("file", "");
+  expectRefused("block.yaml --out file", "is no folder");
+  expectRefused("block.yaml --out file/out", "is no folder");
+  expectRefused("block.yaml --out /proc/none/out", "--out = /proc/none/out");
+  fs::create_directories(folder_ / "odd/nodes.csv");
+  expectRefused("block.yaml --out odd", "is no plain file");
+  EXPECT_EQ(entries("odd"), std::vector<std::string>({"nodes.csv"}));
+}
+
+TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
+  EXPECT_EQ(program("block.yaml --out=out --threads=4 --method newton").err,
+            "simulate: --threads = 4: ignored, method newton uses one thread\n");
+  EXPECT_EQ(program("block.yaml --out out --threads 4 --method newton --quiet").err, "");
+  EXPECT_EQ(program("block.yaml --out out --threads 2").err, "");
+}
+
+TEST_F(Simulate, ARefusalInTheRunIsToldWithoutRemarks) {
+  std::string scene = kInvertingScene;
+  scene.replace(scene.find("steps:"), 6, R"(
+solver: {method: paper, threads: 4}
+tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.015, 0.015, 0.01]}]}]
+steps:
+  - move: {tool: plate, from: {xyz: [0.02, 0.02, 0.05]}, to: {xyz: [0.02, 0.02, 0.024]}})");
+  write("held.yaml", scene);
+  expectRefused("held.yaml --out out", "shares nodes");
+}
+
+TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {
+  std::string scene = kScene;
+  const std::string place = "  material: {";
+  scene.replace(scene.find(place), place.size(), "  model: six_spring\n" + place);
+  write("springs.yaml", scene);
+  expectRefused("springs.yaml --out out --method newton", "--method = newton: with tissue.model");
+}
+
+TEST_F(Simulate, ListsMethodsAndModels) {
+  EXPECT_EQ(program("--list-methods").out, "layered\nnewton\npaper\nvbd\nxpbd\nexplicit\n");
+  EXPECT_EQ(program("--list-models").out, "elastic\nsix_spring\n");
+  EXPECT_EQ(program("--list-methods").code, 0);
+  const Outcome help = program("--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("--tolerance X"), std::string::npos);
+}
+
+TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
+  const std::string scene = (folder_ / "block.yaml").string();
+  const std::string out = (folder_ / "out").string();
+  const auto progress = [&](std::vector<std::string> arguments, bool terminal) {
+    arguments.insert(arguments.end(), {scene, "--out", out});
+    std::ostringstream out_stream;
+    std::ostringstream err_stream;
+    EXPECT_EQ(simulate(arguments, out_stream, err_stream, terminal), kExitOk);
+    EXPECT_EQ(out_stream.str(), "");
+    return err_stream.str();
+  };
+  EXPECT_NE(progress({}, true).find("increment 2 of 3: OK"), std::string::npos);
+  EXPECT_EQ(progress({}, false), "");
+  EXPECT_EQ(progress({"--quiet"}, true), "");
+}
+
+}  // namespace
+}  // namespace robot_tissue
