@@ -45,8 +45,7 @@ class BroadPhase::Object : public fcl::CollisionObjectd {
 
   void place(const PlacedShape& placed, double margin) {
     t = placed.tissue_T_shape;
-    aabb.min_ = placed.bounds.min().array() - margin;
-    aabb.max_ = placed.bounds.max().array() + margin;
+    placeBox(grownBy(margin, placed.bounds));
   }
   void placeBox(const Box& box) {
     aabb.min_ = box.min();

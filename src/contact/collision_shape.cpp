@@ -49,8 +49,7 @@ CollisionShape::CollisionShape(const ToolShape& shape, const std::string& owner,
     measurePrimitive(owner);
   }
   thickness_ += 2.0 * shape.padding;
-  bounds_.min().array() -= shape.padding;
-  bounds_.max().array() += shape.padding;
+  bounds_ = grownBy(shape.padding, bounds_);
 }
 
 void CollisionShape::measurePrimitive(const std::string& owner) {
@@ -110,10 +109,7 @@ SignedDistance CollisionShape::distanceWithin(const Vec3& point, double bound) c
 }
 
 std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) const {
-  // Written so that a point that is not finite is outside.
-  const bool near = (point.array() >= bounds_.min().array() - reach).all() &&
-                    (point.array() <= bounds_.max().array() + reach).all();
-  if (!near || !point.allFinite()) return std::nullopt;
+  if (!grownBy(reach, bounds_).contains(point) || !point.allFinite()) return std::nullopt;
   if (isMesh()) return wayOutOfMesh(point, reach);
   const SignedDistance found = distance(point);
   if (found.value > reach) return std::nullopt;

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include "bounds_of_numbers.h"
 #include "broad_phase.h"
 #include "collision_shape.h"
 #include "link_contacts.h"
@@ -93,12 +92,6 @@ class SurfaceTree {
   std::uint64_t moves_ = 0;
 };
 
-Box finiteBounds(const std::vector<Vec3>& vertices) {
-  BoundsOfNumbers bounds;
-  for (const Vec3& vertex : vertices) bounds.add(vertex);
-  return bounds.box();
-}
-
 // What the last find() met.
 struct Found {
   std::uint64_t move = 0;  // of the surface
@@ -118,10 +111,12 @@ struct ContactFinder::Impl {
   void addContacts(const PlacedLink& here, std::size_t link,
                    const std::vector<std::size_t>& near_shapes, const Surface& surface,
                    const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
+  double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
+                     const Surface& surface, const std::vector<Vec3>& vertices);
   // Around the surface; nobody may ever come near.
   Box boundsOf(const Surface& surface, const std::vector<Vec3>& vertices) {
     return surface_tree.exists() ? surface_tree.of(surface, vertices).bounds()
-                                 : finiteBounds(vertices);
+                                 : robot_tissue::boundsOf(vertices);
   }
 
   // The last find() was of that link there, and of the surface that the tree is of.
@@ -242,6 +237,26 @@ ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
   return found;
 }
 
+// The tree is of these vertices.
+double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link,
+                                        const Pose& tissue_T_link, const Surface& surface,
+                                        const std::vector<Vec3>& vertices) {
+  double deepest = 0.0;
+  if (knows(link, tissue_T_link)) {
+    deepest = found.deepest[link];
+  } else {
+    std::vector<std::size_t> shapes(here.size());
+    std::iota(shapes.begin(), shapes.end(), std::size_t{0});
+    ContactSet contacts;
+    addContacts(here, link, shapes, surface, vertices, 0.0, contacts);
+    deepest = robot_tissue::deepest(contacts);
+  }
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    deepest = deepestInside(here[i], links[link].surface_points[i], surface_tree.last(), deepest);
+  }
+  return deepest;
+}
+
 std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue_T_link,
                                             const Vec3& point, double reach) const {
   return robot_tissue::wayOut(placed(impl_->links[link].shapes, tissue_T_link), point, reach);
@@ -265,28 +280,20 @@ std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& t
   return std::nullopt;
 }
 
-double ContactFinder::penetration(std::size_t link, const Pose& tissue_T_link,
-                                  const Surface& surface, const std::vector<Vec3>& vertices) const {
+std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& links,
+                                                const RobotPose& pose, const Surface& surface,
+                                                const std::vector<Vec3>& vertices) const {
+  requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);
-  const PlacedLink here = placed(impl_->links[link].shapes, tissue_T_link);
+  std::vector<double> depths(links.size(), 0.0);
   const Box bounds = impl_->boundsOf(surface, vertices);
-  if (here.empty() || !boxesMeet(robot_tissue::boundsOf(here), bounds, 0.0)) return 0.0;
-  if (!impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
-  const TriangleBvh& tree = impl_->surface_tree.last();
-  double deepest = 0.0;
-  if (impl_->knows(link, tissue_T_link)) {
-    deepest = impl_->found.deepest[link];
-  } else {
-    std::vector<std::size_t> shapes(here.size());
-    std::iota(shapes.begin(), shapes.end(), std::size_t{0});
-    ContactSet contacts;
-    impl_->addContacts(here, link, shapes, surface, vertices, 0.0, contacts);
-    deepest = robot_tissue::deepest(contacts);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const PlacedLink here = placed(impl_->links[links[i]].shapes, pose.links[links[i]]);
+    if (!robot_tissue::boundsOf(here).intersects(bounds)) continue;
+    if (!impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
+    depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices);
   }
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    deepest = deepestInside(here[i], impl_->links[link].surface_points[i], tree, deepest);
-  }
-  return deepest;
+  return depths;
 }
 
 double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {

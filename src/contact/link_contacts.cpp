@@ -12,8 +12,8 @@ namespace robot_tissue {
 namespace {
 
 // Into the tissue: for a point that every way leads out of the tool alike.
-Vec3 inward(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 area = (b - a).cross(c - a);
+Vec3 inward(const Corners& corners) {
+  const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double length = area.norm();
   return length > 0.0 ? Vec3(-area / length) : Vec3(-Vec3::UnitZ());
 }
@@ -29,9 +29,7 @@ void LinkContacts::find(const Asked& asked, const Surface& surface,
   margin_ = asked.margin;
   tool_ = asked.tool_index;
   link_index_ = asked.link_index;
-  box_ = boundsOf(asked.link);
-  box_.min().array() -= margin_;
-  box_.max().array() += margin_;
+  box_ = grownBy(margin_, boundsOf(asked.link));
   ++search_;
   vertex_asked_in_.resize(vertices.size());
   seen_.resize(std::max(seen_.size(), link_->size()));
@@ -58,8 +56,13 @@ void LinkContacts::askTriangle(int triangle, ContactSet& found) {
   for (std::size_t shape = 0; shape < link_->size(); ++shape) {
     // Of a plane, a vertex is the deepest point.
     if ((*link_)[shape].shape->isPlane()) continue;
-    if (boxesMeet((*link_)[shape].bounds, box, margin_)) askShape(shape, corners, found);
+    if (grownBy(margin_, (*link_)[shape].bounds).intersects(box)) askShape(shape, corners, found);
   }
+}
+
+Corners LinkContacts::cornersOf(const MeshTriangle& triangle) const {
+  return {(*vertices_)[at(triangle[0])], (*vertices_)[at(triangle[1])],
+          (*vertices_)[at(triangle[2])]};
 }
 
 const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
@@ -125,8 +128,7 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
 
 void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, ContactSet& found) {
   const PlacedShape& placed = (*link_)[shape];
-  const Corners corners = {(*vertices_)[at(triangle[0])], (*vertices_)[at(triangle[1])],
-                           (*vertices_)[at(triangle[2])]};
+  const Corners corners = cornersOf(triangle);
   for (const TriangleMinimum& minimum : minimaOf(shape, triangle)) {
     // Where another shape of the link is deeper, that one's deepest point speaks for both.
     if (link_->size() > 1) {
@@ -144,15 +146,13 @@ void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, Con
 bool LinkContacts::isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
                                    const MeshTriangle& triangle, double accuracy) {
   const bool is_mesh = (*link_)[shape].shape->isMesh();
+  const Corners corners = cornersOf(triangle);
   for (std::size_t k = 0; k < 3; ++k) {
     const Seen& corner = seen(shape, triangle[k]);
     if (!corner.is_near || !(corner.distance.value < margin_)) continue;
     if (corner.distance.value > minimum.distance.value + accuracy) continue;
     if (!is_mesh) return true;
-    const Vec3 place = (*vertices_)[at(triangle[0])] * minimum.weights[0] +
-                       (*vertices_)[at(triangle[1])] * minimum.weights[1] +
-                       (*vertices_)[at(triangle[2])] * minimum.weights[2];
-    const double apart = (place - (*vertices_)[at(triangle[k])]).norm();
+    const double apart = (pointOf(corners, minimum.weights) - corners[k]).norm();
     if (apart <= std::max(accuracy, -corner.distance.value)) return true;
   }
   return false;
@@ -179,17 +179,14 @@ bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
 }
 
 void LinkContacts::add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found) {
-  const MeshTriangle& triangle = surface_->triangles[at(triangle_)];
-  const Vec3& a = (*vertices_)[at(triangle[0])];
-  const Vec3& b = (*vertices_)[at(triangle[1])];
-  const Vec3& c = (*vertices_)[at(triangle[2])];
+  const Corners corners = cornersOf(surface_->triangles[at(triangle_)]);
   Contact contact;
   contact.tool = tool_;
   contact.link = link_index_;
   contact.triangle = triangle_;
   contact.barycentric = weights;
-  contact.point = weights[0] * a + weights[1] * b + weights[2] * c;
-  contact.normal = normal.isZero() ? inward(a, b, c) : normal;
+  contact.point = pointOf(corners, weights);
+  contact.normal = normal.isZero() ? inward(corners) : normal;
   contact.depth_m = depth;
   found.contacts.push_back(contact);
 }

@@ -42,6 +42,7 @@ class LinkContacts {
   void askVertex(int vertex, const Vec3& weights, ContactSet& found);
   void askShape(std::size_t shape, const MeshTriangle& triangle, ContactSet& found);
   const Seen& seen(std::size_t shape, int vertex);
+  Corners cornersOf(const MeshTriangle& triangle) const;  // tissue frame (m)
   std::vector<TriangleMinimum> minimaOf(std::size_t shape, const MeshTriangle& triangle);
   bool isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
                        const MeshTriangle& triangle, double accuracy);

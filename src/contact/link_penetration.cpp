@@ -101,14 +101,12 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                      const TriangleBvh& surface, double known) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const Box& box = surface.bounds();
+  const Box box = surface.bounds();
   double deepest = known;
   TriangleBvh::Nearest foot;
   Vec3 place = Vec3::Zero();
   const auto isDeeper = [&](const Vec3& point, double least) {
-    const bool in_box =
-        (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
-    if (!in_box) return false;
+    if (!box.contains(point)) return false;
     if (surface.nearest(point, least, least) || !surface.isInside(point)) return false;
     const auto nearest = surface.nearest(point, infinity);
     if (!nearest || nearest->distance <= least) return false;

@@ -26,11 +26,6 @@ bool isRigid(const Pose& pose) {
          rotation.determinant() > 0.0;
 }
 
-bool boxesMeet(const Box& a, const Box& b, double margin) {
-  return (a.min().array() - margin <= b.max().array()).all() &&
-         (b.min().array() - margin <= a.max().array()).all();
-}
-
 PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_T_link) {
   PlacedLink link;
   if (!isRigid(tissue_T_link)) return link;

@@ -22,9 +22,6 @@ using PlacedLink = std::vector<PlacedShape>;
 // Finite, and a rotation and a shift.
 bool isRigid(const Pose& pose);
 
-// May be infinite.
-bool boxesMeet(const Box& a, const Box& b, double margin);
-
 // No shapes when the pose is not rigid: such a link touches nothing.
 PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_T_link);
 Box boundsOf(const PlacedLink& link);

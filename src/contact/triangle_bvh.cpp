@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "bounds_of_numbers.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -177,7 +176,7 @@ bool TriangleBvh::moveTo(const std::vector<Vec3>& vertices) {
 }
 
 bool TriangleBvh::movePart(Part& part, const std::vector<Vec3>& vertices) {
-  BoundsOfNumbers bounds;
+  VertexBounds bounds;
   bool is_same = true;
   for (int slot = part.first_slot; slot < part.end_slot; ++slot) {
     const Vec3& now = vertices[at(vertices_[at(slot)])];
@@ -257,7 +256,7 @@ void TriangleBvh::searchBelow(int number, Search& search) const {
 void TriangleBvh::searchTriangle(int triangle, Search& search) const {
   const Corners& here = corners_[at(triangle)];
   const Vec3 weights = nearestInTriangle(search.point, here);
-  const Vec3 foot = weights[0] * here[0] + weights[1] * here[1] + weights[2] * here[2];
+  const Vec3 foot = pointOf(here, weights);
   const double squared = (search.point - foot).squaredNorm();
   if (!(squared < search.best)) return;
   search.best = squared;

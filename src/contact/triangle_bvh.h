@@ -25,6 +25,11 @@ using Corners = std::array<Vec3, 3>;
 // Weights of the triangle's point that is nearest to p; sum to 1.
 Vec3 nearestInTriangle(const Vec3& p, const Corners& corners);
 
+// Point by weights of the corners, which sum to 1.
+inline Vec3 pointOf(const Corners& corners, const Vec3& weights) {
+  return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
+
 class TriangleBvh {
  public:
   using Model = fcl::BVHModel<fcl::AABBd>;

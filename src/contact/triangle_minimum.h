@@ -14,11 +14,6 @@
 
 namespace robot_tissue {
 
-// Point by weights of the corners, which sum to 1.
-inline Vec3 pointOf(const Corners& corners, const Vec3& weights) {
-  return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
-}
-
 double longestEdge(const Corners& corners);
 
 // The highest of some planes over a triangle; a plane is given by its values at the corners.

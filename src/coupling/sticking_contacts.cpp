@@ -139,7 +139,7 @@ std::map<int, Vec3> StickingContacts::motionOf(const std::vector<Push>& pushes) 
 
 bool StickingContacts::letsGo(int node, const Vec3& displacement, const Vec3& way_out,
                               const Tissue& tissue) {
-  if (surface_version_ != tissue.surfaceVersion()) findOutwardNormals(tissue);
+  if (surface_revision_ != tissue.surface().revision) findOutwardNormals(tissue);
   if (outward_[at(node)].dot(displacement) > 0.0) return true;
   return way_out.dot(displacement) < 0.0 && way_out.dot(tissue.nodeForce(node)) >= 0.0;
 }
@@ -273,7 +273,7 @@ void StickingContacts::findOutwardNormals(const Tissue& tissue) {
       }
     }
   }
-  surface_version_ = tissue.surfaceVersion();
+  surface_revision_ = tissue.surface().revision;
 }
 
 void StickingContacts::holdNamedLoads(const Tissue& tissue) {

@@ -270,9 +270,11 @@ bool Pipeline::drive(const RobotPose& pose) {
 
 void Pipeline::describeTools() {
   const Stopwatch watch(world_.report.contact_ms);
+  const std::vector<double> deepest = deepestPoints(world_);
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     ToolReport& report = world_.report.tools[tool];
     report = describeTool(world_, parts_->grasping, tool);
+    report.max_penetration = deepest[tool];
     report.offset = parts_->drive.offset(tool);
   }
 }

@@ -18,9 +18,7 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
     if (ToolSet::isAway(world_.pose.links[link])) continue;
     Surroundings here;
-    here.box = world_.finder.bounds(link, world_.pose.links[link]);
-    here.box.min().array() -= spacing;
-    here.box.max().array() += spacing;
+    here.box = grownBy(spacing, world_.finder.bounds(link, world_.pose.links[link]));
     here.longest = tuning::kLongestWay * spacing;
     here.stride =
         std::min(here.longest, tuning::kStrideOfThickness * world_.finder.thickness(link));
@@ -111,8 +109,8 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
 
 // The shape was solved for the contacts of before: are they those of the shape?
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
-  const bool new_surface = surface_version_ != world_.tissue.surfaceVersion();
-  surface_version_ = world_.tissue.surfaceVersion();
+  const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
+  surface_revision_ = world_.tissue.surface().revision;
   if (new_surface) world_.sliding.clear();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   const ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);

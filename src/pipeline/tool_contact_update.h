@@ -1,6 +1,7 @@
 // Whether the contacts that a shape was solved for are those of the shape (Tissue asks).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "touch_finder.h"
@@ -13,7 +14,7 @@ class ToolContactUpdate : public ContactUpdate {
   ToolContactUpdate(World& world, TouchFinder& touch_finder)
       : world_(world),
         touch_finder_(touch_finder),
-        surface_version_(world.tissue.surfaceVersion()) {}
+        surface_revision_(world.tissue.surface().revision) {}
 
   std::vector<double> longestWays() override;
   double shareOfWay(const std::vector<Vec3>& before) override;
@@ -37,7 +38,7 @@ class ToolContactUpdate : public ContactUpdate {
 
   World& world_;
   TouchFinder& touch_finder_;
-  unsigned surface_version_;
+  std::uint64_t surface_revision_;
   std::vector<Vec3> vertices_;  // where the way began that is looked at
   double left_inside_ = 0.0;    // depth of the deepest contact after the last solve (m)
 };

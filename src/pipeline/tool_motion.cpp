@@ -180,17 +180,18 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
 // Away from where the tissue is at rest, and through its surface.
 bool ToolMotion::isHooked(std::size_t tool) const {
   if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
-  const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
-  for (std::size_t link = first; link < end; ++link) {
+  std::vector<std::size_t> links;
+  for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
     const Box box = world_.finder.bounds(link, world_.last_pose->links[link]);
     if (distance(box, world_.tissue.lattice().bounds()) < world_.tissue.lattice().spacing()) {
       return false;
     }
+    links.push_back(link);
   }
-  for (std::size_t link = first; link < end; ++link) {
-    const double depth = world_.finder.penetration(
-        link, world_.last_pose->links[link], world_.tissue.surface(), world_.tissue.vertices());
-    if (depth > load_step_.throughAt(link)) return true;
+  const std::vector<double> depths = world_.finder.penetrations(
+      links, *world_.last_pose, world_.tissue.surface(), world_.tissue.vertices());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (depths[i] > load_step_.throughAt(links[i])) return true;
   }
   return false;
 }

@@ -43,20 +43,27 @@ Vec3 normalOf(const World& world, std::size_t tool) {
   return (sum.norm() > tuning::kCancelled * all ? sum : hardest).normalized();
 }
 
-// Also of a tool that touches nothing that gives way (m).
-double deepestPointOf(const World& world, std::size_t tool) {
+}  // namespace
+
+std::vector<double> deepestPoints(const World& world) {
   const RobotPose& pose = world.report.lost ? world.asked : world.pose;
-  double deepest = 0.0;
-  for (std::size_t link = world.tools.firstLink(tool); link < world.tools.endLink(tool); ++link) {
-    if (!world.finder.bounds(link, pose.links[link]).intersects(world.tissue.bounds())) continue;
-    deepest =
-        std::max(deepest, world.finder.penetration(link, pose.links[link], world.tissue.surface(),
-                                                   world.tissue.vertices()));
+  std::vector<std::size_t> near, tool_of;
+  for (std::size_t tool = 0; tool < world.tools.size(); ++tool) {
+    for (std::size_t link = world.tools.firstLink(tool); link < world.tools.endLink(tool); ++link) {
+      if (!world.finder.bounds(link, pose.links[link]).intersects(world.tissue.bounds())) continue;
+      near.push_back(link);
+      tool_of.push_back(tool);
+    }
+  }
+  std::vector<double> deepest(world.tools.size(), 0.0);
+  if (near.empty()) return deepest;
+  const std::vector<double> depths =
+      world.finder.penetrations(near, pose, world.tissue.surface(), world.tissue.vertices());
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    deepest[tool_of[i]] = std::max(deepest[tool_of[i]], depths[i]);
   }
   return deepest;
 }
-
-}  // namespace
 
 // The patch's answer in the tool's frame: its force is on the tissue, its torque about the origin.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool) {
@@ -69,7 +76,6 @@ ToolReport describeTool(const World& world, const Grasping& grasping, std::size_
     report.jaw_gap = grasping.gapAtTissue(tool, world.pose);
   }
   report.holds_nothing = grasping.whyItHoldsNothing(tool);
-  report.max_penetration = deepestPointOf(world, tool);
   std::set<int> nodes;
   for (const int node : world.sticking.nodes(index)) {
     report.point += world.tissue.nodePosition(node);

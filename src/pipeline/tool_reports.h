@@ -8,7 +8,11 @@
 
 namespace robot_tissue {
 
-// But for the way of a tool that a force drives.
+// Of each tool the deepest point in the tissue (m), also of one that touches nothing that gives
+// way.
+std::vector<double> deepestPoints(const World& world);
+
+// But for its deepest point, and the way of a tool that a force drives.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool);
 
 }  // namespace robot_tissue

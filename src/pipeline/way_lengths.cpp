@@ -67,7 +67,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
     const double way = longestWay(from.links[link], to.links[link], world_.finder.reach(link));
     for (const RobotPose* pose : {&from, &to}) {
       const Box box = world_.finder.bounds(link, pose->links[link]);
-      around.extend(Box(box.min().array() - 0.5 * way, box.max().array() + 0.5 * way));
+      around.extend(grownBy(0.5 * way, box));
     }
   }
   return distance(around, world_.tissue.bounds()) >= world_.tissue.lattice().spacing();

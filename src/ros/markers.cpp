@@ -200,7 +200,8 @@ MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
 
 MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
                                  const ros::Time& reached) {
-  if (springs_version_ != pipeline.tissue().surfaceVersion()) findSurfaceSprings(pipeline.tissue());
+  if (springs_revision_ != pipeline.tissue().surface().revision)
+    findSurfaceSprings(pipeline.tissue());
   const Drawn drawn{pipeline, supports_, surface_springs_, force_scale_};
   MarkerArray array;
   for (const Namespace& each : kNamespaces) {
@@ -237,7 +238,7 @@ void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
       surface_springs_.push_back(static_cast<int>(spring));
     }
   }
-  springs_version_ = tissue.surfaceVersion();
+  springs_revision_ = tissue.surface().revision;
 }
 
 }  // namespace robot_tissue

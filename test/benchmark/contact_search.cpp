@@ -151,7 +151,7 @@ void measure(const Case& scene, const Surface& surface, double spacing) {
     const double begin = processorUs();
     const ContactSet found = finder.find(pose, surface, vertices, kMargin * spacing);
     const double end = processorUs();
-    const double deepest = finder.penetration(0, pose.links[0], surface, vertices);
+    const double deepest = finder.penetrations({0}, pose, surface, vertices)[0];
     search.push_back(end - begin);
     depth.push_back(processorUs() - end);
     contacts += found.contacts.size();

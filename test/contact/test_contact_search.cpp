@@ -35,16 +35,10 @@ double nearestOfAll(const Sheet& sheet, const std::vector<Vec3>& vertices, const
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < sheet.surface.triangles.size(); ++k) {
     const Corners corners = cornersOf(sheet, vertices, k);
-    const Vec3 w = nearestInTriangle(point, corners);
-    const double distance =
-        (w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2] - point).norm();
+    const double distance = (pointOf(corners, nearestInTriangle(point, corners)) - point).norm();
     if (distance < least) least = distance;  // false where it is not a number
   }
   return least;
-}
-
-PlacedLink placedLink(const std::vector<CollisionShape>& shapes, const Pose& pose) {
-  return placed(shapes, pose);
 }
 
 std::vector<CollisionShape> shapesOf(const ToolShape& shape) {
@@ -123,7 +117,7 @@ TEST(SurfaceTraversal, MissesNoTriangleThatIsNear) {
     const std::vector<CollisionShape> shapes = shapesOf(shape);
     for (int i = 0; i < 10; ++i) {
       const Pose pose = makePose(somewhere(random, -0.02, 0.05), 2.0, somewhere(random, 0.1, 1.0));
-      const PlacedLink link = placedLink(shapes, pose);
+      const PlacedLink link = placed(shapes, pose);
       const std::vector<int> found = trianglesNear(link.front(), tree, kMargin);
       EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
       found_ones += static_cast<int>(found.size());
@@ -150,7 +144,7 @@ TEST(SurfaceTraversal, PairsEachTriangleWithTheFacesBesideIt) {
   const std::vector<CollisionShape> shapes =
       shapesOf(mesh(writeStl("pairs.stl", forkTriangles(0.004, 0.004, 0.02, 0.01))));
   const PlacedLink link =
-      placedLink(shapes, makePose(Vec3(0.03, 0.025, -0.001), 0.4, Vec3(1.0, 0.5, 0.2)));
+      placed(shapes, makePose(Vec3(0.03, 0.025, -0.001), 0.4, Vec3(1.0, 0.5, 0.2)));
   const FacePairs pairs(link.front(), tree, kMargin);
   const ToolMesh& tool = link.front().shape->mesh();
   int near_ones = 0;
@@ -162,9 +156,7 @@ TEST(SurfaceTraversal, PairsEachTriangleWithTheFacesBesideIt) {
     for (int face = 0; face < static_cast<int>(tool.triangles().size()); ++face) {
       const Corners of_face = tool.corners(face);
       const auto meets = [&](const Vec3& point) {
-        const Vec3 w = nearestInTriangle(point, of_face);
-        const Vec3 foot = w[0] * of_face[0] + w[1] * of_face[1] + w[2] * of_face[2];
-        return (foot - point).norm() < kMargin;
+        return (pointOf(of_face, nearestInTriangle(point, of_face)) - point).norm() < kMargin;
       };
       if (std::none_of(corners.begin(), corners.end(), meets)) continue;
       ++near_ones;

@@ -60,8 +60,8 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
     Surface fresh = block.surface;  // its tree is made from this shape
     fresh.rest = vertices;
     const ContactFinder new_finder({tool});
-    const double depth = old_finder.penetration(0, pose, block.surface, vertices);
-    EXPECT_NEAR(depth, new_finder.penetration(0, pose, fresh, vertices), 1e-12);
+    const double depth = old_finder.penetrations({0}, at(pose), block.surface, vertices)[0];
+    EXPECT_NEAR(depth, new_finder.penetrations({0}, at(pose), fresh, vertices)[0], 1e-12);
     const auto of_old = old_finder.find(at(pose), block.surface, vertices, 0.001).contacts;
     const auto of_new = new_finder.find(at(pose), fresh, vertices, 0.001).contacts;
     ASSERT_EQ(of_old.size(), of_new.size());
@@ -70,7 +70,7 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
       EXPECT_EQ(of_old[i].depth_m, of_new[i].depth_m);
     }
     // Once more, with what find() has met.
-    EXPECT_EQ(old_finder.penetration(0, pose, block.surface, vertices), depth);
+    EXPECT_EQ(old_finder.penetrations({0}, at(pose), block.surface, vertices)[0], depth);
     if (depth > 1e-4) ++met;
   }
   EXPECT_GT(met, kSteps / 4);

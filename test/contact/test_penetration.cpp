@@ -17,7 +17,7 @@ const Vec3 kMiddle(0.021, 0.019, 0.0);
 double penetrationOf(const ToolShape& shape, const Pose& pose, double padding = 0.0) {
   const Sheet block = makeBlock(kCells, kSpacing);
   const ContactFinder finder({makeTool({shape}, padding)});
-  return finder.penetration(0, pose, block.surface, block.vertices);
+  return finder.penetrations({0}, at(pose), block.surface, block.vertices)[0];
 }
 
 TEST(Penetration, SphereOverAFlatTop) {
@@ -91,7 +91,8 @@ TEST(Penetration, LipsOfAClosedCutAreNoOutside) {
   const ContactFinder finder({makeTool({cylinder(0.0005, 0.04)})});
   for (const double x : {0.0165, 0.0235}) {
     const Pose pose = makePose(Vec3(x, 0.019, 0.02 - 0.0025));
-    EXPECT_NEAR(finder.penetration(0, pose, halves.surface, halves.vertices), 0.0025, 1e-9);
+    EXPECT_NEAR(finder.penetrations({0}, at(pose), halves.surface, halves.vertices)[0], 0.0025,
+                1e-9);
   }
 }
 
@@ -99,8 +100,8 @@ TEST(Penetration, IsOfTheSurfaceAsItIsNow) {
   Sheet block = makeBlock(kCells, kSpacing);
   const ContactFinder finder({makeTool({cylinder(0.0005, 0.04)})});
   const auto ask = [&] {
-    return finder.penetration(0, makePose(Vec3(0.021, 0.019, 0.0185)), block.surface,
-                              block.vertices);
+    const RobotPose pose = at(makePose(Vec3(0.021, 0.019, 0.0185)));
+    return finder.penetrations({0}, pose, block.surface, block.vertices)[0];
   };
   EXPECT_NEAR(ask(), 0.0015, 1e-9);
   for (Vec3& vertex : block.vertices) vertex.z() -= 0.001;

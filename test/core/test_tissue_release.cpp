@@ -76,7 +76,7 @@ TEST_F(LoadedTissue, ResetMendsEverythingToTheLastBit) {
   const Tissue untouched(kBlock, paperSolver());
   tissue_.cut(bladeAcross(0.095, 0.022));
   ASSERT_GT(tissue_.state().springs_cut, 0);
-  const unsigned version = tissue_.surfaceVersion();
+  const std::uint64_t version = tissue_.surface().revision;
   tissue_.reset();
   expectAtRest(tissue_);
   EXPECT_TRUE(tissue_.patches().empty());
@@ -87,7 +87,7 @@ TEST_F(LoadedTissue, ResetMendsEverythingToTheLastBit) {
   EXPECT_EQ(tissue_.surface().triangles, untouched.surface().triangles);
   EXPECT_EQ(tissue_.surface().rest, untouched.surface().rest);
   EXPECT_EQ(tissue_.surface().opened, untouched.surface().opened);
-  EXPECT_NE(tissue_.surfaceVersion(), version);
+  EXPECT_NE(tissue_.surface().revision, version);
   const SolveReport again = reportsOf(tissue_, loadOf({displacedPatch("left", kLeft, kDown),
                                                        displacedPatch("right", kRight, kDown)}))
                                 .back();
@@ -129,13 +129,13 @@ TEST_F(LoadedTissue, ToolsComeAfterNamedPatchesAndLeaveThemStanding) {
 
 TEST(TissueCut, LowersTheSpringsAndRaisesThePieces) {
   Tissue tissue(kBlock, paperSolver());
-  const unsigned version = tissue.surfaceVersion();
+  const std::uint64_t version = tissue.surface().revision;
   const std::size_t triangles = tissue.surface().triangles.size();
   CutReport report = tissue.cut(bladeAcross(0.095, 0.022));
   EXPECT_EQ(report.springs_cut, 9 * 3);  // nodes at z = 30, 40 and 50 mm
   EXPECT_EQ(report.pieces, 1);
   EXPECT_GT(tissue.surface().triangles.size(), triangles);
-  EXPECT_NE(tissue.surfaceVersion(), version);
+  EXPECT_NE(tissue.surface().revision, version);
   EXPECT_NEAR(report.solve.volume_ratio, 1.0, 1e-9);
   report = tissue.cut(bladeAcross(0.095, -0.1));
   EXPECT_EQ(report.springs_cut, 9 * 3);  // the rest of them

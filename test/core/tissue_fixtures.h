@@ -71,14 +71,14 @@ struct Snapshot {
         vertices(tissue.vertices()),
         triangles(tissue.surface().triangles),
         named(tissue.namedPatches()),
-        surface_version(tissue.surfaceVersion()) {}
+        surface_revision(tissue.surface().revision) {}
 
   LatticeState state;
   std::vector<LoadingPatch> patches;
   std::vector<Vec3> vertices;
   std::vector<std::array<int, 3>> triangles;
   std::size_t named;
-  unsigned surface_version;
+  std::uint64_t surface_revision;
 };
 
 inline void expectUnchanged(const Tissue& tissue, const Snapshot& before) {
@@ -89,7 +89,7 @@ inline void expectUnchanged(const Tissue& tissue, const Snapshot& before) {
   EXPECT_EQ(tissue.vertices(), before.vertices);
   EXPECT_EQ(tissue.surface().triangles, before.triangles);
   EXPECT_EQ(tissue.namedPatches(), before.named);
-  EXPECT_EQ(tissue.surfaceVersion(), before.surface_version);
+  EXPECT_EQ(tissue.surface().revision, before.surface_revision);
   ASSERT_EQ(tissue.patches().size(), before.patches.size());
   for (std::size_t i = 0; i < before.patches.size(); ++i) {
     EXPECT_EQ(tissue.patches()[i].name, before.patches[i].name);

@@ -69,10 +69,11 @@ class ContactFinder {
                                     const Vec3& direction, double clear, double reach,
                                     double farthest) const;
 
-  // Deepest point of the link inside the surface or of the surface inside the link (m), 0 when they
-  // do not overlap: points of the surface as in find, and corners, edges and rims of the link.
-  double penetration(std::size_t link, const Pose& tissue_T_link, const Surface& surface,
-                     const std::vector<Vec3>& vertices) const;
+  // Of each of these links the deepest point inside the surface, or of the surface inside the link
+  // (m); 0 when they do not overlap: points of the surface as in find, and corners, edges and rims
+  // of the link. Throws InputError as find.
+  std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose,
+                                   const Surface& surface, const std::vector<Vec3>& vertices) const;
 
   // Distance between two links (m), e.g. jaws; 0 when they overlap, infinite when one has no shapes
   // or no rigid pose.

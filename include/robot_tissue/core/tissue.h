@@ -52,8 +52,6 @@ class Tissue {
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
-  // Counts the changes of the surface's triangles (cuts, resets).
-  unsigned surfaceVersion() const { return surface_version_; }
   // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
   const std::vector<LoadingPatch>& patches() const { return patches_; }
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
@@ -167,7 +165,6 @@ class Tissue {
   bool is_aside_ = false;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
   Surface surface_;
-  unsigned surface_version_ = 0;
   double rest_volume_ = 0.0;    // m^3
   Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;

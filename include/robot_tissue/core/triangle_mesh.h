@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -15,8 +17,25 @@ struct TriangleMesh {
   std::vector<MeshTriangle> triangles;  // counter-clockwise seen from outside
 };
 
-// Smallest box that holds the vertices, of which there must be one at least.
-Box boundsOf(const std::vector<Vec3>& vertices);
+// Smallest box that holds the vertices; coordinates that are no number (NaN) do not count. Written
+// without branches: of a surface it is asked for at each look of a tool.
+class VertexBounds {
+ public:
+  void add(const Vec3& vertex) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double here = vertex[static_cast<int>(k)];
+      low_[k] = here < low_[k] ? here : low_[k];
+      high_[k] = here > high_[k] ? here : high_[k];
+    }
+  }
+  Box box() const { return {Vec3(low_[0], low_[1], low_[2]), Vec3(high_[0], high_[1], high_[2])}; }
+
+ private:
+  static constexpr double kMost = std::numeric_limits<double>::max();
+  std::array<double, 3> low_ = {kMost, kMost, kMost}, high_ = {-kMost, -kMost, -kMost};
+};
+
+Box boundsOf(const std::vector<Vec3>& vertices);  // empty without vertices
 
 // Twice the triangle's area, along its normal outwards (m^2).
 Vec3 doubleArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners);

@@ -36,6 +36,11 @@ struct NodeWeight {
 // Closed and axis-aligned (m); empty, with min() above max(), until it is given corners.
 using Box = Eigen::AlignedBox3d;
 
+// The box with that much more (m) on every side.
+inline Box grownBy(double margin, const Box& box) {
+  return {Vec3(box.min().array() - margin), Vec3(box.max().array() + margin)};
+}
+
 // Bad input. what() is one line that names the key or argument, its value and what is allowed.
 class InputError : public std::runtime_error {
  public:

@@ -109,7 +109,7 @@ class StickingContacts {
   std::vector<int> left_;
   // Per node: normal of the surface it carries, at rest; zero inside. Found when it is asked for.
   std::vector<Vec3> outward_;
-  unsigned surface_version_ = 0;
+  std::uint64_t surface_revision_ = 0;
 };
 
 }  // namespace robot_tissue

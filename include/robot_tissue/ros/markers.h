@@ -6,6 +6,7 @@
 #include <ros/time.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ class MarkerBuilder {
   std::string frame_id_;
   double force_scale_;
   std::vector<SupportConfig> supports_;
-  unsigned springs_version_ = 0;
+  std::uint64_t springs_revision_ = 0;  // of the surface that they are of
   std::vector<int> surface_springs_;
   std::vector<visualization_msgs::Marker> told_;  // in the order of build(), as last told
 };

@@ -40,9 +40,9 @@ std::vector<int> representatives(const std::vector<Vec3>& vertices, double reach
 }  // namespace
 
 Box boundsOf(const std::vector<Vec3>& vertices) {
-  Box box;
-  for (const Vec3& vertex : vertices) box.extend(vertex);
-  return box;
+  VertexBounds bounds;
+  for (const Vec3& vertex : vertices) bounds.add(vertex);
+  return bounds.box();
 }
 
 Vec3 doubleArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners) {

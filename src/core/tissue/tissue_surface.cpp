@@ -49,7 +49,6 @@ void Tissue::rebuildSurface() {
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);
   surface_.revision = newRevision();
-  ++surface_version_;
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
