@@ -11,7 +11,8 @@
 namespace robot_tissue {
 namespace {
 
-// Into the tissue: for a point that every way leads out of the tool alike.
+// The normal where the tool gives none, as at the middle of a ball: into the tissue, across the
+// triangle.
 Vec3 inward(const Corners& corners) {
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double length = area.norm();
@@ -82,7 +83,7 @@ const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
   return seen;
 }
 
-// The deepest of the link's shapes.
+// Adds the contact of a vertex, with the shape of the link that it is deepest in.
 void LinkContacts::askVertex(int vertex, const Vec3& weights, ContactSet& found) {
   std::optional<SignedDistance> least;
   Vec3 normal = Vec3::Zero();
@@ -105,7 +106,8 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
     corners[k] = corner.point;
     distances[k] = corner.distance;
   }
-  // One half for the search, one for taking a vertex instead.
+  // Half of the error goes to the search for the deepest point, half to taking a vertex for it
+  // (isVertexAlready).
   const double accuracy = 0.5 * accuracyFor(asked, corners);
   std::vector<TriangleMinimum> minima;
   if (asked.isMesh()) {
@@ -130,7 +132,7 @@ void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, Con
   const PlacedShape& placed = (*link_)[shape];
   const Corners corners = cornersOf(triangle);
   for (const TriangleMinimum& minimum : minimaOf(shape, triangle)) {
-    // Where another shape of the link is deeper, that one's deepest point speaks for both.
+    // Where the point is deeper in another shape of the link, the contact is that shape's.
     if (link_->size() > 1) {
       const auto deepest = wayOut(*link_, pointOf(corners, minimum.weights), margin_);
       if (deepest && deepest->depth_m > -minimum.distance.value + tuning::kDeeper) continue;
@@ -141,8 +143,8 @@ void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, Con
   }
 }
 
-// Convex: whether one of the corners is as deep, but for the accuracy. Mesh: a corner that is also
-// near the place.
+// Whether a corner, which is a contact itself, stands for this deepest point: it is as deep but for
+// the accuracy, and, of a mesh, which may have several deepest points, near to it.
 bool LinkContacts::isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
                                    const MeshTriangle& triangle, double accuracy) {
   const bool is_mesh = (*link_)[shape].shape->isMesh();
@@ -158,7 +160,8 @@ bool LinkContacts::isVertexAlready(const TriangleMinimum& minimum, std::size_t s
   return false;
 }
 
-// A convex shape has one deepest point on an edge; a mesh may have several.
+// Whether a point on an edge was found from the triangle across that edge. A convex shape has one
+// deepest point on an edge; of a mesh they are told apart by their place along it.
 bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
                                  const MeshTriangle& triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -183,8 +186,7 @@ void LinkContacts::add(const Vec3& weights, double depth, const Vec3& normal, Co
   Contact contact;
   contact.tool = tool_;
   contact.link = link_index_;
-  contact.triangle = triangle_;
-  contact.barycentric = weights;
+  contact.place = {triangle_, weights};
   contact.point = pointOf(corners, weights);
   contact.normal = normal.isZero() ? inward(corners) : normal;
   contact.depth_m = depth;

@@ -6,43 +6,17 @@
 #include <set>
 #include <utility>
 
+#include "touch_spring.h"
 #include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-// Beyond which a touch's force is not taken on (N).
-double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
-  double stiffness = 0.0;
-  for (const NodeWeight& carrier : spring.carriers) {
-    stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
-  }
-  return tuning::kMostForce * stiffness * tissue.lattice().spacing();
-}
-
-// Where the point is to be pushed to; what is far in a tool comes out by and by.
-Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
-  const double most = tuning::kMostPush * tissue.lattice().spacing();
-  return contact.point + std::min(contact.depth_m, most) * contact.normal;
-}
-
-// The unit vector `to`, or one that is as far as `most` (rad) from `from` on the way to it.
-Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
-  const double cosine = std::min(1.0, std::max(-1.0, from.dot(to)));
-  const Vec3 across = to - cosine * from;
-  if (std::acos(cosine) <= most || across.norm() < 1e-9) return to;
-  return std::cos(most) * from + std::sin(most) * across.normalized();
-}
-
-}  // namespace
-
 SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
                                  std::vector<double> thickness)
     : friction_(std::move(friction)),
       thickness_(std::move(thickness)),
       pressed_(friction_.size(), 0.0) {}
 
-// What is fine beside the spacing, and beside a thin link (m).
+// The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
 double SlidingContacts::fineness(int link, double spacing) const {
   return std::min(spacing, thickness_[at(link)]);
 }
@@ -53,8 +27,9 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     commit(pose, tissue);
   }
   for (ContactConstraint& touch : touches_) {
-    const Pose moved = pose.links[at(touch.link)] * since_links_[at(touch.link)].inverse();
-    const double times = growth_.times(at(touch.link), pose.links[at(touch.link)]);
+    const Pose moved =
+        pose.links[at(touch.contact.link)] * since_links_[at(touch.contact.link)].inverse();
+    const double times = growth_.times(at(touch.contact.link), pose.links[at(touch.contact.link)]);
     touch.spring.multiplier *= times;
     touch.spring.friction_bound *= times;
     touch.spring.plane_point = moved * touch.spring.plane_point;
@@ -66,7 +41,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
 std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) const {
   std::vector<PressGrowth::Press> presses(links);
   for (const ContactConstraint& touch : touches_) {
-    PressGrowth::Press& press = presses[at(touch.link)];
+    PressGrowth::Press& press = presses[at(touch.contact.link)];
     press.force += touch.spring.multiplier;
     press.place += touch.spring.multiplier * touch.spring.plane_point;
   }
@@ -76,11 +51,12 @@ std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) cons
   return presses;
 }
 
-// Where the point stuck at the last commit, gone with the link since. Its drag follows the normal
-// force: what one touch no longer carries its neighbors carry, and the drag with it.
+// Friction's anchor: where the point was at the last commit, moved with the link since. Its
+// friction force there is the ratio of friction to normal force at the commit times the present
+// multiplier: where normal force goes from one touch to its neighbors, friction goes with it.
 void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) const {
-  const Pose& link = pose.links[at(touch.link)];
-  const Pose moved = link * since_links_[at(touch.link)].inverse();
+  const Pose& link = pose.links[at(touch.contact.link)];
+  const Pose moved = link * since_links_[at(touch.contact.link)].inverse();
   touch.spring.anchor = moved * pointOf(touch.spring, *since_displacement_);
   const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.friction_ratio);
   touch.spring.friction_force = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
@@ -89,8 +65,8 @@ void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) co
 void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
                            const Held& held) {
   for (ContactConstraint& touch : touches_) {
-    touch.found = true;  // its plane has come with the link
-    carry(tissue, held, touch);
+    touch.found = true;  // nothing was looked for yet: its plane has come with the link
+    carry(touch.contact.place, tissue, held, touch.spring);
   }
   for (const Contact& contact : contacts.contacts) {
     if (!friction_[at(contact.tool)]) continue;
@@ -100,15 +76,18 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   stickFirst(tissue);
 }
 
-// Nothing is known of the normal forces of a link that has only just met the tissue: its touches
-// stick in the first solve, so that the tissue does not slide off before it is held.
+// A link that has only just met the tissue has no multipliers, so no bound of friction is known.
+// Its touches stick in the first solve (a bound that is never reached): with none the tissue would
+// slide off before it is held.
 void SlidingContacts::stickFirst(const Tissue& tissue) {
   std::set<int> pushing;
   for (const ContactConstraint& touch : touches_) {
-    if (touch.spring.multiplier > 0.0) pushing.insert(touch.link);
+    if (touch.spring.multiplier > 0.0) pushing.insert(touch.contact.link);
   }
   for (ContactConstraint& touch : touches_) {
-    if (friction_[at(touch.tool)].value_or(0.0) <= 0.0 || pushing.count(touch.link) != 0) continue;
+    if (friction_[at(touch.contact.tool)].value_or(0.0) <= 0.0 ||
+        pushing.count(touch.contact.link) != 0)
+      continue;
     ContactSpring& spring = touch.spring;
     spring.friction_stiffness =
         tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
@@ -137,17 +116,18 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
   return settled;
 }
 
-// The plane where the touch is now. In one load step it turns only so far: what presses from
-// beyond an edge is to be found before the touch lets go. False: the touch is below the plane, or
-// pushed from afar.
+// Takes the plane that the touch's contact has in the present shape. In one load step its normal
+// turns by kMostTurn at most, so that a touch that goes around an edge of the tool holds until
+// others are found beyond it. False, the update is not settled: the point is deeper than the slack,
+// or pushed though it is farther off than that.
 bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPose& pose,
                             const Tissue& tissue, ContactConstraint& touch) {
   ContactSpring& spring = touch.spring;
   touch.found = contact.has_value();
   if (!contact) return spring.multiplier <= 0.0;
-  touch.off = -contact->depth_m;
+  touch.contact = *contact;
   if (contact->normal.norm() > 0.5) {
-    const Vec3 since = pose.links[at(touch.link)].linear() * touch.since_normal;
+    const Vec3 since = pose.links[at(touch.contact.link)].linear() * touch.since_normal;
     spring.normal = turnedBy(since, contact->normal, tuning::kMostTurn);
     spring.plane_point = planePointOf(*contact, tissue);
   }
@@ -155,21 +135,24 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   const double gap = gapOf(spring, tissue.state().displacement);
   const double slack = slackOf(touch, tissue);
   return gap >= -slack &&
-         (gap <= slack || spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.tool)]);
+         (gap <= slack ||
+          spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.contact.tool)]);
 }
 
-// A depth or gap that is none (m): the tissue would not push much harder or less without it.
+// The depth or gap that counts as none (m): closing it would change the touch's force by less than
+// kSlackOfForce of what its tool presses with, within bounds.
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
   const double stiffness = touch.spring.stiffness;
   const double spacing = tissue.lattice().spacing();
   const double slack = stiffness > 0.0 ? tuning::kSlackOfForce * tuning::kContactStiffness *
-                                             pressed_[at(touch.tool)] / stiffness
+                                             pressed_[at(touch.contact.tool)] / stiffness
                                        : 0.0;
   return std::min(std::max(slack, tuning::kLeastSlack * spacing), tuning::kMostSlack * spacing);
 }
 
-// A point that was found in a link or near it: a new touch, or one of a triangle that has wandered.
-// False: it is to be pushed out.
+// Takes a contact that the search found: as a new touch or, on a triangle whose deepest point has
+// moved, in the place of the known one. False, the update is not settled: it is deeper than the
+// slack.
 bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                            const Held& held) {
   ContactConstraint* touch = find(contact, tissue.surface());
@@ -178,7 +161,8 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     return contact.depth_m <= slackOf(touches_.back(), tissue);
   }
   const double slack = slackOf(*touch, tissue);
-  if (touch->vertex >= 0 || -contact.depth_m >= touch->off - tuning::kDeeperThanTouch * slack)
+  if (touch->vertex >= 0 ||
+      -contact.depth_m >= -touch->contact.depth_m - tuning::kDeeperThanTouch * slack)
     return true;
   const bool same_side = touch->spring.normal.dot(contact.normal) >= tuning::kSameSideOfTool;
   const bool deep = contact.depth_m > tuning::kMostSlack * tissue.lattice().spacing();
@@ -198,7 +182,9 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
   return contact.depth_m <= slack;
 }
 
-// Multipliers and bounds of drag follow the forces. Whether the bounds stay about where they were.
+// Uzawa's step: each multiplier becomes the normal force of the solve, each bound of friction the
+// coefficient times that. Friction's stiffness lets a point that sticks give way by kElasticSlip to
+// kMostElasticSlip of the fineness. True: the bounds' sum has changed by less than kSameFriction.
 bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
   const double spacing = tissue.lattice().spacing();
   double drag_before = 0.0, drag_now = 0.0;
@@ -207,13 +193,13 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     touch.found = false;
     ContactSpring& spring = touch.spring;
     const double force = normalForceOf(spring, tissue.state().displacement);
-    const double friction_bound = friction_[at(touch.tool)].value_or(0.0) * force;
-    pressed_[at(touch.tool)] += force;
+    const double friction_bound = friction_[at(touch.contact.tool)].value_or(0.0) * force;
+    pressed_[at(touch.contact.tool)] += force;
     drag_before += spring.friction_bound;
     drag_now += friction_bound;
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
-    const double fine = fineness(touch.link, spacing);
+    const double fine = fineness(touch.contact.link, spacing);
     const double soft = tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
     spring.friction_stiffness =
         std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
@@ -222,7 +208,8 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
   return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
 }
 
-// On the way to balance nothing is known of forces, but what went into a link is to come out of it.
+// Of a shape on its way to balance forces say nothing, so multipliers stay; but those of points
+// deeper than the slack take the spring's force, so that what went into a link comes out of it.
 void SlidingContacts::pressHarder(const Tissue& tissue) {
   for (ContactConstraint& touch : touches_) {
     ContactSpring& spring = touch.spring;
@@ -241,6 +228,10 @@ bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const He
   return free >= tuning::kLeastFree;
 }
 
+bool SlidingContacts::givesWay(const SurfacePoint& point, const Tissue& tissue, const Held& held) {
+  return givesWay(carriersAt(tissue.surface(), point), held);
+}
+
 void SlidingContacts::forgetLost(const Held& held) {
   const auto lost = [&](const ContactConstraint& touch) {
     return !touch.found || !givesWay(touch.spring.carriers, held);
@@ -248,17 +239,19 @@ void SlidingContacts::forgetLost(const Held& held) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
 }
 
-// A vertex is one touch; on a triangle it is the nearest one not far off.
+// The touch that a contact is of: the same vertex or, within a triangle, the nearest within
+// kSamePoint.
 SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact,
                                                           const Surface& surface) {
-  const int vertex = vertexAt(surface, contact.triangle, contact.barycentric);
+  const int vertex = vertexAt(surface, contact.place);
   ContactConstraint* nearest = nullptr;
   double least = tuning::kSamePoint;
   for (ContactConstraint& touch : touches_) {
-    if (touch.link != contact.link || touch.vertex != vertex) continue;
+    if (touch.contact.link != contact.link || touch.vertex != vertex) continue;
     if (vertex >= 0) return &touch;
-    if (touch.triangle != contact.triangle) continue;
-    const double off = (touch.barycentric - contact.barycentric).cwiseAbs().maxCoeff();
+    const SurfacePoint& known = touch.contact.place;
+    if (known.triangle != contact.place.triangle) continue;
+    const double off = (known.barycentric - contact.place.barycentric).cwiseAbs().maxCoeff();
     if (off >= least) continue;
     least = off;
     nearest = &touch;
@@ -269,22 +262,22 @@ SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact
 void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held) {
   ContactConstraint touch;
-  touch.tool = contact.tool;
-  touch.link = contact.link;
-  touch.vertex = vertexAt(tissue.surface(), contact.triangle, contact.barycentric);
+  touch.contact = contact;
+  touch.vertex = vertexAt(tissue.surface(), contact.place);
   touch.spring.plane_point = contact.point;
   touch.friction_ratio = frictionRatioAround(touch);
   touches_.push_back(touch);
   put(contact, pose, tissue, held, touches_.back());
 }
 
-// Of the nearest touch of the link that pushes; zero when none does.
+// Friction over normal force of the link's nearest touch that pushes; zero when none does.
 Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const {
   Vec3 ratio = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (const ContactConstraint& other : touches_) {
     const double off = (other.spring.plane_point - touch.spring.plane_point).norm();
-    if (other.link != touch.link || other.spring.multiplier <= 0.0 || off >= least) continue;
+    if (other.contact.link != touch.contact.link || other.spring.multiplier <= 0.0 || off >= least)
+      continue;
     least = off;
     ratio = other.friction_ratio;
   }
@@ -294,33 +287,12 @@ Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const 
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
-  touch.off = -contact.depth_m;
-  touch.triangle = contact.triangle;
-  touch.barycentric = contact.barycentric;
-  carry(tissue, held, touch);
+  touch.contact = contact;
+  carry(touch.contact.place, tissue, held, touch.spring);
   touch.spring.normal = contact.normal;
   touch.spring.plane_point = planePointOf(contact, tissue);
-  touch.since_normal = pose.links[at(touch.link)].linear().transpose() * contact.normal;
+  touch.since_normal = pose.links[at(touch.contact.link)].linear().transpose() * contact.normal;
   anchor(pose, touch);
-}
-
-// The nodes that carry the point, and how firmly.
-void SlidingContacts::carry(const Tissue& tissue, const Held& held, ContactConstraint& touch) {
-  const Surface& surface = tissue.surface();
-  ContactSpring& spring = touch.spring;
-  const Vec3 shares = (touch.barycentric.array() < tuning::kNoShare).select(0.0, touch.barycentric);
-  spring.rest.setZero();
-  for (int corner = 0; corner < 3; ++corner) {
-    const int vertex = surface.triangles[at(touch.triangle)][at(corner)];
-    spring.rest += shares[corner] * surface.rest[at(vertex)];
-  }
-  spring.carriers = carriersAt(surface, touch.triangle, shares);
-  double compliance = 0.0;  // m/N
-  for (const auto& [node, weight] : spring.carriers) {
-    const double stiffness = tissue.nodeStiffness(node);
-    if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
-  }
-  spring.stiffness = compliance > 0.0 ? tuning::kContactStiffness / compliance : 0.0;
 }
 
 void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
@@ -330,7 +302,7 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   cut_rounds_ = 0;
   for (ContactConstraint& touch : touches_) {
     const ContactSpring& spring = touch.spring;
-    const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.link)].linear().transpose();
+    const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.contact.link)].linear().transpose();
     touch.since_normal = link_R_tissue * spring.normal;
     if (spring.multiplier <= 0.0) continue;
     const double force = normalForceOf(spring, *since_displacement_);
@@ -367,21 +339,22 @@ void SlidingContacts::clear() {
 }
 
 void SlidingContacts::clear(int tool) {
-  const auto its = [&](const ContactConstraint& touch) { return touch.tool == tool; };
+  const auto its = [&](const ContactConstraint& touch) { return touch.contact.tool == tool; };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), its), touches_.end());
 }
 
 bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
   return std::any_of(touches_.begin(), touches_.end(), [&](const ContactConstraint& touch) {
-    return touch.tool == tool && (touch.spring.multiplier > 0.0 ||
-                                  normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
+    return touch.contact.tool == tool &&
+           (touch.spring.multiplier > 0.0 ||
+            normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
   });
 }
 
-std::vector<ContactSpring> SlidingContacts::springsOf(int tool) const {
+ContactSprings SlidingContacts::springsOf(int tool) const {
   std::vector<ContactSpring> springs;
   for (const ContactConstraint& touch : touches_) {
-    if (touch.tool == tool) springs.push_back(touch.spring);
+    if (touch.contact.tool == tool) springs.push_back(touch.spring);
   }
   return springs;
 }

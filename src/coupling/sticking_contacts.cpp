@@ -62,31 +62,31 @@ void StickingContacts::keepTouching(const ContactSet& contacts, const Tissue& ti
 // order of the contacts, and with it the side a symmetric press would start on, does not matter.
 void StickingContacts::pushOut(const ContactSet& contacts, const Tissue& tissue,
                                const RobotPose& pose) {
+  const std::vector<Contact>& all = contacts.contacts;
   std::vector<Push> pushes;
-  for (const Contact& contact : contacts.contacts) {
-    pushes.push_back({&contact, supportOf(contact, tissue.surface()), 0.0, 0.0});
+  for (const Contact& contact : all) {
+    pushes.push_back({supportOf(contact, tissue.surface()), 0.0, 0.0});
   }
   scale(pushes);
   std::map<int, Vec3> motion;
   for (int sweep = 0; sweep < tuning::kPushSweeps; ++sweep) {
-    const double deepest = deepen(pushes, motion);
-    motion = motionOf(pushes);
+    const double deepest = deepen(all, motion, pushes);
+    motion = motionOf(all, pushes);
     if (deepest <= tuning::kPushedOut * lattice_->spacing()) break;
   }
-  std::map<int, const Contact*> pushed_by;
-  for (const Push& push : pushes) {
-    if (push.multiplier <= 0.0) continue;
-    for (const Carrier& carrier : push.support) {
-      pushed_by.emplace(carrier.node, push.contact);
-    }
+  std::map<int, std::size_t> pushed_by;
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    if (pushes[i].multiplier <= 0.0) continue;
+    for (const Carrier& carrier : pushes[i].support) pushed_by.emplace(carrier.node, i);
   }
-  for (const auto& [node, contact] : pushed_by) {
-    attach(node, at(contact->tool), contact->link, motion.at(node), tissue, pose);
+  for (const auto& [node, i] : pushed_by) {
+    attach(node, at(all[i].tool), all[i].link, motion.at(node), tissue, pose);
   }
 }
 
-// A node that sits on a tool, or is itself a point inside it, has its place there; those around it
-// give way.
+// Mobilities: a node that sits on a tool already, or is itself a contact's point, keeps its place
+// (kSeatedMobility); the others give way. Row sums: by how much a unit of all multipliers moves
+// each contact's point.
 void StickingContacts::scale(std::vector<Push>& pushes) const {
   std::set<int> held;
   for (const auto& attachments : attachments_) {
@@ -110,15 +110,16 @@ void StickingContacts::scale(std::vector<Push>& pushes) const {
 }
 
 // One sweep over the multipliers; returns the depth of the deepest contact before it (m).
-double StickingContacts::deepen(std::vector<Push>& pushes,
-                                const std::map<int, Vec3>& motion) const {
+double StickingContacts::deepen(const std::vector<Contact>& contacts,
+                                const std::map<int, Vec3>& motion, std::vector<Push>& pushes) {
   double deepest = 0.0;
-  for (Push& push : pushes) {
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    Push& push = pushes[i];
     if (push.row_sum <= 0.0) continue;
-    double depth = push.contact->depth_m;
+    double depth = contacts[i].depth_m;
     for (const Carrier& carrier : push.support) {
       const auto moved = motion.find(carrier.node);
-      if (moved != motion.end()) depth -= carrier.weight * push.contact->normal.dot(moved->second);
+      if (moved != motion.end()) depth -= carrier.weight * contacts[i].normal.dot(moved->second);
     }
     deepest = std::max(deepest, depth);
     push.multiplier = std::max(0.0, push.multiplier + depth / push.row_sum);
@@ -126,12 +127,13 @@ double StickingContacts::deepen(std::vector<Push>& pushes,
   return deepest;
 }
 
-std::map<int, Vec3> StickingContacts::motionOf(const std::vector<Push>& pushes) {
+std::map<int, Vec3> StickingContacts::motionOf(const std::vector<Contact>& contacts,
+                                               const std::vector<Push>& pushes) {
   std::map<int, Vec3> motion;
-  for (const Push& push : pushes) {
-    for (const Carrier& carrier : push.support) {
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    for (const Carrier& carrier : pushes[i].support) {
       Vec3& moved = motion.emplace(carrier.node, Vec3::Zero()).first->second;
-      moved += carrier.mobility * carrier.weight * push.multiplier * push.contact->normal;
+      moved += carrier.mobility * carrier.weight * pushes[i].multiplier * contacts[i].normal;
     }
   }
   return motion;
@@ -171,6 +173,7 @@ bool StickingContacts::empty() const {
 LoadingPatch StickingContacts::loadingPatch(int tool) const {
   LoadingPatch patch;
   patch.name = names_[at(tool)];
+  patch.tool = tool;
   for (const auto& [node, attachment] : attachments_[at(tool)]) {
     patch.nodes.push_back(node);
     patch.displacement.push_back(places_.at(node));
@@ -238,13 +241,14 @@ std::vector<std::uint8_t> StickingContacts::heldNodes(const Tissue& tissue) cons
 std::vector<StickingContacts::Carrier> StickingContacts::supportOf(const Contact& contact,
                                                                    const Surface& surface) const {
   std::vector<Carrier> support;
-  for (const auto& [node, weight] : carriersAt(surface, contact.triangle, contact.barycentric)) {
+  for (const auto& [node, weight] : carriersAt(surface, contact.place)) {
     if (taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
   }
   return support;
 }
 
-// A node that another tool holds keeps that seat, at its new place.
+// Moves the node by `moved` and seats it on the link. A node that another tool holds stays that
+// tool's, at its new place.
 void StickingContacts::attach(int node, std::size_t tool, int link, const Vec3& moved,
                               const Tissue& tissue, const RobotPose& pose) {
   Vec3& place = places_.try_emplace(node, tissue.state().displacement[at(node)]).first->second;

@@ -65,7 +65,8 @@ std::optional<Grasping::Pinch> Grasping::narrowestPinch(std::size_t tool,
   };
   for (const Vec3& vertex : world_.tissue.vertices()) look(vertex);
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    if (at(touch.tool) == tool) look(pointOf(touch.spring, world_.tissue.state().displacement));
+    if (at(touch.contact.tool) == tool)
+      look(pointOf(touch.spring, world_.tissue.state().displacement));
   }
   return narrowest;
 }
@@ -89,7 +90,7 @@ bool Grasping::grasps(std::size_t tool) const {
          std::any_of(seats.begin(), seats.end(), [](const auto& s) { return s.second.grasped; });
 }
 
-// Of a tool that lets go to come in anew. What it was told stands.
+// Forgets how the jaws of a tool stood that comes in anew; that it was told to let go stays.
 void Grasping::forgetJaws(std::size_t tool) {
   Jaws& jaws = jaws_[tool];
   if (jaws.let_go) return;
@@ -112,7 +113,8 @@ void Grasping::openJaws() {
   }
 }
 
-// After it: jaws that closed hold what they have pressed aside as it is now, not within them.
+// After a load step: jaws that closed hold the tissue as they have pressed it, not as it would be
+// inside them.
 void Grasping::closeJaws() {
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!hasJaws(tool, world_.pose)) continue;
@@ -129,7 +131,7 @@ void Grasping::watchJaws(std::size_t tool) {
   const auto gap = gapAtTissue(tool, world_.pose);
   const auto& touches = world_.sliding.touches();
   const bool touch = std::any_of(touches.begin(), touches.end(),
-                                 [&](const auto& any) { return at(any.tool) == tool; });
+                                 [&](const auto& any) { return at(any.contact.tool) == tool; });
   if (!gap) {
     if (!touch) jaws.state = Jaws::State::kUnseen;
   } else if (jaws.state == Jaws::State::kUnseen) {
@@ -191,7 +193,7 @@ std::vector<int> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw, d
     if (nearer && between <= reach) nodes.push_back(node);
   }
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    if (touch.link != static_cast<int>(jaw)) continue;
+    if (touch.contact.link != static_cast<int>(jaw)) continue;
     if (touch.spring.multiplier <= 0.0) continue;
     for (const NodeWeight& carrier : touch.spring.carriers) nodes.push_back(carrier.node);
   }
@@ -242,8 +244,8 @@ std::string Grasping::whyItHoldsNothing(std::size_t tool) const {
 bool Grasping::pushesWith(std::size_t link) const {
   const auto& touches = world_.sliding.touches();
   return std::any_of(touches.begin(), touches.end(), [&](const auto& touch) {
-    if (at(touch.link) != link || touch.spring.multiplier <= 0.0) return false;
-    const std::size_t first = world_.tools.firstJaw(at(touch.tool));
+    if (at(touch.contact.link) != link || touch.spring.multiplier <= 0.0) return false;
+    const std::size_t first = world_.tools.firstJaw(at(touch.contact.tool));
     const std::size_t other = link == first ? first + 1 : first;
     const Vec3 point = pointOf(touch.spring, world_.tissue.state().displacement);
     const auto there = world_.finder.wayOut(other, world_.pose.links[other], point, kAnywhere);

@@ -66,7 +66,7 @@ std::vector<Vec3> OverlapResolver::waysOut(const Links& links, const RobotPose& 
   const std::vector<Vec3>& vertices = world_.tissue.vertices();
   Vec3 as_surface = Vec3::Zero(), against_tool = Vec3::Zero();
   for (const Contact& contact : overlapOf(links, pose).contacts) {
-    const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.triangle)];
+    const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.place.triangle)];
     as_surface += contact.depth_m * doubleArea(vertices, corners);
     against_tool -= contact.depth_m * contact.normal;
   }
@@ -101,9 +101,7 @@ std::optional<int> OverlapResolver::stepsOut(const Links& links, const RobotPose
     }
     if (!overlap.contacts.empty()) gives_way = false;
     for (const Contact& contact : overlap.contacts) {
-      const auto carriers =
-          carriersAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
-      gives_way = gives_way || SlidingContacts::givesWay(carriers, held);
+      gives_way = gives_way || SlidingContacts::givesWay(contact.place, world_.tissue, held);
     }
   }
   return std::nullopt;
@@ -130,7 +128,7 @@ bool OverlapResolver::resolveOverlap(const Links& links, RobotPose& pose) const 
 
 // A tool that is in the tissue; the jaws of a grasper each for itself, so that they come back
 // around what is between them.
-void OverlapResolver::resolveOverlap(std::size_t tool, RobotPose& pose) {
+bool OverlapResolver::resolveOverlap(std::size_t tool, RobotPose& pose) const {
   const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
   bool was_inside = false;
   if (world_.tools[tool].role.has_jaws) {
@@ -140,7 +138,7 @@ void OverlapResolver::resolveOverlap(std::size_t tool, RobotPose& pose) {
   } else {
     was_inside = resolveOverlap(Links{first, end}, pose);
   }
-  if (was_inside) addOnce(tool, world_.report.were_inside);
+  return was_inside;
 }
 
 }  // namespace robot_tissue

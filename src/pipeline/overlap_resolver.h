@@ -11,10 +11,11 @@ namespace robot_tissue {
 
 class OverlapResolver {
  public:
-  explicit OverlapResolver(World& world) : world_(world) {}
+  explicit OverlapResolver(const World& world) : world_(world) {}
 
   bool isInTissue(std::size_t tool, const RobotPose& pose) const;
-  void resolveOverlap(std::size_t tool, RobotPose& pose);
+  // Moves the tool in the pose until it is out of the tissue. True: it was inside.
+  bool resolveOverlap(std::size_t tool, RobotPose& pose) const;
 
  private:
   static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);
@@ -26,7 +27,7 @@ class OverlapResolver {
                               int most) const;
   bool resolveOverlap(const Links& links, RobotPose& pose) const;
 
-  World& world_;
+  const World& world_;
 };
 
 }  // namespace robot_tissue

@@ -56,8 +56,10 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   return shareOutside(share, static_cast<int>(std::ceil(share * strides)));
 }
 
-// Of that share of the way from `vertices_` to the shape, as much as takes no point deep into a
-// link: from its middle on, nothing tells on which side it came in.
+// How much of that share of the way from `vertices_` to the shape takes no point deep into a link:
+// looked at stride by stride, up to the last before one that does; within the first, by halves.
+// Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a
+// point came in is no longer known.
 double ToolContactUpdate::shareOutside(double share, int strides) const {
   const std::vector<double> before = depthsIn(vertices_);
   const auto is_deep = [&](double part) {
@@ -82,7 +84,7 @@ double ToolContactUpdate::shareOutside(double share, int strides) const {
   return share;
 }
 
-// On that share of the way.
+// depthsIn of the shape at that share of the way.
 std::vector<double> ToolContactUpdate::depthsAt(double share) const {
   const std::vector<Vec3>& now = world_.tissue.vertices();
   std::vector<Vec3> there(now.size());
@@ -92,16 +94,14 @@ std::vector<double> ToolContactUpdate::depthsAt(double share) const {
   return depthsIn(there);
 }
 
-// Of the deepest point that gives way in each of the tools' links (m).
+// Per link of the tools: depth of the deepest point that gives way (m).
 std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertices) const {
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   std::vector<double> depths(world_.tools.linkCount(), 0.0);
   for (const Contact& contact :
        world_.finder.find(world_.pose, world_.tissue.surface(), vertices, 0.0).contacts) {
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
-    const auto carriers =
-        carriersAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
-    if (!SlidingContacts::givesWay(carriers, held)) continue;
+    if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;
     depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
   }
   return depths;

@@ -26,7 +26,8 @@ RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
 
 }  // namespace
 
-// The shortest load step that way is the one that no shape followed when last tried from there.
+// Whether the shortest load step of this way is the one that no shape followed (World::dead_end):
+// it is not tried again.
 bool ToolMotion::leadsNowhere(const RobotPose& from, const RobotPose& to) const {
   if (!world_.dead_end || ways_.stepsBetween(world_.dead_end->from, from) > 0.0) return false;
   const double steps = ways_.stepsBetween(from, to);
@@ -35,7 +36,7 @@ bool ToolMotion::leadsNowhere(const RobotPose& from, const RobotPose& to) const 
   return ways_.stepsBetween(world_.dead_end->to, shortest) < 0.5 * tuning::kShortestStep;
 }
 
-// Tools that pass the tissue by are where they go at once. False: others have a way to go.
+// Puts tools whose way touches nothing (passesBy) at its end in `start`. True: those are all.
 bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
   bool all_pass = !world_.tools.anyRigid();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -123,12 +124,17 @@ void ToolMotion::startAnew(RobotPose& pose) {
     if (waitsOutside(tool, tool > 0 ? Others::kCame : Others::kNone, pose)) {
       world_.last_pose = world_.tools.withTool(tool, pose, *world_.last_pose);
     } else {
-      overlap_.resolveOverlap(tool, *world_.last_pose);
+      drawOut(tool, *world_.last_pose);
     }
   }
   // Nothing sticks to where they were before.
   world_.sliding.commit(*world_.last_pose, world_.tissue);
   checkIn(*world_.last_pose);
+}
+
+// A tool that is in the tissue there is outside of it in the pose, and told to have been inside.
+void ToolMotion::drawOut(std::size_t tool, RobotPose& pose) {
+  if (overlap_.resolveOverlap(tool, pose)) addOnce(tool, world_.report.were_inside);
 }
 
 // A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
@@ -147,7 +153,7 @@ void ToolMotion::comeAndGo(RobotPose& pose) {
     if (!ToolSet::isAway(pose.links[first])) came = Others::kCame;
     from = world_.tools.withTool(tool, pose, from);
     letGoOf(tool);
-    overlap_.resolveOverlap(tool, from);
+    drawOut(tool, from);
   }
   if (!any) return;
   world_.last_pose = from;
@@ -177,7 +183,8 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
   }
 }
 
-// Away from where the tissue is at rest, and through its surface.
+// Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
+// away from where the tissue is at rest, and deeper in its surface than throughAt.
 bool ToolMotion::isHooked(std::size_t tool) const {
   if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
   std::vector<std::size_t> links;

@@ -13,8 +13,8 @@ namespace robot_tissue {
 
 class ToolMotion {
  public:
-  ToolMotion(World& world, const WayLengths& ways, OverlapResolver& overlap, Grasping& grasping,
-             LoadStepper& load_step)
+  ToolMotion(World& world, const WayLengths& ways, const OverlapResolver& overlap,
+             Grasping& grasping, LoadStepper& load_step)
       : world_(world), ways_(ways), overlap_(overlap), grasping_(grasping), load_step_(load_step) {}
 
   RobotPose walk(const RobotPose& pose);
@@ -48,13 +48,14 @@ class ToolMotion {
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);
   bool isHooked(std::size_t tool) const;
+  void drawOut(std::size_t tool, RobotPose& pose);
   void letGoOf(std::size_t tool);
   void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
   bool waitsOutside(std::size_t tool, Others others, RobotPose& pose);
 
   World& world_;
   const WayLengths& ways_;
-  OverlapResolver& overlap_;
+  const OverlapResolver& overlap_;
   Grasping& grasping_;
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;

@@ -11,7 +11,9 @@ namespace robot_tissue {
 namespace {
 
 Vec3 normalOf(const World& world, std::size_t tool) {
-  std::map<int, std::vector<Vec3>> pushes;  // by link; as long as they are hard
+  // By link. Of a touch as long as its normal force (N), of a held node as its way out (m): there
+  // what counts is the direction.
+  std::map<int, std::vector<Vec3>> pushes;
   for (const auto& [node, seat] : world.sticking.attachments()[tool]) {
     const Pose& tissue_T_link = world.pose.links[at(seat.link)];
     Vec3 push = tissue_T_link.linear() * seat.pushed;
@@ -25,8 +27,8 @@ Vec3 normalOf(const World& world, std::size_t tool) {
   }
   for (const SlidingContacts::ContactConstraint& touch : world.sliding.touches()) {
     const double force = touch.spring.multiplier;
-    if (at(touch.tool) == tool && force > 0.0) {
-      pushes[touch.link].push_back(force * touch.spring.normal);
+    if (at(touch.contact.tool) == tool && force > 0.0) {
+      pushes[touch.contact.link].push_back(force * touch.spring.normal);
     }
   }
   const bool first_only = world.tools[tool].role.has_jaws;
@@ -85,7 +87,7 @@ ToolReport describeTool(const World& world, const Grasping& grasping, std::size_
   const std::vector<Vec3>& displacement = world.tissue.state().displacement;
   for (const SlidingContacts::ContactConstraint& touch : world.sliding.touches()) {
     const double force = touch.spring.multiplier;
-    if (touch.tool != index || force <= 0.0) continue;
+    if (touch.contact.tool != index || force <= 0.0) continue;
     ++report.contacts;
     report.point += pointOf(touch.spring, displacement);
     for (const NodeWeight& carrier : touch.spring.carriers) nodes.insert(carrier.node);

@@ -8,14 +8,14 @@
 
 namespace robot_tissue {
 
-// Where the touches are, from the links.
+// The contact of each touch in the present shape: its point, and the plane of its link there.
 std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
   const Stopwatch watch(world_.report.contact_ms);
   std::vector<std::optional<Contact>> tracked;
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    Contact contact{
-        touch.tool,          touch.link, touch.triangle, touch.barycentric, Vec3::Zero(),
-        touch.spring.normal, 0.0};
+    Contact contact = touch.contact;
+    contact.normal = touch.spring.normal;
+    contact.depth_m = 0.0;
     contact.point = pointOf(touch.spring, world_.tissue.state().displacement);
     const bool near = turnOut(pose, contact);
     tracked.push_back(near ? std::optional<Contact>(contact) : std::nullopt);
@@ -23,11 +23,11 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
   return tracked;
 }
 
-// Into the tissue, across the surface at the point; zero where it has no normal there.
+// Unit normal of the surface at the contact, into the tissue; zero where it has none.
 Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
-  const int vertex = vertexAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
+  const int vertex = vertexAt(world_.tissue.surface(), contact.place);
   if (vertex >= 0) return -outwards_[at(vertex)].normalized();
-  return -doubleArea(vertices_, world_.tissue.surface().triangles[at(contact.triangle)])
+  return -doubleArea(vertices_, world_.tissue.surface().triangles[at(contact.place.triangle)])
               .normalized();
 }
 
@@ -54,7 +54,8 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   contact.normal = out.normal;
   contact.depth_m = out.depth_m;
   const double cosine = out.normal.dot(inwards);
-  if (contact.barycentric.minCoeff() > tuning::kInsideTriangle && cosine > tuning::kSameSide) {
+  if (contact.place.barycentric.minCoeff() > tuning::kInsideTriangle &&
+      cosine > tuning::kSameSide) {
     contact.normal = inwards;
     contact.depth_m = out.depth_m / cosine;
   }
@@ -68,13 +69,11 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
                             tuning::kNearGap * world_.tissue.lattice().spacing());
 }
 
-// Of points that give way, with the ways out that turnOut finds.
+// Contacts of points that give way, with the planes that turnOut finds.
 ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held) {
   ContactSet contacts = contactsAt(pose, world_.tissue.state().displacement);
   const auto stands = [&](const Contact& contact) {
-    const auto carriers =
-        carriersAt(world_.tissue.surface(), contact.triangle, contact.barycentric);
-    return !SlidingContacts::givesWay(carriers, held);
+    return !SlidingContacts::givesWay(contact.place, world_.tissue, held);
   };
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
@@ -92,7 +91,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   return contacts;
 }
 
-// A tool that has left the surface behind it may still be where the surface is at rest.
+// A tool that no longer touches the deformed surface may be in the way of its return to rest.
 bool TouchFinder::wouldTouchAtRest(const RobotPose& pose) {
   const std::vector<Vec3> rest(world_.tissue.state().displacement.size(), Vec3::Zero());
   return deepest(contactsAt(pose, rest)) > tuning::kDeepEnough * world_.tissue.lattice().spacing();

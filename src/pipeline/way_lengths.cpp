@@ -9,7 +9,7 @@
 
 namespace robot_tissue {
 
-// Longest step of a link (m): no thin one is through what it meets.
+// Longest load step of a link (m): a thin one must not be through the tissue before it is met.
 double WayLengths::stepOf(std::size_t link) const {
   return std::min(world_.tissue.stepLength(),
                   tuning::kStepOfThickness * world_.finder.thickness(link));
@@ -24,7 +24,7 @@ double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) cons
   return steps;
 }
 
-// Tools that jump, but for those that pass the tissue by.
+// Tools whose way is a jump, but for those that pass the tissue by.
 std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotPose& goal) const {
   std::vector<std::size_t> far;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -36,7 +36,7 @@ std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotP
   return far;
 }
 
-// Steps that every link on its way may go from here before it can touch.
+// Load steps before any link that moves can reach the tissue's box.
 double WayLengths::freeSteps(const RobotPose& from, const RobotPose& to) const {
   double steps = std::numeric_limits<double>::infinity();
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
@@ -48,18 +48,18 @@ double WayLengths::freeSteps(const RobotPose& from, const RobotPose& to) const {
 }
 
 bool WayLengths::touchesTissue(std::size_t tool) const {
-  const auto is_of_tool = [&](const auto& touch) { return at(touch.tool) == tool; };
+  const auto is_of_tool = [&](const auto& touch) { return at(touch.contact.tool) == tool; };
   const auto& touches = world_.sliding.touches();
   const auto& patches = world_.tissue.patches();
   return world_.sticking.holds(static_cast<int>(tool)) ||
          std::any_of(touches.begin(), touches.end(), is_of_tool) ||
-         std::any_of(patches.begin() + static_cast<std::ptrdiff_t>(world_.tissue.namedPatches()),
-                     patches.end(),
-                     [&](const auto& patch) { return patch.name == world_.tools.nameOf(tool); });
+         std::any_of(patches.begin(), patches.end(),
+                     [&](const auto& patch) { return patch.tool == static_cast<int>(tool); });
 }
 
-// It touches and holds nothing, and on its way it neither comes near tissue nor has any between its
-// links. No point of a link is farther from both ends of its way than half of that.
+// Whether the tool touches and holds nothing, and on its way neither comes nearer than a spacing to
+// the tissue's box nor has it between its links. A point of a link is never farther than half of
+// its way from the nearer end, so the boxes at both ends are grown by that.
 bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const {
   if (touchesTissue(tool)) return false;
   Box around;

@@ -38,9 +38,8 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
 PatchAnswer answerOf(const World& world, std::size_t tool) {
   const auto& patches = world.tissue.patches();
   const auto& answers = world.tissue.lastReport().patches;
-  for (std::size_t i = world.tissue.namedPatches(); i < std::min(patches.size(), answers.size());
-       ++i) {
-    if (patches[i].name == world.tools.nameOf(tool)) return answers[i];
+  for (std::size_t i = 0; i < std::min(patches.size(), answers.size()); ++i) {
+    if (patches[i].tool == static_cast<int>(tool)) return answers[i];
   }
   return {};
 }
@@ -64,8 +63,7 @@ std::vector<LoadingPatch> patchesOfTools(const World& world) {
   for (std::size_t tool = 0; tool < world.tools.sizeWithSupports(); ++tool) {
     const int index = static_cast<int>(tool);
     const bool may_push = tool >= world.tools.size() || world.sliding.pushes(index, world.tissue);
-    const std::vector<ContactSpring> springs =
-        may_push ? world.sliding.springsOf(index) : std::vector<ContactSpring>();
+    const ContactSprings springs = may_push ? world.sliding.springsOf(index) : ContactSprings();
     if (springs.empty() && !world.sticking.holds(index)) continue;
     patches.push_back(world.sticking.loadingPatch(index));
     patches.back().contacts = springs;
@@ -74,12 +72,9 @@ std::vector<LoadingPatch> patchesOfTools(const World& world) {
 }
 
 bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world) {
-  const std::vector<std::string>& names = world.tools.names();
-  const auto end = names.begin() + static_cast<std::ptrdiff_t>(world.tools.size());
-  const std::size_t named = &patches == &world.tissue.patches() ? world.tissue.namedPatches() : 0;
-  return std::any_of(
-      patches.begin() + static_cast<std::ptrdiff_t>(named), patches.end(),
-      [&](const auto& patch) { return std::find(names.begin(), end, patch.name) != end; });
+  return std::any_of(patches.begin(), patches.end(), [&](const LoadingPatch& patch) {
+    return patch.tool && at(*patch.tool) < world.tools.size();
+  });
 }
 
 }  // namespace robot_tissue

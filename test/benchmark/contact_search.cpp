@@ -130,7 +130,7 @@ double summed(const ContactSet& found) {
   double sum = 0.0;
   for (const Contact& contact : found.contacts) {
     sum += contact.depth_m + contact.point.sum() + contact.normal.dot(Vec3(1.0, 2.0, 3.0)) +
-           contact.triangle + 1e3 * contact.link;
+           contact.place.triangle + 1e3 * contact.link;
   }
   return sum;
 }

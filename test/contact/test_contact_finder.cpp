@@ -31,12 +31,12 @@ TEST(ContactFinder, ContactsTellTheirTriangleAndNoPointTwice) {
   ASSERT_GT(found.contacts.size(), 5U);
   for (std::size_t i = 0; i < found.contacts.size(); ++i) {
     const Contact& contact = found.contacts[i];
-    EXPECT_NEAR(contact.barycentric.sum(), 1.0, 1e-12);
-    EXPECT_GE(contact.barycentric.minCoeff(), 0.0);
-    const auto& corners = sheet.surface.triangles[static_cast<std::size_t>(contact.triangle)];
+    EXPECT_NEAR(contact.place.barycentric.sum(), 1.0, 1e-12);
+    EXPECT_GE(contact.place.barycentric.minCoeff(), 0.0);
+    const auto& corners = sheet.surface.triangles[static_cast<std::size_t>(contact.place.triangle)];
     Vec3 point = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
-      point += contact.barycentric[static_cast<int>(k)] *
+      point += contact.place.barycentric[static_cast<int>(k)] *
                sheet.vertices[static_cast<std::size_t>(corners[k])];
     }
     EXPECT_NEAR((point - contact.point).norm(), 0.0, 1e-15);
@@ -94,7 +94,7 @@ TEST(ContactFinder, LinksOfAToolAreToldApartInOrder) {
   int links_seen = 0;
   for (const Contact& contact : found.contacts) {
     EXPECT_EQ(contact.tool, contact.link == 0 ? 0 : 1);
-    const std::pair<int, int> place(contact.link, contact.triangle);
+    const std::pair<int, int> place(contact.link, contact.place.triangle);
     EXPECT_GE(place, last);
     links_seen |= 1 << contact.link;
     last = place;
@@ -147,8 +147,8 @@ TEST(ContactFinder, SameQuestionSameAnswerBitForBit) {
   for (const ContactSet* other : {&again, &b}) {
     ASSERT_EQ(other->contacts.size(), a.contacts.size());
     for (std::size_t i = 0; i < a.contacts.size(); ++i) {
-      EXPECT_EQ(other->contacts[i].triangle, a.contacts[i].triangle);
-      EXPECT_EQ(other->contacts[i].barycentric, a.contacts[i].barycentric);
+      EXPECT_EQ(other->contacts[i].place.triangle, a.contacts[i].place.triangle);
+      EXPECT_EQ(other->contacts[i].place.barycentric, a.contacts[i].place.barycentric);
       EXPECT_EQ(other->contacts[i].normal, a.contacts[i].normal);
       EXPECT_EQ(other->contacts[i].depth_m, a.contacts[i].depth_m);
     }

@@ -143,7 +143,7 @@ TEST(DeepestPoint, FlatFaceOverFlatTrianglesNeedsNoPointsBetweenTheVertices) {
   const ContactSet found = finder.find(pose, sheet.surface, sheet.vertices, 0.0);
   ASSERT_EQ(found.contacts.size(), 2 * sheet.vertices.size());
   for (const Contact& contact : found.contacts) {
-    EXPECT_NEAR(contact.barycentric.maxCoeff(), 1.0, 0.0);
+    EXPECT_NEAR(contact.place.barycentric.maxCoeff(), 1.0, 0.0);
     EXPECT_NEAR(contact.depth_m, contact.link == 0 ? 0.001 : 0.002, 1e-12);
     EXPECT_NEAR((contact.normal + Vec3::UnitZ()).norm(), 0.0, 1e-12);
   }
@@ -248,7 +248,7 @@ TEST(DeepestPoint, PointOfAnEdgeIsFoundOnce) {
     const ContactFinder finder({makeTool({shape})});
     const ContactSet found = findOn(finder, makePose(Vec3(0.0, 0.001, 0.0019)), sheet);
     ASSERT_EQ(found.contacts.size(), 1U);
-    EXPECT_EQ(found.contacts[0].triangle, 0);
+    EXPECT_EQ(found.contacts[0].place.triangle, 0);
     EXPECT_NEAR(found.contacts[0].depth_m, 0.0001, 1e-5);
   }
 }

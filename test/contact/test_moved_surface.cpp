@@ -66,7 +66,7 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
     const auto of_new = new_finder.find(at(pose), fresh, vertices, 0.001).contacts;
     ASSERT_EQ(of_old.size(), of_new.size());
     for (std::size_t i = 0; i < of_old.size(); ++i) {
-      EXPECT_EQ(of_old[i].triangle, of_new[i].triangle);
+      EXPECT_EQ(of_old[i].place.triangle, of_new[i].place.triangle);
       EXPECT_EQ(of_old[i].depth_m, of_new[i].depth_m);
     }
     // Once more, with what find() has met.

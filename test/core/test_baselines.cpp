@@ -132,6 +132,7 @@ TEST_P(Baseline, SpringsInContactPushAndDrag) {
   LoadingPatch plane;
   plane.name = "plane";
   const Lattice& lattice = pair.exact.lattice;
+  std::vector<ContactSpring> springs;
   for (int i = 2; i <= 5; ++i) {
     ContactSpring spring;
     const int node = lattice.node(i, 4, 4), next = lattice.node(i + 1, 4, 4);
@@ -143,8 +144,9 @@ TEST_P(Baseline, SpringsInContactPushAndDrag) {
     spring.stiffness = 10.0 * pair.exact.model.nodeStiffness(pair.state, node).mean();
     spring.friction_stiffness = spring.stiffness;
     spring.friction_bound = 0.02;
-    plane.contacts.push_back(spring);
+    springs.push_back(spring);
   }
+  plane.contacts = springs;
   pair.expectSame({plane});
   EXPECT_LT(pair.state.displacement[at(lattice.node(4, 4, 4))].z(), -0.001);
 }

@@ -29,6 +29,7 @@ LoadingPatch planeOn(const Lattice& lattice, const TissueModel& model, double fr
   LoadingPatch plane;
   plane.name = "plane";
   const LatticeState rest = lattice.restState();
+  std::vector<ContactSpring> springs;
   for (int i = 2; i <= 4; ++i) {
     for (int j = 2; j <= 4; ++j) {
       ContactSpring spring;
@@ -42,9 +43,10 @@ LoadingPatch planeOn(const Lattice& lattice, const TissueModel& model, double fr
       spring.stiffness = 10.0 * model.nodeStiffness(rest, node).mean();
       spring.friction_stiffness = spring.stiffness;
       spring.friction_bound = friction_bound;
-      plane.contacts.push_back(spring);
+      springs.push_back(spring);
     }
   }
+  plane.contacts = springs;
   return plane;
 }
 

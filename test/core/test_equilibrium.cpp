@@ -46,18 +46,20 @@ class ShakenBlock : public ::testing::TestWithParam<Loads> {
   void touch() {
     LoadingPatch tool;
     tool.name = "tool";
+    std::vector<ContactSpring> springs;
     for (int j = 0; j < 4; ++j) {
-      tool.contacts.push_back(springAt({{lattice_.node(0, j, 0), 0.2},
-                                        {lattice_.node(0, j, 1), 0.3},
-                                        {lattice_.node(0, j + 1, 2), 0.5}},
-                                       j == 3 ? 2e-3 : -1e-3));
-      tool.contacts.back().friction_bound = 0.1 * j;
-      tool.contacts.back().multiplier = 0.01 * j;
+      springs.push_back(springAt({{lattice_.node(0, j, 0), 0.2},
+                                  {lattice_.node(0, j, 1), 0.3},
+                                  {lattice_.node(0, j + 1, 2), 0.5}},
+                                 j == 3 ? 2e-3 : -1e-3));
+      springs.back().friction_bound = 0.1 * j;
+      springs.back().multiplier = 0.01 * j;
     }
     if (GetParam().contact_on_patch) {
-      tool.contacts.push_back(
+      springs.push_back(
           springAt({{lattice_.node(3, 1, 2), 0.6}, {lattice_.node(3, 0, 2), 0.4}}, -4e-3));
     }
+    tool.contacts = springs;
     shape_.patches.push_back(tool);
   }
 

@@ -67,7 +67,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
         if (seen[at(vertex)] != 0 || depthOf(point) <= -kNear) continue;
         seen[at(vertex)] = 1;
         set.contacts.push_back(
-            {0, 0, static_cast<int>(i), Vec3::Unit(corner), point, normal(), depthOf(point)});
+            {0, 0, {static_cast<int>(i), Vec3::Unit(corner)}, point, normal(), depthOf(point)});
       }
     }
     return set;
@@ -76,9 +76,11 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
   std::vector<std::optional<Contact>> tracked() const {
     std::vector<std::optional<Contact>> tracked;
     for (const SlidingContacts::ContactConstraint& touch : contacts_.touches()) {
-      const Vec3 point = pointOf(touch.spring, tissue_->state().displacement);
-      tracked.push_back(
-          Contact{0, 0, touch.triangle, touch.barycentric, point, normal(), depthOf(point)});
+      Contact contact = touch.contact;
+      contact.point = pointOf(touch.spring, tissue_->state().displacement);
+      contact.normal = normal();
+      contact.depth_m = depthOf(contact.point);
+      tracked.push_back(contact);
     }
     return tracked;
   }
@@ -217,17 +219,17 @@ TEST_F(PlaneOnABlock, TouchesRideWithTheLink) {
 // On the way of a slip no solve is whole, but what goes into the link meets more and more force.
 TEST_F(PlaneOnABlock, WhatGoesIntoItOnTheWayIsPressedOut) {
   press(0.002);
-  const std::vector<ContactSpring> before = contacts_.springsOf(0);
+  const ContactSprings before = contacts_.springsOf(0);
   goTo(pose_.links[0].translation() - Vec3(0.0, 0.0, 0.001));
   contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
-  const std::vector<ContactSpring> deeper = contacts_.springsOf(0);
+  const ContactSprings deeper = contacts_.springsOf(0);
   contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
-  const std::vector<ContactSpring> still_deeper = contacts_.springsOf(0);
+  const ContactSprings still_deeper = contacts_.springsOf(0);
   goTo(pose_.links[0].translation() + Vec3(0.0, 0.0, 0.003));
   contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
-  const std::vector<ContactSpring> off = contacts_.springsOf(0);
+  const ContactSprings off = contacts_.springsOf(0);
   contacts_.update(tracked(), contacts(), pose_, *tissue_, held_, Shape::kOnItsWay);
-  const std::vector<ContactSpring> still_off = contacts_.springsOf(0);
+  const ContactSprings still_off = contacts_.springsOf(0);
   ASSERT_EQ(before.size(), still_off.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_GE(deeper[i].multiplier, before[i].multiplier);

@@ -48,8 +48,7 @@ class StickingContactsTest : public ::testing::Test {
                   int tool = 0) const {
     Contact made;
     made.tool = made.link = tool;
-    made.triangle = triangle;
-    made.barycentric = barycentric;
+    made.place = {triangle, barycentric};
     made.normal = normal;
     made.depth_m = depth;
     made.point = pointOf(made, tissue_.vertices());
@@ -59,8 +58,8 @@ class StickingContactsTest : public ::testing::Test {
   Vec3 pointOf(const Contact& contact, const std::vector<Vec3>& vertices) const {
     Vec3 point = Vec3::Zero();
     for (int corner = 0; corner < 3; ++corner) {
-      const int vertex = tissue_.surface().triangles[at(contact.triangle)][at(corner)];
-      point += contact.barycentric[corner] * vertices[at(vertex)];
+      const int vertex = tissue_.surface().triangles[at(contact.place.triangle)][at(corner)];
+      point += contact.place.barycentric[corner] * vertices[at(vertex)];
     }
     return point;
   }

@@ -129,8 +129,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
     for (int corner = 0; corner < 3; ++corner) {
       if (!isAtEdge(surface.triangles[i][at(corner)])) continue;
       edge = surface.triangles[i][at(corner)];
-      contact.triangle = static_cast<int>(i);
-      contact.barycentric = Vec3::Unit(corner);
+      contact.place = {static_cast<int>(i), Vec3::Unit(corner)};
     }
   }
   ASSERT_GE(edge, 0);

@@ -8,15 +8,15 @@
 
 namespace robot_tissue {
 
-// A point of the surface that is inside a tool, or near it.
+// A point of the surface that is inside a tool, or near it: the one form of what was found. What
+// is kept of it from solve to solve has it as a part (SlidingContacts::ContactConstraint).
 struct Contact {
-  int tool = 0;                     // index into the scene's tools
-  int link = 0;                     // index into RobotPose::links
-  int triangle = 0;                 // index into Surface::triangles
-  Vec3 barycentric = Vec3::Zero();  // of the point in that triangle, sums to 1
-  Vec3 point = Vec3::Zero();        // tissue frame, m
-  Vec3 normal = Vec3::Zero();       // unit, from the tool into the tissue: the way out of the tool
-  double depth_m = 0.0;             // penetration depth along the normal; < 0: a gap
+  int tool = 0;  // index into the scene's tools
+  int link = 0;  // index into RobotPose::links
+  SurfacePoint place;
+  Vec3 point = Vec3::Zero();   // where that is now; tissue frame, m
+  Vec3 normal = Vec3::Zero();  // unit, from the tool into the tissue: the way out of the tool
+  double depth_m = 0.0;        // penetration depth along the normal; < 0: a gap
 };
 
 struct ContactSet {

@@ -12,6 +12,10 @@
 // that the spring has an energy, convex in x.
 #pragma once
 
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -29,6 +33,26 @@ struct ContactSpring {
   Vec3 friction_force = Vec3::Zero();  // t_0: across the normal, when it was at the anchor (N)
   double friction_stiffness = 0.0;     // k_t (N/m)
   double friction_bound = 0.0;         // N; 0: slides freely
+};
+
+// The springs of a patch as a solve has them. Copies share them: patches, the shapes that are kept
+// to come back to, and the levels of a multigrid hierarchy have the same ones, by their numbers.
+class ContactSprings {
+ public:
+  ContactSprings() = default;
+  ContactSprings(std::vector<ContactSpring> springs)
+      : springs_(std::make_shared<const std::vector<ContactSpring>>(std::move(springs))) {}
+  ContactSprings(std::initializer_list<ContactSpring> springs)
+      : ContactSprings(std::vector<ContactSpring>(springs)) {}
+
+  std::size_t size() const { return springs_ ? springs_->size() : 0; }
+  bool empty() const { return size() == 0; }
+  const ContactSpring& operator[](std::size_t number) const { return (*springs_)[number]; }
+  const ContactSpring* begin() const { return springs_ ? springs_->data() : nullptr; }
+  const ContactSpring* end() const { return begin() + size(); }
+
+ private:
+  std::shared_ptr<const std::vector<ContactSpring>> springs_;  // null: none
 };
 
 // Deformed place of the point (m).

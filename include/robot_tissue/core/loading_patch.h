@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,11 @@ struct PatchPlace {
 struct LoadingPatch {
   enum class Drive { kDisplacement, kForce };
 
-  std::string name;
-  std::vector<int> nodes;      // ascending
+  std::string name;         // of the load, or of the tool
+  std::optional<int> tool;  // number of the tool or support whose patch it is; none: a named load
+  std::vector<int> nodes;   // ascending
   std::vector<RimSpring> rim;  // ascending; nodes of the patch, and some next to it
-  std::vector<ContactSpring> contacts;
+  ContactSprings contacts;
   Drive drive = Drive::kDisplacement;
   std::vector<Vec3> displacement;  // kDisplacement: per node, from rest (m)
   std::array<bool, 3> free_axis = {{false, false, false}};  // kDisplacement: nodes slide along it

@@ -23,7 +23,6 @@ struct Surface {
   std::uint64_t revision = 0;
 };
 
-
 // Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half
 // way to each corner it lost. What is there is carried half by the part's own corners nearest to it
 // and half by the ghost, so as the material between them; without ghosts by the own corners alone.
@@ -33,11 +32,11 @@ Surface extractSurface(const Lattice& lattice, const LatticeState& state);
 Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
            std::vector<Vec3>& vertices);
 
-// What carries the point of a triangle with these weights of its corners: ascending, weights > 0.
-std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric);
+// What carries the point: nodes ascending, weights > 0.
+std::vector<NodeWeight> carriersAt(const Surface& surface, const SurfacePoint& point);
 
 // The vertex that the point is; -1 when it is none.
-int vertexAt(const Surface& surface, int triangle, const Vec3& barycentric);
+int vertexAt(const Surface& surface, const SurfacePoint& point);
 
 // Volume inside closed triangles (m^3), by the divergence theorem.
 double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices);

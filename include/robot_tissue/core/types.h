@@ -33,6 +33,12 @@ struct NodeWeight {
   double weight = 0.0;
 };
 
+// A place on a triangulated surface; it stays with the triangle as that deforms.
+struct SurfacePoint {
+  int triangle = 0;                 // index into the surface's triangles
+  Vec3 barycentric = Vec3::Zero();  // weights of its corners, sum to 1
+};
+
 // Closed and axis-aligned (m); empty, with min() above max(), until it is given corners.
 using Box = Eigen::AlignedBox3d;
 

@@ -1,13 +1,16 @@
 // Contacts -> springs in contact, for tools along which the tissue slides (own).
 //
 // A touch is a point of the surface near a link: a vertex, or a point of a triangle where the link
-// is deeper than at its vertices. It is pushed out of a plane at the foot of the link's surface
-// that is nearest to it. So that the foot does not jump where a link has edges, or is thin, it is
-// sought from the touch's probe: the point a little way above its plane. A load step begins with
-// ride() and meet(), looks at the shape after each solve with update() until that says the contact
-// is settled, and ends with commit(). In: contacts (tissue frame, normals from the tool into the
-// tissue), poses of the links. Out: the springs of each tool. Points that held nodes carry, but for
-// a tenth of their weight, are never taken.
+// is deeper than at its vertices. It is pushed out of a plane (its normal and a point of the link's
+// surface, from the contact that the caller finds for it), by a ContactSpring. After each solve
+// update() takes Uzawa's step of the augmented Lagrangian (Simo and Laursen 1992):
+//
+//   multiplier = max(0, multiplier - k gap),   friction_bound = friction * multiplier
+//
+// and the planes where the touches are now. A load step begins with ride() and meet(), calls
+// update() until that says the contacts are settled, and ends with commit(). In: contacts (tissue
+// frame, normals from the tool into the tissue), poses of the links. Out: the springs of each tool.
+// Points that held nodes carry, but for a tenth of their weight, are never taken.
 #pragma once
 
 #include <cstdint>
@@ -26,16 +29,13 @@ class SlidingContacts {
  public:
   static constexpr std::uint8_t kGrasped = 2;
 
+  // What is kept of a contact from round to round, and from load step to load step.
   struct ContactConstraint {
-    int tool = 0;
-    int link = 0;
-    int vertex = -1;  // of the surface; -1: a point of a triangle
-    int triangle = 0;
-    Vec3 barycentric = Vec3::Zero();
-    ContactSpring spring;
+    Contact contact;                     // as it was seen in the last update
+    int vertex = -1;                     // of the surface; -1: a point of a triangle
+    ContactSpring spring;                // as the next solve will have it
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
-    Vec3 since_normal = Vec3::Zero();    // then, in the link's frame
-    double off = 0.0;                    // of the link, in the last update (m); < 0: in it
+    Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
     bool found = false;                  // in the last update
   };
 
@@ -44,11 +44,14 @@ class SlidingContacts {
   // each link (m).
   SlidingContacts(std::vector<std::optional<double>> friction, std::vector<double> thickness);
 
-  // Whether a point with these carriers can be pushed; `held` as in meet().
+  // Whether a point with these carriers, or of the surface, can be pushed; `held` as in meet().
   static bool givesWay(const std::vector<NodeWeight>& carriers,
                        const std::vector<std::uint8_t>& held);
+  static bool givesWay(const SurfacePoint& point, const Tissue& tissue,
+                       const std::vector<std::uint8_t>& held);
 
-  // The links go to where they are now, and planes and anchors with them; forces go on as they went.
+  // The links go to where they are now, and planes and anchors with them; forces go on as they
+  // went.
   void ride(const RobotPose& pose, const Tissue& tissue);
 
   // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
@@ -56,8 +59,8 @@ class SlidingContacts {
   void meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
             const std::vector<std::uint8_t>& held);
 
-  // `tracked`: one a touch, where its probe is; none when the link is out of reach. False:
-  // something changed, solve again.
+  // `tracked`: the contact of each touch in the present shape, in the order of touches(); none when
+  // the link is out of reach. `found`: what else is near. False: something changed, solve again.
   bool update(const std::vector<std::optional<Contact>>& tracked, const ContactSet& found,
               const RobotPose& pose, const Tissue& tissue, const std::vector<std::uint8_t>& held,
               ContactUpdate::Shape shape = ContactUpdate::Shape::kSolved);
@@ -65,18 +68,20 @@ class SlidingContacts {
   // From here on tissue and links stick, or slip anew. Forgets touches that the tools have left.
   void commit(const RobotPose& pose, const Tissue& tissue);
 
-  // As commit(), when no tool touches and the tissue is as it was then.
+  // As commit(), but for the tissue, which is as it was at the last one: no tool touches.
   void pass(const RobotPose& pose);
 
   void clear();
   void clear(int tool);
 
-  // Whether a spring in contact pushes as hard, in the tissue's last solve, as no tissue does.
+  // Whether a spring in contact pushes harder in the tissue's last solve than any tissue does: the
+  // node's stiffness times kMostForce spacings.
   static bool pushesAbsurdly(const Tissue& tissue);
   const std::vector<ContactConstraint>& touches() const { return touches_; }
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
-  std::vector<ContactSpring> springsOf(int tool) const;
+  // Of its touches, in their order.
+  ContactSprings springsOf(int tool) const;
 
  private:
   using Held = std::vector<std::uint8_t>;
@@ -91,7 +96,6 @@ class SlidingContacts {
   bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
              ContactConstraint& touch);
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
-  static void carry(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   std::vector<PressGrowth::Press> presses(std::size_t links) const;
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
@@ -101,9 +105,9 @@ class SlidingContacts {
 
   std::vector<std::optional<double>> friction_;
   std::vector<double> thickness_;
-  std::vector<double> pressed_;               // per tool: its normal forces in the last update (N)
+  std::vector<double> pressed_;  // per tool: its normal forces in the last update (N)
   PressGrowth growth_;
-  int cut_rounds_ = 0;                        // in a row, that ended on the way to balance
+  int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
   std::vector<Pose> since_links_;             // at the last commit
   Tissue::Displacements since_displacement_;  // likewise (m)

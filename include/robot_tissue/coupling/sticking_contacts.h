@@ -79,8 +79,8 @@ class StickingContacts {
     double weight = 0.0;
     double mobility = 1.0;
   };
+  // Of the contact with the same number.
   struct Push {
-    const Contact* contact = nullptr;
     std::vector<Carrier> support;
     double row_sum = 0.0;     // how much all contacts together move this one's point
     double multiplier = 0.0;  // m; > 0: the contact pushes
@@ -88,8 +88,10 @@ class StickingContacts {
 
   std::vector<Carrier> supportOf(const Contact& contact, const Surface& surface) const;
   void scale(std::vector<Push>& pushes) const;
-  double deepen(std::vector<Push>& pushes, const std::map<int, Vec3>& motion) const;
-  static std::map<int, Vec3> motionOf(const std::vector<Push>& pushes);
+  static double deepen(const std::vector<Contact>& contacts, const std::map<int, Vec3>& motion,
+                       std::vector<Push>& pushes);
+  static std::map<int, Vec3> motionOf(const std::vector<Contact>& contacts,
+                                      const std::vector<Push>& pushes);
   void attach(int node, std::size_t tool, int link, const Vec3& moved, const Tissue& tissue,
               const RobotPose& pose);
   const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue) const;

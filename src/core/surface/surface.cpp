@@ -192,12 +192,12 @@ Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
   return bounds;
 }
 
-std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const Vec3& barycentric) {
+std::vector<NodeWeight> carriersAt(const Surface& surface, const SurfacePoint& point) {
   std::map<int, double> weights;
   for (int corner = 0; corner < 3; ++corner) {
-    const int vertex = surface.triangles[at(triangle)][at(corner)];
+    const int vertex = surface.triangles[at(point.triangle)][at(corner)];
     for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
-      weights[carrier.node] += barycentric[corner] * carrier.weight;
+      weights[carrier.node] += point.barycentric[corner] * carrier.weight;
     }
   }
   std::vector<NodeWeight> carriers;
@@ -207,13 +207,13 @@ std::vector<NodeWeight> carriersAt(const Surface& surface, int triangle, const V
   return carriers;
 }
 
-int vertexAt(const Surface& surface, int triangle, const Vec3& barycentric) {
+int vertexAt(const Surface& surface, const SurfacePoint& point) {
   // Barycentric (1): a point that is off a corner by less is that vertex. Less: points rounded by
   // the search for contacts are none. Chosen.
   constexpr double kOff = 1e-6;
   Eigen::Index corner = 0;
-  if (barycentric.maxCoeff(&corner) <= 1.0 - kOff) return -1;
-  return surface.triangles[at(triangle)][at(static_cast<int>(corner))];
+  if (point.barycentric.maxCoeff(&corner) <= 1.0 - kOff) return -1;
+  return surface.triangles[at(point.triangle)][at(static_cast<int>(corner))];
 }
 
 double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices) {

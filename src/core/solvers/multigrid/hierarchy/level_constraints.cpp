@@ -114,6 +114,7 @@ template <typename Real>
 void LevelConstraints<Real>::renewSprings(const ConstrainedState& shape,
                                           const DofConstraints& hold) {
   auto spring = grid_.finest().constrained.springs.begin();
+  contacts_.clear();
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];
     for (const RimSpring& rim : patch.rim) {
@@ -125,7 +126,8 @@ void LevelConstraints<Real>::renewSprings(const ConstrainedState& shape,
       }
       ++spring;
     }
-    for (const ContactSpring& contact : patch.contacts) {
+    contacts_.push_back(patch.contacts);
+    for (const ContactSpring& contact : contacts_.back()) {
       spring->contact = &contact;
       ++spring;
     }

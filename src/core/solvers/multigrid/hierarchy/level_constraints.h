@@ -21,7 +21,7 @@ class LevelConstraints {
 
   // To be called when the grid's levels are new: held by nothing.
   void reset();
-  // Takes over what holds the nodes, and gravity. The shape's contacts must stay where they are.
+  // Takes over what holds the nodes, and gravity.
   void bind(const ConstrainedState& shape, const DofConstraints& hold);
   // Places patches by force, and takes their motion so far as done.
   void renewGroups(const ConstrainedState& shape, const DofConstraints& hold);
@@ -55,7 +55,8 @@ class LevelConstraints {
   void addTie(std::size_t coarse, int fine_node, unsigned axes, int group, const Vec3& arm);
 
   CompositeGrid<Real>& grid_;
-  Pattern pattern_;  // as bound
+  Pattern pattern_;                       // as bound
+  std::vector<ContactSprings> contacts_;  // per patch; the levels' springs point to them
   std::vector<FromFine> from_fine_;
 };
 

@@ -1,0 +1,50 @@
+#include "touch_spring.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tuning.h"
+
+namespace robot_tissue {
+
+double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
+  double stiffness = 0.0;
+  for (const NodeWeight& carrier : spring.carriers) {
+    stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
+  }
+  return tuning::kMostForce * stiffness * tissue.lattice().spacing();
+}
+
+Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
+  const double most = tuning::kMostPush * tissue.lattice().spacing();
+  return contact.point + std::min(contact.depth_m, most) * contact.normal;
+}
+
+Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
+  const double cosine = std::min(1.0, std::max(-1.0, from.dot(to)));
+  const Vec3 across = to - cosine * from;
+  if (std::acos(cosine) <= most || across.norm() < 1e-9) return to;
+  return std::cos(most) * from + std::sin(most) * across.normalized();
+}
+
+void carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+           ContactSpring& spring) {
+  const Surface& surface = tissue.surface();
+  SurfacePoint point = place;
+  point.barycentric =
+      (point.barycentric.array() < tuning::kNoShare).select(0.0, point.barycentric).eval();
+  spring.rest.setZero();
+  for (int corner = 0; corner < 3; ++corner) {
+    const int vertex = surface.triangles[at(point.triangle)][at(corner)];
+    spring.rest += point.barycentric[corner] * surface.rest[at(vertex)];
+  }
+  spring.carriers = carriersAt(surface, point);
+  double compliance = 0.0;  // m/N
+  for (const auto& [node, weight] : spring.carriers) {
+    const double stiffness = tissue.nodeStiffness(node);
+    if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
+  }
+  spring.stiffness = compliance > 0.0 ? tuning::kContactStiffness / compliance : 0.0;
+}
+
+}  // namespace robot_tissue
