@@ -30,7 +30,8 @@ std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const CollisionShape& shape)
   return nullptr;
 }
 
-// No point of the box is so near to the plane.
+// Whether every point of the box is farther than the margin (m) above the plane, by the ball around
+// it.
 bool isAbove(const PlacedShape& plane, const Box& box, double margin) {
   const Vec3 center = plane.shape_T_tissue * Vec3(box.center());
   return plane.shape->distance(center).value > 0.5 * box.diagonal().norm() + margin;
@@ -38,7 +39,8 @@ bool isAbove(const PlacedShape& plane, const Box& box, double margin) {
 
 }  // namespace
 
-// FCL's box around a turned mesh is that of a ball around it: our own is narrower.
+// A shape as FCL's broad phase has it, with our own box in the place of FCL's: FCL's is around a
+// ball around the turned mesh, and wider.
 class BroadPhase::Object : public fcl::CollisionObjectd {
  public:
   using fcl::CollisionObjectd::CollisionObjectd;

@@ -116,7 +116,7 @@ std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) co
   return WayOut{-found.value, found.slope};
 }
 
-// A point deep inside is always asked, one far outside never.
+// The mesh answers points inside it at any depth, those outside within the reach only.
 std::optional<WayOut> CollisionShape::wayOutOfMesh(const Vec3& point, double reach) const {
   const auto found = mesh_->distance(point, reach + shape_.padding);
   if (!found) return std::nullopt;

@@ -76,7 +76,8 @@ class SurfaceTree {
   }
   bool exists() const { return tree_.has_value(); }
   const TriangleBvh& last() const { return *tree_; }
-  // Goes up whenever a surface is another one, or elsewhere.
+  // Counts how often another surface was taken, or the same moved: what was found at another count
+  // is of another shape.
   std::uint64_t moves() const { return moves_; }
 
  private:
@@ -92,9 +93,9 @@ class SurfaceTree {
   std::uint64_t moves_ = 0;
 };
 
-// What the last find() met.
+// What the last find() met, so that penetrations() need not look for the same again.
 struct Found {
-  std::uint64_t move = 0;  // of the surface
+  std::uint64_t move = 0;  // SurfaceTree::moves() then
   RobotPose pose;
   std::vector<double> deepest;  // per link (m)
 };
@@ -113,7 +114,8 @@ struct ContactFinder::Impl {
                    const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
   double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
                      const Surface& surface, const std::vector<Vec3>& vertices);
-  // Around the surface; nobody may ever come near.
+  // Box around the surface. Without a tree, which is made once a link comes near, from all
+  // vertices.
   Box boundsOf(const Surface& surface, const std::vector<Vec3>& vertices) {
     return surface_tree.exists() ? surface_tree.of(surface, vertices).bounds()
                                  : robot_tissue::boundsOf(vertices);
@@ -125,7 +127,7 @@ struct ContactFinder::Impl {
            found.pose.links[link].matrix() == tissue_T_link.matrix();
   }
 
-  // Scratch.
+  // Kept from call to call, to spare allocations and to answer the same question once.
   LinkContacts link_contacts;
   SurfaceTree surface_tree;
   Found found;
@@ -237,7 +239,7 @@ ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
   return found;
 }
 
-// The tree is of these vertices.
+// `surface_tree` must be of these vertices.
 double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link,
                                         const Pose& tissue_T_link, const Surface& surface,
                                         const std::vector<Vec3>& vertices) {
@@ -262,7 +264,8 @@ std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue
   return robot_tissue::wayOut(placed(impl_->links[link].shapes, tissue_T_link), point, reach);
 }
 
-// Sphere tracing: from a point at a signed distance the way out is at least as long as that.
+// Sphere tracing (Hart 1996): at a depth d every way out to `clear` off the link is at least d +
+// clear long, so the probe goes as far at once; a least step ends ways that graze the link.
 std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& tissue_T_link,
                                                  const Vec3& point, const Vec3& direction,
                                                  double clear, double reach,

@@ -30,9 +30,9 @@ class LinkContacts {
             ContactSet& found);
 
  private:
-  // A vertex seen from a shape, asked once.
+  // A vertex in a shape's frame and its distance, asked for once a search.
   struct Seen {
-    std::uint64_t search = 0;  // the one that asked; 0: none
+    std::uint64_t search = 0;  // number of the search that asked; 0: none
     bool is_near = false;      // of a mesh: not farther than the margin; else always
     Vec3 point = Vec3::Zero();
     SignedDistance distance;

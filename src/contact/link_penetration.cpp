@@ -9,7 +9,7 @@
 namespace robot_tissue {
 namespace {
 
-// Golden spiral.
+// Evenly spread points: heights in equal steps, each turned on by the golden angle.
 std::vector<Vec3> spherePoints(double radius) {
   std::vector<Vec3> points;
   const double turn = M_PI * (3.0 - std::sqrt(5.0));
@@ -21,7 +21,7 @@ std::vector<Vec3> spherePoints(double radius) {
   return points;
 }
 
-// A grid on each face, edges and corners among them.
+// A grid of (kBoxSteps + 1)^2 points on each face, edges and corners among them.
 std::vector<Vec3> boxPoints(const Vec3& size) {
   std::vector<Vec3> points;
   const auto isEnd = [](int i) { return i == 0 || i == tuning::kBoxSteps; };
@@ -89,7 +89,8 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
     case ToolShape::Type::kPlane:
       break;
   }
-  // Corners and edges move outwards between their faces.
+  // Out to the padded surface. Seen from just outside, a point on an edge or corner moves along the
+  // mean of its faces' normals.
   const Vec3 half = 0.5 * (shape.bounds().max() - shape.bounds().min());
   for (Vec3& point : points) {
     const Vec3 outside = point + 1e-6 * half.minCoeff() * point.cwiseQuotient(half);

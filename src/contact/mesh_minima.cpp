@@ -8,8 +8,9 @@
 namespace robot_tissue {
 namespace {
 
-// Whether a place found before stands for another, too: the ball around it that is all inside the
-// mesh holds the other, or they are side by side.
+// Whether a deepest place found before is one contact with another place: it is nearer than a share
+// of the edge, or than the known one is deep. The ball of that radius around the known place is
+// inside the mesh, so both are in the same part of it.
 bool standsFor(const TriangleMinimum& known, const Vec3& point, const Corners& corners) {
   const double apart = (pointOf(corners, known.weights) - point).norm();
   return apart <= std::max(tuning::kSamePlace * longestEdge(corners), -known.distance.value);
@@ -22,7 +23,7 @@ bool isKnown(const Vec3& point, double distance, const Corners& corners,
   });
 }
 
-// The deepest of what stands for each other stays.
+// Of places that are one contact the deepest stays.
 void keep(const TriangleMinimum& found, const Corners& corners,
           std::vector<TriangleMinimum>& minima) {
   if (isKnown(pointOf(corners, found.weights), found.distance.value, corners, minima)) return;
@@ -42,7 +43,8 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
   std::vector<TriangleMinimum> minima;
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   if (!(area.norm() > 0.0)) return minima;
-  // A distance changes by no more than the way.
+  // A signed distance changes by no more than the way between two points: where the center is
+  // farther than the limit and the widest corner, no point is within the limit.
   const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());

@@ -95,7 +95,8 @@ std::optional<Slit> slitOf(int face, const Corners& face_corners, const Corners&
   return Slit{face, 0.5 * (from + to), (pointOf(corners, to) - pointOf(corners, from)).norm()};
 }
 
-// Slits whose faces share an edge have the same number.
+// Per slit the number of the connected line in which the mesh cuts the triangle: slits, of one face
+// each, whose faces share an edge are of one line.
 std::vector<std::size_t> connectedParts(const std::vector<Slit>& slits, const ToolMesh& mesh) {
   std::vector<std::pair<int, std::size_t>> slits_of_edges;
   for (std::size_t i = 0; i < slits.size(); ++i) {
@@ -153,13 +154,14 @@ void seedsOfSlits(const std::vector<Slit>& slits, const ToolMesh& mesh, const Co
   }
 }
 
-// Whether going from `place` to `other` leads, at first, not nearer to what is `away` from it.
+// Whether a step from `place` towards `other` leads, at first, not nearer to the point that is the
+// vector `away` from `place`.
 bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
   const Vec3 way = other - place;
   return way.dot(away) <= tuning::kSquare * way.norm() * away.norm();
 }
 
-// Which numbers were named since begin(); keeps its array from call to call.
+// A set of numbers that is emptied by begin() without a pass over its array.
 class Marks {
  public:
   void begin(std::size_t count) {
@@ -201,8 +203,9 @@ void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh,
   }
 }
 
-// Shares of the ways from a to b and from c to d of the nearest points of two segments; nothing
-// when one is an end (own, by the normal equations).
+// The nearest points of segments a-b and c-d, as shares of the way from a to b and from c to d, by
+// the normal equations of |a + s (b - a) - c - t (d - c)|^2; nothing when one is an end, or the
+// segments are parallel.
 std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b, const Vec3& c,
                                                    const Vec3& d) {
   const Vec3 ab = b - a, cd = d - c, ac = c - a;
@@ -215,8 +218,8 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
   return std::array<double, 2>{u, v};
 }
 
-// Places on the triangle's edges beside edges of the mesh, where every way on the triangle and on
-// the mesh leads apart.
+// Places on the triangle's edges that are nearest to an edge of the mesh: local least distances, as
+// on the triangle and on the mesh's faces beside the edge every way leads apart.
 void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
                       const TrianglePlane& plane, double reach, const Corners& corners,
                       std::vector<Vec3>& seeds) {

@@ -55,14 +55,14 @@ std::unique_ptr<fcl::CollisionGeometryd> makeGeometry(const CollisionShape& shap
 
 bool isSphere(const PlacedShape& placed) { return placed.shape->measures().type == Type::kSphere; }
 
-// From a sphere's center to the other shape.
+// Of a sphere: the other shape's distance from its center, less its radius.
 double gapOfSphere(const PlacedShape& sphere, const PlacedShape& other) {
   const Vec3 center = other.shape_T_tissue * sphere.tissue_T_shape.translation();
   return other.shape->distance(center).value - sphere.shape->measures().radius -
          sphere.shape->padding();
 }
 
-// From the lowest point over the plane.
+// Of a plane: the height of the other shape's lowest point over it.
 double gapOverPlane(const PlacedShape& plane, const GapSide& other) {
   const Pose plane_T_other = plane.shape_T_tissue * other.placed->tissue_T_shape;
   const double padding = plane.shape->padding() + other.placed->shape->padding();

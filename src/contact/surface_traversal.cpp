@@ -30,7 +30,7 @@ bool areApart(const CenteredBox& box, const Vec3& low, const Vec3& high, double 
          ((box.center + box.half).array() < low.array() - margin).any();
 }
 
-// The surface's tree is the first one.
+// FCL's traversal of two trees: the first is the surface's.
 class SurfaceTraversal : public Traversal {
  public:
   explicit SurfaceTraversal(const TriangleBvh& surface) : surface_(surface) {}
@@ -46,7 +46,7 @@ class SurfaceTraversal : public Traversal {
   const TriangleBvh& surface_;
 };
 
-// Beside one shape as a whole.
+// Triangles near to one shape, which is the second tree's only node.
 class BesideShape : public SurfaceTraversal {
  public:
   BesideShape(const PlacedShape& shape, const TriangleBvh& surface, double margin,
@@ -55,7 +55,9 @@ class BesideShape : public SurfaceTraversal {
 
   bool isSecondNodeLeaf(int) const override { return true; }
   bool firstOverSecond(int, int) const override { return true; }
-  // Apart in either's frame; and, of what has a distance by formula, a ball around the box is.
+  // True: nothing below is near. Boxes are compared in the tissue's frame; then the shape's
+  // distance from the box's center with the radius of the ball around the box or, of a mesh, boxes
+  // in its frame.
   bool BVTesting(int b, int) const override {
     const CenteredBox box = centered(surface_.node(b).bv);
     if (areApart(box, shape_.bounds.min(), shape_.bounds.max(), margin_)) return true;
@@ -76,7 +78,7 @@ class BesideShape : public SurfaceTraversal {
   std::vector<int>& triangles_;
 };
 
-// Beside a mesh, face by face; boxes in its frame.
+// Pairs of near triangles and faces of a mesh, whose tree is the second; boxes in the mesh's frame.
 class BesideMesh : public SurfaceTraversal {
  public:
   BesideMesh(const PlacedShape& mesh, const TriangleBvh& surface, double reach,
@@ -125,8 +127,8 @@ class BesideMesh : public SurfaceTraversal {
   const TriangleBvh& faces_;
   double reach_;
   std::vector<std::pair<int, int>>& pairs_;
-  mutable int seen_ = -1;    // node of the surface
-  mutable CenteredBox box_;  // its
+  mutable int seen_ = -1;    // the surface's node that was asked for last
+  mutable CenteredBox box_;  // its box in the mesh's frame
 };
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace robot_tissue {
 namespace {
 
-// Turned outwards as a whole: which parts of a surface that crosses itself are cavities is not
-// told.
+// Turned outwards as a whole, by its volume's sign. In a surface that crosses itself it cannot be
+// known which parts are walls of cavities.
 TriangleMesh turnedOutwards(TriangleMesh mesh) {
   if (enclosedVolume(mesh.vertices, mesh.triangles) >= 0.0) return mesh;
   for (MeshTriangle& t : mesh.triangles) std::swap(t[1], t[2]);
@@ -57,7 +57,7 @@ Corners ToolMesh::corners(int triangle) const {
   return {mesh_.vertices[at(t[0])], mesh_.vertices[at(t[1])], mesh_.vertices[at(t[2])]};
 }
 
-// Closed: each edge has two triangles.
+// The mesh is closed, so that each edge has two triangles.
 void ToolMesh::findEdges() {
   std::map<std::pair<int, int>, int> numbers;
   neighbors_.resize(mesh_.vertices.size());
@@ -119,7 +119,8 @@ void ToolMesh::measureThickness() {
 
 std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach) const {
   const Box& box = bounds();
-  // A point in the box is asked wherever it is: it may be deep inside.
+  // A point in the mesh's box may be inside, and deeper than the reach: it is looked for at any
+  // distance.
   const bool in_box =
       (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
   const auto nearest =
@@ -148,9 +149,10 @@ SignedDistance ToolMesh::signedBy(const Vec3& point, const TriangleBvh::Nearest&
   return found;
 }
 
-// By the side of the face that is nearest, or of the mean of the two at an edge (Baerentzen and
-// Aanaes 2005). At a vertex, where more than one fan of faces may meet, and where that does not
-// tell, by how often the surface goes around the point.
+// Inside or outside: by the side of the nearest face that the point is on or, where an edge is
+// nearest, of the mean of its two faces (angle-weighted pseudonormals, Baerentzen and Aanaes 2005).
+// At a vertex, where more than one fan of faces may meet, and where the height over the face is
+// rounding, by how often the surface goes around the point.
 bool ToolMesh::isInside(const Vec3& point, const TriangleBvh::Nearest& nearest) const {
   const Box& box = bounds();
   const bool in_box =

@@ -10,7 +10,7 @@
 namespace robot_tissue {
 namespace {
 
-// Of the ray; along no edge or face of a lattice.
+// The ray's direction is (kRayX, kRayY, 1), along no edge, face or diagonal of a lattice.
 constexpr double kRayX = 0.41421356;
 constexpr double kRayY = 0.23606798;
 constexpr double kRaySlack = 1e-9;  // of the ray's parameter (m), for rounding
@@ -30,7 +30,7 @@ bool rayMeets(const fcl::AABBd& box, const Vec3& from) {
   return near <= far;
 }
 
-// A corner seen along the ray, from its start.
+// A corner in the ray's frame: x and y across it (0, 0: on it), z the way along it.
 Vec3 sheared(const Vec3& corner, const Vec3& from) {
   const Vec3 d = corner - from;
   return {d.x() - kRayX * d.z(), d.y() - kRayY * d.z(), d.z()};
@@ -47,8 +47,8 @@ bool onLeft(int vertex_a, int vertex_b, double area) {
   return area > 0.0 || (area == 0.0 && vertex_a < vertex_b);
 }
 
-// How often the triangle leads out of the surface ahead on the ray: 1, -1 where it leads in, 0
-// where the ray misses it.
+// What the triangle adds to the crossings ahead on the ray: 1 where it leads out of the surface, -1
+// where it leads in, 0 where the ray misses it or met it before its start.
 int crossingOf(const MeshTriangle& triangle, const Corners& corners, const Vec3& from) {
   const auto& [va, vb, vc] = triangle;
   const Vec3 a = sheared(corners[0], from), b = sheared(corners[1], from),
@@ -200,7 +200,7 @@ void TriangleBvh::refit(Part& part) const {
   part.is_stale = false;
 }
 
-// From its triangle or its children.
+// The node's box, around its triangle or around its children's boxes.
 void TriangleBvh::fit(int number) const {
   Node& node = nodes_[number];
   if (!isLeaf(node)) {
@@ -230,14 +230,14 @@ std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, doub
                                                          double enough) const {
   if (isEmpty()) return std::nullopt;
   Search search{point, reach * reach, enough * enough, {}};
-  // Written so that a point that is not finite has none.
+  // False for a point that is not finite: it has no nearest triangle.
   if (squaredDistance(nodes_[0].bv, point) < search.best) searchBelow(0, search);
   if (search.found.triangle < 0) return std::nullopt;
   search.found.distance = std::sqrt(search.best);
   return search.found;
 }
 
-// The nearer child first.
+// Looks into the nearer child first, so that the other can more often be left out.
 void TriangleBvh::searchBelow(int number, Search& search) const {
   const Node& node = nodes_[number];
   if (isLeaf(node)) return searchTriangle(triangleOf(node), search);
@@ -269,7 +269,8 @@ bool TriangleBvh::isInside(const Vec3& point) const {
   return !isEmpty() && crossingsBelow(0, point) > 0;
 }
 
-// How often the surface leads out along the ray from the point, less how often in.
+// Sum of crossingOf over the triangles below: how often the surface leads out along the ray, less
+// how often in. Of a closed surface it is how often it goes around the point.
 int TriangleBvh::crossingsBelow(int number, const Vec3& point) const {
   const Node& node = nodes_[number];
   if (!rayMeets(node.bv, point)) return 0;

@@ -1,9 +1,10 @@
 // FCL's tree of boxes over the triangles of a closed surface, refitted as they move, and what FCL
 // does not tell reliably of it: nearest point, inside or outside.
 //
-// Only the boxes of parts of some dozen triangles are made anew when the surface moves; what is in
-// a part, when someone comes there. So a move costs a look at each vertex, and where no tool is, no
-// more.
+// The tree is in parts of some dozen triangles. When the surface moves, the box of each part that
+// moved is made anew, and those above the parts; the boxes within a part only when a search comes
+// there (open). So a move costs a comparison of each vertex with where it was, and no more where no
+// tool is.
 #pragma once
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -67,7 +68,7 @@ class TriangleBvh {
   // For FCL's traversals: numbers of nodes as FCL's, 0 the root.
   bool isEmpty() const { return nodes_ == nullptr; }
   const std::shared_ptr<Model>& model() const { return model_; }
-  // Its box is right, those below it once it is open.
+  // A node's box is up to date once the nodes above it are open.
   const Node& node(int number) const { return nodes_[number]; }
   void open(int number) const {
     const int part = part_at_[at(number)];
@@ -75,7 +76,7 @@ class TriangleBvh {
   }
   static bool isLeaf(const Node& node) { return node.first_child < 0; }
   static int triangleOf(const Node& leaf) { return -leaf.first_child - 1; }
-  // Of a triangle whose leaf is below what is open.
+  // Places of a triangle's corners; up to date once the nodes above its leaf are open.
   const Corners& corners(int triangle) const { return corners_[at(triangle)]; }
 
  private:
@@ -104,9 +105,9 @@ class TriangleBvh {
   void fit(int number) const;
 
   std::vector<MeshTriangle> triangles_;
-  std::vector<int> vertices_;        // per slot
-  std::vector<Vec3> places_;         // theirs (m)
-  std::vector<MeshTriangle> slots_;  // of the triangles' corners
+  std::vector<int> vertices_;        // per slot: the vertex whose place it keeps
+  std::vector<Vec3> places_;         // per slot: where that is (m)
+  std::vector<MeshTriangle> slots_;  // per triangle: those of its corners
   std::shared_ptr<Model> model_;
   Node* nodes_ = nullptr;                 // the model's
   mutable std::vector<Corners> corners_;  // per triangle

@@ -20,8 +20,8 @@ struct Cut {
   }
 };
 
-// The part of the triangle that reaches `radius` from the point towards each edge: a smaller one of
-// the same form, by its corners' weights.
+// A smaller triangle of the same form around a point of the triangle, as the weights of its
+// corners. It reaches `radius` (m) from the point towards each edge, but not out of the triangle.
 std::array<Vec3, 3> partAround(const Corners& corners, const Vec3& weights, double radius) {
   const double twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
   Vec3 least;
@@ -70,8 +70,9 @@ double accuracyFor(const CollisionShape& shape, const Corners& corners) {
   return std::max(tuning::kLeastAccuracy, accuracy);
 }
 
-// The least point of the highest plane stays when the new plane is not above it; otherwise it moves
-// to where the new plane meets others, or to a corner.
+// The least point of the maximum of all planes is a vertex of that polyhedron. It stays when the
+// new plane is not above it; otherwise it is where the new plane meets two others, one other on an
+// edge of the triangle, or at a corner.
 void HighestPlane::add(const Vec3& corner_values) {
   planes_[count_++] = corner_values;
   if (count_ > 1 && corner_values.dot(weights_) <= least_) return;

@@ -17,7 +17,7 @@ namespace robot_tissue {
 
 // How a grasper's jaws stand to the tissue.
 struct Jaws {
-  // kUnseen: no tissue is between them, which alone tells open from closed.
+  // kUnseen: no tissue is between them; the gap, which tells open from closed, counts at tissue.
   enum class State { kUnseen, kOpen, kClosed };
   // What keeps closed jaws from holding.
   enum class Loss { kClosedBefore, kReleased, kTorn };
@@ -25,7 +25,7 @@ struct Jaws {
   Loss loss = Loss::kClosedBefore;
   std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where, in each's frame (m)
   bool asked = false;                                       // to grasp, in vain
-  bool let_go = false;  // told so since the last step, in which they hold nothing anew
+  bool let_go = false;  // told to since the last step: in the next they do not take hold again
   bool were_apart = false;
 };
 

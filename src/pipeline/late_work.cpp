@@ -30,7 +30,8 @@ const StepReport& Pipeline::carryOn() {
   return world_.report;
 }
 
-// A solve without a bound gives up, too.
+// Counts the iterations since the tools stand; a solve that never converges is given up in the end,
+// with a budget or without.
 void Pipeline::countLate() {
   late_iterations_ +=
       world_.tissue.isLoading() ? 0 : std::max(1, world_.tissue.lastReport().iterations);

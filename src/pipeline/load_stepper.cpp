@@ -58,7 +58,8 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
   }
 }
 
-// Goes on where the solve ended on its way. False: no shape followed.
+// Solves on, kMoreSolves times at most, while the solve has not settled (isUnsettled). False: the
+// shape is lost, or did not converge where that is refused.
 bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
     const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
@@ -78,7 +79,8 @@ void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   world_.report.changed = true;
 }
 
-// No load step takes tissue that is held so far.
+// Whether a node of the surface went farther than kMostLeap spacings: no load step moves tissue
+// that tools hold so far, so the solve threw it away.
 bool LoadStepper::leaptFrom(const Checkpoint& good) const {
   if (world_.tissue.isUntouched()) return false;
   const std::vector<Vec3>& now = world_.tissue.state().displacement;
@@ -94,7 +96,8 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
   return farthest > leap * leap;
 }
 
-// No tissue gets into this shape from the last good one, as where tools squeeze it flat.
+// Whether the shape is none that tissue gets into from the last good one: it leapt, has more
+// inverted cells, a link went through its surface, or a touch pushes harder than any tissue does.
 bool LoadStepper::isLost(const Checkpoint& good) const {
   return leaptFrom(good) || turnedOver(good) || wentThrough(good) ||
          SlidingContacts::pushesAbsurdly(world_.tissue);
@@ -106,7 +109,7 @@ bool LoadStepper::turnedOver(const Checkpoint& good) const {
          world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells;
 }
 
-// Into what gives way, deeper than it was.
+// Whether a link is deeper in tissue that gives way than throughAt, and than it was.
 bool LoadStepper::wentThrough(const Checkpoint& good) const {
   const std::vector<double>& depths = touch_finder_.depths();
   for (std::size_t link = 0; link < world_.tools.linkCount() && link < depths.size(); ++link) {
@@ -116,13 +119,14 @@ bool LoadStepper::wentThrough(const Checkpoint& good) const {
   return false;
 }
 
-// Deeper in the surface (m), a link is on its way to the other side of it.
+// Depth in the surface (m) beyond which a link is on its way to the other side of it.
 double LoadStepper::throughAt(std::size_t link) const {
   return std::min(tuning::kThrough * world_.tissue.lattice().spacing(),
                   tuning::kThroughOfThickness * world_.finder.thickness(link));
 }
 
-// The solve ended on its way, as where tissue slips far.
+// Whether the solve ended before it was done, as where tissue slips far: a point is left too deep
+// or, unconverged, the forces on the tissue do not add up to zero.
 bool LoadStepper::isUnsettled() const {
   if (contact_update_.leftInside() > tuning::kTooDeep * world_.tissue.lattice().spacing()) {
     return true;
@@ -173,7 +177,8 @@ void LoadStepper::meet(const RobotPose& pose) {
   world_.sliding.meet(touch_finder_.touchesAt(pose, held), pose, world_.tissue, held);
 }
 
-// Of the tools that touched, for the surface to come back to.
+// Patches of all tools, also of those that touch nothing now: where they would touch the rest shape
+// the tissue comes back onto them.
 std::vector<LoadingPatch> LoadStepper::lastTouches() const {
   std::vector<LoadingPatch> patches;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -195,7 +200,7 @@ Checkpoint LoadStepper::checkpoint() const {
   return all;
 }
 
-// On the supports alone.
+// Balance on the supports alone, when all tools have let go.
 void LoadStepper::lieDown() {
   if (world_.tissue.isUntouched()) return;
   world_.sliding.ride(world_.pose, world_.tissue);

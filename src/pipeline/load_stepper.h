@@ -11,8 +11,8 @@
 
 namespace robot_tissue {
 
-// Where a whole load step ended. Only rigid patches come back to its shape later: without them it
-// has none but on the way through a step.
+// What is kept of the end of a whole load step to come back to. `shape` is empty where nothing was
+// to be solved and, without rigid patches, once the step is over: they alone come back later.
 struct Checkpoint {
   RobotPose pose;
   Tissue::Shape shape;
@@ -22,7 +22,7 @@ struct Checkpoint {
   std::vector<double> depths;
 };
 
-// A shape that did not converge.
+// What is done with a shape that did not converge.
 enum class IfUnconverged { kTake, kRefuse };
 
 class LoadStepper {
@@ -36,7 +36,7 @@ class LoadStepper {
 
   // The tools go there. False: no shape could follow, all is as it was.
   bool advance(const RobotPose& pose, IfUnconverged otherwise = IfUnconverged::kTake);
-  // Under what acts now.
+  // Equilibrium under what acts now, gravity and loads too.
   SolveReport balance();
   void lieDown();
 

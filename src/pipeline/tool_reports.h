@@ -12,7 +12,8 @@ namespace robot_tissue {
 // way.
 std::vector<double> deepestPoints(const World& world);
 
-// But for its deepest point, and the way of a tool that a force drives.
+// The report of a tool, but for max_penetration (deepestPoints) and offset (ForceDrive), which the
+// caller puts in.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool);
 
 }  // namespace robot_tissue

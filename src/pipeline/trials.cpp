@@ -1,4 +1,4 @@
-// Pipeline: steps that are undone.
+// Pipeline: trial steps, after which all is put back as it was.
 #include "pipeline_parts.h"
 
 namespace robot_tissue {

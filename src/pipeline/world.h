@@ -1,4 +1,5 @@
-// The tissue and the tools beside it: what all parts of the pipeline see.
+// The tissue and the tools beside it: what all parts of the pipeline see. In brackets: which of
+// them change it, besides Pipeline, which does when the tissue is loaded, cut or reset.
 #pragma once
 
 #include <optional>
@@ -14,7 +15,7 @@
 
 namespace robot_tissue {
 
-// A shortest load step that no shape followed.
+// A load step of the shortest length that no shape followed, from one pose to the other.
 struct DeadEnd {
   RobotPose from;
   RobotPose to;
@@ -25,20 +26,25 @@ struct World {
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
-  Tissue tissue;
+  Tissue tissue;  // [LoadStepper]
   ToolSet tools;
-  ContactFinder finder;       // of tools and supports
-  StickingContacts sticking;  // of tools with rigid patches, and graspers
-  SlidingContacts sliding;    // of the other tools, and supports
+  ContactFinder finder;  // of tools and supports
+  // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
+  StickingContacts sticking;
+  // Of the other tools, and supports. [LoadStepper, ToolContactUpdate, ToolMotion, Grasping]
+  SlidingContacts sliding;
   bool has_supports = false;
-  RobotPose pose;   // of the load step under way, or the last that a shape followed
-  RobotPose asked;  // where the tools are
-  // Where they are for the tissue (Pipeline::pose); none before the first step.
+  // Of the load step under way, or the last that a shape followed. [LoadStepper, ToolMotion]
+  RobotPose pose;
+  RobotPose asked;  // where the robot has the tools, which may be farther [ToolMotion]
+  // Where the tools are for the tissue, as Pipeline::pose tells; none before the first step.
+  // [ToolMotion]
   std::optional<RobotPose> last_pose;
-  std::optional<DeadEnd> dead_end;  // none: the tissue has changed since
-  bool unfinished = false;  // the last load step had no time for all that it would have done
+  // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
+  std::optional<DeadEnd> dead_end;
+  bool unfinished = false;  // the last load step had no time for all it would do [LoadStepper]
   Deadline deadline;        // of the call under way
-  StepReport report;
+  StepReport report;        // [LoadStepper, ToolMotion; times: whoever took them]
 };
 
 // What the patch of a tool or support exerts on the tissue; zero when it has none.

@@ -42,7 +42,7 @@ PoseWatch::PoseWatch(tf2_ros::Buffer& buffer, const ToolPoses& poses, double rat
 }
 
 PoseWatch::~PoseWatch() {
-  feed_.reset();  // first: from here on nothing is received
+  feed_.reset();  // first: after it nothing more is received
   buffer_._removeTransformsChangedListener(connection_);
   queue_.removeByID(reinterpret_cast<std::uint64_t>(this));
 }
@@ -87,7 +87,8 @@ void PoseWatch::standAt(std::optional<StillPose> still) {
   still_ = std::move(still);
 }
 
-// A pose that is not new, or no good one, is the timer's.
+// A good pose with a new stamp is handed to the spinner's thread, or answered here where nothing is
+// to be done at it. Others are left to the timer, which tells what is wrong.
 void PoseWatch::onTransforms() {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ros::Time now = ros::Time::now();

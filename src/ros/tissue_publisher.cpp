@@ -107,7 +107,7 @@ bool TissuePublisher::isUpToDate() const {
          ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted());
 }
 
-// The first array stays for who comes later.
+// The topic is latched: a first array goes out without a listener, for who comes later.
 bool TissuePublisher::areMarkersWanted() const {
   return markers_.getNumSubscribers() > 0 || !latched_markers_are_out_;
 }

@@ -46,7 +46,8 @@ void TransformFeed::take(const tf2_msgs::TFMessage& message, Kind kind) {
   }
 }
 
-// Before there is a time, none has.
+// Whether the buffer can take the transform: it is no farther ahead of the clock, or behind the
+// newest of its frame, than the buffer is long. Before there is a clock, none.
 bool TransformFeed::hasPlace(const geometry_msgs::TransformStamped& transform) {
   const ros::Time now = ros::Time::now(), stamp = transform.header.stamp;
   if (now.isZero()) return false;

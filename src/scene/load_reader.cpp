@@ -100,7 +100,7 @@ const KeyTable<LoadStep> kLoadKeys = {
     {"patches"},
 };
 
-// Against the fixed nodes and against the patches that stand already.
+// Refuses patches whose nodes are fixed, or of a patch that stands already.
 void checkNodes(const Entry& entry, const Grid& grid, const StandingPatch& patch,
                 const std::vector<NodeRange>& fixed, const std::vector<StandingPatch>& standing) {
   for (std::size_t i = 0; i < fixed.size(); ++i) {

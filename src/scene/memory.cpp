@@ -19,7 +19,7 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 constexpr double kSpringsPerNode = 3.0;
 
-// Nothing where there is no such file or no number in it ("max").
+// The number that the file holds; `otherwise` where there is no such file, or "max" in it.
 double numberIn(const std::string& path, double otherwise) {
   std::ifstream file(path);
   double number = 0.0;
@@ -44,8 +44,8 @@ struct GroupFiles {
   const char* cache;  // in memory.stat: of what is used, given back on demand
 };
 
-// What a group of processes and those around it leave; a group's folder is not seen from within a
-// container, whose own group is then at the top.
+// Bytes that the limits of a control group and of all around it leave. From within a container the
+// group's own folder is not there; its limits are then in the top folder.
 double leftInGroups(const std::string& top, std::string group, const GroupFiles& files) {
   double left = kUnlimited;
   while (true) {

@@ -39,7 +39,7 @@ void readShape(const Entry& entry, TissueReading& reading) {
   readTyped(entry, {{"type"}}, shapeTypes(), reading);
 }
 
-// The tissue must not stand so far off that its spacing drowns in rounding.
+// Refuses a tissue so far from the origin that its spacing would be lost in rounding.
 void requireNear(const Entry& spacing_entry, const Box& box, double spacing) {
   const double farthest =
       std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());

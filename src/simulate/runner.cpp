@@ -80,7 +80,7 @@ void Runner::perform(const SettleStep&) {
   keep(report);
 }
 
-// Tools by a force stand still in it, as the others do.
+// Tools that a force drives stand still during such a step, as the others do.
 void Runner::perform(const LoadStep& step) {
   pipeline_.load(step, [this](int increment, int increments, const SolveReport& report) {
     keep(report, increment, increments);
@@ -116,7 +116,7 @@ void Runner::perform(const ResetStep&) {
   keep(SolveReport());
 }
 
-// With what the tools' updates since the last row came to.
+// A row of increments.csv, with times and status of the tools' updates since the last row.
 void Runner::keep(SolveReport report, int increment, int increments) {
   if (updates_.any) {
     const SolveStatus worst = std::max(report.status, updates_.worst);
@@ -141,8 +141,7 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   }
   result_.increments.push_back({step_, increment, report});
   if (on_row_) on_row_(result_.increments.back(), increments);
-  const bool more =
-      is_cut_short_ || increment < increments || at(step_) + 1 < scene_.steps.size();
+  const bool more = is_cut_short_ || increment < increments || at(step_) + 1 < scene_.steps.size();
   if (more && deadline_.isOver()) throw TimeIsOver();
 }
 

@@ -22,7 +22,7 @@ class Runner {
     MoveStep::Place from;
     MoveStep::Place to;
     int steps = 1;
-    int gone = 0;  // of them
+    int gone = 0;  // load steps that were walked
   };
   // What the tools' updates since the last row came to.
   struct Updates {

@@ -44,8 +44,8 @@ int Runner::loadSteps(double steps) const {
   return std::max(1, static_cast<int>(std::ceil(steps - tuning::kStepRounding)));
 }
 
-// What slips hangs on the way to it: whole load steps, where nothing is near several at once, whose
-// ends are the same whatever the increments.
+// Where tissue slips, the shape depends on the load steps on the way: these are whole ones whose
+// ends are the same whatever the increments; several at once where nothing is near.
 void Runner::walkTo(Way& way, double share) {
   while (way.gone < way.steps) {
     is_cut_short_ = deadline_.isOver();
@@ -65,7 +65,7 @@ void Runner::place(const Way& way, double share) {
   tools_.put(way.tool, between(way.from, way.to, share));
 }
 
-// Without a way to there. Where it stands it does not appear anew.
+// Puts the tool there without a way. Where it stands already it does not come in anew.
 void Runner::appear(std::size_t tool, const MoveStep::Place& place) {
   const std::optional<MoveStep::Place>& stands = tools_.of(tool);
   if (stands && stands->pose.isApprox(place.pose) && stands->opening == place.opening) return;
@@ -96,7 +96,7 @@ void Runner::perform(const GraspStep& step) {
   remarkHolds();
 }
 
-// The tool stays where its force has driven it.
+// The tool's pose becomes where its force has driven it.
 void Runner::endPush(std::size_t tool) {
   if (!pushes_[tool]) return;
   MoveStep::Place place = *tools_.of(tool);

@@ -1,6 +1,7 @@
-// How hard links press goes on as it went in the last load step (own): where a link goes on, its
-// touches begin with the forces that they will about have, and bounds of drag are those of the
-// shape that the solver begins with, which goes on likewise.
+// Foretells how hard links press in the next load step (own): if a link goes on along its last way,
+// its normal force grows, or falls, in proportion to how far, as it did on that way. Multipliers
+// and bounds of friction begin with that, as the solver's first guess of the shape goes on
+// likewise.
 #pragma once
 
 #include <cstddef>

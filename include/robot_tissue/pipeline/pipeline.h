@@ -60,16 +60,16 @@ class Pipeline {
   std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
   // Load steps of the way to the pose before any tool on it can touch.
   double freeStepsTo(const RobotPose& pose) const;
-  // Steps between these calls are undone, and nothing that follows hangs on them.
+  // Steps between these calls are undone: nothing that follows depends on them.
   void beginTrial();
   void undoTrial();
   // Time that a step, or one of the calls below, may take (s). Then it begins no further solve, the
   // rest of the way and of the loads is left to the next step, and so is a tool that would have to
   // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
-  // There is such a rest of a solve or a load.
+  // Whether a solve or a load was left for want of time.
   bool isLate() const;
-  // Goes on with it while the tools have no pose: they stay where they are.
+  // Goes on with what was left, while the tools have no pose: they stay where they are.
   const StepReport& carryOn();
   // The tools are where they were asked to be last, and the shape is the one there, in balance.
   bool hasArrived() const;
@@ -102,9 +102,9 @@ class Pipeline {
 
  private:
   struct Parts;  // the classes behind it, see doc/architecture.md
-  // All that the next step hangs on.
+  // All that the next step depends on.
   struct Mark;
-  // What is done in its life has the budget, counted from its beginning, and ends with all calls.
+  // While one lives, solves have the budget from its construction on, and end by setEnd's time.
   class Bounded {
    public:
     explicit Bounded(Pipeline& pipeline);

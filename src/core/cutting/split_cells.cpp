@@ -104,7 +104,8 @@ class GhostMaker {
     }
   }
 
-  // The ghost that stood there already, if no other set has taken it; else a new one.
+  // Number of the ghost for a set of lost corners: the one that an earlier cut put there, if no
+  // other set has taken it; else a new one.
   int ghostFor(const Cell& part, int corner, int original) {
     const Cell* earlier = before_.owner(part.place, lowestOwn(part));
     const int node = earlier != nullptr ? earlier->nodes[at(corner)] : original;

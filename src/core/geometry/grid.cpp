@@ -54,7 +54,8 @@ bool Grid::holdsCell(const Box& box) const {
   return false;
 }
 
-// The smallest range with the same nodes.
+// Ends moved inwards to the first and last index that has a node: the smallest range with the same
+// nodes.
 NodeRange Grid::shrunk(const NodeRange& range) const {
   if (nodes_.empty() || range.empty()) return range;
   NodeRange found{range.last, range.first};

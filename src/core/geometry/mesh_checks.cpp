@@ -100,8 +100,9 @@ bool isFlat(const TriangleMesh& mesh) {
   return !(volume > smallest);
 }
 
-// Where p is relative to the line from a to b, seen from above, with p moved by (e, e^2, 0) for an
-// e nearer to zero than any number: never on the line, so that a ray meets no edge.
+// On which side of the line from a to b the point p is, seen from above, with p moved by (e, e^2,
+// 0) for an e > 0 nearer to zero than any number: never on the line, so that a ray up from p meets
+// no edge (simulation of simplicity, Edelsbrunner and Muecke 1990).
 int turnAround(const ExactPoint& a, const ExactPoint& b, const ExactPoint& p) {
   const int exact = turn(a, b, p, 0, 1);
   if (exact != 0) return exact;

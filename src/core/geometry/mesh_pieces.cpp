@@ -35,7 +35,7 @@ HalfIndex MeshPieces::octantOf(const Vec3& point) const {
   return octant;
 }
 
-// On the plane is above it.
+// Whether the vertex is above the plane; on it counts as above.
 bool MeshPieces::isAbove(int vertex, int axis, int plane) const {
   return vertices_[at(vertex)][axis] >= 0.5 * plane;
 }

@@ -11,7 +11,7 @@ double pressAt(const ContactSpring& spring, const Vec3& point) {
   return std::max(0.0, spring.multiplier - spring.stiffness * gap);
 }
 
-// The drag before it is cut (N).
+// t_0 - k_t (1 - n n^T) (x - anchor): friction before it is cut to its bound (N).
 Vec3 trialFriction(const ContactSpring& spring, const Vec3& point) {
   const Vec3 slip = point - spring.anchor;
   return spring.friction_force -

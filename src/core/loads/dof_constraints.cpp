@@ -52,7 +52,8 @@ void DofConstraints::bind(ConstrainedState& shape) {
   std::sort(touched_.begin(), touched_.end());
 }
 
-// Back to what no patch holds: what was held before is undone, not all looked at again.
+// Back to what is held without patches. Where the cells are those of the last bind, only what its
+// patches held is undone: to look at all nodes again would take longer than a small solve.
 void DofConstraints::letGo(const LatticeState& state) {
   const std::size_t nodes = state.displacement.size();
   if (cells_ != state.cells || held_by_itself_.size() != nodes) {

@@ -24,8 +24,9 @@ struct Motion {
   std::vector<OfPatch> patches;
 };
 
-// Who holds what. A component is held, bit 1 << axis, when its node is fixed or loose, or hard in a
-// patch that holds the axis; nodes that are hard in a patch by force move with that.
+// Which components are held, and by what. A component is held, bit 1 << axis, when its node is
+// fixed or loose, or hard in a patch that holds the axis; nodes that are hard in a patch by force
+// move with that.
 class DofConstraints {
  public:
   DofConstraints(const Lattice& lattice, const EnergyModel& model);
@@ -63,14 +64,14 @@ class DofConstraints {
   struct SpringPlace {
     std::size_t patch = 0;
     std::size_t spring = 0;
-    double weight = 1.0;  // of the node, in a contact
-    int next = -1;        // of the same node
+    double weight = 1.0;  // of the node in a contact's point; 1 of a rim's spring
+    int next = -1;        // index in SpringList::all of the node's next spring, -1 = none
   };
-  // Per node: its springs.
+  // The springs of each node, as linked lists in one array.
   struct SpringList {
     std::vector<SpringPlace> all;
-    std::vector<int> first;  // per node, into all, -1 = none
-    std::vector<int> nodes;  // that have some
+    std::vector<int> first;  // per node: index in all, -1 = none
+    std::vector<int> nodes;  // those with a spring
 
     void clear(std::size_t node_count);
     void add(int node, std::size_t patch, std::size_t spring, double weight);

@@ -8,16 +8,18 @@
 namespace robot_tissue {
 namespace {
 
-// |G - 1|^2 of a corner's edges G below which det G > 0.3, as then no singular value is below
-// 0.3^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of its two parts.
+// G: the three edges at a corner over their lengths at rest. With |G - 1|^2 below 0.33^2 no
+// singular value of G is below 1 - 0.33 = 0.3^(1/3), so det G > 0.3: the barrier does not rise.
+// Half of that: what solve() compares is the sum of squares of the two parts of G - 1 (mean edges;
+// what bends and twists), and |a + b|^2 <= 2 (|a|^2 + |b|^2).
 constexpr double kSlight = 0.5 * 0.33 * 0.33;
 
-// w_s
+// w_s of the header: by the number of axes in s.
 constexpr double kWeight[kCorners] = {0.0, 1.0,       1.0,       2.0 / 3.0,
                                       1.0, 2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0};
 
-// x^(-1/3), x > 0: a guess within 4 % from the exponent, then Newton's method. std::cbrt would take
-// a third of the time of it all.
+// x^(-1/3), x > 0: a guess within 4 % by dividing the exponent's bits, then Newton's method,
+// r += r (1 - x r^3) / 3. With std::cbrt it would be a third of the time of solve().
 inline double inverseCubeRoot(double x) {
   std::uint64_t bits;
   std::memcpy(&bits, &x, sizeof bits);
@@ -74,7 +76,8 @@ void CellModes::solve() {
   look();
 }
 
-// Sums and differences along one axis after another. Twice gives eight times what was.
+// From corners to modes: sums and differences along one axis after another (a Walsh-Hadamard
+// transform). Applied twice it gives back eight times the corners' values.
 void CellModes::transform() {
   for (int bit = 1; bit < kCorners; bit <<= 1) {
     for (int k = 0; k < kCorners; ++k) {
@@ -92,7 +95,7 @@ void CellModes::transform() {
   }
 }
 
-// From displacements to places, then I1, J and the cofactors.
+// Adds the rest shape to the modes of the displacements, then finds I1, J and the cofactors of F.
 void CellModes::measure() {
   for (int cell = 0; cell < kMost; ++cell) slight_[cell] = invariant_[cell] = volume_[cell] = 0.0;
   const auto square = [](double x) { return x * x; };
@@ -156,7 +159,8 @@ bool CellModes::hasSqueezedCorner(int cell) const {
   return false;
 }
 
-// l = sum of w_s M_s / 4h and c, the same of J's derivatives, in the corner the cell is seen from.
+// In the corner that the cell is seen from, times 4h: l = (1/2) dI1/dx = sum of w_s M_s / 4h, and
+// c = dJ/dx = sum of the cofactors' columns.
 void CellModes::look() {
   for (int axis = 0; axis < 3; ++axis) {
     for (int cell = 0; cell < kMost; ++cell) {
@@ -170,7 +174,7 @@ void CellModes::look() {
   }
 }
 
-// h^2/4 [a l + p c]
+// dE/dx = h^2/4 [a l + p c], with the pressure p = dE/dJ / h^3.
 Vec3 CellModes::gradient() const {
   Vec3 gradient;
   for (int axis = 0; axis < 3; ++axis) {
@@ -183,7 +187,7 @@ Vec3 CellModes::gradient() const {
   return gradient;
 }
 
-// h/16 [16/3 a + a' (l c^T + c l^T) + p' c c^T]
+// d2E/dx2 = h/16 [16/3 a + a' (l c^T + c l^T) + p' c c^T]; ' is the derivative by J.
 Eigen::Matrix3d CellModes::block() const {
   Lanes half[3];
   for (int axis = 0; axis < 3; ++axis) {

@@ -32,7 +32,8 @@ class CellModes {
   // When all cells are added.
   void solve();
 
-  // False where the barrier may rise or the cell is pressed flat: there ask ElasticCell.
+  // Whether the modes suffice for the cell. False where the barrier may rise or the cell is pressed
+  // flat (J < kFlattest): there ask ElasticCell.
   bool suffices(int cell) const { return lean_[cell]; }
 
   // Of the energy in the corner that all cells are seen from, a node's. Cells that the modes do not
@@ -62,13 +63,13 @@ class CellModes {
   Lanes cofactor_[3][3];     // of F by columns M_a / 4h, then by axes
   Lanes shear_, bulk_;       // Pa
   Lanes side_[3];            // at rest M_a / 4h is this along a
-  Lanes hand_;               // product of the sides
-  Lanes slight_;             // bounds how far all corners are from rest
+  Lanes hand_;               // product of the sides: the sign of det M_a at rest
+  Lanes slight_;             // bound of |G - 1|^2 / 2 of all corners, see kSlight
   Lanes invariant_;          // I1
   Lanes volume_;             // J
   Lanes a_, slope_;          // a(J) and its derivative (Pa)
   Lanes pressure_;           // derivative of the energy's density by J (Pa)
-  Lanes curvature_;          // and of that
+  Lanes curvature_;          // derivative of pressure_ by J (Pa)
   Lanes l_[3], c_[3];        // (1/2) dI1/dx and dJ/dx, times 4h, where the cell is seen from
   bool lean_[kMost];
 };

@@ -14,7 +14,7 @@ namespace robot_tissue {
 // Second derivative of a cell's energy (N/m): rows and columns 3 * corner + axis.
 using CellHessian = Eigen::Matrix<double, 3 * kCorners, 3 * kCorners>;
 
-// Of one node that moves alone.
+// What a node feels that moves while all others stand.
 struct NodeBalance {
   Vec3 force = Vec3::Zero();                        // on it (N)
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();  // second derivative of the energy in it (N/m)

@@ -109,7 +109,9 @@ ROBOT_TISSUE_INLINE void halveAll(const Real* __restrict fine, Real* __restrict 
   for (int i = 0; i < count; ++i) coarse[i] = Real(0.5) * fine[2 * i];
 }
 
-// Of term(i), lane by lane in runs, so that the order is always one.
+// Sum of term(i) over i < count, in runs of kRun terms: each run has kPartialSums partial sums, of
+// every kPartialSums-th term, that are added at its end in double precision. So the order, and with
+// it the bits, is the same for any length of the processor's vectors.
 template <typename Real, typename Term>
 ROBOT_TISSUE_INLINE double sumOfTerms(int count, Term term) {
   constexpr int kRun = 2048, kPartialSums = 32;

@@ -1,5 +1,6 @@
 // Loops over fields (core/solvers/multigrid/level/cell_operator.h) in vector instructions. Sums are
-// the same each time.
+// taken in one order whatever the processor's vectors are, so that they have the same bits each
+// time.
 #pragma once
 
 namespace robot_tissue {
@@ -10,18 +11,21 @@ void sumForces(const float* below, const float* lower, const float* load, const 
 void sumForces(const double* below, const double* lower, const double* load, const double* free,
                double* whole, double* force, int count);
 
-// stiffness = below + lower; inverse = free / stiffness; `free` is 1 only where there is some.
+// stiffness = below + lower; inverse = free / stiffness, 0 where `free` is 0; the stiffness must be
+// positive where it is 1.
 void invertStiffness(const float* below, const float* lower, const float* free, float* stiffness,
                      float* inverse, int count);
 void invertStiffness(const double* below, const double* lower, const double* free,
                      double* stiffness, double* inverse, int count);
 
-// Where `free` is 1: adds to the load what makes the force the wanted one.
+// Where `free` is 1: load += wanted - force, force = wanted: the right-hand side of the full
+// approximation scheme, for which a coarse level has the fine one's force to begin with.
 void fasRightHandSide(const float* wanted, const float* free, float* load, float* force, int count);
 void fasRightHandSide(const double* wanted, const double* free, double* load, double* force,
                       int count);
 
-// Likewise, to what makes it differ from the known part of it by the wanted.
+// Where `free` is 1: load and force grow by wanted - known, where the coarse level's own force is
+// known in the place of its whole one.
 void fasRightHandSideBeside(const float* wanted, const float* known, const float* free, float* load,
                             float* force, int count);
 void fasRightHandSideBeside(const double* wanted, const double* known, const double* free,
@@ -48,7 +52,8 @@ void subtract(const double* a, const double* b, double share, double* difference
 void meanOf(const float* a, const float* b, float* mean, int count);
 void meanOf(const double* a, const double* b, double* mean, int count);
 
-// Of a row of coarse nodes, 1 + (count - 1) / 2 or one more: the nodes between them.
+// Linear interpolation of a row of 1 + (count - 1) / 2 coarse nodes, or one more where `count` is
+// even, to `count` fine ones: every second is a coarse one, those between are means.
 void prolongRow(const float* coarse, float* fine, int count);
 void prolongRow(const double* coarse, double* fine, int count);
 
@@ -75,7 +80,7 @@ double squaredDistance(const double* a, const double* b, int count);
 double sumOf(const float* values, int count);
 double sumOf(const double* values, int count);
 
-// In size.
+// Greatest absolute value.
 double greatestOf(const float* values, int count);
 double greatestOf(const double* values, int count);
 

@@ -1,5 +1,6 @@
-// For functions whose loops the compiler turns into vector instructions: made once for each kind of
-// processor that matters, chosen when the program starts. Elsewhere made once.
+// For functions whose loops the compiler turns into vector instructions: GCC compiles them once for
+// each of these processors, and the program takes one when it starts (target_clones). Where the
+// compiler or processor has no such thing, they are compiled once.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
@@ -15,7 +16,8 @@
 #define ROBOT_TISSUE_CLONES
 #define ROBOT_TISSUE_FOR_EACH_PROCESSOR(DEFINE) DEFINE(, 16)
 #endif
-// What such a function calls has to become part of it.
+// A function that such a one calls must be inlined into each of its clones, or it would be of the
+// plain processor.
 #define ROBOT_TISSUE_INLINE inline __attribute__((always_inline))
-// Short loops over lanes would be unrolled before they can become vectors.
+// Loops over few lanes: GCC would unroll them before it looks for vectors.
 #define ROBOT_TISSUE_ROLLED _Pragma("GCC unroll 1")

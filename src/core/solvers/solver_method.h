@@ -30,16 +30,18 @@ class SolverMethod {
   // bound.
   virtual void limitTime(double) {}
 
-  // Drops what earlier solves taught it: the next answer hangs on its arguments alone.
+  // Drops what it has learned from earlier solves: the next answer depends on its arguments alone.
   virtual void forget() {}
   // Whether there is anything to be dropped.
   virtual bool remembers() const { return false; }
 
-  // Grid points among which the last solve moved nodes one by one, of lattices of which it moves
-  // the others as a lattice of a greater spacing has them; null where it moves all one by one.
+  // The grid points among which the last solve moved each node of the lattice by itself. The nodes
+  // beyond them it put where a lattice of a greater spacing has them. Null: it moved all by
+  // themselves.
   virtual const GridBox* visited() const { return nullptr; }
-  // Sum of the forces that the last solve left unbalanced on all that may move (N), where it did
-  // not visit all nodes: those of the others, one by one, do not tell it.
+  // Where visited() is not null: sum of the forces that the last solve left unbalanced on all that
+  // may move (N). Beyond those points forces balance as the greater lattice has them, not node by
+  // node, so that a sum over the nodes does not tell it.
   virtual Vec3 forceLeft() { return Vec3::Zero(); }
 
   // Whether a solve leaves the shape and the patches as they were rather than put numbers into them

@@ -15,8 +15,8 @@ namespace {
 
 enum class Face { kOuter, kOpened };  // opened by a cut
 
-// Parts of the split cells with ghosts, also for a model that has none: then a ghost moves as the
-// own corners nearest to it of the parts that have it.
+// The parts of the split cells, with ghosts also for a model that has none (six_spring): there a
+// ghost stands for the mean of the own corners nearest to it, over the parts that have it.
 class Parts {
  public:
   Parts(const Lattice& lattice, const LatticeState& state) : cells_(state.cells) {

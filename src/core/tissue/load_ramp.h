@@ -15,7 +15,7 @@ struct LoadRamp {
   LoadingPatch target;
 };
 
-// As many equal parts as steps of these, at least one.
+// How many equal increments of at most one step a way of so many steps is; one at least.
 int wholeParts(double steps);
 // Takes away the patch of this name.
 void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches);

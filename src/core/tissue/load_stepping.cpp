@@ -61,10 +61,10 @@ bool Tissue::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   return true;
 }
 
-// How many of the method's longest steps the load takes: the way of a patch by displacement over
-// the step; a force over what its patch answers to the step. In equilibrium a hard patch of n nodes
-// answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes do (own);
-// the paper's moves while the tissue around it stands, so all n nodes answer.
+// How many of the method's longest steps s the load takes. A patch by displacement: its way over s.
+// A patch by force: the force over k s, k the stiffness of the patch. In equilibrium a hard patch
+// of n nodes answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes
+// do (own); the paper's moves while the tissue around it stands, so all n nodes answer.
 double Tissue::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
   double steps = 1.0;
   for (const LoadRamp& ramp : ramps) {

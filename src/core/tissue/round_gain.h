@@ -10,7 +10,8 @@
 
 namespace robot_tissue {
 
-// Whether the rounds of a load step still gain, by error or by way.
+// Whether the rounds of a load step (a solve, then a look at the contacts) still lead somewhere: a
+// lower error than before, or tissue that went farther than before, as where it slips.
 class RoundGain {
  public:
   explicit RoundGain(Tissue::Displacements start) : start_(std::move(start)) {}

@@ -67,7 +67,8 @@ SolveReport Tissue::settle() { return solve(freeNodes()); }
 
 Vec3 Tissue::weight() const { return weight_; }
 
-// What holds them: minus what the tissue, and springs in contact, do to them.
+// Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
+// them. Where the method does not visit all nodes: by the balance of all forces.
 Vec3 Tissue::forceOfFixedNodes() const {
   if (method_->visited() != nullptr)
     return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
@@ -237,7 +238,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     }
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
-    before.reset();  // before the next copy
+    before.reset();  // so that the next line's copy can take its memory
     before = displacements();
     const SolveReport earlier = report;
     report = of_round = solveOnce({});
@@ -265,7 +266,8 @@ void Tissue::limitWays() {
   method_->limitWays(std::move(of_nodes));
 }
 
-// As far as the contacts allow. False: there is no need to.
+// Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).
+// False: all of it is allowed.
 bool Tissue::goBack(const std::vector<Vec3>& before) {
   const double share = contact_update_->shareOfWay(before);
   if (share >= 1.0) return false;
@@ -277,7 +279,7 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   return true;
 }
 
-// Of the next solve; 0: no bound.
+// Time for the next solve (ms); 0: no bound.
 double Tissue::mostMs() const {
   if (!deadline_) return max_ms_;
   const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());

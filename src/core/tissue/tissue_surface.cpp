@@ -9,7 +9,7 @@
 namespace robot_tissue {
 namespace {
 
-// That no surface of the program has had.
+// A number that no surface has had since the program began.
 std::uint64_t newRevision() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;

@@ -82,7 +82,9 @@ void ExplicitMethod::rollPatches(double keep, double push) {
   }
 }
 
-// A node's mass is a bound of its stiffness in the present shape; the time step is one.
+// Masses, as their inverses (softness): the time step is 1, and a node's mass a bound of its
+// stiffness in the present shape, the greatest row sum of its block, so that all are near the limit
+// of stability.
 void ExplicitMethod::weigh() {
   float* softness = field_->spare(kSoftness)[0];
   field_->giveWatched(shape_.state);
@@ -97,7 +99,8 @@ void ExplicitMethod::weigh() {
   }
 }
 
-// By powers of the linearized motion, from a rough one; the shape is as before then.
+// Greatest eigenvalue of stiffness over mass by power iterations about the present shape, from a
+// random motion of sign +-; the shape is put back afterwards.
 void ExplicitMethod::findFastest() {
   const int size = field_->size();
   const auto probe = static_cast<float>(tuning::kPowerProbe * lattice_.spacing() / field_->unit());
@@ -123,7 +126,8 @@ void ExplicitMethod::findFastest() {
   }
 }
 
-// From a motion to what its forces would do at once; by how much that is more, 0 = nothing.
+// One power iteration: v = M^-1 (f(x) - f(x + v)). Returns |v after| / |v before| in the masses'
+// norm, 0 where there is no motion.
 double ExplicitMethod::takePower() {
   const int size = field_->size();
   const float* softness = field_->spare(kSoftness)[0];
@@ -155,7 +159,9 @@ double ExplicitMethod::takePower() {
   return std::sqrt(after / before);
 }
 
-// The damping is critical for what the motion shows; what is slower dies out more slowly.
+// Of an error in the slowest wave a step leaves (1 - s) / (1 + s), s its frequency a step where the
+// damping is critical for it. Damped for a faster one, that the motion shows, s is less in
+// proportion.
 double ExplicitMethod::shrinkage() const {
   const double slowest = std::sqrt(slowestWave() / fastest_);
   const double share = slowest * std::min(1.0, slowest / std::sqrt(slowest_ / fastest_));

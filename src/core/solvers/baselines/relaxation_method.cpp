@@ -19,7 +19,8 @@ constexpr int kMark = 0, kBest = 1, kLooked = 6, kLookedForce = 7;  // spare arr
 
 }  // namespace
 
-// A solve on its way. Lengths are L2 (m).
+// The state of one solve. A look compares the shape with that of the look before, stride()
+// iterations ago. Lengths are L2 over the free nodes (m).
 struct RelaxationMethod::Course {
   int iterations = 0;
   int looks = 0;
@@ -28,8 +29,9 @@ struct RelaxationMethod::Course {
   double least = std::numeric_limits<double>::infinity();  // correctionNorm of the best shape
   int best_look = 0;
   std::vector<LoadingPatch> best_patches;
-  int care = 0;          // how often it went astray
-  bool stalled = false;  // nothing more is to be had
+  int care = 0;  // how often forces grew tenfold, or did not fall: begin() goes on with care
+  bool stalled =
+      false;  // no look has been better for long, and the method cannot do with more care
 };
 
 RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& model,
@@ -108,7 +110,9 @@ SolveStatus RelaxationMethod::run(Course& course) {
   return SolveStatus::kUnconverged;
 }
 
-// Whether the shape is near enough.
+// Whether the shape is near enough: how far it still goes (lengthToGo) and the motion that would
+// balance each node alone (correctionNorm) are both within the tolerance. Forces, which cost as
+// much as an iteration, are looked at when the first is, or every kLooksApart looks.
 bool RelaxationMethod::look(Course& course) {
   ++course.looks;
   const double way = wayFromMark();
@@ -141,7 +145,9 @@ bool RelaxationMethod::look(Course& course) {
   return course.error <= options_.tolerance && settled && !surprised;
 }
 
-// The ways shrink by about the same share from look to look: the sum of those to come.
+// What is left to go if each way is q times the one before: last * q / (1 - q). q is the greater of
+// the last ratio and the geometric mean of the last two; and no less than a share of what the
+// method's slowest wave leaves in the end, as early ways shrink faster than late ones.
 double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::size_t count = ways.size();
@@ -154,7 +160,8 @@ double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   return last * std::max(seen, tuning::kShareOfEnd * in_the_end / (1.0 - in_the_end));
 }
 
-// Breadth first, by cells, from fixed nodes; without any, from those of patches.
+// Depth: cells from what holds the tissue (fixed nodes; without any, hard nodes of the first patch
+// that has some) to what is farthest from it, breadth first. It tells how slow the slowest wave is.
 void RelaxationMethod::findDepth() {
   const CellSet& cells = *shape_.state.cells;
   std::vector<int> layer, next;
@@ -180,13 +187,16 @@ void RelaxationMethod::findDepth() {
     if (!next.empty()) depth_ += 1.0;
   }
   depth_ = std::max(depth_, 1.0);
-  // mu (pi / 2 depth)^2 over h^-1 times ElasticModel::nodeStiffness inside the tissue. Where it is
-  // uneven, the soft is what moves and the stiff is what is heavy.
+  // Eigenvalue of a shear wave with a quarter of its length in the depth, over a node's stiffness:
+  // mu h (pi / 2 depth)^2 / (h (17/6 mu + K/2)), as ElasticModel::nodeStiffness is inside the
+  // tissue. Where moduli differ: the harmonic mean of mu above, as soft cells move most; plain
+  // means below.
   const double wave = soft_shear_ * std::pow(0.5 * kPi / depth_, 2);
   shear_wave_ = wave / (17.0 / 6.0 * mean_.shear + 0.5 * mean_.bulk);
 }
 
-// Rayleigh's quotient of the way since forces were looked at before.
+// Rayleigh's quotient of the way d since forces were looked at before, d.(change of force) / d.D d
+// with D the nodes' stiffness: the eigenvalue of the wave that the shape still moves in.
 void RelaxationMethod::lookAtWave(WaveLook look) {
   QuotientSums sums;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -218,7 +228,8 @@ void RelaxationMethod::findForces() {
   for (const int node : touched) field_->addForce(node, forces[at(node)]);
 }
 
-// Of the motions that would balance each node, and each patch by force, alone.
+// L2 of the motions that would balance each node, and each patch by force, were all others to stand
+// (m).
 double RelaxationMethod::correctionNorm() const {
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -256,7 +267,7 @@ bool RelaxationMethod::isRounding(double length) const {
   return length <= tuning::kRounding * lattice_.spacing() * std::sqrt(field_->nodeCount());
 }
 
-// Since it was last asked.
+// L2 of the nodes' way since this was last asked (m).
 double RelaxationMethod::wayFromMark() {
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -312,7 +323,8 @@ void RelaxationMethod::movePatchBy(std::size_t index, const Motion::OfPatch& mot
   if (!patch.rim.empty()) field_->takeRims(shape_);
 }
 
-// Stiffness of each patch by force against its own motion, by differences.
+// Stiffness of each patch by force against its own motion while the other nodes stand: columns by
+// forward differences of its force, made symmetric.
 void RelaxationMethod::measurePatches() {
   answers_.assign(shape_.patches.size(), {});
   for (std::size_t index = 0; index < shape_.patches.size(); ++index) {

@@ -42,14 +42,16 @@ class RelaxationMethod : public SolverMethod {
   double patchStep() const override;
 
  protected:
-  // At the start of a solve; again after it went astray, with one more of care, from the best shape
-  // so far.
+  // Called at the start of a solve with care 0; and when forces grew or stopped falling, from the
+  // best shape so far, with 1, 2 ...: each is to take smaller or safer steps.
   virtual void begin(int care) = 0;
   virtual void iterate() = 0;
-  // Whether what the iterations go to is near enough to the equilibrium, if they still have so far
-  // to go (m); adds how far that is from it. May change how they go on.
+  // For methods whose iterations end off the equilibrium. In: how far the shape still goes (m);
+  // out: that and how far from the equilibrium it ends. Whether that is near enough. May change the
+  // steps.
   virtual bool settles(double& /*to_go*/) { return true; }
-  // Whether it goes to where all forces balance: if these stop falling it goes astray, else not.
+  // Whether the iterations go to where all forces balance: then forces that stop falling mean that
+  // something is wrong.
   virtual bool balances() const { return true; }
   // Iterations from one look at the way gone to the next.
   virtual int stride() const = 0;

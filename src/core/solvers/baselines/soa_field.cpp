@@ -149,7 +149,7 @@ void SoaField::give(const std::vector<int>& nodes, LatticeState& state) const {
   }
 }
 
-// Springs to anchors: a stiffness and a constant force.
+// A rim spring's force K (anchor - u) is a constant force K anchor and a spring K to rest.
 void SoaField::takeRims(const ConstrainedState& shape) {
   const double stiffness_unit = stiffnessUnit();
   for (SoaSprings& springs : springs_) springs = SoaSprings();
@@ -201,7 +201,8 @@ bool SoaField::findSqueezed() {
   return unexpected;
 }
 
-// Which cells and nodes lanes do, and which not.
+// Sorts cells and nodes into those that the vector kernels do and the odd ones, which are done one
+// by one: parts of cut cells, and nodes in contact or in cells that the kernels do not do.
 void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patch_hold) {
   std::vector<std::uint8_t> has_cell(at(size_), 0), has_node(at(size_), 0);
   std::vector<std::uint8_t> odd(slots_.size(), 0);

@@ -17,21 +17,23 @@ namespace robot_tissue {
 
 class SoaField {
  public:
-  // A number an axis and slot.
+  // One array an axis; in each a number a slot (ColoredLayout).
   using Arrays = std::array<float*, 3>;
 
   SoaField(const Lattice& lattice, const ElasticModel& model);
 
   // Takes a shape, and what is held in it, as hold.bind left it.
   void bind(const ConstrainedState& shape, const DofConstraints& hold);
-  // Displacements of nodes, and springs of rims whose patches have moved.
+  // Takes the displacements of these nodes; takeRims: the springs of rims, whose patches have
+  // moved.
   void take(const LatticeState& state, const std::vector<int>& nodes);
   void takeRims(const ConstrainedState& shape);
-  // Displacements of all nodes that may move; of those that odd cells, odd nodes and patches by
-  // force see.
+  // Writes the displacements of all nodes that may move to the state; giveWatched: of those alone
+  // that odd cells, odd nodes and patches by force depend on.
   void give(LatticeState& state) const { give(movable_, state); }
   void giveWatched(LatticeState& state) const { give(watched_, state); }
-  // Finds anew where the barrier may rise. True where it rises and was not expected to.
+  // Finds the cells whose tightest corner is near to where the barrier begins: the others' kernels
+  // leave it out. True: it has risen in one that was not among them.
   bool findSqueezed();
   const std::vector<int>& oddNodes() const { return odd_nodes_; }
   const std::vector<int>& oddCells() const { return odd_cells_; }
@@ -46,7 +48,7 @@ class SoaField {
   // A step of XPBD for the cells that are not odd, color after color.
   void project(const Arrays& mobility);
 
-  // On all nodes, without contacts; the state knows the watched nodes.
+  // Forces on all nodes, without contacts; the state must have been given the watched nodes.
   void findForces(const LatticeState& state);
 
   int size() const { return size_; }  // slots, in whole blocks
@@ -61,7 +63,7 @@ class SoaField {
   double stiffnessUnit() const { return modulus_ * lattice_.spacing() / 16.0; }  // N/m
   double restStiffness(int node) const;  // mean, at rest (N/m); 0: nothing holds it
   int nodeCount() const { return static_cast<int>(movable_.size()); }
-  // Takes back what a patch by force moved.
+  // Writes the node's displacement to the state, held components too, as where a patch moved it.
   void giveAll(int node, LatticeState& state) const;
   // Further arrays, zero after bind() has met other cells.
   static constexpr int kSpares = 8;
@@ -89,8 +91,8 @@ class SoaField {
   std::shared_ptr<const CellSet> cells_;
   std::vector<int> slots_;          // per node
   std::vector<int> all_;            // nodes
-  std::vector<std::uint8_t> held_;  // of the last bind(), as are the nodes that loads act on:
-  std::vector<int> loads_;
+  std::vector<std::uint8_t> held_;  // per node: Dirichlet mask of the last bind()
+  std::vector<int> loads_;          // nodes that loads acted on then
   int size_ = 0;
   std::unique_ptr<float, FreeBuffer> buffer_;
   Arrays moved_{}, load_{}, free_{}, lane_free_{}, force_{};

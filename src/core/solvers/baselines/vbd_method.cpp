@@ -13,20 +13,23 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kLast = 2, kBefore = 3;  // spare arrays of the field
-// The eigenvalue of a sweep that Chebyshev's method with a great radius takes worst: of waves in an
-// endless lattice at rest, for Poisson's ratios 0.25, 0.35 and 0.45, between them a line.
+// A sweep's complex eigenvalue that Chebyshev's method with a great radius damps least. By Fourier
+// analysis of an endless lattice at rest (doc/baselines.md) for Poisson's ratios 0.25, 0.35 and
+// 0.45; a line through these.
 std::complex<double> turning(double poisson_ratio) {
   return {0.23 + 2.35 * (poisson_ratio - 0.25), 0.37 - 0.4 * (poisson_ratio - 0.25)};
 }
 
-// What a step of Chebyshev's method for a radius leaves of an eigenvalue in the end.
+// The share of an eigenvalue's part that a step of Chebyshev's method for real eigenvalues up to
+// `radius` leaves after many steps: max |l +- sqrt(l^2 - r^2)| / (1 + sqrt(1 - r^2)).
 double leftBy(double radius, const std::complex<double>& eigenvalue) {
   const std::complex<double> root = std::sqrt(eigenvalue * eigenvalue - radius * radius);
   return std::max(std::abs(eigenvalue + root), std::abs(eigenvalue - root)) /
          (1.0 + std::sqrt(1.0 - radius * radius));
 }
 
-// The radius that leaves as much of the slowest wave as of what turns.
+// The radius for which as much is left of the slowest wave as of the complex eigenvalue, by
+// bisection: with a smaller one the first dies out more slowly, with a greater one the second.
 double bestRadius(double slowest, const std::complex<double>& turns) {
   double low = 0.0, high = slowest;
   for (int halving = 0; halving < 30; ++halving) {
@@ -70,7 +73,8 @@ void VbdMethod::iterate() {
   extrapolate();
 }
 
-// Without acceleration a sweep takes twice the slowest wave's share off it.
+// Gauss-Seidel damps a slow wave of eigenvalue w of D^-1 K by the factor 1 - 2 w a sweep,
+// over-relaxed by r by 1 - 2 w r / (2 - r); at least one half is taken to be left.
 double VbdMethod::shrinkage() const {
   const double plain = 1.0 - std::min(2.0 * slowestWave(), 0.5);
   if (vbd_.acceleration == Acceleration::kChebyshev) return leftBy(radius_, plain);

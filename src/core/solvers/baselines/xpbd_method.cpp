@@ -36,7 +36,8 @@ void XpbdMethod::begin(int care) {
            std::min(tuning::kFirstStretch * options_.tolerance, tuning::kMostStretch));
 }
 
-// Critical damping of the slowest wave.
+// Velocity that is kept from step to step for critical damping of the slowest wave: with the
+// frequency s a step, ((1 - s) / (1 + s))^2.
 void XpbdMethod::takeStep(double stretch) {
   stretch_ = stretch;
   sweeps_ = 0;
@@ -63,7 +64,7 @@ void XpbdMethod::iterate() {
   projectContacts();
 }
 
-// Where nodes go by themselves.
+// Inertia and gravity: moved += keep (moved - before) + mobility weight.
 void XpbdMethod::coast() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     robot_tissue::coast(static_cast<float>(keep_), field_->size(), field_->free()[axis],
@@ -74,7 +75,8 @@ void XpbdMethod::coast() {
   }
 }
 
-// They have no mass: to where they balance between the nodes around them.
+// Patches by force have no mass here: each goes to where its forces balance while the nodes around
+// it stand.
 void XpbdMethod::pushPatches() {
   for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
     if (!byForce(shape_.patches[index])) continue;
@@ -84,8 +86,8 @@ void XpbdMethod::pushPatches() {
   }
 }
 
-// A constraint sqrt(2 E) moves a node by its force times mobility, over 1 + (sum of mobility x
-// force^2) / 2 E.
+// A constraint C = sqrt(2 E) of compliance 1 (XPBD, equation 18): dx = m f / (1 + sum of m f^2 / 2
+// E), f = -dE/dx the force on a node and m its mobility.
 void XpbdMethod::projectOddCells() {
   for (const int index : field_->oddCells()) {
     const Cell& cell = shape_.state.cells->all()[at(index)];
@@ -142,7 +144,7 @@ void XpbdMethod::projectContacts() {
   }
 }
 
-// Per axis (m/N).
+// Square of the time step over mass, per axis (m/N); 0 where it is held.
 Vec3 XpbdMethod::mobilityOf(int node) const {
   Vec3 mobility;
   for (int axis = 0; axis < 3; ++axis) {
@@ -158,9 +160,11 @@ void XpbdMethod::push(int node, const Vec3& force, double share) {
   }
 }
 
-// If forces are too far from balance where this said it was near enough, it is asked again.
-// The bias is taken to be in proportion to the square of the step. Nothing is judged before the
-// slowest wave had the time to move.
+// The shape that the steps go to is off by about c t, t the square of the time step (stretch_).
+// From t to q t it moved by `way`, so q / (1 - q) `way` is what is still off: added to what is left
+// to go. Said to be near once for each t; when the caller's look at forces does not agree, t gets
+// shorter, as it does when little is left to go at this t. Nothing is judged before the slowest
+// wave had time to move (sweeps times its frequency >= 1).
 bool XpbdMethod::settles(double& to_go) {
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -191,7 +195,7 @@ bool XpbdMethod::settles(double& to_go) {
   return false;
 }
 
-// What critical damping leaves.
+// Of an error in the slowest wave, critically damped, a step leaves (1 - s) / (1 + s).
 double XpbdMethod::shrinkage() const {
   const double share = std::sqrt(stretch_ * slowestWave());
   return (1.0 - share) / (1.0 + share);

@@ -6,7 +6,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kOwn = 0;  // until the unknowns are numbered
+constexpr int kOwn = 0;  // in of_: a component with an unknown of its own, until these are numbered
 
 }  // namespace
 
@@ -64,7 +64,8 @@ void DofMap::number() {
   }
 }
 
-// A turning patch's length: the mean distance of its nodes and anchors from the center.
+// The length that makes a turn (rad) an unknown in m: the mean distance of the patch's nodes and
+// anchors from its center.
 void DofMap::measure(const ConstrainedState& shape) {
   for (std::size_t index = 0; index < patches_.size(); ++index) {
     const LoadingPatch& patch = shape.patches[index];

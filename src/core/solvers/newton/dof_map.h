@@ -47,11 +47,12 @@ class DofMap {
   // The same for a point of the patch (m, tissue frame).
   Shares sharesOf(const ConstrainedState& shape, std::size_t patch, const Vec3& point,
                   int axis) const;
-  // Of the turn about an axis; kHeld for a patch that does not turn.
+  // The unknown of the patch's turn about an axis, and the turn (rad) over it; kHeld for a patch
+  // that does not turn.
   Share turnOf(std::size_t patch, int axis) const;
   Vec3 position(const ConstrainedState& shape, int node) const;  // m
 
-  // Work of forces on the nodes (N), by unknown.
+  // Transpose of move(): the generalized forces on the unknowns, of forces on the nodes (N).
   Eigen::VectorXd gather(const ConstrainedState& shape, const std::vector<Vec3>& per_node) const;
   // L2 norm of the forces that held components take.
   double heldNorm(const std::vector<Vec3>& per_node) const;
@@ -59,9 +60,9 @@ class DofMap {
 
  private:
   struct PatchDofs {
-    int first = kHeld;       // of three
-    int first_turn = kHeld;  // of three
-    double length = 0.0;     // m
+    int first = kHeld;       // of three unknowns: the patch's translation
+    int first_turn = kHeld;  // of three: its turn
+    double length = 0.0;     // that makes a turn a length (m)
   };
 
   void bind(const std::vector<LoadingPatch>& patches);
@@ -70,7 +71,7 @@ class DofMap {
   Vec3 turnAbout(const PatchDofs& unknowns, const Eigen::VectorXd& step, double share) const;
 
   const Lattice* lattice_ = nullptr;
-  std::vector<std::array<int, 3>> of_;  // per node
+  std::vector<std::array<int, 3>> of_;  // per node and axis: the unknown, or kHeld
   std::vector<int> carrier_;  // per node: the patch by force that it is hard in, -1 = none
   std::vector<PatchDofs> patches_;
   int count_ = 0;

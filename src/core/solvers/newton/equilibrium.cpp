@@ -87,7 +87,8 @@ class Assembly {
     });
   }
 
-  // Energy 1/2 (a - x).K(a - x); the patch's end and K turn with it as if it were a point at x.
+  // A rim spring: energy 1/2 (a - x).K(a - x) of the node's displacement x and the patch's end a.
+  // As the patch moves and turns, a and K go with it as a point of the patch at the node does.
   void addSpring(std::size_t patch, const RimSpring& spring, bool convex) {
     const Eigen::Matrix3d stiffness = stiffnessOf(shape_.patches[patch], spring);
     const Vec3 position = unknowns_.position(shape_, spring.node);
@@ -126,7 +127,8 @@ class Assembly {
     }
   }
 
-  // What the forces of the tissue and of contacts on hard nodes add when these turn.
+  // Hard nodes of a patch that turns: where a force acts at an arm r, its energy has a second
+  // derivative in the turn, though the node's own is in the cells' (addTurn).
   void addTurnedForces(std::size_t patch) {
     if (unknowns_.turnOf(patch, 0).unknown == DofMap::kHeld) return;
     if (contact_forces_.empty()) {
@@ -141,7 +143,8 @@ class Assembly {
     }
   }
 
-  // Energy with slope g at a point at arm r: a turn w adds g.(w x (w x r)) / 2.
+  // A turn w moves a point at arm r by w x r + w x (w x r) / 2 + ..., so an energy with the slope g
+  // there gets the second-order term g.(w x (w x r)) / 2 = w.[(g r^T + r g^T) / 2 - g.r] w / 2.
   void addTurn(std::size_t patch, const Vec3& position, const Vec3& slope) {
     const Vec3 arm = position - centerOf(shape_.patches[patch]);
     Eigen::Matrix3d block = 0.5 * (slope * arm.transpose() + arm * slope.transpose());

@@ -52,8 +52,9 @@ void NewtonMethod::countUnknowns(const ConstrainedState& shape) {
   analyzed_ = false;
 }
 
-// Moves the patches by displacement to their places, and the nodes around them with them, as far
-// as the second derivative can tell; if that is worse than leaving the others behind, does so.
+// The first guess: patches by displacement go to their places, and the free nodes by one Newton
+// step of the shape before, K du = f - K_uh du_h, with du_h the motion of the held components.
+// Where that has more energy than the free nodes left where they are, they are left.
 void NewtonMethod::carryPatches(ConstrainedState& shape) {
   std::vector<Vec3> moved(shape.state.displacement.size(), Vec3::Zero());
   bool any = false;
@@ -95,8 +96,9 @@ SolveStatus NewtonMethod::iterate(ConstrainedState& shape, int& iterations) {
   return SolveStatus::kOk;
 }
 
-// The second derivative, if it is positive definite; else that of each cell without its negative
-// curvatures, which makes any step lower the energy.
+// The second derivative K, if it is positive definite; else the sum of the cells' own, each without
+// its negative eigenvalues; else that with more and more on its diagonal. With a positive definite
+// matrix any short enough step lowers the energy.
 bool NewtonMethod::factorize(const ConstrainedState& shape, const std::vector<Vec3>& moved) {
   factorized_ = true;
   for (const bool convex : {false, true}) {
@@ -123,13 +125,16 @@ void NewtonMethod::diagonalShift(double stiffness) {
   diagonal_shift_ = stiffness;
 }
 
-// One step of refinement takes most of what the hold holds back.
+// Solves K x = f with the factor of K + s, s the diagonal shift: x0 = (K + s)^-1 f, and one step of
+// refinement, x = x0 + (K + s)^-1 s x0, which leaves an error of (s / (k + s))^2 for an eigenvalue
+// k.
 Eigen::VectorXd NewtonMethod::solveFor(const Eigen::VectorXd& force) const {
   const Eigen::VectorXd step = factor_->solve(force);
   return step + diagonal_shift_ * factor_->solve(step);
 }
 
-// Goes along the step as far as the potential falls.
+// Backtracking: halves the step until the potential has fallen by a share of what its slope
+// foretells (Armijo's condition; Nocedal and Wright 2006, 3.1). False: no such share of it does.
 bool NewtonMethod::search(const Eigen::VectorXd& step, ConstrainedState& shape) {
   const double promised = balance_.unbalanced.dot(step);  // decrease a full step begins with (J)
   if (!std::isfinite(promised)) return false;
@@ -164,7 +169,7 @@ bool NewtonMethod::improves(const Balance& trial, double promised) const {
          trial.unbalanced.norm() < balance_.unbalanced.norm();
 }
 
-// Share of the step in which no node moves further than allowed.
+// Share of the step in which no node moves farther than options_.node_step spacings.
 double NewtonMethod::capped(const ConstrainedState& shape, const Eigen::VectorXd& step) const {
   ConstrainedState moved = shape;
   unknowns_.move(moved, step, 1.0);

@@ -60,7 +60,7 @@ class NewtonMethod : public SolverMethod {
   NewtonOptions options_;
   double stiffness_ = 0.0;  // mean over the nodes at rest (N/m)
   DofMap unknowns_;
-  std::vector<int> rims_;                 // of the patches, when the pattern was analyzed
+  std::vector<int> rims_;  // nodes of rims and contacts at the matrix's last analysis
   std::shared_ptr<const CellSet> cells_;  // likewise
   bool analyzed_ = false;
   bool factorized_ = false;             // in this solve

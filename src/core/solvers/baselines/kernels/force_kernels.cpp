@@ -6,7 +6,7 @@
 namespace robot_tissue {
 namespace {
 
-// From the lowest corner: sides and hand are -1.
+// As CellModes sees a cell from its lowest corner: side_ and hand_ are -1.
 ROBOT_TISSUE_INLINE void pullCorners(const SoaArrays& lanes, const ColoredLayout::Around& above,
                                      int block, Lane pull[3][kCorners]) {
   const float* const x = lanes.moved[0] + block;
