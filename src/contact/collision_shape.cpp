@@ -108,19 +108,16 @@ SignedDistance CollisionShape::distanceWithin(const Vec3& point, double bound) c
   return distance;
 }
 
-std::optional<WayOut> CollisionShape::wayOut(const Vec3& point, double reach) const {
-  if (!grownBy(reach, bounds_).contains(point) || !point.allFinite()) return std::nullopt;
-  if (isMesh()) return wayOutOfMesh(point, reach);
-  const SignedDistance found = distance(point);
-  if (found.value > reach) return std::nullopt;
-  return WayOut{-found.value, found.slope};
-}
-
 // The mesh answers points inside it at any depth, those outside within the reach only.
-std::optional<WayOut> CollisionShape::wayOutOfMesh(const Vec3& point, double reach) const {
-  const auto found = mesh_->distance(point, reach + shape_.padding);
-  if (!found) return std::nullopt;
-  return WayOut{shape_.padding - found->value, found->slope};
+std::optional<SignedDistance> CollisionShape::distanceNear(const Vec3& point, double reach) const {
+  if (!grownBy(reach, bounds_).contains(point) || !point.allFinite()) return std::nullopt;
+  if (!isMesh()) {
+    const SignedDistance found = distance(point);
+    return found.value > reach ? std::nullopt : std::optional<SignedDistance>(found);
+  }
+  auto found = mesh_->distance(point, reach + shape_.padding);
+  if (found) found->value -= shape_.padding;
+  return found;
 }
 
 Vec3 CollisionShape::farthest(const Vec3& direction) const {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/contact/contact_finder.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/types.h"
 #include "signed_distance.h"
@@ -28,7 +27,7 @@ class CollisionShape {
   // Of a point that is not farther than `bound` (m) from the padded surface.
   SignedDistance distanceWithin(const Vec3& point, double bound) const;
   // Nothing when the point is farther than `reach` (m), or not finite.
-  std::optional<WayOut> wayOut(const Vec3& point, double reach) const;
+  std::optional<SignedDistance> distanceNear(const Vec3& point, double reach) const;
   // Where the padded shape reaches farthest in a unit direction; not for meshes and planes.
   Vec3 farthest(const Vec3& direction) const;
 
@@ -45,7 +44,6 @@ class CollisionShape {
   void measurePrimitive(const std::string& owner);
   void measureMesh(const std::string& owner, std::vector<std::string>& warnings);
   SignedDistance unpadded(const Vec3& point) const;
-  std::optional<WayOut> wayOutOfMesh(const Vec3& point, double reach) const;
 
   ToolShape shape_;
   Box bounds_;

@@ -73,9 +73,9 @@ const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
   seen.search = search_;
   seen.point = placed.shape_T_tissue * (*vertices_)[at(vertex)];
   if (placed.shape->isMesh()) {
-    const auto out = placed.shape->wayOut(seen.point, margin_);
-    seen.is_near = out.has_value();
-    if (out) seen.distance = {-out->depth_m, out->normal};
+    const auto found = placed.shape->distanceNear(seen.point, margin_);
+    seen.is_near = found.has_value();
+    if (found) seen.distance = *found;
   } else {
     seen.is_near = true;
     seen.distance = placed.shape->distance(seen.point);

@@ -48,9 +48,9 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
   const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());
-  const auto out = shape.wayOut(center, limit + widest);
-  if (!out) return minima;
-  const double at_center = -out->depth_m;
+  const auto found_at_center = shape.distanceNear(center, limit + widest);
+  if (!found_at_center) return minima;
+  const double at_center = found_at_center->value;
 
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);

@@ -46,9 +46,9 @@ Box boundsOf(const PlacedLink& link) {
 std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach) {
   std::optional<WayOut> best;
   for (const PlacedShape& placed : link) {
-    const auto out = placed.shape->wayOut(placed.shape_T_tissue * point, reach);
-    if (!out || (best && out->depth_m <= best->depth_m)) continue;
-    best = WayOut{out->depth_m, placed.tissue_T_shape.linear() * out->normal};
+    const auto found = placed.shape->distanceNear(placed.shape_T_tissue * point, reach);
+    if (!found || (best && -found->value <= best->depth_m)) continue;
+    best = WayOut{-found->value, placed.tissue_T_shape.linear() * found->slope};
   }
   return best;
 }

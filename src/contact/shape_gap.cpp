@@ -84,7 +84,7 @@ double gapOverPlane(const PlacedShape& plane, const GapSide& other) {
 // A mesh that is wholly inside the other shape meets none of its faces.
 bool isWithin(const PlacedShape& inner, const PlacedShape& outer) {
   const Vec3 point = inner.shape->isMesh() ? inner.shape->mesh().vertices().front() : Vec3::Zero();
-  return outer.shape->wayOut(outer.shape_T_tissue * (inner.tissue_T_shape * point), 0.0)
+  return outer.shape->distanceNear(outer.shape_T_tissue * (inner.tissue_T_shape * point), 0.0)
       .has_value();
 }
 
