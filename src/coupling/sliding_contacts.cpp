@@ -10,6 +10,7 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
 SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
                                  std::vector<double> thickness)
     : friction_(std::move(friction)),

@@ -96,6 +96,24 @@ TEST(Penetration, LipsOfAClosedCutAreNoOutside) {
   }
 }
 
+TEST(Penetration, TellsOfEachLinkThatIsAskedForInTheirOrder) {
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ContactFinder finder(
+      {makeTool({sphere(0.005)}), makeTool({sphere(0.004)}), makeTool({sphere(0.003)})});
+  RobotPose pose;
+  pose.links = {makePose(kMiddle + Vec3(0, 0, 0.003)), makePose(Vec3(1.0, 1.0, 1.0)),
+                makePose(kMiddle + Vec3(0, 0, 0.002))};
+  const std::vector<double> depths =
+      finder.penetrations({2, 1, 0}, pose, block.surface, block.vertices);
+  ASSERT_EQ(depths.size(), 3U);
+  EXPECT_NEAR(depths[0], 0.001, 1e-9);
+  EXPECT_EQ(depths[1], 0.0);
+  EXPECT_NEAR(depths[2], 0.002, 1e-9);
+  EXPECT_TRUE(finder.penetrations({}, pose, block.surface, block.vertices).empty());
+  pose.links.pop_back();
+  EXPECT_THROW(finder.penetrations({0}, pose, block.surface, block.vertices), InputError);
+}
+
 TEST(Penetration, IsOfTheSurfaceAsItIsNow) {
   Sheet block = makeBlock(kCells, kSpacing);
   const ContactFinder finder({makeTool({cylinder(0.0005, 0.04)})});

@@ -193,5 +193,24 @@ TEST(ContactSpring, WithoutMultiplierStandsWhereItsPointIsOnThePlane) {
   EXPECT_NEAR(energyOf(spring, {Vec3(0.0, 0.0, -1e-3)}), 0.5e-6 * kStiffness, 1e-15);
 }
 
+TEST(ContactSprings, CopiesHaveTheSameSpringsAlsoWhenTheFirstIsGone) {
+  LoadingPatch kept;
+  EXPECT_TRUE(kept.contacts.empty());
+  EXPECT_EQ(kept.contacts.begin(), kept.contacts.end());
+  const ContactSpring* first = nullptr;
+  {
+    LoadingPatch patch;
+    ContactSpring spring;
+    spring.multiplier = 2.0;
+    patch.contacts = {ContactSpring(), spring};
+    first = patch.contacts.begin();
+    kept = patch;
+    patch.contacts = {};
+  }
+  ASSERT_EQ(kept.contacts.size(), 2U);
+  EXPECT_EQ(kept.contacts.begin(), first);
+  EXPECT_EQ(kept.contacts[1].multiplier, 2.0);
+}
+
 }  // namespace
 }  // namespace robot_tissue
