@@ -14,7 +14,8 @@ using visualization_msgs::MarkerArray;
 
 geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Constant(diameter)); }
 
-// But for the stamp. Of one namespace and id all else is always the same.
+// Whether two markers of one namespace and id look alike: what is not compared, but for the stamp,
+// is the same in all of these.
 bool looksAlike(const Marker& a, const Marker& b) {
   return a.ns == b.ns && a.id == b.id && a.action == b.action && a.scale == b.scale &&
          a.pose == b.pose && a.points == b.points;

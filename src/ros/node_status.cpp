@@ -10,8 +10,8 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-// Of TissueState.msg. Jaws that meet, or hold nothing, are no fault by themselves: so do those that
-// close on nothing.
+// The word of TissueState.msg for a remark. Jaws that meet, or hold nothing, are no fault by
+// themselves: jaws that close where no tissue is do both.
 std::string wordOf(StepRemark::Kind kind) {
   switch (kind) {
     case StepRemark::Kind::kInside:
@@ -88,7 +88,7 @@ void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("age of the pose (s)", last_look_up_.age_s);
 }
 
-// What was said since they were last told, and how the tools are.
+// Diagnostics of the tools: what was said of them since the last ones, and how each is now.
 void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const StepReport& report = pipeline_.report();
   for (const StepRemark& remark : remarksOn(pipeline_)) {
