@@ -29,7 +29,7 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
 
 void carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
            ContactSpring& spring) {
-  const Surface& surface = tissue.surface();
+  const auto& surface = tissue.surface();
   SurfacePoint point = place;
   point.barycentric =
       (point.barycentric.array() < tuning::kNoShare).select(0.0, point.barycentric).eval();
