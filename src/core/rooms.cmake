@@ -36,6 +36,9 @@ robot_tissue_room(loads
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
     dof_constraints.h loading_patch.cpp patch_rim.cpp patch_rim.h rim_law.cpp rim_law.h
     solve_report.cpp)
+robot_tissue_room(saving
+  USES base lattice cutting loads
+  FILES bytes.h saved_loads.cpp saved_loads.h saved_state.cpp saved_state.h)
 robot_tissue_room(solvers
   USES base lattice loads
   FILES solver_method.h)
@@ -77,8 +80,8 @@ robot_tissue_room(solvers/baselines
     relaxation_method.h soa_field.cpp soa_field.h tuning.h vbd_method.cpp vbd_method.h
     xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue
-  USES base config lattice cutting surface material loads solvers solvers/multigrid/cycle
+  USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
   FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp
-    tissue_loads.cpp tissue_surface.cpp tuning.h)
+    tissue_loads.cpp tissue_state.cpp tissue_state.h tissue_surface.cpp tuning.h)

@@ -190,6 +190,24 @@ std::optional<StillPose> Pipeline::stillPose() const {
 }
 
 void Pipeline::reset() {
+  forgetTools();
+  world_.tissue.reset();
+  world_.sliding.commit(world_.pose, world_.tissue);
+  describeTools();
+}
+
+SolveReport Pipeline::loadState(const std::string& bytes) {
+  const std::shared_ptr<const SavedState> saved = world_.tissue.readState(bytes);
+  forgetTools();
+  const Bounded bounded(*this);
+  const SolveReport report = world_.tissue.loadState(*saved);
+  world_.sliding.commit(world_.pose, world_.tissue);
+  describeTools();
+  return report;
+}
+
+// They hold and touch nothing, and come in from outside.
+void Pipeline::forgetTools() {
   trial_from_.reset();
   world_.sticking.clear();
   world_.sliding.clear();
@@ -198,15 +216,12 @@ void Pipeline::reset() {
     parts_->grasping.forgetJaws(tool);
   }
   parts_->drive.setTools(world_.tools.size());
-  world_.tissue.reset();
   parts_->motion.clearCheckpoints();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
-  world_.sliding.commit(world_.pose, world_.tissue);
   world_.unfinished = gave_up_ = false;
   late_iterations_ = 0;
   touched_ = true;
-  describeTools();
 }
 
 // After the tissue changed by other means than the tools' motion.

@@ -3,6 +3,7 @@
 #include <XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <locale>
@@ -89,6 +90,23 @@ std::string readSceneFolder(const Entry& entry) {
   return file.parent_path().string();
 }
 
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+// By default in ROS's home.
+std::string readStateDir(const Entry& entry) {
+  if (!entry.given()) {
+    const std::string ros_home = variable("ROS_HOME");
+    return (ros_home.empty() ? variable("HOME") + "/.ros" : ros_home) + "/robot_tissue";
+  }
+  const std::string allowed = "the absolute path of a folder";
+  const std::filesystem::path folder = entry.word(allowed);
+  if (!folder.is_absolute()) entry.fail("must be " + allowed);
+  return folder.string();
+}
+
 // Beside those of the scene.
 const KeyTable<NodeParameters> kOwnKeys = {
     {"rate",
@@ -118,6 +136,10 @@ const KeyTable<NodeParameters> kOwnKeys = {
      [](const Entry& entry, NodeParameters& parameters) {
        if (!entry.given()) return;
        parameters.robot_description_param = entry.word("the name of a parameter that holds a URDF");
+     }},
+    {"state_dir",
+     [](const Entry& entry, NodeParameters& parameters) {
+       parameters.state_dir = readStateDir(entry);
      }},
     {"scene_file"},         // the scene is read against it
     {"diagnostic_period"},  // read by diagnostic_updater

@@ -43,6 +43,9 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
                            [this] { follow(); }, [this] { settleFromRest(); }});
+  surgery_ = std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_,
+                                               publisher_,
+                                               [this] { watch_.standAt(std::nullopt); });
   diagnostics_.setHardwareID("none");
   rate_told_ = ros::WallTime::now();
   diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/scene/readers.h"
@@ -22,6 +23,9 @@ struct Program {
   std::vector<NodeRange> fixed;
   std::vector<StandingPatch> patches;
   std::set<std::string> placed_tools;
+  std::map<std::string, std::vector<StandingPatch>> saved;  // what stands in saved states
+  bool patches_are_known =
+      true;  // else a state of an earlier run was loaded, with what stood in it
 };
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
@@ -77,10 +81,12 @@ CutStep readCut(const Entry& entry, const Program& program) {
   return reading.step;
 }
 
-std::string readReleasedPatch(const Entry& entry, std::vector<StandingPatch>& standing) {
+std::string readReleasedPatch(const Entry& entry, Program& program) {
   const std::string name = entry.word("the name of a standing patch");
+  std::vector<StandingPatch>& standing = program.patches;
   const auto patch = std::find_if(standing.begin(), standing.end(),
                                   [&name](const auto& other) { return other.name == name; });
+  if (patch == standing.end() && !program.patches_are_known) return name;
   if (patch == standing.end()) {
     std::vector<std::string> names;
     for (const StandingPatch& other : standing) names.push_back(other.name);
@@ -99,7 +105,7 @@ struct ReleaseReading {
 void readReleasedPatches(const Entry& entry, ReleaseReading& reading) {
   if (!entry.given()) return;
   for (const Entry& name : entry.list(1, "patch names")) {
-    reading.step.patches.push_back(readReleasedPatch(name, reading.program.patches));
+    reading.step.patches.push_back(readReleasedPatch(name, reading.program));
   }
 }
 
@@ -130,8 +136,23 @@ ReleaseStep readRelease(const Entry& entry, Program& program) {
 Step readReset(const Entry& entry, Program& program) {
   MapReader(entry, {});
   program.patches.clear();
+  program.patches_are_known = true;
   program.placed_tools.clear();
   return ResetStep();
+}
+
+Step followSave(const Entry& entry, Program& program) {
+  SaveStep step = readSave(entry);
+  program.saved[step.file] = program.patches;
+  return step;
+}
+
+Step followLoadState(const Entry& entry, Program& program) {
+  LoadStateStep step = readLoadState(entry);
+  const auto saved = program.saved.find(step.file);
+  program.patches_are_known = saved != program.saved.end();
+  program.patches = program.patches_are_known ? saved->second : std::vector<StandingPatch>();
+  return step;
 }
 
 struct StepKind {
@@ -167,6 +188,8 @@ const std::vector<StepKind>& stepKinds() {
       {"release",
        [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},
       {"reset", readReset},
+      {"save", followSave},
+      {"load_state", followLoadState},
   };
   return kinds;
 }
@@ -198,7 +221,8 @@ Step readStep(const Entry& entry, Program& program) {
 
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
                             const SolverConfig& solver, const std::vector<ToolConfig>& tools) {
-  Program program{tissue, solver, tools, lengthsOf(tissue), filledGrid(tissue).grid, {}, {}, {}};
+  Program program{tissue, solver, tools, lengthsOf(tissue), filledGrid(tissue).grid, {}, {},
+                  {},     {},     true};
   for (const Box& box : tissue.fixed) program.fixed.push_back(program.grid.nodesIn(box));
   std::vector<Step> steps;
   for (const Entry& step_entry : entry.list(0, "steps", kMostSteps)) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/scene/state_file.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -98,10 +99,16 @@ void OutputFolder::write(const std::string& file, const std::string& content) {
   if (!stream) refuse("cannot write " + file);
 }
 
+void OutputFolder::writeState(const std::string& file, const std::string& bytes) {
+  const std::lock_guard<std::mutex> lock(guard());
+  writeStateFile(staging_.string(), file, bytes);
+}
+
 void OutputFolder::commit() {
   const std::lock_guard<std::mutex> lock(guard());
   for (const std::string& file : files_) {
     std::error_code error;
+    if (!fs::exists(staging_ / file, error)) continue;
     fs::rename(staging_ / file, path_ / file, error);
     if (error) refuse("cannot write " + file + ", " + error.message());
   }

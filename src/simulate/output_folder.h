@@ -11,7 +11,8 @@ namespace robot_tissue {
 class OutputFolder {
  public:
   // Makes the folder where it is missing. Throws InputError when it cannot be made or written, or
-  // when one of `files` is there but no plain file.
+  // when one of `files`, of which commit() moves those that were written, is there but no plain
+  // file.
   OutputFolder(const std::string& path, std::vector<std::string> files);
   // Without commit() all is as before.
   ~OutputFolder();
@@ -20,6 +21,8 @@ class OutputFolder {
 
   // Throws InputError, e.g. on a full disk.
   void write(const std::string& file, const std::string& content);
+  // On the disk before commit() puts it in place.
+  void writeState(const std::string& file, const std::string& bytes);
   void commit();
 
   // Takes away what those that are not committed have made; for an end by a signal.

@@ -13,8 +13,8 @@ bool RunResult::allOk() const {
 }
 
 RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
-                   const Deadline& deadline) {
-  return Runner(scene, on_row, on_step, deadline).run();
+                   const Deadline& deadline, const std::string& state_folder) {
+  return Runner(scene, on_row, on_step, deadline, state_folder).run();
 }
 
 }  // namespace robot_tissue

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,8 @@ struct RunResult {
   std::vector<Vec3> displacement;  // per node (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
   std::vector<std::array<int, 3>> triangles;
-  std::string cut_off;               // where the time was over; empty: all was run
+  std::map<std::string, std::string> saved;  // states, by file
+  std::string cut_off;                       // where the time was over; empty: all was run
   std::vector<std::string> remarks;  // lines the user should see, e.g. a tool that missed its force
 
   bool allOk() const;  // and all was run
@@ -54,9 +56,10 @@ using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 // Called when a step (from 0) has ended, with the tissue as it is then.
 using OnStep = std::function<void(int step, const Tissue& tissue)>;
 
+// `state_folder`: where states are loaded from that no step has saved.
 // Throws InputError when a tool's shapes or a step are refused; the message names the step. After
 // the deadline it ends with the increment under way.
 RunResult runScene(const Scene& scene, const OnRow& on_row = {}, const OnStep& on_step = {},
-                   const Deadline& deadline = Deadline());
+                   const Deadline& deadline = Deadline(), const std::string& state_folder = ".");
 
 }  // namespace robot_tissue

@@ -16,6 +16,8 @@ const char* keyOf(const ResetStep&) { return "reset"; }
 const char* keyOf(const MoveStep&) { return "move"; }
 const char* keyOf(const PushStep&) { return "push"; }
 const char* keyOf(const GraspStep&) { return "grasp"; }
+const char* keyOf(const SaveStep&) { return "save"; }
+const char* keyOf(const LoadStateStep&) { return "load_state"; }
 
 std::string pathOf(const Scene& scene, int step) {
   const Step& taken = scene.steps[at(step)];
@@ -39,11 +41,12 @@ std::vector<ToolConfig> movedTools(const Scene& scene) {
 }  // namespace
 
 Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
-               const Deadline& deadline)
+               const Deadline& deadline, const std::string& state_folder)
     : scene_(scene),
       on_row_(on_row),
       on_step_(on_step),
       deadline_(deadline),
+      state_folder_(state_folder),
       tools_(movedTools(scene)),
       pipeline_(scene.tissue, scene.solver, toolsOf(movedTools(scene)).tools, scene.supports),
       pushes_(tools_.count()) {

@@ -11,7 +11,9 @@ namespace robot_tissue {
 
 class Runner {
  public:
-  Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step, const Deadline& deadline);
+  // `state_folder`: where states are that no step has saved.
+  Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step, const Deadline& deadline,
+         const std::string& state_folder);
   RunResult run();
 
  private:
@@ -43,6 +45,10 @@ class Runner {
   void keepTool(std::size_t tool, int increment);
   void keepShape();
 
+  // state_steps.cpp
+  void perform(const SaveStep& step);
+  void perform(const LoadStateStep& step);
+
   // tool_steps.cpp
   void perform(const MoveStep& step);
   void perform(const PushStep& step);
@@ -62,6 +68,7 @@ class Runner {
   const OnRow& on_row_;
   const OnStep& on_step_;
   const Deadline& deadline_;
+  const std::string& state_folder_;
   ToolPlaces tools_;
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)

@@ -52,32 +52,45 @@ void tellNotOk(const RunResult& result, std::ostream& err) {
       << first->increment << ": " << toString(first->report.status) << '\n';
 }
 
+std::vector<std::string> filesOf(const Scene& scene) {
+  std::vector<std::string> files = {"nodes.csv", "patches.csv", "increments.csv", "tools.csv",
+                                    "surface.stl"};
+  for (const Step& step : scene.steps) {
+    const auto* save = std::get_if<SaveStep>(&step);
+    if (save != nullptr && std::find(files.begin(), files.end(), save->file) == files.end()) {
+      files.push_back(save->file);
+    }
+  }
+  return files;
+}
+
+// States of steps that the run was cut off before are not there, and stay as they were.
 void write(const RunResult& result, OutputFolder& folder) {
   folder.write("nodes.csv", nodesCsv(result));
   folder.write("patches.csv", patchesCsv(result));
   folder.write("increments.csv", incrementsCsv(result));
   folder.write("tools.csv", toolsCsv(result));
   folder.write("surface.stl", surfaceStl(result));
+  for (const auto& [file, state] : result.saved) folder.writeState(file, state);
   folder.commit();
 }
 
-RunResult runNamed(const Scene& scene, const std::string& file, const OnRow& on_row,
+RunResult runNamed(const Scene& scene, const Arguments& arguments, const OnRow& on_row,
                    const Deadline& deadline) {
   try {
-    return runScene(scene, on_row, {}, deadline);
+    return runScene(scene, on_row, {}, deadline, arguments.out);
   } catch (const InputError& error) {
-    throw InputError(onOneLine(file) + ": " + error.what());
+    throw InputError(onOneLine(arguments.scene) + ": " + error.what());
   }
 }
 
 int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const Deadline deadline = arguments.max_seconds ? Deadline(*arguments.max_seconds) : Deadline();
   const Scene scene = loadScene(arguments.scene, arguments.overrides);
-  OutputFolder folder(arguments.out,
-                      {"nodes.csv", "patches.csv", "increments.csv", "tools.csv", "surface.stl"});
+  OutputFolder folder(arguments.out, filesOf(scene));
   const bool progress = terminal && !arguments.quiet;
   const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
-  const RunResult result = runNamed(scene, arguments.scene, on_row, deadline);
+  const RunResult result = runNamed(scene, arguments, on_row, deadline);
   write(result, folder);
   if (!arguments.quiet) {  // a refusal is told alone
     for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';

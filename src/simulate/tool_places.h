@@ -2,6 +2,7 @@
 // but a grasper's two jaws, half its opening to either side of that along grasp.opening_axis.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ class ToolPlaces {
   const std::string& name(std::size_t tool) const { return tools_[tool].name; }
   std::size_t indexOf(const std::string& name) const;
 
+  bool anyStands() const {
+    return std::any_of(places_.begin(), places_.end(), [](const auto& place) { return !!place; });
+  }
   // Empty: the tool stands nowhere.
   const std::optional<MoveStep::Place>& of(std::size_t tool) const { return places_[tool]; }
   void put(std::size_t tool, const MoveStep::Place& place) { places_[tool] = place; }

@@ -93,8 +93,15 @@ struct PushStep {
 struct GraspStep {
   std::string tool;
 };
+// Topology, shape and named loads, to a file and back.
+struct SaveStep {
+  std::string file;  // a plain name
+};
+struct LoadStateStep {
+  std::string file;
+};
 using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, PushStep,
-                          GraspStep>;
+                          GraspStep, SaveStep, LoadStateStep>;
 
 // One collision shape of a tool, placed in the frame of its link.
 struct ToolShape {

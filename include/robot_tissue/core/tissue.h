@@ -2,6 +2,7 @@
 // Every call either succeeds as a whole or throws InputError and changes nothing.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@ namespace robot_tissue {
 class SolverMethod;
 class TissueModel;
 struct LoadRamp;
+struct SavedState;
 
 struct CutReport {
   int springs_cut = 0;  // by this cut
@@ -125,6 +127,17 @@ class Tissue {
   // Rest shape, bit for bit; cuts mended, loads gone.
   void reset();
 
+  // Topology, shape and named loads as bytes (doc/state_file.md); a load on its way is the one that
+  // it has come to.
+  std::string savedState() const;
+  // The same only of two states that are, bit for bit.
+  std::uint64_t stateHash() const;
+  // Throws InputError, the reason alone, for bytes that are no state of this tissue.
+  std::shared_ptr<const SavedState> readState(const std::string& bytes) const;
+  // Back to it, bit for bit where it was in balance without tools; else it is balanced. Tools'
+  // patches go.
+  SolveReport loadState(const SavedState& saved);
+
  private:
   SolveReport solve(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
@@ -160,6 +173,7 @@ class Tissue {
   mutable Displacements kept_;  // of state_; null: nobody asked since it changed
   std::unique_ptr<TissueModel> model_;
   SolverConfig solver_;
+  std::uint64_t balance_fingerprint_ = 0;  // of the scene
   std::unique_ptr<SolverMethod> method_;
   std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;

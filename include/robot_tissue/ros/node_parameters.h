@@ -16,6 +16,7 @@ struct NodeParameters {
   double wrench_rate_hz = 0.0;   // ~wrench_rate: wrenches; 0: one an update
   double tf_timeout_s = 0.5;     // ~tf_timeout: an older pose is stale
   double force_scale = 0.02;     // ~force_scale: length of a force arrow (m/N)
+  std::string state_dir;         // ~state_dir: where saved states are
   std::string robot_description_param = "robot_description";  // ~robot_description_param
 };
 

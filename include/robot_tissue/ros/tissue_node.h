@@ -19,6 +19,7 @@
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
+#include "robot_tissue/ros/surgery_services.h"
 #include "robot_tissue/ros/tissue_publisher.h"
 #include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_poses.h"
@@ -74,6 +75,7 @@ class TissueNode {
   ros::WallTime rate_told_;
   diagnostic_updater::Updater diagnostics_;
   std::unique_ptr<TissueServices> services_;
+  std::unique_ptr<SurgeryServices> surgery_;
   ros::Timer timer_;
   ros::WallTimer wall_timer_;  // in simulated time, until there is some
   PoseWatch watch_;            // the first to go: it calls into the others

@@ -59,6 +59,8 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing);
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
                         const std::set<std::string>& standing);
+SaveStep readSave(const Entry& entry);
+LoadStateStep readLoadState(const Entry& entry);
 void requireStands(const Entry& entry, const std::string& tool,
                    const std::set<std::string>& standing);
 

@@ -12,6 +12,7 @@
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
+#include "tissue/tissue_state.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
@@ -39,6 +40,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       state_(lattice_.restState()),
       model_(makeModel(tissue, lattice_)),
       solver_(solver),
+      balance_fingerprint_(balanceFingerprint(tissue, solver)),
       method_(makeMethod(solver, lattice_, *model_)),
       has_gravity_(!tissue.gravity.isZero()),
       max_ms_(solver.max_ms) {

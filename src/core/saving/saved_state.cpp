@@ -1,0 +1,238 @@
+#include "saving/saved_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cutting/split_cells.h"
+#include "lattice/connectivity.h"
+#include "saving/bytes.h"
+#include "saving/saved_loads.h"
+
+namespace robot_tissue {
+namespace {
+
+// As PNG's: a text editor, or a transfer that minds line ends, breaks it.
+const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderBytes = 56;
+constexpr std::size_t kBodyHashAt = 24;
+// Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
+// method gets on from. Chosen.
+constexpr double kFarthest = 1e4;
+constexpr double kShareSteps = 1e6;  // shares of cells are compared to a millionth
+
+std::string headerFor(const std::string& body, const StateFingerprint& fingerprint) {
+  ByteWriter header;
+  header.u32(kVersion);
+  header.u32(0);
+  header.u64(body.size());
+  header.u64(hashOf(body));
+  header.u64(fingerprint.lattice);
+  header.u64(fingerprint.scene);
+  const std::string bytes = kMagic + header.bytes();
+  ByteWriter check;
+  check.u64(hashOf(bytes));
+  return bytes + check.bytes();
+}
+
+struct Opened {
+  std::string_view body;
+  bool of_this_scene = false;
+};
+
+Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
+  if (bytes.substr(0, kMagic.size()) != kMagic) throw InputError("is no saved state");
+  if (bytes.size() < kHeaderBytes) throw InputError("ends too early");
+  ByteReader header(bytes.substr(kMagic.size()));
+  const std::uint32_t version = header.u32();
+  if (version > kVersion) {
+    throw InputError("is of version " + std::to_string(version) + "; allowed: up to " +
+                     std::to_string(kVersion));
+  }
+  header.u32();
+  const std::uint64_t size = header.u64(), body_hash = header.u64();
+  const std::uint64_t lattice = header.u64(), scene = header.u64();
+  if (version == 0 || header.u64() != hashOf(bytes.substr(0, kHeaderBytes - 8))) {
+    throw InputError("is damaged: the header does not fit its checksum");
+  }
+  const std::string_view body = bytes.substr(kHeaderBytes);
+  if (body.size() < size) throw InputError("ends too early");
+  if (body.size() > size || hashOf(body) != body_hash) {
+    throw InputError("is damaged: the content does not fit its checksum");
+  }
+  if (lattice != fingerprint.lattice) {
+    throw InputError(
+        "is of another lattice; allowed: a state of the same shape, spacing, model "
+        "and fixed nodes");
+  }
+  return {body, scene == fingerprint.scene};
+}
+
+void putBits(const std::vector<std::uint8_t>& flags, ByteWriter& out) {
+  for (std::size_t first = 0; first < flags.size(); first += 8) {
+    unsigned bits = 0;
+    for (std::size_t i = first; i < std::min(first + 8, flags.size()); ++i) {
+      if (flags[i] != 0) bits |= 1U << (i - first);
+    }
+    out.u8(static_cast<std::uint8_t>(bits));
+  }
+}
+
+std::vector<std::uint8_t> takeBits(std::size_t count, ByteReader& in) {
+  std::vector<std::uint8_t> flags(count, 0);
+  for (std::size_t first = 0; first < count; first += 8) {
+    const unsigned bits = in.u8();
+    for (std::size_t i = 0; i < 8; ++i) {
+      if ((bits >> i & 1U) == 0) continue;
+      if (first + i >= count) throw InputError("is damaged: a flag of nothing is set");
+      flags[first + i] = 1;
+    }
+  }
+  return flags;
+}
+
+// Ghosts hang on the severed springs alone, but for their numbers: those hang on the order of the
+// cuts. Cells and ghosts as one cut would have left them.
+CellSet cellsOfOneCut(const Lattice& lattice, const LatticeState& state, SplitCells split) {
+  LatticeState whole = lattice.restState();
+  whole.severed = state.severed;
+  whole.springs_cut = state.springs_cut;
+  return *cellsLeft(lattice, whole, split);
+}
+
+// Per ghost of `from`, its number in `to`, which has the same cells.
+std::vector<int> renumbering(const CellSet& from, const CellSet& to) {
+  std::vector<int> number(from.ghosts().size(), -1);
+  for (std::size_t cell = 0; cell < from.all().size(); ++cell) {
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      const int ghost = from.all()[cell].nodes[corner];
+      if (!from.isGhost(ghost)) continue;
+      number[at(ghost - from.latticeNodeCount())] =
+          to.all()[cell].nodes[corner] - to.latticeNodeCount();
+    }
+  }
+  return number;
+}
+
+std::shared_ptr<const CellSet> renumbered(const CellSet& cells, const std::vector<int>& number,
+                                          std::vector<Ghost> ghosts) {
+  const int nodes = cells.latticeNodeCount();
+  std::vector<Cell> all = cells.all();
+  for (Cell& cell : all) {
+    for (int& node : cell.nodes) {
+      if (node >= nodes) node = nodes + number[at(node - nodes)];
+    }
+  }
+  for (std::size_t ghost = 0; ghost < number.size(); ++ghost) {
+    ghosts[at(number[ghost])].fixed = cells.ghosts()[ghost].fixed;
+  }
+  return std::make_shared<const CellSet>(std::move(all), nodes, std::move(ghosts));
+}
+
+void putGhosts(const Lattice& lattice, SplitCells split, const LatticeState& state,
+               ByteWriter& out) {
+  out.count(state.cells->ghosts().size());
+  for (const Ghost& ghost : state.cells->ghosts()) out.index(ghost.original);
+  if (state.cells->ghosts().empty()) return;
+  for (const int number : renumbering(cellsOfOneCut(lattice, state, split), *state.cells)) {
+    out.index(number);
+  }
+}
+
+std::shared_ptr<const CellSet> takeCells(const Lattice& lattice, SplitCells split,
+                                         const LatticeState& state, ByteReader& in) {
+  std::vector<Ghost> ghosts(in.count(sizeof(std::uint32_t)));
+  for (Ghost& ghost : ghosts) ghost.original = takeNode(lattice.nodeCount(), in);
+  if (state.springs_cut == 0 && ghosts.empty()) return lattice.restState().cells;
+  const CellSet cells = cellsOfOneCut(lattice, state, split);
+  std::vector<int> number;
+  std::vector<char> taken(ghosts.size(), 0);
+  for (const Ghost& ghost : cells.ghosts()) {
+    number.push_back(takeNode(static_cast<int>(ghosts.size()), in));
+    char& is_taken = taken[at(number.back())];
+    if (is_taken != 0 || ghosts[at(number.back())].original != ghost.original) {
+      throw InputError("is damaged: its nodes do not fit its severed springs");
+    }
+    is_taken = 1;
+  }
+  return renumbered(cells, number, std::move(ghosts));
+}
+
+void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& in) {
+  const double most = kFarthest * lattice.bounds().diagonal().norm();
+  state.displacement.resize(at(state.cells->nodeCount()));
+  for (int node = 0; node < state.cells->nodeCount(); ++node) {
+    const Vec3 displacement = in.vec3();
+    if (!(displacement.cwiseAbs().maxCoeff() <= most)) {
+      throw InputError("is damaged: a displacement is beyond all bounds");
+    }
+    if (isFixed(lattice, *state.cells, node) && !displacement.isZero(0.0)) {
+      throw InputError("is damaged: a fixed node is displaced");
+    }
+    state.displacement[at(node)] = displacement;
+  }
+}
+
+}  // namespace
+
+std::uint64_t fingerprintOf(const Lattice& lattice, SplitCells split) {
+  ByteWriter out;
+  out.u8(split == SplitCells::kParted ? 1 : 0);
+  out.f64(lattice.spacing());
+  out.vec3(lattice.bounds().min());
+  for (const int points : lattice.size()) out.index(points);
+  for (const Cell& cell : lattice.cells()) {
+    for (const int index : lattice.gridIndex(cell.nodes.front())) out.index(index);
+    out.u32(static_cast<std::uint32_t>(std::lround(kShareSteps * cell.share)));
+  }
+  for (int node = 0; node < lattice.nodeCount(); ++node) out.u8(lattice.isFixed(node) ? 1 : 0);
+  return hashOf(out.bytes());
+}
+
+std::string encodeState(const Lattice& lattice, SplitCells split, const SavedState& state,
+                        const StateFingerprint& fingerprint) {
+  ByteWriter body;
+  body.index(lattice.nodeCount());
+  body.count(state.lattice.severed.size());
+  putBits(state.lattice.severed, body);
+  putGhosts(lattice, split, state.lattice, body);
+  for (const Vec3& displacement : state.lattice.displacement) body.vec3(displacement);
+  putLoads(state.loads, body);
+  body.u8(state.in_balance ? 1 : 0);
+  putReport(state.report, body);
+  return headerFor(body.bytes(), fingerprint) + body.bytes();
+}
+
+SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_view bytes,
+                       const StateFingerprint& fingerprint) {
+  const Opened opened = open(bytes, fingerprint);
+  ByteReader in(opened.body);
+  SavedState saved;
+  LatticeState& state = saved.lattice;
+  const std::size_t springs = lattice.springs().size();
+  if (in.u32() != at(lattice.nodeCount()) || in.u32() != springs) {
+    throw InputError("is damaged: it has other numbers of nodes and springs than its lattice");
+  }
+  state.severed = takeBits(springs, in);
+  state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+  state.pieces = countPieces(lattice, state);
+  state.cells = takeCells(lattice, split, state, in);
+  takeDisplacement(lattice, state, in);
+  saved.loads = takeLoads(lattice, in);
+  const auto has_rim = [](const LoadingPatch& load) { return !load.rim.empty(); };
+  if (!opened.of_this_scene && std::any_of(saved.loads.begin(), saved.loads.end(), has_rim)) {
+    throw InputError(
+        "has loads of another scene; allowed: a state without named loads, or of the same "
+        "material, regions, gravity, method and tolerance");
+  }
+  saved.in_balance = in.u8() == 1 && opened.of_this_scene;
+  saved.report = takeReport(saved.loads.size(), in);
+  if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
+  return saved;
+}
+
+std::uint64_t stateHash(std::string_view encoded) {
+  return ByteReader(encoded.substr(kBodyHashAt)).u64();
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,81 @@
+// Tissue: its state as bytes, and back.
+#include "tissue/tissue_state.h"
+
+#include "material/tissue_model.h"
+#include "robot_tissue/core/tissue.h"
+#include "saving/bytes.h"
+#include "saving/saved_state.h"
+#include "solvers/solver_method.h"
+
+namespace robot_tissue {
+namespace {
+
+void add(const Material& material, ByteWriter& out) {
+  out.f64(material.young_modulus);
+  out.f64(material.poisson_ratio);
+  out.f64(material.density);
+  out.f64(material.spring_stiffness.value_or(-1.0));
+}
+
+void add(const Region& region, ByteWriter& out) {
+  out.vec3(region.box.min());
+  out.vec3(region.box.max());
+  add(region.material, out);
+}
+
+}  // namespace
+
+std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig& solver) {
+  ByteWriter out;
+  out.text(tissue.model);
+  add(tissue.material, out);
+  for (const Region& region : tissue.regions) add(region, out);
+  out.vec3(tissue.gravity);
+  out.text(solver.method);
+  out.f64(solver.tolerance);
+  return hashOf(out.bytes());
+}
+
+std::string Tissue::savedState() const {
+  SavedState saved;
+  saved.lattice = state_;
+  saved.loads.assign(patches_.begin(),
+                     patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
+  saved.report = last_report_;
+  saved.report.patches.resize(named_patches_);  // without the tools
+  saved.in_balance = isUntouched() && !isLate();
+  const SplitCells split = model_->splitCells();
+  return encodeState(lattice_, split, saved,
+                     {fingerprintOf(lattice_, split), balance_fingerprint_});
+}
+
+std::uint64_t Tissue::stateHash() const { return robot_tissue::stateHash(savedState()); }
+
+std::shared_ptr<const SavedState> Tissue::readState(const std::string& bytes) const {
+  const SplitCells split = model_->splitCells();
+  return std::make_shared<const SavedState>(
+      decodeState(lattice_, split, bytes, {fingerprintOf(lattice_, split), balance_fingerprint_}));
+}
+
+// Nothing of what was there stays, nor of what the method learned of it.
+SolveReport Tissue::loadState(const SavedState& saved) {
+  endAside();
+  other_method_.reset();
+  method_->forget();
+  kept_.reset();
+  due_.clear();
+  disturbed_.clear();
+  is_late_ = false;
+  state_ = saved.lattice;
+  patches_ = saved.loads;
+  named_patches_ = patches_.size();
+  rebuildSurface();
+  last_report_ = saved.report;
+  if (!saved.in_balance) return solve(freeNodes());
+  deformSurface();
+  last_report_.inverted_cells = countInvertedCells(lattice_, state_);
+  last_report_.volume_ratio = volumeRatio();
+  return last_report_;
+}
+
+}  // namespace robot_tissue

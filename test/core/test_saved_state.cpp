@@ -1,0 +1,240 @@
+// A tissue's state as bytes: it comes back bit for bit, or is refused in one line that changes
+// nothing.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "elastic_fixtures.h"
+#include "saving/bytes.h"
+#include "tissue_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSpacing = 0.01;
+constexpr std::size_t kHeaderBytes = 56;
+constexpr std::size_t kVersionAt = 8, kSizeAt = 16, kBodyHashAt = 24, kHeaderHashAt = 48;
+
+TissueConfig blockFor(const std::string& model) {
+  TissueConfig config = withFixedBottom(blockOf(6, 5, 4, kSpacing));
+  config.model = model;
+  return config;
+}
+
+SolverConfig solverFor(const std::string& model) {
+  SolverConfig solver;
+  solver.method = model == "elastic" ? "layered" : "paper";
+  return solver;
+}
+
+LoadStep pressOn(const TissueConfig& config) {
+  return loadOf({displacedPatch("punch", nodeBox(config, {1, 1, 4}, {2, 2, 4}), {0, 0, -0.004})});
+}
+
+// Springs along x are severed, upwards from `low`.
+std::vector<Vec3> cutAt(double x, double low) {
+  return {{x, -1.0, low}, {x, 1.0, low}, {x, 1.0, 1.0}, {x, -1.0, 1.0}};
+}
+
+void loadInto(Tissue& tissue, const std::string& bytes) {
+  tissue.loadState(*tissue.readState(bytes));
+}
+
+std::string refusalOf(const Tissue& tissue, const std::string& bytes) {
+  return inputErrorOf([&] { tissue.readState(bytes); });
+}
+
+void putNumber(std::string& bytes, std::size_t place, std::uint64_t value) {
+  for (std::size_t i = 0; i < 8; ++i) bytes[place + i] = static_cast<char>(value >> 8 * i);
+}
+
+// So that the content is looked at, too.
+std::string withChecksums(std::string bytes) {
+  putNumber(bytes, kSizeAt, bytes.size() - kHeaderBytes);
+  putNumber(bytes, kBodyHashAt, hashOf(std::string_view(bytes).substr(kHeaderBytes)));
+  putNumber(bytes, kHeaderHashAt, hashOf(std::string_view(bytes).substr(0, kHeaderHashAt)));
+  return bytes;
+}
+
+class SavedStateOf : public ::testing::TestWithParam<std::string> {
+ protected:
+  const TissueConfig config_ = blockFor(GetParam());
+  const SolverConfig solver_ = solverFor(GetParam());
+};
+
+TEST_P(SavedStateOf, ComesBackBitForBit) {
+  Tissue tissue(config_, solver_);
+  tissue.load(pressOn(config_));
+  tissue.cut(cutAt(0.035, 0.015));
+  tissue.cut(cutAt(0.015, 0.025));
+  const std::string bytes = tissue.savedState();
+  const Snapshot before(tissue);
+  const SolveReport report = tissue.lastReport();
+  for (const bool in_place : {true, false}) {
+    Tissue other(config_, solver_);
+    Tissue& to = in_place ? tissue : other;
+    if (in_place) to.reset();
+    loadInto(to, bytes);
+    EXPECT_EQ(to.state().displacement, before.state.displacement);
+    EXPECT_EQ(to.state().severed, before.state.severed);
+    EXPECT_EQ(to.state().springs_cut, before.state.springs_cut);
+    EXPECT_EQ(to.state().pieces, before.state.pieces);
+    EXPECT_EQ(to.vertices(), before.vertices);
+    EXPECT_EQ(to.surface().triangles, before.triangles);
+    ASSERT_EQ(to.namedPatches(), 1U);
+    EXPECT_EQ(to.patches()[0].nodes, before.patches[0].nodes);
+    EXPECT_EQ(to.lastReport().patches[0].force, report.patches[0].force);
+    EXPECT_EQ(to.lastReport().volume_ratio, report.volume_ratio);
+    EXPECT_EQ(to.savedState(), bytes);
+    EXPECT_EQ(to.stateHash(), tissue.stateHash());
+  }
+}
+
+// Ghosts have the numbers that they had: what follows is the same to the last bit.
+TEST_P(SavedStateOf, GoesOnAsIfItHadNeverBeenSaved) {
+  Tissue tissue(config_, solver_), other(config_, solver_);
+  tissue.load(pressOn(config_));
+  tissue.cut(cutAt(0.035, 0.015));
+  loadInto(other, tissue.savedState());
+  loadInto(tissue, tissue.savedState());  // forgets what the method has learned
+  for (Tissue* each : {&tissue, &other}) {
+    each->cut(cutAt(0.015, 0.025));
+    each->release({"punch"});
+  }
+  EXPECT_EQ(tissue.state().displacement, other.state().displacement);
+  EXPECT_EQ(tissue.stateHash(), other.stateHash());
+}
+
+TEST_P(SavedStateOf, HashTellsStatesApart) {
+  Tissue tissue(config_, solver_);
+  const std::uint64_t at_rest = tissue.stateHash();
+  tissue.load(pressOn(config_));
+  const std::uint64_t pressed = tissue.stateHash();
+  tissue.cut(cutAt(0.035, 0.015));
+  const std::uint64_t cut = tissue.stateHash();
+  EXPECT_NE(at_rest, pressed);
+  EXPECT_NE(pressed, cut);
+  tissue.reset();
+  EXPECT_EQ(tissue.stateHash(), at_rest);
+}
+
+TEST_P(SavedStateOf, TruncatedForeignAndNewerOnesAreRefused) {
+  Tissue tissue(config_, solver_);
+  tissue.cut(cutAt(0.035, 0.015));
+  const std::string bytes = tissue.savedState();
+  const Snapshot before(tissue);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 50) {
+    const std::string line = refusalOf(tissue, bytes.substr(0, size));
+    EXPECT_TRUE(isOneLine(line) && !line.empty()) << size;
+  }
+  EXPECT_TRUE(mentions(refusalOf(tissue, "PK\x03\x04 of another program"), "is no saved state"));
+  std::string newer = bytes;
+  newer[kVersionAt] = 2;
+  EXPECT_TRUE(mentions(refusalOf(tissue, newer), "version 2; allowed: up to 1"));
+  EXPECT_TRUE(mentions(refusalOf(tissue, bytes + "x"), "damaged"));
+  expectUnchanged(tissue, before);
+}
+
+TEST_P(SavedStateOf, ThoseOfOtherLatticesAreRefused) {
+  const std::string bytes = Tissue(config_, solver_).savedState();
+  TissueConfig other = config_;
+  other.spacing *= 0.5;
+  EXPECT_TRUE(mentions(refusalOf(Tissue(other, solver_), bytes), "another lattice"));
+  other = config_;
+  other.fixed.front().max().z() += kSpacing;
+  EXPECT_TRUE(mentions(refusalOf(Tissue(other, solver_), bytes), "another lattice"));
+  other = config_;
+  other.shape.max().x() += kSpacing;
+  EXPECT_TRUE(mentions(refusalOf(Tissue(other, solver_), bytes), "another lattice"));
+}
+
+// With checksums that fit: nothing but what is read stands between the bytes and the tissue.
+TEST_P(SavedStateOf, ThousandsOfChangedOnesAreRefusedOrLoaded) {
+  Tissue tissue(config_, solver_);
+  tissue.load(pressOn(config_));
+  tissue.cut(cutAt(0.035, 0.015));
+  const std::string good = tissue.savedState();
+  std::mt19937 random(7);
+  const auto below = [&](std::size_t most) {
+    return std::uniform_int_distribution<std::size_t>(0, most - 1)(random);
+  };
+  int refused = 0, loaded = 0;
+  for (int i = 0; i < 4000; ++i) {
+    std::string bytes = good;
+    for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
+      // Half of them where counts and indices are, before and after the displacements.
+      const std::size_t place = below(2) == 0 ? kHeaderBytes + below(400)
+                                              : kHeaderBytes + below(bytes.size() - kHeaderBytes);
+      bytes[place] = static_cast<char>(below(256));
+    }
+    if (below(8) == 0) bytes.resize(kHeaderBytes + below(bytes.size() - kHeaderBytes));
+    if (below(8) == 0) bytes.insert(kHeaderBytes + below(300), below(9), '\x7f');
+    const std::string line = refusalOf(tissue, below(4) == 0 ? bytes : withChecksums(bytes));
+    EXPECT_TRUE(line.empty() || isOneLine(line)) << line;
+    ++(line.empty() ? loaded : refused);
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_GT(loaded, 100);  // a displacement may be another one
+}
+
+// What passes may be far from balance: it is a state all the same.
+TEST_P(SavedStateOf, ChangedOnesThatPassAreFinite) {
+  Tissue tissue(config_, solver_);
+  tissue.cut(cutAt(0.035, 0.015));
+  const std::string good = tissue.savedState();
+  std::mt19937 random(3);
+  std::uniform_int_distribution<std::size_t> place(kHeaderBytes, good.size() - 1);
+  std::uniform_int_distribution<int> any(0, 255);
+  int loaded = 0;
+  for (int i = 0; i < 60; ++i) {
+    std::string bytes = good;
+    bytes[place(random)] = static_cast<char>(any(random));
+    bytes = withChecksums(bytes);
+    if (!refusalOf(tissue, bytes).empty()) continue;
+    loadInto(tissue, bytes);
+    for (const Vec3& vertex : tissue.vertices()) ASSERT_TRUE(vertex.allFinite());
+    tissue.settle();
+    for (const Vec3& vertex : tissue.vertices()) ASSERT_TRUE(vertex.allFinite());
+    ++loaded;
+  }
+  EXPECT_GT(loaded, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, SavedStateOf, ::testing::Values("elastic", "six_spring"),
+                         [](const auto& parameter) { return parameter.param; });
+
+// Of other stiffness it is not in balance where it was: it sags less.
+TEST(SavedState, OfAnotherMaterialIsBalancedAnew) {
+  TissueConfig soft = blockFor("elastic");
+  soft.gravity = Vec3(0.0, 0.0, -9.81);
+  const SolverConfig solver = solverFor("elastic");
+  TissueConfig hard = soft;
+  hard.material.young_modulus *= 2.0;
+  Tissue of_soft(soft, solver), of_hard(hard, solver), expected(hard, solver);
+  of_soft.settle();
+  expected.settle();
+  loadInto(of_hard, of_soft.savedState());
+  const auto sag = [](const Tissue& tissue) {
+    double lowest = 0.0;
+    for (const Vec3& moved : tissue.state().displacement) lowest = std::min(lowest, moved.z());
+    return lowest;
+  };
+  EXPECT_LT(sag(expected), 0.0);
+  EXPECT_NEAR(sag(of_hard), sag(expected), 0.02 * std::abs(sag(expected)));
+  EXPECT_LT(sag(of_soft), 1.5 * sag(expected));
+}
+
+// The springs at the rim of a load are as stiff as the tissue that they were made in.
+TEST(SavedState, WithLoadsOfAnotherMaterialIsRefused) {
+  const TissueConfig soft = blockFor("elastic");
+  const SolverConfig solver = solverFor("elastic");
+  TissueConfig hard = soft;
+  hard.material.young_modulus *= 2.0;
+  Tissue of_soft(soft, solver), of_hard(hard, solver);
+  of_soft.load(loadOf({forcedPatch("push", nodeBox(soft, {1, 1, 4}, {2, 2, 4}), {0, 0, -0.05})}));
+  EXPECT_NE(refusalOf(of_hard, of_soft.savedState()).find("loads of another scene"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace robot_tissue

@@ -1,0 +1,122 @@
+// Steps that save the tissue's state and load it.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "result_text.h"
+#include "simulate.h"
+#include "tool_scenes.h"
+
+namespace robot_tissue {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kLoad =
+    "  - load: {increments: 2, patches: [{name: p, min: [0.02, 0.02, 0.05], max: [0.04, 0.04, "
+    "0.05], displacement: [0, 0, -0.005]}]}\n";
+const std::string kCut =
+    "  - cut: {corners: [[0.055, -1, 0.02], [0.055, 1, 0.02], [0.055, 1, 1], [0.055, -1, 1]]}\n";
+const std::string kSave = "  - save: {file: a.tissue}\n";
+const std::string kBack = "  - load_state: {file: a.tissue}\n";
+
+std::string scene(const std::string& steps) { return block() + "steps:\n" + steps; }
+
+std::string refusalOf(const std::string& steps) {
+  try {
+    run(scene(steps));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(StateSteps, WhatWasSavedComesBackBitForBit) {
+  const RunResult saved = run(scene(kLoad + kCut));
+  const RunResult back = run(scene(kLoad + kCut + kSave + "  - reset: {}\n" + kBack));
+  EXPECT_EQ(nodesCsv(back), nodesCsv(saved));
+  EXPECT_EQ(surfaceStl(back), surfaceStl(saved));
+  EXPECT_EQ(back.patches.back().answer.force, saved.patches.back().answer.force);
+  EXPECT_TRUE(back.allOk());
+}
+
+TEST(StateSteps, TheReaderKnowsWhatStandsInASavedState) {
+  const std::string release = "  - release: {patches: [p]}\n";
+  EXPECT_EQ(refusalOf(kLoad + kSave + release + kBack + release), "");
+  EXPECT_NE(refusalOf(kLoad + kSave + "  - reset: {}\n" + release).find("no patch stands"),
+            std::string::npos);
+  EXPECT_NE(refusalOf(kSave + kLoad + kBack + release).find("no patch stands"), std::string::npos);
+}
+
+TEST(StateSteps, BadNamesAndMissingFilesAreRefused) {
+  EXPECT_NE(refusalOf("  - save: {file: ../a}\n").find("steps[0].save.file = ../a: must be a plain"),
+            std::string::npos);
+  EXPECT_NE(refusalOf("  - save: {}\n").find("steps[0].save.file"), std::string::npos);
+  const std::string line = refusalOf("  - load_state: {file: never-saved}\n");
+  EXPECT_NE(line.find("steps[0].load_state: file = 'never-saved'"), std::string::npos) << line;
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+// A tool in the tissue is none of the state: the tissue is found anew with it.
+TEST(StateSteps, AToolComesInAnew) {
+  const std::string press = placed("probe", sphereAt(-0.005), sphereAt(0.005), 3);
+  const RunResult pressed = run(block() + kSphere + "steps:\n" + press);
+  const RunResult again = run(block() + kSphere + "steps:\n" + kSave + press + kBack);
+  const Vec3 before = pressed.tools.back().force, after = again.tools.back().force;
+  EXPECT_GT(before.z(), 0.05);
+  EXPECT_NEAR(after.z(), before.z(), 0.1 * before.z());
+  const RunResult inside = run(block() + kSphere + "steps:\n" + press + kSave + kBack);
+  EXPECT_NEAR(inside.tools.back().force.z(), before.z(), 0.1 * before.z());
+}
+
+class StateFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "state_steps_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  int runInto(const std::string& out, const std::string& text) {
+    std::ofstream(folder_ / "scene.yaml") << text;
+    std::ostringstream said;
+    err_.str("");
+    return simulate({(folder_ / "scene.yaml").string(), "--out", (folder_ / out).string()}, said,
+                    err_, false);
+  }
+  std::string text(const std::string& file) const {
+    std::ifstream stream(folder_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+
+  fs::path folder_;
+  std::ostringstream err_;
+};
+
+TEST_F(StateFiles, ALaterRunGoesOnFromAFileInItsFolder) {
+  ASSERT_EQ(runInto("out", scene(kLoad + kCut + kSave)), 0) << err_.str();
+  const std::string saved = text("out/a.tissue"), nodes = text("out/nodes.csv");
+  EXPECT_FALSE(saved.empty());
+  ASSERT_EQ(runInto("out", scene(kBack + "  - save: {file: b.tissue}\n")), 0) << err_.str();
+  EXPECT_EQ(text("out/nodes.csv"), nodes);
+  EXPECT_EQ(text("out/b.tissue"), saved);
+  EXPECT_EQ(text("out/a.tissue"), saved);
+}
+
+TEST_F(StateFiles, AStateOfAnotherLatticeIsRefusedAndNothingWritten) {
+  ASSERT_EQ(runInto("out", scene(kSave)), 0) << err_.str();
+  const std::string nodes = text("out/nodes.csv");
+  std::string other = scene(kBack);
+  other.replace(other.find("0.1, 0.1, 0.05"), 14, "0.1, 0.1, 0.04");
+  EXPECT_EQ(runInto("out", other), 2);
+  EXPECT_NE(err_.str().find("steps[0].load_state: file = 'a.tissue': is of another lattice"),
+            std::string::npos)
+      << err_.str();
+  EXPECT_EQ(text("out/nodes.csv"), nodes);
+}
+
+}  // namespace
+}  // namespace robot_tissue
