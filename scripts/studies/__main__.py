@@ -9,7 +9,8 @@ from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
 STUDIES = ["rooms", "liver", "paper", "economy", "fidelity", "growth", "threads", "stages", "speed",
-           "node", "still_node", "contact_search", "contact", "accuracy", "stability", "speed_accuracy"]
+           "node", "still_node", "shape_topics", "contact_search", "contact", "accuracy", "stability",
+           "speed_accuracy"]
 
 
 def title_of(name):

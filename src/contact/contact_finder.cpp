@@ -42,7 +42,7 @@ Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geomet
   return link;
 }
 
-void requireVertices(const Surface& surface, const std::vector<Vec3>& vertices) {
+void requireVertices(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
   if (vertices.size() == surface.rest.size()) return;
   throw InputError("surface: has " + std::to_string(vertices.size()) +
                    " deformed vertices; allowed is one for each of its " +
@@ -64,7 +64,7 @@ bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 // refitted to the deformed one.
 class SurfaceTree {
  public:
-  const TriangleBvh& of(const Surface& surface, const std::vector<Vec3>& vertices) {
+  const TriangleBvh& of(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
     if (!isOf(surface)) {
       revision_ = surface.revision;
       rest_ = surface.rest;
@@ -81,7 +81,7 @@ class SurfaceTree {
   std::uint64_t moves() const { return moves_; }
 
  private:
-  bool isOf(const Surface& surface) const {
+  bool isOf(const TissueSurface& surface) const {
     if (!tree_) return false;
     if (surface.revision != 0 || revision_ != 0) return surface.revision == revision_;
     return surface.triangles == tree_->triangles() && areSame(surface.rest, rest_);
@@ -110,13 +110,13 @@ struct ContactFinder::Impl {
   std::vector<PlacedLink> placedAt(const RobotPose& pose) const;
   // Of one link, some of whose shapes are near the surface.
   void addContacts(const PlacedLink& here, std::size_t link,
-                   const std::vector<std::size_t>& near_shapes, const Surface& surface,
+                   const std::vector<std::size_t>& near_shapes, const TissueSurface& surface,
                    const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
   double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
-                     const Surface& surface, const std::vector<Vec3>& vertices);
+                     const TissueSurface& surface, const std::vector<Vec3>& vertices);
   // Box around the surface. Without a tree, which is made once a link comes near, from all
   // vertices.
-  Box boundsOf(const Surface& surface, const std::vector<Vec3>& vertices) {
+  Box boundsOf(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
     return surface_tree.exists() ? surface_tree.of(surface, vertices).bounds()
                                  : robot_tissue::boundsOf(vertices);
   }
@@ -197,8 +197,9 @@ std::vector<PlacedLink> ContactFinder::Impl::placedAt(const RobotPose& pose) con
 
 void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
                                       const std::vector<std::size_t>& near_shapes,
-                                      const Surface& surface, const std::vector<Vec3>& vertices,
-                                      double margin, ContactSet& contacts) {
+                                      const TissueSurface& surface,
+                                      const std::vector<Vec3>& vertices, double margin,
+                                      ContactSet& contacts) {
   const TriangleBvh& tree = surface_tree.last();
   std::vector<int> triangles;
   std::vector<FacePairs> faces(here.size());
@@ -216,7 +217,7 @@ void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
   link_contacts.find(asked, surface, vertices, contacts);
 }
 
-ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
+ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surface,
                                const std::vector<Vec3>& vertices, double margin) const {
   requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);
@@ -241,7 +242,7 @@ ContactSet ContactFinder::find(const RobotPose& pose, const Surface& surface,
 
 // `surface_tree` must be of these vertices.
 double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link,
-                                        const Pose& tissue_T_link, const Surface& surface,
+                                        const Pose& tissue_T_link, const TissueSurface& surface,
                                         const std::vector<Vec3>& vertices) {
   double deepest = 0.0;
   if (knows(link, tissue_T_link)) {
@@ -284,7 +285,7 @@ std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& t
 }
 
 std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& links,
-                                                const RobotPose& pose, const Surface& surface,
+                                                const RobotPose& pose, const TissueSurface& surface,
                                                 const std::vector<Vec3>& vertices) const {
   requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);

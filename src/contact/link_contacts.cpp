@@ -21,7 +21,7 @@ Vec3 inward(const Corners& corners) {
 
 }  // namespace
 
-void LinkContacts::find(const Asked& asked, const Surface& surface,
+void LinkContacts::find(const Asked& asked, const TissueSurface& surface,
                         const std::vector<Vec3>& vertices, ContactSet& found) {
   link_ = &asked.link;
   faces_ = &asked.faces;

@@ -26,7 +26,7 @@ class LinkContacts {
     const std::vector<FacePairs>& faces;  // per shape; of meshes
     double margin;                        // m
   };
-  void find(const Asked& asked, const Surface& surface, const std::vector<Vec3>& vertices,
+  void find(const Asked& asked, const TissueSurface& surface, const std::vector<Vec3>& vertices,
             ContactSet& found);
 
  private:
@@ -51,7 +51,7 @@ class LinkContacts {
 
   const PlacedLink* link_ = nullptr;
   const std::vector<FacePairs>* faces_ = nullptr;
-  const Surface* surface_ = nullptr;
+  const TissueSurface* surface_ = nullptr;
   const std::vector<Vec3>* vertices_ = nullptr;
   double margin_ = 0.0;  // m
   int tool_ = 0;

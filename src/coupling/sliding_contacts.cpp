@@ -243,7 +243,7 @@ void SlidingContacts::forgetLost(const Held& held) {
 // The touch that a contact is of: the same vertex or, within a triangle, the nearest within
 // kSamePoint.
 SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact,
-                                                          const Surface& surface) {
+                                                          const TissueSurface& surface) {
   const int vertex = vertexAt(surface, contact.place);
   ContactConstraint* nearest = nullptr;
   double least = tuning::kSamePoint;

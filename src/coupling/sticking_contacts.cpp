@@ -238,8 +238,8 @@ std::vector<std::uint8_t> StickingContacts::heldNodes(const Tissue& tissue) cons
   return held;
 }
 
-std::vector<StickingContacts::Carrier> StickingContacts::supportOf(const Contact& contact,
-                                                                   const Surface& surface) const {
+std::vector<StickingContacts::Carrier> StickingContacts::supportOf(
+    const Contact& contact, const TissueSurface& surface) const {
   std::vector<Carrier> support;
   for (const auto& [node, weight] : carriersAt(surface, contact.place)) {
     if (taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
@@ -267,7 +267,7 @@ void StickingContacts::attach(int node, std::size_t tool, int link, const Vec3& 
 }
 
 void StickingContacts::findOutwardNormals(const Tissue& tissue) {
-  const Surface& surface = tissue.surface();
+  const TissueSurface& surface = tissue.surface();
   outward_.assign(tissue.state().displacement.size(), Vec3::Zero());
   for (const auto& triangle : surface.triangles) {
     const Vec3 area = doubleArea(surface.rest, triangle);

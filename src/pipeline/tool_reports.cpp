@@ -8,6 +8,18 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+
+// A link pushed the node out of itself on the way in; what jaws closed on, it may not have.
+Vec3 wayOutOfTool(const World& world, int node, const StickingContacts::Attachment& seat) {
+  const Pose& tissue_T_link = world.pose.links[at(seat.link)];
+  const Vec3 push = tissue_T_link.linear() * seat.pushed;
+  if (!push.isZero(0.0)) return push;
+  const auto out =
+      world.finder.wayOut(at(seat.link), tissue_T_link, world.tissue.nodePosition(node),
+                          std::numeric_limits<double>::infinity());
+  return out ? out->normal : Vec3::Zero();
+}
+
 namespace {
 
 Vec3 normalOf(const World& world, std::size_t tool) {
@@ -15,15 +27,7 @@ Vec3 normalOf(const World& world, std::size_t tool) {
   // what counts is the direction.
   std::map<int, std::vector<Vec3>> pushes;
   for (const auto& [node, seat] : world.sticking.attachments()[tool]) {
-    const Pose& tissue_T_link = world.pose.links[at(seat.link)];
-    Vec3 push = tissue_T_link.linear() * seat.pushed;
-    if (push.isZero(0.0)) {
-      const auto out =
-          world.finder.wayOut(at(seat.link), tissue_T_link, world.tissue.nodePosition(node),
-                              std::numeric_limits<double>::infinity());
-      if (out) push = out->normal;
-    }
-    pushes[seat.link].push_back(push);
+    pushes[seat.link].push_back(wayOutOfTool(world, node, seat));
   }
   for (const SlidingContacts::ContactConstraint& touch : world.sliding.touches()) {
     const double force = touch.spring.multiplier;

@@ -16,4 +16,8 @@ std::vector<double> deepestPoints(const World& world);
 // caller puts in.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool);
 
+// Of a node that the tool holds, from the tool into the tissue, of any length; zero where every way
+// is as good.
+Vec3 wayOutOfTool(const World& world, int node, const StickingContacts::Attachment& seat);
+
 }  // namespace robot_tissue

@@ -45,7 +45,7 @@ using Draw = void (*)(const Drawn& drawn, Marker marker, MarkerArray& array);
 
 template <bool opened>
 void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  const Surface& surface = drawn.tissue().surface();
+  const TissueSurface& surface = drawn.tissue().surface();
   marker.points.reserve(opened ? 0 : 3 * surface.triangles.size());
   for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
     if ((surface.opened[triangle] != 0) != opened) continue;

@@ -24,6 +24,16 @@ void addBalance(const ForceBalance& balance, TissueState& message) {
   message.unbalanced_force = balance.unbalanced().norm();
 }
 
+Touch touchMessage(const ToolTouch& touch) {
+  Touch message;
+  message.point = toPoint(touch.point);
+  message.normal = toVector3(touch.normal);
+  message.depth = touch.depth_m;
+  message.normal_force = touch.normal_force;
+  message.friction_force = toVector3(touch.friction_force);
+  return message;
+}
+
 TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
   const StepReport& report = pipeline.report();
   const LatticeState& lattice = pipeline.tissue().state();
@@ -60,6 +70,7 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
       frame_id_(parameters.scene.tissue.frame_id),
       marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
       marker_period_(1.0 / parameters.marker_rate_hz),
+      shape_(private_node_, frame_id_, parameters.marker_rate_hz),
       wrenches_(private_node_, poses, parameters.wrench_rate_hz) {
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
     marker_builder_.tellAll();
@@ -93,18 +104,20 @@ void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& s
   if (pipeline.hasArrived()) reached_ = stamp;
   publishContacts(pipeline, stamp);
   publishMarkers(pipeline, stamp);
+  shape_.publish(pipeline.tissue(), stamp);
   publishState(pipeline, stamp, status);
 }
 
 void TissuePublisher::timeWentBack() {
   wrenches_.forget();
+  shape_.timeWentBack();
   reached_ = last_contacts_ = last_markers_ = ros::Time();
   shapeChanged();
 }
 
 bool TissuePublisher::isUpToDate() const {
   return !last_state_.isZero() && (!contacts_due_ || contacts_.getNumSubscribers() == 0) &&
-         ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted());
+         ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted()) && shape_.isUpToDate();
 }
 
 // The topic is latched: a first array goes out without a listener, for who comes later.
@@ -116,6 +129,7 @@ void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Ti
                                          const NodeStatus& status) {
   wrenches_.fallSilent();
   publishMarkers(pipeline, now);
+  shape_.publish(pipeline.tissue(), now);
   publishState(pipeline, now, status);
 }
 
@@ -170,6 +184,9 @@ void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time&
     contact.depth = report.max_penetration;
     contact.force = toVector3(forceOnTissue(pipeline, tool));
     contact.saturated = report.saturated;
+    for (const ToolTouch& touch : pipeline.touchesOf(tool)) {
+      contact.touches.push_back(touchMessage(touch));
+    }
     array.contacts.push_back(contact);
   }
   contacts_.publish(array);

@@ -34,8 +34,8 @@ double processorUs() {
 }
 
 // The closed surface of a block on the plane z = 0, outside outwards.
-Surface blockSurface(const std::array<int, 3>& cells, double spacing) {
-  Surface surface;
+TissueSurface blockSurface(const std::array<int, 3>& cells, double spacing) {
+  TissueSurface surface;
   std::map<std::array<int, 3>, int> numbers;
   const auto vertex = [&](const std::array<int, 3>& node) {
     const auto [known, is_new] = numbers.try_emplace(node, static_cast<int>(surface.rest.size()));
@@ -68,7 +68,7 @@ Surface blockSurface(const std::array<int, 3>& cells, double spacing) {
 }
 
 // Pressed in around a place of its top.
-std::vector<Vec3> dented(const Surface& surface, const Vec3& place) {
+std::vector<Vec3> dented(const TissueSurface& surface, const Vec3& place) {
   constexpr double kWidth = 0.02;
   std::vector<Vec3> vertices = surface.rest;
   for (Vec3& vertex : vertices) {
@@ -135,7 +135,7 @@ double summed(const ContactSet& found) {
   return sum;
 }
 
-void measure(const Case& scene, const Surface& surface, double spacing) {
+void measure(const Case& scene, const TissueSurface& surface, double spacing) {
   const ContactFinder finder(scene.tools);
   std::vector<double> search, depth;
   std::size_t contacts = 0;
@@ -167,7 +167,7 @@ void measure(const Case& scene, const Surface& surface, double spacing) {
 
 int run(int cells, const std::string& only) {
   const double spacing = 0.1 / cells;
-  const Surface surface = blockSurface({cells, cells, cells / 2}, spacing);
+  const TissueSurface surface = blockSurface({cells, cells, cells / 2}, spacing);
   std::printf("tool,triangles,contacts,search_us,penetration_us,sum\n");
   for (const Case& scene : cases()) {
     if (only.empty() || scene.name == only) measure(scene, surface, spacing);

@@ -58,7 +58,7 @@ void bendBar(int cells_high, double nu) {
 
 // Between the banks at the upper surface, on the line of symmetry (m).
 double mouthOf(const ElasticBlock& block, double x) {
-  const Surface surface = extractSurface(block.lattice, block.state);
+  const TissueSurface surface = extractSurface(block.lattice, block.state);
   std::vector<Vec3> vertices;
   deform(surface, block.state.displacement, vertices);
   double leftmost = kFar, rightmost = -kFar;

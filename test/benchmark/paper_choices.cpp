@@ -133,7 +133,7 @@ void describeShape(const Lattice& lattice, const LatticeState& state, bool strai
     }
   }
   outcome.asymmetry = asymmetryOf(lattice, state, straight) / outcome.greatest;
-  const Surface surface = extractSurface(lattice, state);
+  const TissueSurface surface = extractSurface(lattice, state);
   std::vector<Vec3> vertices;
   deform(surface, state.displacement, vertices);
   outcome.volume_ratio = enclosedVolume(surface, vertices) / enclosedVolume(surface, surface.rest);

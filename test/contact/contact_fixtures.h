@@ -16,7 +16,7 @@
 namespace robot_tissue {
 
 struct Sheet {
-  Surface surface;
+  TissueSurface surface;
   std::vector<Vec3> vertices;
 
   void addVertex(const Vec3& vertex) {

@@ -57,7 +57,7 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
   for (int step = 0; step < kSteps; ++step) {
     const std::vector<Vec3> vertices = walk.next();
     const Pose pose = walk.place();
-    Surface fresh = block.surface;  // its tree is made from this shape
+    TissueSurface fresh = block.surface;  // its tree is made from this shape
     fresh.rest = vertices;
     const ContactFinder new_finder({tool});
     const double depth = old_finder.penetrations({0}, at(pose), block.surface, vertices)[0];

@@ -36,7 +36,7 @@ SolverConfig methodFor(const std::string& model) {
   return solver;
 }
 
-std::size_t countOpenEdges(const Surface& surface) {
+std::size_t countOpenEdges(const TissueSurface& surface) {
   std::map<std::pair<int, int>, int> surplus;
   for (const MeshTriangle& triangle : surface.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -48,7 +48,7 @@ std::size_t countOpenEdges(const Surface& surface) {
                                                 [](const auto& edge) { return edge.second != 0; }));
 }
 
-double openedArea(const Surface& surface, int axis) {
+double openedArea(const TissueSurface& surface, int axis) {
   double area = 0.0;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     if (surface.opened[i] == 0) continue;
@@ -92,7 +92,7 @@ TEST_P(BothModels, BoxAsAMeshIsTheSameTissue) {
 TEST(MeshTissue, SurfaceFollowsALinearDeformationExactly) {
   const TriangleMesh mesh = sphereMesh(0.033, 3);
   const Lattice lattice(tissueOf(mesh));
-  const Surface surface = meshSurface(lattice, lattice.restState(), mesh);
+  const TissueSurface surface = meshSurface(lattice, lattice.restState(), mesh);
   EXPECT_EQ(countOpenEdges(surface), 0U);
   EXPECT_NEAR(enclosedVolume(surface, surface.rest), volumeOf(mesh), 1e-15);
   Eigen::Matrix3d gradient;
@@ -166,7 +166,7 @@ TEST_P(BothModels, AnyCutLeavesTheSurfaceClosed) {
             {springs.begin() + static_cast<std::ptrdiff_t>(first),
              springs.begin() + static_cast<std::ptrdiff_t>(last)},
             state, split);
-      const Surface surface = meshSurface(lattice, state, mesh);
+      const TissueSurface surface = meshSurface(lattice, state, mesh);
       ASSERT_EQ(countOpenEdges(surface), 0U);
       ASSERT_NEAR(enclosedVolume(surface, surface.rest), volumeOf(mesh), 1e-12 * volumeOf(mesh));
       for (const auto& carriers : surface.carriers) {
@@ -183,7 +183,7 @@ TEST_P(BothModels, AnyCutLeavesTheSurfaceClosed) {
 
 TEST_P(BothModels, PressCutReleaseResetOfABall) {
   Tissue tissue(ball(GetParam()), methodFor(GetParam()));
-  const Surface uncut = tissue.surface();
+  const TissueSurface uncut = tissue.surface();
   const double volume = enclosedVolume(uncut, uncut.rest);
   const Box top{Vec3(-0.012, -0.012, 0.02), Vec3(0.012, 0.012, 0.05)};
   tissue.load(loadOf({displacedPatch("press", top, {0.0, 0.0, -0.004})}));
@@ -214,7 +214,7 @@ TEST_P(BothModels, BallCutThroughHasTwoClosedHalves) {
   config.mesh = std::make_shared<const TriangleMesh>(sphereMesh(radius, 5));
   Tissue tissue(config, methodFor(GetParam()));
   ASSERT_EQ(tissue.cut(cutPlane(0.0112, -1.0)).pieces, 2);
-  const Surface& surface = tissue.surface();
+  const TissueSurface& surface = tissue.surface();
   EXPECT_EQ(countOpenEdges(surface), 0U);
   // Nodes stand at x = -0.005, 0.005, 0.015: the cells between the last two are split.
   const double disk = M_PI * (radius * radius - 0.01 * 0.01);

@@ -10,6 +10,7 @@
 #include "cutting/cut.h"
 #include "cutting/split_cells.h"
 #include "elastic_fixtures.h"
+#include "lattice/connectivity.h"
 
 namespace robot_tissue {
 namespace {
@@ -309,6 +310,28 @@ TEST_F(CutBar, BendsLikeTwoBars) {
   RecordProperty("softer", std::to_string(after / before));
   EXPECT_GT(after / before, 3.0);
   EXPECT_LT(after / before, 4.0);
+}
+
+// Numbers from 0 on in the order of the lowest nodes; ghosts are of the part that they complete.
+TEST(SplitCells, PiecesAreNumberedWithTheirGhosts) {
+  ElasticBlock block(elasticBlockOf(4, 3, 2, 0.45));
+  EXPECT_EQ(pieceOfNodes(block.lattice, block.state),
+            std::vector<int>(at(block.lattice.nodeCount()), 0));
+  cut(block, across(0, 1.5));
+  cut(block, across(1, 0.5));
+  const std::vector<int> piece = pieceOfNodes(block.lattice, block.state);
+  const std::vector<int> lowest = piecesOf(block);
+  ASSERT_EQ(piece.size(), lowest.size());
+  std::map<int, int> number_of;  // by the lowest node
+  for (std::size_t node = 0; node < piece.size(); ++node) {
+    const auto [known, is_new] = number_of.emplace(lowest[node], piece[node]);
+    if (is_new) {
+      EXPECT_EQ(piece[node], static_cast<int>(number_of.size()) - 1);
+    }
+    EXPECT_EQ(piece[node], known->second) << "node " << node;
+  }
+  EXPECT_EQ(static_cast<int>(number_of.size()), countPieces(block.lattice, block.state));
+  EXPECT_EQ(number_of.size(), 4U);
 }
 
 }  // namespace

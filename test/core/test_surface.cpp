@@ -15,7 +15,7 @@ namespace {
 constexpr double kSpacing = 0.01;
 
 // How often each directed edge occurs.
-std::map<std::pair<int, int>, int> edgesOf(const Surface& surface) {
+std::map<std::pair<int, int>, int> edgesOf(const TissueSurface& surface) {
   std::map<std::pair<int, int>, int> edges;
   for (const auto& triangle : surface.triangles) {
     for (std::size_t i = 0; i < 3; ++i) ++edges[{triangle[i], triangle[(i + 1) % 3]}];
@@ -23,7 +23,7 @@ std::map<std::pair<int, int>, int> edgesOf(const Surface& surface) {
   return edges;
 }
 
-int countOpenEdges(const Surface& surface) {
+int countOpenEdges(const TissueSurface& surface) {
   const auto edges = edgesOf(surface);
   int open = 0;
   for (const auto& [edge, count] : edges) {
@@ -33,14 +33,14 @@ int countOpenEdges(const Surface& surface) {
   return open;
 }
 
-Vec3 areaOf(const Surface& surface, std::size_t triangle) {
+Vec3 areaOf(const TissueSurface& surface, std::size_t triangle) {
   const auto& corners = surface.triangles[triangle];
   const Vec3& a = surface.rest[at(corners[0])];
   return 0.5 * (surface.rest[at(corners[1])] - a).cross(surface.rest[at(corners[2])] - a);
 }
 
 // Area of the opened faces that look along the axis, either way.
-double openedArea(const Surface& surface, int axis) {
+double openedArea(const TissueSurface& surface, int axis) {
   double area = 0.0;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     if (surface.opened[i] != 0) area += std::abs(areaOf(surface, i)[axis]);
@@ -48,7 +48,7 @@ double openedArea(const Surface& surface, int axis) {
   return area;
 }
 
-int countOpened(const Surface& surface) {
+int countOpened(const TissueSurface& surface) {
   int opened = 0;
   for (const auto flag : surface.opened) opened += flag;
   return opened;
@@ -66,7 +66,7 @@ LatticeState cutAcrossX(const Lattice& lattice, double x, double y0, double y1, 
 
 TEST(Surface, OfAWholeBlockIsClosedAndConsistentlyOriented) {
   const Lattice lattice(blockOf(4, 3, 2));
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   EXPECT_EQ(surface.triangles.size(), 4u * (4 * 3 + 3 * 2 + 2 * 4));
   ASSERT_EQ(surface.opened.size(), surface.triangles.size());
   EXPECT_EQ(countOpened(surface), 0);
@@ -76,7 +76,7 @@ TEST(Surface, OfAWholeBlockIsClosedAndConsistentlyOriented) {
 
 TEST(Surface, HasItsVerticesOnTheOuterNodes) {
   const Lattice lattice(blockOf(4, 3, 2));
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   EXPECT_EQ(surface.rest.size(), 5u * 4u * 3u - 3u * 2u * 1u);
   ASSERT_EQ(surface.carriers.size(), surface.rest.size());
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
@@ -92,7 +92,7 @@ TEST(Surface, LooksOutwardsOnEveryFace) {
   config.shape.min() += Vec3(1.0, -2.0, 3.0);
   config.shape.max() += Vec3(1.0, -2.0, 3.0);
   const Lattice lattice(config);
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const Vec3 normal = areaOf(surface, i).normalized();
     Vec3 middle = Vec3::Zero();
@@ -109,14 +109,14 @@ TEST(Surface, EnclosesTheVolumeOfTheBlock) {
   config.shape.min() += Vec3(10.0, -20.0, 30.0);
   config.shape.max() += Vec3(10.0, -20.0, 30.0);
   const Lattice lattice(config);
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   EXPECT_NEAR(enclosedVolume(surface, surface.rest), 60e-6, 1e-9 * 60e-6);
 }
 
 // Else a symmetric press would look lopsided.
 TEST(Surface, IsItsOwnMirrorImageWhereTheLatticeIs) {
   const Lattice lattice(blockOf(4, 4, 2));
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   const auto nodesOfTriangle = [&](std::size_t i, bool mirrored) {
     std::set<int> nodes;
     for (const int vertex : surface.triangles[i]) {
@@ -137,7 +137,7 @@ TEST(Surface, IsItsOwnMirrorImageWhereTheLatticeIs) {
 
 TEST(Surface, FollowsTheDisplacements) {
   const Lattice lattice(blockOf(3, 3, 3));
-  const Surface surface = extractSurface(lattice, lattice.restState());
+  const TissueSurface surface = extractSurface(lattice, lattice.restState());
   std::vector<Vec3> displacement, vertices;
   for (int node = 0; node < lattice.nodeCount(); ++node) {
     displacement.push_back(Vec3(0.5, 0.2, -0.4).cwiseProduct(lattice.restPosition(node)));
@@ -160,7 +160,7 @@ class PartlyCutSurface : public ::testing::Test {
         surface_(extractSurface(lattice_, state_)) {}
   Lattice lattice_;
   LatticeState state_;
-  Surface surface_;
+  TissueSurface surface_;
 };
 
 TEST_F(PartlyCutSurface, IsClosed) {
@@ -212,7 +212,7 @@ class PartedSurface : public ::testing::Test {
   }
   Lattice lattice_;
   LatticeState state_;
-  Surface surface_;
+  TissueSurface surface_;
 };
 
 TEST_F(PartedSurface, IsTwoClosedPieces) {
@@ -274,7 +274,7 @@ TEST(Surface, StaysClosedAfterObliqueAndCrossingCuts) {
     const auto crossing = springsAcross(lattice, state, corners);
     ASSERT_FALSE(crossing.empty());
     sever(lattice, crossing, state);
-    const Surface surface = extractSurface(lattice, state);
+    const TissueSurface surface = extractSurface(lattice, state);
     EXPECT_EQ(countOpenEdges(surface), 0);
     EXPECT_GT(countOpened(surface), 0);
     EXPECT_EQ(surface.opened.size(), surface.triangles.size());
@@ -292,9 +292,9 @@ TEST(Surface, OfPartsWithGhostsIsClosedAndDeformsAsTheMaterial) {
     const auto crossing = springsAcross(lattice, state, corners);
     sever(lattice, crossing, state, SplitCells::kParted);
     sever(lattice, crossing, without);
-    const Surface surface = extractSurface(lattice, state);
+    const TissueSurface surface = extractSurface(lattice, state);
     EXPECT_EQ(countOpenEdges(surface), 0);
-    const Surface plain = extractSurface(lattice, without);
+    const TissueSurface plain = extractSurface(lattice, without);
     EXPECT_NEAR(enclosedVolume(surface, surface.rest), enclosedVolume(plain, plain.rest), 1e-12);
     std::vector<Vec3> displacement, vertices;
     for (int node = 0; node < state.cells->nodeCount(); ++node) {

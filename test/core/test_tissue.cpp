@@ -187,7 +187,7 @@ TEST(TissueReport, SaysWhenCellsAreTurnedInsideOut) {
 TEST(TissueReport, VerticesFollowTheNodes) {
   Tissue tissue(kBlock, paperSolver());
   tissue.load(loadOf({displacedPatch("left", kLeft, kDown)}));
-  const Surface& surface = tissue.surface();
+  const TissueSurface& surface = tissue.surface();
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
     const int node = surface.carriers[vertex][0].node;
     EXPECT_EQ(tissue.vertices()[vertex],

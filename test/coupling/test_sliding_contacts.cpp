@@ -58,7 +58,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
   // Of vertices, each found once.
   ContactSet contacts() const {
     ContactSet set;
-    const Surface& surface = tissue_->surface();
+    const TissueSurface& surface = tissue_->surface();
     std::vector<char> seen(surface.rest.size(), 0);
     for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
       for (int corner = 0; corner < 3; ++corner) {

@@ -31,7 +31,7 @@ class StickingContactsTest : public ::testing::Test {
 
   // A contact at a node of the surface.
   Contact atNode(int node, double depth, const Vec3& normal = kInto, int tool = 0) const {
-    const Surface& surface = tissue_.surface();
+    const TissueSurface& surface = tissue_.surface();
     for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const int vertex = surface.triangles[i][corner];
@@ -73,7 +73,7 @@ class StickingContactsTest : public ::testing::Test {
 
   // A triangle that lies in the plane z = `z`.
   int triangleAt(double z) const {
-    const Surface& surface = tissue_.surface();
+    const TissueSurface& surface = tissue_.surface();
     for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
       bool inside = true;
       for (const int vertex : surface.triangles[i]) {
@@ -166,7 +166,7 @@ TEST_F(StickingContactsTest, FixedNodesAreNeverTaken) {
   EXPECT_TRUE(patches_.empty());
   // A triangle of a side wall that has a fixed edge: its free nodes alone do it.
   int mixed = -1;
-  const Surface& surface = tissue_.surface();
+  const TissueSurface& surface = tissue_.surface();
   for (std::size_t i = 0; i < surface.triangles.size() && mixed < 0; ++i) {
     int fixed = 0;
     for (const int vertex : surface.triangles[i]) {

@@ -115,7 +115,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   StickingContacts patches(tissue_.lattice(), {"probe"});
   RobotPose pose;
   pose.links = {Pose::Identity()};
-  const Surface& surface = tissue_.surface();
+  const TissueSurface& surface = tissue_.surface();
   const int beside = tissue_.lattice().node(1, 1, 3);
   const auto isAtEdge = [&](int vertex) {
     const auto& carriers = surface.carriers[at(vertex)];

@@ -63,6 +63,40 @@ TEST_P(WithEachMethod, MethodsAgreeAboutTheForce) {
 INSTANTIATE_TEST_SUITE_P(Method, WithEachMethod, ::testing::Values("layered", "newton"),
                          [](const auto& row) { return std::string(row.param); });
 
+// Of all ways to hold on to the tissue, dragged sideways so that friction acts, too.
+TEST(Touches, AddUpToTheForceOfTheTool) {
+  for (const auto patch : {ToolConfig::Patch::kConforming, ToolConfig::Patch::kRigid}) {
+    ToolGeometry tool = probe();
+    tool.patch = patch;
+    Pipeline pipeline(block("elastic", 0.01), {}, {tool});
+    EXPECT_TRUE(pipeline.touchesOf(0).empty());
+    walk(pipeline, -0.001, 0.006, 0.001);
+    const Vec3 down(kMiddle, kMiddle, kTop + kRadius - 0.006);
+    walk(pipeline, {down}, {down + Vec3(0.003, 0.0, 0.0)}, 0.001);
+    const std::vector<ToolTouch> touches = pipeline.touchesOf(0);
+    const bool slides = patch == ToolConfig::Patch::kConforming;
+    Vec3 sum = Vec3::Zero();
+    double pressed = 0.0, dragged = 0.0;
+    for (const ToolTouch& touch : touches) {
+      sum += touch.normal_force * touch.normal + touch.friction_force;
+      EXPECT_NEAR(touch.normal.norm(), 1.0, 1e-12);
+      EXPECT_NEAR(touch.friction_force.dot(touch.normal), 0.0, 1e-9);
+      EXPECT_LT((touch.point - down).norm(), kRadius + 0.01);
+      if (!slides) continue;
+      EXPECT_GE(touch.normal_force, 0.0);
+      pressed += touch.normal_force;
+      dragged += touch.friction_force.norm();
+      EXPECT_LT(std::abs(touch.depth_m), 1e-4);
+      EXPECT_NEAR((touch.point - pipeline.pose()->links[0].translation()).norm(), kRadius, 5e-4);
+    }
+    const Vec3 force = forceOnTissue(pipeline);
+    ASSERT_GT(force.norm(), 0.1);
+    EXPECT_GT(force.x(), 0.02);
+    EXPECT_LT((sum - force).norm(), 1e-5 * force.norm()) << "slides: " << slides;
+    EXPECT_LE(dragged, 1.05 * 0.3 * pressed);
+  }
+}
+
 // A plane that covers the whole top is drawn along it until all of it slides.
 TEST(FrictionCone, PlaneThatSlidesDragsWithItsFriction) {
   for (const double friction : {0.0, 0.1, 0.3}) {

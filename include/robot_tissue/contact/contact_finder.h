@@ -54,8 +54,8 @@ class ContactFinder {
   // each triangle the deepest point when that is neither a vertex nor, by more than a hair, less
   // deep than one of them. A point of an edge is found once.
   // Throws InputError when the pose has not one entry a link or the surface not one vertex each.
-  ContactSet find(const RobotPose& pose, const Surface& surface, const std::vector<Vec3>& vertices,
-                  double margin) const;
+  ContactSet find(const RobotPose& pose, const TissueSurface& surface,
+                  const std::vector<Vec3>& vertices, double margin) const;
 
   // Of a point (m, tissue frame) and a link; nothing when it is farther than `reach` from it.
   std::optional<WayOut> wayOut(std::size_t link, const Pose& tissue_T_link, const Vec3& point,
@@ -73,7 +73,8 @@ class ContactFinder {
   // (m); 0 when they do not overlap: points of the surface as in find, and corners, edges and rims
   // of the link. Throws InputError as find.
   std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose,
-                                   const Surface& surface, const std::vector<Vec3>& vertices) const;
+                                   const TissueSurface& surface,
+                                   const std::vector<Vec3>& vertices) const;
 
   // Distance between two links (m), e.g. jaws; 0 when they overlap, infinite when one has no shapes
   // or no rigid pose.

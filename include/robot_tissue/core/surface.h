@@ -12,7 +12,7 @@
 namespace robot_tissue {
 
 // A vertex follows the nodes it hangs on: x = rest + sum of weight * displacement of node.
-struct Surface {
+struct TissueSurface {
   std::vector<Vec3> rest;                         // tissue frame (m)
   std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
   std::vector<int> node;                // per vertex: the lattice's node it stands at or, on a cut,
@@ -26,19 +26,19 @@ struct Surface {
 // Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half
 // way to each corner it lost. What is there is carried half by the part's own corners nearest to it
 // and half by the ghost, so as the material between them; without ghosts by the own corners alone.
-Surface extractSurface(const Lattice& lattice, const LatticeState& state);
+TissueSurface extractSurface(const Lattice& lattice, const LatticeState& state);
 
 // Deformed vertices (m, tissue frame) for node displacements (m, from rest). Returns their bounds.
-Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
+Box deform(const TissueSurface& surface, const std::vector<Vec3>& displacement,
            std::vector<Vec3>& vertices);
 
 // What carries the point: nodes ascending, weights > 0.
-std::vector<NodeWeight> carriersAt(const Surface& surface, const SurfacePoint& point);
+std::vector<NodeWeight> carriersAt(const TissueSurface& surface, const SurfacePoint& point);
 
 // The vertex that the point is; -1 when it is none.
-int vertexAt(const Surface& surface, const SurfacePoint& point);
+int vertexAt(const TissueSurface& surface, const SurfacePoint& point);
 
 // Volume inside closed triangles (m^3), by the divergence theorem.
-double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices);
+double enclosedVolume(const TissueSurface& surface, const std::vector<Vec3>& vertices);
 
 }  // namespace robot_tissue

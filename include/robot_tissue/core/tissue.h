@@ -46,10 +46,12 @@ class Tissue {
 
   const Lattice& lattice() const { return lattice_; }
   const LatticeState& state() const { return state_; }
-  const Surface& surface() const { return surface_; }
+  const TissueSurface& surface() const { return surface_; }
   // Deformed vertices of the surface (m, tissue frame).
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const Box& bounds() const { return bounds_; }  // of the vertices
+  // Number of the piece that each node is of, the ghosts last; found when it is asked for.
+  std::vector<int> pieceOfNodes() const;
   // No tool touched it in the last solve.
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
@@ -178,7 +180,7 @@ class Tissue {
   std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;
   TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
-  Surface surface_;
+  TissueSurface surface_;
   double rest_volume_ = 0.0;    // m^3
   Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;

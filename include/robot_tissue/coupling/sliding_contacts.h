@@ -89,7 +89,7 @@ class SlidingContacts {
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void stickFirst(const Tissue& tissue);
   double fineness(int link, double spacing) const;
-  ContactConstraint* find(const Contact& contact, const Surface& surface);
+  ContactConstraint* find(const Contact& contact, const TissueSurface& surface);
   void add(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
   void put(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
            ContactConstraint& touch);

@@ -86,7 +86,7 @@ class StickingContacts {
     double multiplier = 0.0;  // m; > 0: the contact pushes
   };
 
-  std::vector<Carrier> supportOf(const Contact& contact, const Surface& surface) const;
+  std::vector<Carrier> supportOf(const Contact& contact, const TissueSurface& surface) const;
   void scale(std::vector<Push>& pushes) const;
   static double deepen(const std::vector<Contact>& contacts, const std::map<int, Vec3>& motion,
                        std::vector<Push>& pushes);

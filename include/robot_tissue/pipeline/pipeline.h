@@ -23,6 +23,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "robot_tissue/pipeline/step_report.h"
 #include "robot_tissue/pipeline/still_pose.h"
+#include "robot_tissue/pipeline/tool_touch.h"
 
 namespace robot_tissue {
 
@@ -101,6 +102,8 @@ class Pipeline {
   // no shape could follow where one last did. Empty before the first step.
   const std::optional<RobotPose>& pose() const;
   ForceBalance forceBalance() const;
+  // Where the tool pushes or holds the tissue, in the shape as it is now.
+  std::vector<ToolTouch> touchesOf(std::size_t tool) const;
 
  private:
   struct Parts;  // the classes behind it, see doc/architecture.md

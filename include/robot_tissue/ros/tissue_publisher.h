@@ -15,6 +15,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/markers.h"
 #include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/ros/shape_publisher.h"
 #include "robot_tissue/ros/wrench_publisher.h"
 
 namespace robot_tissue {
@@ -51,6 +52,7 @@ class TissuePublisher {
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {
     markers_due_ = contacts_due_ = true;
+    shape_.shapeChanged();
     last_state_ = ros::Time();
   }
 
@@ -75,6 +77,7 @@ class TissuePublisher {
   ros::Time last_state_;
   double publish_ms_ = 0.0;
   ros::Publisher markers_, contacts_, state_;
+  ShapePublisher shape_;
   WrenchPublisher wrenches_;
 };
 

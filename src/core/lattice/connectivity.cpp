@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "robot_tissue/core/disjoint_sets.h"
+
 namespace robot_tissue {
 
 int countPieces(const Lattice& lattice, const LatticeState& state) {
@@ -27,6 +29,30 @@ int countPieces(const Lattice& lattice, const LatticeState& state) {
     }
   }
   return pieces;
+}
+
+std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state) {
+  const CellSet& cells = *state.cells;
+  DisjointSets nodes(at(cells.nodeCount()));
+  for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
+    const Spring& ends = lattice.springs()[spring];
+    if (state.severed[spring] == 0) nodes.join(ends.a, ends.b);
+  }
+  for (const Cell& part : cells.all()) {
+    if (!part.isPart() || part.own == 0) continue;
+    int own = 0;
+    while (!part.owns(own)) ++own;
+    for (const int node : part.nodes) {
+      if (cells.isGhost(node)) nodes.join(part.nodes[at(own)], node);
+    }
+  }
+  std::vector<int> piece(at(cells.nodeCount()), -1);
+  int pieces = 0;
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    const int lowest = nodes.lowest(node);
+    piece[at(node)] = lowest == node ? pieces++ : piece[at(lowest)];
+  }
+  return piece;
 }
 
 }  // namespace robot_tissue

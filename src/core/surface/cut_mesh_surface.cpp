@@ -80,7 +80,7 @@ class CutMeshBuilder {
     findRegion();
   }
 
-  Surface build() {
+  TissueSurface build() {
     for (const MeshTriangle& triangle : mesh_.triangles) {
       const bool near = isNear(triangle);
       pieces_.add(triangle, near);
@@ -267,13 +267,13 @@ class CutMeshBuilder {
   std::set<HalfIndex> region_;
   std::set<std::pair<int, int>> cut_edges_;
   std::map<std::pair<int, std::vector<int>>, int> vertices_;  // point and its nodes
-  Surface surface_;
+  TissueSurface surface_;
 };
 
 }  // namespace
 
-Surface cutMeshSurface(const Lattice& lattice, const LatticeState& state,
-                       const TriangleMesh& mesh) {
+TissueSurface cutMeshSurface(const Lattice& lattice, const LatticeState& state,
+                             const TriangleMesh& mesh) {
   return CutMeshBuilder(lattice, state, mesh).build();
 }
 

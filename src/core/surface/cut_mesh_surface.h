@@ -5,6 +5,7 @@
 namespace robot_tissue {
 
 // meshSurface of a lattice with severed springs.
-Surface cutMeshSurface(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh);
+TissueSurface cutMeshSurface(const Lattice& lattice, const LatticeState& state,
+                             const TriangleMesh& mesh);
 
 }  // namespace robot_tissue

@@ -67,9 +67,10 @@ std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, con
   return carriers;
 }
 
-Surface meshSurface(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh) {
+TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
+                          const TriangleMesh& mesh) {
   if (state.springs_cut > 0) return cutMeshSurface(lattice, state, mesh);
-  Surface surface;
+  TissueSurface surface;
   surface.rest = mesh.vertices;
   surface.node.assign(mesh.vertices.size(), -1);
   surface.triangles = mesh.triangles;

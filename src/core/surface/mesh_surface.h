@@ -24,6 +24,7 @@ std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, con
 // into octants (mesh_pieces.h), every octant moves with the part of the cell that owns its corner,
 // and between octants that part with each other lids close both sides. Closed by construction: a
 // lid is left out only where both sides hang on the same nodes.
-Surface meshSurface(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh);
+TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
+                          const TriangleMesh& mesh);
 
 }  // namespace robot_tissue

@@ -37,7 +37,7 @@ class SurfaceBuilder {
   SurfaceBuilder(const Lattice& lattice, const LatticeState& state)
       : lattice_(lattice), state_(state), vertex_of_node_(at(lattice.nodeCount()), -1) {}
 
-  Surface build() {
+  TissueSurface build() {
     for (const Cell& cell : lattice_.cells()) addCell(cell);
     for (const auto& [key, quad] : between_cells_) addQuad(quad, Face::kOpened);
     return std::move(surface_);
@@ -165,7 +165,7 @@ class SurfaceBuilder {
 
   const Lattice& lattice_;
   const LatticeState& state_;
-  Surface surface_;
+  TissueSurface surface_;
   std::vector<int> vertex_of_node_;
   std::map<CornerKey, int> lost_corners_;
   std::map<QuadKey, Quad> between_cells_;
@@ -173,11 +173,11 @@ class SurfaceBuilder {
 
 }  // namespace
 
-Surface extractSurface(const Lattice& lattice, const LatticeState& state) {
+TissueSurface extractSurface(const Lattice& lattice, const LatticeState& state) {
   return SurfaceBuilder(lattice, state).build();
 }
 
-Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
+Box deform(const TissueSurface& surface, const std::vector<Vec3>& displacement,
            std::vector<Vec3>& vertices) {
   vertices.resize(surface.rest.size());
   Box bounds;
@@ -192,7 +192,7 @@ Box deform(const Surface& surface, const std::vector<Vec3>& displacement,
   return bounds;
 }
 
-std::vector<NodeWeight> carriersAt(const Surface& surface, const SurfacePoint& point) {
+std::vector<NodeWeight> carriersAt(const TissueSurface& surface, const SurfacePoint& point) {
   std::map<int, double> weights;
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(point.triangle)][at(corner)];
@@ -207,7 +207,7 @@ std::vector<NodeWeight> carriersAt(const Surface& surface, const SurfacePoint& p
   return carriers;
 }
 
-int vertexAt(const Surface& surface, const SurfacePoint& point) {
+int vertexAt(const TissueSurface& surface, const SurfacePoint& point) {
   // Barycentric (1): a point that is off a corner by less is that vertex. Less: points rounded by
   // the search for contacts are none. Chosen.
   constexpr double kOff = 1e-6;
@@ -216,7 +216,7 @@ int vertexAt(const Surface& surface, const SurfacePoint& point) {
   return surface.triangles[at(point.triangle)][at(static_cast<int>(corner))];
 }
 
-double enclosedVolume(const Surface& surface, const std::vector<Vec3>& vertices) {
+double enclosedVolume(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
   return enclosedVolume(vertices, surface.triangles);
 }
 

@@ -7,6 +7,7 @@
 
 #include "cutting/cut.h"
 #include "cutting/split_cells.h"
+#include "lattice/connectivity.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
 #include "tissue/load_ramp.h"
@@ -63,6 +64,10 @@ double Tissue::stepLength() const {
 Tissue::Displacements Tissue::displacements() const {
   if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
   return kept_;
+}
+
+std::vector<int> Tissue::pieceOfNodes() const {
+  return robot_tissue::pieceOfNodes(lattice_, state_);
 }
 
 SolveReport Tissue::settle() { return solve(freeNodes()); }
