@@ -110,6 +110,11 @@ double freeMemory(const std::string& root) {
   return std::max(0.0, std::min({machine, leftByGroups(root), leftByLimits(root)}));
 }
 
+double residentMemory() {
+  constexpr double kKilobyte = 1024.0;
+  return namedNumberIn("/proc/self/status", "VmRSS:", 0.0) * kKilobyte;
+}
+
 double memoryOf(double nodes, const std::string& method) {
   return tuning::kBytesPerNode * nodes + factorBytes(nodes, method);
 }

@@ -81,12 +81,14 @@ Scene parseScene(const YAML::Node& root, const SceneSource& source) {
   return std::move(reading.scene);
 }
 
+YAML::Node loadSceneText(const std::string& path) { return parseYaml(readFile(path), path); }
+
 Scene loadScene(const std::string& path, const SolverOverrides& overrides) {
   SceneSource source;
   source.name = path;
   source.folder = std::filesystem::absolute(path).parent_path().string();
   source.overrides = overrides;
-  return parseScene(parseYaml(readFile(path), path), source);
+  return parseScene(loadSceneText(path), source);
 }
 
 }  // namespace robot_tissue

@@ -11,6 +11,9 @@ namespace robot_tissue {
 // process (ulimit -v, -d) leaves of them. `root`: where /proc and /sys are looked for.
 double freeMemory(const std::string& root = "");
 
+// Bytes that this process has in the machine's memory now.
+double residentMemory();
+
 // Bytes that a lattice of so many nodes takes with its shape, surface and solver.
 double memoryOf(double nodes, const std::string& method);
 

@@ -35,6 +35,9 @@ Scene parseScene(const YAML::Node& root, const SceneSource& source);
 
 constexpr std::size_t kLargestSceneFile = 10000000;  // bytes
 
+// The file as it is written, unchecked but for its size and form.
+YAML::Node loadSceneText(const std::string& path);
+
 // Reads a file for the runner.
 Scene loadScene(const std::string& path, const SolverOverrides& overrides = {});
 

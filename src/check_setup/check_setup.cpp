@@ -1,0 +1,122 @@
+#include "check_setup.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+
+#include "robot_checks.h"
+#include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/scene/scene_parser.h"
+#include "robot_tissue/scene/value_text.h"
+#include "scene_checks.h"
+#include "trial_press.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kLargestUrdf = 100000000;  // bytes
+constexpr double kMostSeconds = 60.0;            // of the trial press
+
+const char* const kUsage =
+    "usage: check_setup SCENE.yaml [--urdf FILE]\n"
+    "Looks at the scene, at the robot of FILE or of the running master (parameter\n"
+    "robot_description, /tf), and presses a sphere 1 mm in. A line each, with its remedy.\n"
+    "Exit code 0: fine; 1: warnings; 2: it cannot run, or wrong arguments.\n";
+
+struct Arguments {
+  std::string scene;
+  std::string urdf;  // a file; empty: what runs
+};
+
+Arguments parse(const std::vector<std::string>& arguments) {
+  Arguments parsed;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--urdf") {
+      if (i + 1 == arguments.size()) throw InputError("--urdf: missing, must be a URDF's file");
+      parsed.urdf = arguments[++i];
+    } else if (arguments[i].rfind("--", 0) == 0 || !parsed.scene.empty()) {
+      throw InputError(shortText(arguments[i]) + ": is not known, must be SCENE.yaml or --urdf");
+    } else {
+      parsed.scene = arguments[i];
+    }
+  }
+  if (parsed.scene.empty()) throw InputError("SCENE.yaml: missing, must be a scene's file");
+  return parsed;
+}
+
+const char* wordOf(Finding::Level level) {
+  switch (level) {
+    case Finding::Level::kNote:
+      return "note";
+    case Finding::Level::kWarning:
+      return "warning";
+    case Finding::Level::kError:
+      return "error";
+  }
+  return "";
+}
+
+class Teller {
+ public:
+  explicit Teller(std::ostream& out) : out_(out) {}
+
+  void tell(const Findings& findings) {
+    for (const Finding& finding : findings) {
+      out_ << wordOf(finding.level) << ": " << onOneLine(finding.text);
+      if (!finding.remedy.empty()) out_ << "; remedy: " << finding.remedy;
+      out_ << std::endl;
+      worst_ = std::max(worst_, finding.level);
+    }
+  }
+  int exitCode() const {
+    if (worst_ == Finding::Level::kError) return kCannotRun;
+    return worst_ == Finding::Level::kWarning ? kHasWarnings : kFine;
+  }
+
+ private:
+  std::ostream& out_;
+  Finding::Level worst_ = Finding::Level::kNote;
+};
+
+Robot robotOf(const Arguments& arguments, const Scene& scene, const LookAtRobot& look) {
+  if (arguments.urdf.empty()) return look(scene);
+  try {
+    return {readRegularFile(arguments.urdf, kLargestUrdf), {}};
+  } catch (const InputError& error) {
+    throw InputError(onOneLine(arguments.urdf) + ": " + error.what());
+  }
+}
+
+void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) {
+  const YAML::Node text = loadSceneText(arguments.scene);
+  const auto folder = std::filesystem::absolute(arguments.scene).parent_path().string();
+  teller.tell(checkUnits(text, folder));
+  const Scene scene = loadScene(arguments.scene);
+  teller.tell(checkWalls(scene.tissue));
+  teller.tell(checkForNode(scene));
+  const Robot robot = robotOf(arguments, scene, look);
+  teller.tell(robot.findings);
+  teller.tell(checkTools(scene, robot.urdf.value_or("")));
+  teller.tell(checkPress(scene, kMostSeconds));
+}
+
+}  // namespace
+
+int checkSetup(const std::vector<std::string>& arguments, const LookAtRobot& look,
+               std::ostream& out, std::ostream& err) {
+  const auto is_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
+  if (std::any_of(arguments.begin(), arguments.end(), is_help)) {
+    out << kUsage;
+    return kFine;
+  }
+  Teller teller(out);
+  try {
+    check(parse(arguments), look, teller);
+  } catch (const std::exception& error) {
+    err << "check_setup: " << error.what() << '\n';
+    return kCannotRun;
+  }
+  return teller.exitCode();
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,81 @@
+#include "robot_checks.h"
+
+#include <algorithm>
+
+#include "robot_tissue/contact/contact_finder.h"
+#include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kLargestTool = 10.0;  // extents of the tissue: a unit was mistaken. Chosen
+constexpr double kThinnestTool = 0.1;  // spacings: it slips through between the nodes. Chosen
+
+double extentOf(const TissueConfig& tissue) {
+  const Box box = tissue.mesh ? boundsOf(tissue.mesh->vertices) : tissue.shape;
+  return box.sizes().maxCoeff();
+}
+
+Findings checkSizes(const Scene& scene, const std::vector<ToolGeometry>& tools) {
+  Findings findings;
+  const ContactFinder finder(tools);
+  for (const std::string& warning : finder.warnings()) {
+    findings.push_back({Finding::Level::kWarning, warning, "mend the mesh, or give shapes"});
+  }
+  std::size_t number = 0;
+  for (const ToolGeometry& tool : tools) {
+    for (const LinkGeometry& link : tool.links) {
+      const std::size_t here = number++;
+      if (link.shapes.empty()) continue;
+      const std::string name = "tools: link '" + link.link + "' of '" + tool.name + "'";
+      const double extent = finder.bounds(here, Pose::Identity()).sizes().maxCoeff();
+      if (extent > kLargestTool * extentOf(scene.tissue)) {
+        findings.push_back({Finding::Level::kWarning,
+                            name + " is " + numberText(extent) + " m across beside a tissue of " +
+                                numberText(extentOf(scene.tissue)) + " m: a mesh in millimeters?",
+                            "scale: 0.001 of its mesh, in the URDF or in shapes"});
+      } else if (finder.thickness(here) < kThinnestTool * scene.tissue.spacing) {
+        findings.push_back({Finding::Level::kWarning,
+                            name + " is " + numberText(1e3 * finder.thickness(here)) +
+                                " mm thin: its load steps are short and updates slow",
+                            "padding, or a smaller tissue.spacing"});
+      }
+    }
+  }
+  return findings;
+}
+
+}  // namespace
+
+Findings checkTools(const Scene& scene, const std::string& urdf) {
+  try {
+    const LoadedTools loaded = urdf.empty() ? toolsOf(scene.tools) : loadTools(urdf, scene.tools);
+    Findings findings;
+    // Without a URDF it is not known what is missing. They tell their remedies themselves.
+    if (!urdf.empty()) {
+      for (const std::string& warning : loaded.warnings) {
+        findings.push_back({Finding::Level::kWarning, warning, ""});
+      }
+    }
+    const Findings sizes = checkSizes(scene, loaded.tools);
+    findings.insert(findings.end(), sizes.begin(), sizes.end());
+    return findings;
+  } catch (const InputError& error) {
+    return {{Finding::Level::kError, error.what(), "a link, or a mesh, that the robot has"}};
+  }
+}
+
+std::vector<std::string> framesOf(const Scene& scene) {
+  std::vector<std::string> frames;
+  for (const ToolConfig& tool : scene.tools) {
+    for (const ToolLink& link : tool.links) {
+      const bool known = std::find(frames.begin(), frames.end(), link.link) != frames.end();
+      if (!link.link.empty() && !known) frames.push_back(link.link);
+    }
+  }
+  return frames;
+}
+
+}  // namespace robot_tissue

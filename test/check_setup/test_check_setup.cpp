@@ -1,0 +1,169 @@
+// check_setup: what it finds, its remedies and its exit codes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "check_setup.h"
+#include "trial_press.h"
+
+namespace robot_tissue {
+namespace {
+
+const std::string kHead = "tissue:\n  shape: ";
+const std::string kBlock = "{type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}";
+const std::string kRest =
+    "\n  material: {young_modulus: 10000.0}\n"
+    "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n";
+const std::string kTool = "tools: [{link: tip, shapes: [{type: sphere, radius: 0.01}]}]\n";
+
+std::string urdfOf(const std::string& geometry) {
+  const std::string collision =
+      geometry.empty() ? "" : "<collision><geometry>" + geometry + "</geometry></collision>";
+  return "<robot name='r'><link name='base'/><link name='tip'>" + collision +
+         "</link><joint name='j' type='fixed'><parent link='base'/><child link='tip'/></joint>"
+         "</robot>";
+}
+
+class CheckSetup : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              ("check_setup_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  // A box of these measures as a mesh.
+  void writeMesh(const std::string& name, double x, double y, double z) const {
+    std::ostringstream text;
+    for (const int corner : {0, 1, 2, 3, 4, 5, 6, 7}) {
+      text << "v " << x * (corner & 1) << ' ' << y * ((corner >> 1) & 1) << ' '
+           << z * ((corner >> 2) & 1) << '\n';
+    }
+    text << "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\n"
+            "f 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
+    write(name, text.str());
+  }
+
+  int check(const std::string& scene, const std::string& urdf = urdfOf("<sphere radius='0.01'/>")) {
+    std::ostringstream out, err;
+    const auto look = [&](const Scene&) {
+      Robot robot;
+      robot.urdf = urdf;
+      return robot;
+    };
+    const int code = checkSetup({write("scene.yaml", scene)}, look, out, err);
+    out_ = out.str();
+    err_ = err.str();
+    return code;
+  }
+
+  bool says(const std::string& words) const { return out_.find(words) != std::string::npos; }
+
+  std::filesystem::path folder_;
+  std::string out_, err_;
+};
+
+TEST_F(CheckSetup, GoodSceneIsFineAndTellsWhatAPressTakes) {
+  EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool), kFine) << out_ << err_;
+  EXPECT_EQ(out_.find("note: a sphere of 20 mm radius pressed 1 mm into 726 nodes takes "), 0U)
+      << out_;
+  EXPECT_EQ(std::count(out_.begin(), out_.end(), '\n'), 1);
+}
+
+TEST_F(CheckSetup, MeshOfAThousandMetersLooksLikeMillimeters) {
+  writeMesh("organ.obj", 1000.0, 1000.0, 500.0);
+  const std::string shape = "{type: mesh, resource: organ.obj}";
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 50.0" + kRest), kHasWarnings) << err_;
+  EXPECT_TRUE(
+      says("1000 m across, which looks like millimeters; remedy: tissue.shape.scale: 0.001"))
+      << out_;
+  // Also where the scene is refused for it: 2e16 nodes.
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + kRest), kCannotRun);
+  EXPECT_TRUE(says("looks like millimeters")) << out_;
+  EXPECT_NE(err_.find("spacing"), std::string::npos);
+}
+
+TEST_F(CheckSetup, ThinWallsAreMeasured) {
+  writeMesh("sheet.obj", 0.06, 0.06, 0.008);
+  const std::string rest =
+      "\n  material: {young_modulus: 10000.0}\n"
+      "  fixed: [{min: [-1, -1, -1], max: [1, 1, 5.0e-4]}]\n";
+  const std::string shape = "{type: mesh, resource: sheet.obj}";
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
+  EXPECT_TRUE(says("thinner than two spacings, the thinnest 8 mm")) << out_;
+  EXPECT_TRUE(says("remedy: tissue.spacing: 0.004 or less")) << out_;
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.004" + rest), kFine) << out_ << err_;
+  EXPECT_EQ(check(kHead + "{type: box, min: [0, 0, 0], max: [0.05, 0.05, 0.005]}" +
+                  "\n  spacing: 0.005" + kRest),
+            kHasWarnings);
+  EXPECT_TRUE(says("thinnest 5 mm")) << out_;
+}
+
+TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
+  EXPECT_EQ(check(scene), kFine) << out_ << err_;
+  EXPECT_EQ(check(scene, urdfOf("")), kHasWarnings);
+  EXPECT_TRUE(says("no collision geometry")) << out_;
+  EXPECT_EQ(check(scene, urdfOf("<box size='8 8 8'/>")), kHasWarnings);
+  EXPECT_TRUE(says("a mesh in millimeters?")) << out_;
+  EXPECT_EQ(check(scene, "<robot name='r'><link name='base'/></robot>"), kCannotRun);
+  EXPECT_TRUE(says("error: ") && says("'tip'")) << out_;
+}
+
+TEST_F(CheckSetup, ToolWithoutALinkAndTissueThatNothingHoldsAreTold) {
+  const std::string floating =
+      kHead + kBlock + "\n  spacing: 0.01\n  material: {young_modulus: 10000.0}\n";
+  EXPECT_EQ(check(floating), kHasWarnings);
+  EXPECT_TRUE(says("nothing holds the tissue")) << out_;
+  EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest +
+                      "tools: [{name: probe, shapes: [{type: sphere, radius: 0.01}]}]\n",
+                  ""),
+            kHasWarnings);
+  EXPECT_TRUE(says("'probe' names no link")) << out_;
+}
+
+TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
+  EXPECT_EQ(check("tissue: {spacing: 0.01}"), kCannotRun);
+  EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
+  std::ostringstream out, err;
+  const auto nobody = [](const Scene&) { return Robot(); };
+  EXPECT_EQ(checkSetup({}, nobody, out, err), kCannotRun);
+  EXPECT_EQ(checkSetup({"a.yaml", "b.yaml"}, nobody, out, err), kCannotRun);
+  EXPECT_EQ(checkSetup({"a.yaml", "--urdf"}, nobody, out, err), kCannotRun);
+  EXPECT_EQ(checkSetup({"--help"}, nobody, out, err), kFine);
+}
+
+// Of a stiffer tissue in proportion, and the way in is what it says: Hertz is a lower bound of a
+// bonded layer of five centimeters.
+TEST(TrialPress, ForceGoesWithTheStiffness) {
+  Scene scene;
+  scene.tissue.shape = {Vec3::Zero(), Vec3(0.1, 0.1, 0.05)};
+  scene.tissue.spacing = 0.005;
+  scene.tissue.material.young_modulus = 1e4;
+  scene.tissue.fixed = {{Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)}};
+  const TrialPress soft = pressOnce(scene, 60.0);
+  scene.tissue.material.young_modulus = 3e4;
+  const TrialPress stiff = pressOnce(scene, 60.0);
+  EXPECT_TRUE(soft.ended && soft.converged);
+  EXPECT_EQ(soft.nodes, 21 * 21 * 11);
+  EXPECT_GT(soft.update_ms, 0.0);
+  EXPECT_NEAR(stiff.force_n / soft.force_n, 3.0, 0.05);
+  const double hertz =
+      4.0 / 3.0 * 1e4 / (1.0 - 0.45 * 0.45) * std::sqrt(0.01) * std::pow(1e-3, 1.5);
+  EXPECT_GT(soft.force_n, 0.5 * hertz);
+  EXPECT_LT(soft.force_n, 2.0 * hertz);
+}
+
+}  // namespace
+}  // namespace robot_tissue
