@@ -3,6 +3,7 @@
 
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/tissue_node.h"
+#include "robot_tissue/scene/memory.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -125,6 +126,9 @@ void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.add("error estimate", solve.error_estimate);
   status.add("active nodes", solve.active_nodes);
   status.add("layers", solve.layers);
+  status.add("nodes", pipeline_.tissue().lattice().nodeCount());
+  status.add("pieces", pipeline_.tissue().state().pieces);
+  status.addf("memory of the process (MB)", "%.1f", 1e-6 * residentMemory());
 }
 
 }  // namespace robot_tissue

@@ -9,7 +9,7 @@
 namespace robot_tissue {
 
 ShapePublisher::ShapePublisher(ros::NodeHandle& private_node, std::string frame_id, double rate_hz)
-    : frame_id_(std::move(frame_id)), period_(1.0 / rate_hz) {
+    : frame_id_(std::move(frame_id)), pace_(rate_hz) {
   surface_ = private_node.advertise<Surface>(
       "surface", 1, [this](const ros::SingleSubscriberPublisher&) { surface_due_ = true; });
   nodes_ = private_node.advertise<sensor_msgs::PointCloud2>(
@@ -20,9 +20,9 @@ void ShapePublisher::publish(const Tissue& tissue, const ros::Time& stamp) {
   const bool tells_surface = isWanted(surface_, surface_due_);
   const bool tells_nodes = isWanted(nodes_, nodes_due_);
   if (!tells_surface && !tells_nodes) return;
-  const ros::Time now = ros::Time::now();
-  if (now >= last_ && now - last_ < period_) return;
-  last_ = now;
+  const double now = ros::Time::now().toSec();
+  if (!pace_.isDue(now)) return;
+  pace_.take(now);
   takeTopology(tissue);
   if (tells_surface) {
     message_.header.stamp = stamp;

@@ -46,7 +46,9 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   surgery_ = std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_,
                                                publisher_,
                                                [this] { watch_.standAt(std::nullopt); });
-  diagnostics_.setHardwareID("none");
+  diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
+                              parameters_.scene.solver.method.c_str(),
+                              pipeline_.tissue().lattice().nodeCount());
   rate_told_ = ros::WallTime::now();
   diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
   diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);

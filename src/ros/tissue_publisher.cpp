@@ -69,7 +69,7 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
     : private_node_(private_node),
       frame_id_(parameters.scene.tissue.frame_id),
       marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
-      marker_period_(1.0 / parameters.marker_rate_hz),
+      marker_pace_(parameters.marker_rate_hz),
       shape_(private_node_, frame_id_, parameters.marker_rate_hz),
       wrenches_(private_node_, poses, parameters.wrench_rate_hz) {
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
@@ -110,8 +110,7 @@ void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& s
 
 void TissuePublisher::timeWentBack() {
   wrenches_.forget();
-  shape_.timeWentBack();
-  reached_ = last_contacts_ = last_markers_ = ros::Time();
+  reached_ = last_contacts_ = ros::Time();
   shapeChanged();
 }
 
@@ -150,8 +149,8 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
 }
 
 void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {
-  const ros::Time now = ros::Time::now();
-  const bool too_soon = now >= last_markers_ && now - last_markers_ < marker_period_;
+  const double now = ros::Time::now().toSec();
+  const bool too_soon = !marker_pace_.isDue(now);
   if ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted() || too_soon) return;
   const bool whole = !markers_due_ || !latched_markers_are_out_;
   if (whole) marker_builder_.tellAll();
@@ -161,7 +160,7 @@ void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& 
   whole_array_is_out_ = whole;
   latched_markers_are_out_ = true;
   markers_due_ = false;
-  last_markers_ = now;
+  marker_pace_.take(now);
 }
 
 void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time& stamp) {

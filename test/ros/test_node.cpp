@@ -250,6 +250,22 @@ TEST_F(RunningNode, OnlyMarkersThatChangedAreSentWhileTheToolMoves) {
   EXPECT_FALSE(waitFor([&] { return arrays.size() > at_rest; }, 0.3)) << "nothing changed";
 }
 
+TEST_F(RunningNode, DiagnosticsTellPiecesAndMemoryOfWhatRuns) {
+  const auto told = [this](const std::string& key) {
+    for (const auto& value : diagnostics_["tissue: solver"].values) {
+      if (value.key == key) return value.value;
+    }
+    return std::string();
+  };
+  ASSERT_TRUE(waitFor([&] { return told("pieces") == "1"; }));
+  EXPECT_EQ(diagnostics_["tissue: solver"].hardware_id, "elastic layered: 4851 nodes");
+  EXPECT_EQ(told("nodes"), "4851");
+  EXPECT_GT(std::stod(told("memory of the process (MB)")), 1.0);
+  cut({{0.0525, -0.1, -0.1}, {0.0525, 0.2, -0.1}, {0.0525, 0.2, 0.2}, {0.0525, -0.1, 0.2}});
+  EXPECT_TRUE(waitFor([&] { return told("pieces") == "2"; }));
+  ASSERT_TRUE(reset());
+}
+
 TEST_F(RunningNode, DiagnosticsTellRateTransformsAndSolver) {
   EXPECT_TRUE(waitFor([this] {
     return diagnostics_.count("tissue: update rate") > 0 &&

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "robot_tissue/core/tissue.h"
+#include "robot_tissue/ros/update_pace.h"
 
 namespace robot_tissue {
 
@@ -23,8 +24,6 @@ class ShapePublisher {
   void shapeChanged() { surface_due_ = nodes_due_ = true; }
   // Where it is due and not too soon. The shape is as it is at `stamp`.
   void publish(const Tissue& tissue, const ros::Time& stamp);
-  // What was told so far is of another time.
-  void timeWentBack() { last_ = ros::Time(); }
   // Nobody waits for anything.
   bool isUpToDate() const {
     return !isWanted(surface_, surface_due_) && !isWanted(nodes_, nodes_due_);
@@ -37,11 +36,10 @@ class ShapePublisher {
   void takeTopology(const Tissue& tissue);
 
   std::string frame_id_;
-  ros::Duration period_;
+  UpdatePace pace_;
   ros::Publisher surface_, nodes_;
   bool surface_due_ = true;
   bool nodes_due_ = true;
-  ros::Time last_;
   std::uint32_t topology_ = 0;  // of what follows; 0: of none
   std::vector<int> piece_of_node_;
   Surface message_;  // as last sent; its triangles stay while the topology does

@@ -16,6 +16,7 @@
 #include "robot_tissue/ros/markers.h"
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/shape_publisher.h"
+#include "robot_tissue/ros/update_pace.h"
 #include "robot_tissue/ros/wrench_publisher.h"
 
 namespace robot_tissue {
@@ -65,14 +66,13 @@ class TissuePublisher {
   ros::NodeHandle private_node_;
   std::string frame_id_;
   MarkerBuilder marker_builder_;
-  ros::Duration marker_period_;
+  UpdatePace marker_pace_;
   bool markers_due_ = true;
   bool whole_array_is_out_ = false;  // with nothing changed since
   bool contacts_due_ = true;
   ros::Time last_contacts_;
   ros::Time reached_;  // stamp of the last pose that the tissue reached
   bool latched_markers_are_out_ = false;
-  ros::Time last_markers_;
   NodeStatus last_status_;
   ros::Time last_state_;
   double publish_ms_ = 0.0;
