@@ -81,7 +81,7 @@ class InstallSpace(unittest.TestCase):
         self.assertTrue(filecmp.cmp(self.share / "package.xml", SOURCE / "package.xml", False))
         headers = set(files_in(prefix() / "include/robot_tissue"))
         self.assertLessEqual(set(files_in(SOURCE / "include/robot_tissue")), headers)
-        for program in ("robot_tissue_node", "simulate", "fidelity", "demo_player"):
+        for program in ("robot_tissue_node", "simulate", "fidelity", "check_setup", "demo_player"):
             self.assertTrue(os.access(self.programs / program, os.X_OK), program)
         self.assertEqual(output_of("rospack find robot_tissue").strip(), str(self.share))
 
