@@ -137,10 +137,8 @@ const KeyTable<NodeParameters> kOwnKeys = {
        if (!entry.given()) return;
        parameters.robot_description_param = entry.word("the name of a parameter that holds a URDF");
      }},
-    {"state_dir",
-     [](const Entry& entry, NodeParameters& parameters) {
-       parameters.state_dir = readStateDir(entry);
-     }},
+    {"state_dir", [](const Entry& entry,
+                     NodeParameters& parameters) { parameters.state_dir = readStateDir(entry); }},
     {"scene_file"},         // the scene is read against it
     {"diagnostic_period"},  // read by diagnostic_updater
 };

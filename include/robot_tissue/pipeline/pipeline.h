@@ -85,7 +85,8 @@ class Pipeline {
   CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
-  // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a reset.
+  // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a
+  // reset.
   SolveReport loadState(const std::string& bytes);
 
   // A grasper holds what is between its jaws now, or lets go. Throws InputError: no grasper, no
