@@ -29,7 +29,7 @@ void add(Marker marker, MarkerArray& array) {
   array.markers.push_back(std::move(marker));
 }
 
-// What markers are drawn from.
+// The state of the tissue that the markers are drawn from.
 struct Drawn {
   const Pipeline& pipeline;
   const std::vector<SupportConfig>& supports;
@@ -123,7 +123,7 @@ void drawForces(const Drawn& drawn, Marker marker, MarkerArray& array) {
   });
 }
 
-// They never move; the planes' boxes are as long as the tissue's diagonal.
+// Markers of the supports, which never move; a plane is a box as long as the tissue's diagonal.
 void drawSupports(const Drawn& drawn, Marker marker, MarkerArray& array) {
   const Lattice& lattice = drawn.tissue().lattice();
   const Box bounds = lattice.bounds();

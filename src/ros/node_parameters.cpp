@@ -107,7 +107,7 @@ std::string readStateDir(const Entry& entry) {
   return folder.string();
 }
 
-// Beside those of the scene.
+// The node's own parameters, beside those of the scene.
 const KeyTable<NodeParameters> kOwnKeys = {
     {"rate",
      [](const Entry& entry, NodeParameters& parameters) {

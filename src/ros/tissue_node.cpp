@@ -43,9 +43,9 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
                            [this] { follow(); }, [this] { settleFromRest(); }});
-  surgery_ = std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_,
-                                               publisher_,
-                                               [this] { watch_.standAt(std::nullopt); });
+  surgery_ =
+      std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_, publisher_,
+                                        [this] { watch_.standAt(std::nullopt); });
   diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
                               parameters_.scene.solver.method.c_str(),
                               pipeline_.tissue().lattice().nodeCount());
@@ -114,7 +114,7 @@ void TissueNode::onTimer() {
   tick(has_time && !pipeline_.isLate() ? Ticks::kSeldom : Ticks::kAtRate);
 }
 
-// What goes out seldom, at a pose at which nothing was to do.
+// Publishes markers and state, which go out seldom, at a pose at which there was nothing to solve.
 void TissueNode::tellStill(const ros::Time& stamp) {
   last_look_up_.stamp = stamp;
   last_look_up_.age_s = (ros::Time::now() - stamp).toSec();
@@ -178,7 +178,7 @@ void TissueNode::follow() {
   if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
 }
 
-// What acts without tools: gravity and the supports.
+// Balances the tissue under what acts without tools: gravity and the supports.
 void TissueNode::settleFromRest() {
   const Scene& scene = parameters_.scene;
   if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline_.settle();

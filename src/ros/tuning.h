@@ -12,7 +12,7 @@ constexpr double kLongestUpdate = 0.1;
 // s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
 // lost is told of later. Chosen.
 constexpr double kWatchPeriod = 0.1;
-// Of the poses that are due (1): with more missed, /diagnostics warns. Chosen.
+// Share of the poses that are due (1): where more are missed, /diagnostics warns. Chosen.
 constexpr double kMostMissed = 0.1;
 // Increments of a load that a service asks for; what is left when the time of an update is over is
 // carried on in the next ones. More: longer loads are solved to their end. Chosen.
@@ -22,11 +22,11 @@ constexpr int kMostIncrements = 300;
 constexpr double kMet = 0.95;
 
 // Queues, in messages. More: nothing is lost where a reader is slow, and it reads what is older.
-// Of transforms: as tf2_ros has it.
+// Messages in the queue of the transforms' subscriber: as many as tf2_ros takes.
 constexpr unsigned kTransformQueue = 100;
-// Of arrays of changed markers, of which none may be dropped lightly. Chosen.
+// Messages in the queue of the marker arrays: they tell changes only, so none may be lost. Chosen.
 constexpr unsigned kMarkerQueue = 10;
-// Of wrenches, a topic each: what a busy socket may hold up. Chosen.
+// Messages in the queue of each tool's wrenches: as many as a busy socket may hold up. Chosen.
 constexpr unsigned kWrenchQueue = 10;
 
 // Markers. More: larger, and more of the tissue is hidden. Chosen.

@@ -26,7 +26,7 @@ double numberIn(const std::string& path, double otherwise) {
   return file >> number ? number : otherwise;
 }
 
-// Of lines such as "MemAvailable:   20885936 kB" or "inactive_file 4096".
+// The number after a key, in lines such as "MemAvailable:   20885936 kB" or "inactive_file 4096".
 double namedNumberIn(const std::string& path, const std::string& name, double otherwise) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

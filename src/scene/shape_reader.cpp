@@ -30,7 +30,7 @@ void readRadius(const Entry& entry, ShapeReading& reading) {
   reading.shape.radius = entry.number(lengthRange(reading));
 }
 
-// Of all types.
+// Keys that shapes of every type have.
 const KeyTable<ShapeReading> kShapeKeys = {
     {"type"},
     {"xyz"},

@@ -67,7 +67,7 @@ class NewFile {
   int number_ = -1;
 };
 
-// So that the new name lasts, too.
+// Flushes the folder's entries to the disk, so that the new name outlives a loss of power, too.
 void keepFolder(const fs::path& folder) {
   const int number = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (number < 0) return;

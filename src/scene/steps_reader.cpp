@@ -13,7 +13,8 @@ constexpr std::size_t kMostSteps = 1000000;
 constexpr std::size_t kMostCorners = 1000;
 const std::vector<std::string> kPlannedSteps = {"suture"};
 
-// What the steps are read against, and what stands on the way through them.
+// What the steps are checked against: the scene's tools, and the patches and tools that the steps
+// before have put in place.
 struct Program {
   const TissueConfig& tissue;
   const SolverConfig& solver;

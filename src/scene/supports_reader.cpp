@@ -1,4 +1,4 @@
-// What the tissue rests on.
+// Reads the supports: the planes and shapes that stand still and that the tissue rests on.
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -34,7 +34,7 @@ struct SupportReading {
   SupportConfig support;
 };
 
-// Of all types.
+// Keys that supports of every type have.
 const KeyTable<SupportReading> kSupportKeys = {
     {"name",
      [](const Entry& entry, SupportReading& reading) {

@@ -235,7 +235,7 @@ void readGravity(const Entry& entry, TissueReading& reading) {
   }
 }
 
-// What makes the grid, and what is read against it.
+// The tissue's keys: first those that make the grid, then those that are checked against it.
 const KeyTable<TissueReading> kBodyKeys = {
     {"frame_id",
      [](const Entry& entry, TissueReading& reading) {

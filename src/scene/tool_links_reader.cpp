@@ -95,7 +95,7 @@ std::vector<NamedLink> readLinkList(const Entry& entry, const Surroundings& surr
   return links;
 }
 
-// Beside `links` the keys of a single link have no place.
+// Refuses the keys of a single link (padding, shapes ...) beside `links`, whose entries have them.
 void requireSingleLinkKeysAbsent(const MapReader& map) {
   for (const std::string& key : namesOf(kLinkKeys)) {
     if (map[key].given()) map[key].fail("must not stand beside links, but with one of them");

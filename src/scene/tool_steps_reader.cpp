@@ -9,7 +9,7 @@ namespace {
 
 bool hasJaws(const ToolConfig& tool) { return tool.role.has_jaws; }
 
-// What the runner needs of a tool: some shapes, of one with jaws those of both.
+// Whether the runner can use the tool: some link has a shape, of a tool with jaws both jaws have.
 bool hasShapes(const ToolConfig& tool) {
   const auto with_shapes = [](const ToolLink& link) { return !link.shapes.empty(); };
   if (!hasJaws(tool)) return std::any_of(tool.links.begin(), tool.links.end(), with_shapes);

@@ -110,7 +110,7 @@ void readFriction(const Entry& entry, ToolReading& reading) {
   reading.remarks.push_back(entry.line("ignored, a rigid patch sticks to its tool"));
 }
 
-// Beside the keys of its links.
+// Keys of a tool; those of its links are in tool_links_reader.cpp.
 const KeyTable<ToolReading> kToolKeys = {
     {"name"},
     {"role"},

@@ -70,7 +70,8 @@ std::string onOneLine(const std::string& text) {
   return line;
 }
 
-// As RFC 3629 has it: no longer forms than needed, no surrogates, nothing beyond U+10FFFF.
+// Whether the bytes are UTF-8 by RFC 3629: no longer forms than needed, no surrogates, nothing
+// beyond U+10FFFF.
 bool isUtf8(const std::string& text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = [&](std::size_t k) {

@@ -18,7 +18,8 @@ struct CommandLine {
   std::optional<std::string> value(const std::string& name) const;
 };
 
-// What a program takes: options with a value (as "--out DIR" or "--out=DIR") and switches without.
+// What a program's command line may hold: options with a value (as "--out DIR" or "--out=DIR") and
+// switches without.
 struct Options {
   std::vector<std::string> with_value;
   std::vector<std::string> switches;  // -h is taken as --help

@@ -25,7 +25,7 @@ std::string pathOf(const Scene& scene, int step) {
          std::visit([](const auto& any) { return keyOf(any); }, taken);
 }
 
-// Those that some step places; others, e.g. the node's without shapes, play no part.
+// The tools that some step places; others, such as the node's without shapes, play no part.
 std::vector<ToolConfig> movedTools(const Scene& scene) {
   std::set<std::string> moved;
   for (const Step& step : scene.steps) {

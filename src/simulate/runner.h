@@ -18,7 +18,7 @@ class Runner {
 
  private:
   struct TimeIsOver {};
-  // Of a tool, straight on, in equal load steps.
+  // A tool's way from pose to pose, straight and in equal load steps.
   struct Way {
     std::size_t tool = 0;
     MoveStep::Place from;
@@ -26,7 +26,8 @@ class Runner {
     int steps = 1;
     int gone = 0;  // load steps that were walked
   };
-  // What the tools' updates since the last row came to.
+  // Whether there were updates of the tools since the last row, the worst status of them, and the
+  // time of their solves.
   struct Updates {
     bool any = false;
     SolveStatus worst = SolveStatus::kOk;

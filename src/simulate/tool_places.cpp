@@ -44,7 +44,7 @@ std::size_t ToolPlaces::firstLink(std::size_t tool) const {
 
 Vec3 ToolPlaces::originInFirstLink(std::size_t tool) const { return -shift(tool, 0); }
 
-// Of a link from the tool's pose, tool frame (m).
+// Where a link stands from the tool's pose, in the tool's frame (m).
 Vec3 ToolPlaces::shift(std::size_t tool, std::size_t link) const {
   const ToolConfig& config = tools_[tool];
   const std::size_t jaw = config.links.size() - 2;

@@ -32,7 +32,7 @@ class ToolPlaces {
   void takeAway(std::size_t tool) { places_[tool].reset(); }
   void takeAway() { places_.assign(tools_.size(), std::nullopt); }
 
-  // Of all links; those of tools that stand nowhere are far away.
+  // The poses of all links; those of tools that stand nowhere are far away.
   RobotPose pose() const;
   // Index into RobotPose::links of the tool's first link.
   std::size_t firstLink(std::size_t tool) const;

@@ -23,9 +23,9 @@ namespace robot_tissue {
 
 class PoseWatch {
  public:
-  // Of a good pose of tools that stand; in the receiving thread, with the watch locked.
+  // Called with a good pose of tools that stand; in the receiving thread, with the watch locked.
   using OnStill = std::function<void(const ros::Time& stamp)>;
-  // Of a good pose with a new stamp; in the thread of `queue`, the spinner's.
+  // Called with a good pose that has a new stamp; in the thread of `queue`, the spinner's.
   using OnPose = std::function<void(PoseLookUp)>;
 
   // Poses are taken `rate_hz` times a second at most. `poses` and `queue` must outlive this.
@@ -37,13 +37,13 @@ class PoseWatch {
 
   // From here on `poses` is asked: its links are known and stay.
   void start();
-  // Of the good poses that came since this was last asked.
+  // How many good poses came since this was last asked.
   struct Seen {
     bool any = false;
     ros::Time still;  // the newest stamp of a still one; zero when there was none
   };
   Seen seen();
-  // Likewise: those that were due, and those of them that a newer one took the place of.
+  // Since then: poses that were due, and those of them that a newer one replaced.
   struct Counts {
     int came = 0;
     int missed = 0;

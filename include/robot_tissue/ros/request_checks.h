@@ -1,5 +1,5 @@
-// What a service's request may say. Each throws InputError with one short line that names the
-// field, the value and what is allowed.
+// Checks of what a service's request may say. Each throws InputError with one short line that names
+// the field, the value and what is allowed.
 #pragma once
 
 #include <string>

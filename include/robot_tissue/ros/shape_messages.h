@@ -10,7 +10,7 @@
 
 namespace robot_tissue {
 
-// What changes with the topology alone: triangles and their pieces.
+// The part of a message that changes with the topology alone: triangles and their pieces.
 void setTriangles(const Tissue& tissue, const std::vector<int>& piece_of_node, Surface& message);
 void setVertices(const Tissue& tissue, Surface& message);
 

@@ -17,7 +17,7 @@ namespace robot_tissue {
 
 class SurgeryServices {
  public:
-  // What is handed in must outlive them. `wake` is called before each request.
+  // The arguments must outlive the services. `wake` is called before each request.
   SurgeryServices(ros::NodeHandle& private_node, std::string state_dir, Pipeline& pipeline,
                   TissuePublisher& publisher, std::function<void()> wake);
 

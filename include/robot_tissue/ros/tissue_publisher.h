@@ -42,7 +42,7 @@ class TissuePublisher {
   // publishSeldom.
   void publishStill(const ros::Time& stamp) { wrenches_.publishAgain(stamp); }
   void publishSeldom(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
-  // What was told so far is of another time.
+  // Forgets the stamps told so far, as time went back, and publishes the shape anew.
   void timeWentBack();
   // Nothing but what goes out once a second and at every pose is to be published.
   bool isUpToDate() const;

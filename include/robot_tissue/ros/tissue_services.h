@@ -21,7 +21,7 @@ namespace robot_tissue {
 
 class TissueServices {
  public:
-  // What they ask of the node.
+  // What the services ask of the node.
   struct Node {
     // Before each request: it may give something to do at a pose at which there was nothing.
     std::function<void()> wake;

@@ -41,12 +41,12 @@ class WrenchPublisher {
   void publishOld();
   // No good pose: nothing is sent until there is one again.
   void fallSilent();
-  // Those told so far are of another time: they are not told again.
+  // Forgets the wrenches told so far, as time went back: they are not told again.
   void forget();
   bool isListenedTo() const;
 
  private:
-  // What one tool feels.
+  // The topics of one tool, and the wrench last told on them.
   struct Told {
     ros::Publisher solved, predicted;  // do not change while the thread runs
     geometry_msgs::WrenchStamped message;

@@ -29,7 +29,7 @@ std::vector<std::string> namesOf(const KeyTable<Target>& table) {
   return names;
 }
 
-// Of several tables for one map.
+// The names of all keys of several tables for one map.
 template <class... Target>
 std::vector<std::string> namesOfAll(const KeyTable<Target>&... tables) {
   std::vector<std::string> names;

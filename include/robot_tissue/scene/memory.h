@@ -20,8 +20,8 @@ double memoryOf(double nodes, const std::string& method);
 // The most nodes whose memory is within `bytes`, and that are numbered by int.
 double mostNodes(double bytes, const std::string& method);
 
-// Of a mesh in a lattice: about how many nodes it holds, and the bytes of the grid around it and of
-// its surface when its triangles are no larger than the spacing.
+// Estimate for a mesh in a lattice: about how many nodes it holds, and the bytes of the grid around
+// it and of its surface when its triangles are no larger than the spacing.
 double nodesWithin(const TriangleMesh& mesh, double spacing);
 double memoryAround(const TriangleMesh& mesh, double spacing);
 

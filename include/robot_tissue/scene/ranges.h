@@ -1,4 +1,4 @@
-// What the numbers of a scene may be, in one place. Wide enough for whatever a user may mean; what
+// The ranges of a scene's numbers, in one place. Wide enough for whatever a user may mean; what
 // is beyond means nothing, and there no method comes to an end. Lengths go by the tissue's own.
 #pragma once
 

@@ -67,7 +67,7 @@ void requireStands(const Entry& entry, const std::string& tool,
 std::vector<ToolConfig> readTools(const Entry& entry, const SceneSource& source,
                                   const TissueConfig& tissue, Remarks& remarks);
 
-// What the shapes of tools are read against.
+// What the shapes of tools are checked against.
 struct Surroundings {
   std::string scene_folder;  // where relative paths of meshes start
   LengthRanges lengths;
