@@ -114,6 +114,15 @@ class NodeTest : public ::testing::Test {
     return follow();
   }
 
+  // Waits for touches of where the tools are now: those of the way there, told while the shape had
+  // yet to come to balance, may arrive after the wrench of its end.
+  bool waitForContacts() {
+    const ros::Time now = ros::Time::now();
+    return waitFor([&] {
+      return contacts_ && contacts_->header.stamp >= now && !contacts_->contacts.empty();
+    });
+  }
+
   bool waitForMarkers(const std::function<bool()>& condition) {
     return waitFor([&] { return markers_.count("surface") > 0 && condition(); });
   }

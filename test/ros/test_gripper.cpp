@@ -33,7 +33,7 @@ TEST_F(Gripper, HoldsWhatIsBetweenItsJawsUntilTheyOpen) {
   EXPECT_EQ(wrench_->header.frame_id, "left_jaw");
   ASSERT_TRUE(waitForMarkers([this] { return !markers_["loading_patches"].points.empty(); }));
   EXPECT_TRUE(waitForMarkers([this] { return markers_["contact_normals"].points.size() == 2; }));
-  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  ASSERT_TRUE(waitForContacts());
   const auto& normal = contacts_->contacts.front().normal;  // of the left jaw
   EXPECT_NEAR(std::hypot(normal.x, normal.y, normal.z), 1.0, 1e-9);
   EXPECT_GT(normal.y, 0.8);

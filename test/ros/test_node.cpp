@@ -74,7 +74,7 @@ TEST_F(RunningNode, WrenchGrowsWithDepthWithTheRightSignAndFrame) {
 
 TEST_F(RunningNode, ContactsTellPatchAndNormal) {
   press(0.004);
-  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  ASSERT_TRUE(waitForContacts());
   const TissueContact& contact = contacts_->contacts.front();
   EXPECT_EQ(contacts_->header.frame_id, "tissue");
   EXPECT_EQ(contact.tool, "probe");

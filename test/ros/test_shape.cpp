@@ -121,7 +121,7 @@ TEST_F(Shape, NodesAreTheLatticeWithItsDisplacements) {
 
 TEST_F(Shape, TouchesTellWhereAndHowHard) {
   press(0.004);
-  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  ASSERT_TRUE(waitForContacts());
   const TissueContact& contact = contacts_->contacts.front();
   ASSERT_GT(contact.touches.size(), 3U);
   geometry_msgs::Vector3 sum;

@@ -142,7 +142,7 @@ TEST_F(Tools, FrictionIsTheTools) {
 TEST_F(Tools, MaxForceIsToldAndFlagged) {
   places_["fork"] = pressed(0.004, 0.005);
   follow();
-  ASSERT_TRUE(waitFor([this] { return contacts_ && !contacts_->contacts.empty(); }));
+  ASSERT_TRUE(waitForContacts());
   const auto& contact = contacts_->contacts.front();
   EXPECT_EQ(contact.tool, "fork");
   EXPECT_TRUE(contact.saturated);
