@@ -28,8 +28,8 @@ robot_tissue_room(surface
 robot_tissue_room(material
   USES base config lattice
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
-    elastic_model.cpp elastic_model.h energy_model.h six_spring_model.cpp six_spring_model.h
-    tissue_model.h)
+    elastic_model.cpp elastic_model.h energy_model.h inertial_term.h six_spring_model.cpp
+    six_spring_model.h tissue_model.h)
 robot_tissue_room(loads
   USES base lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h solve_report.h
@@ -83,5 +83,6 @@ robot_tissue_room(tissue
   USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
-  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h tissue.cpp
-    tissue_loads.cpp tissue_state.cpp tissue_state.h tissue_surface.cpp tuning.h)
+  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h time_integrator.cpp
+    time_integrator.h time_stepping.cpp tissue.cpp tissue_loads.cpp tissue_state.cpp tissue_state.h
+    tissue_surface.cpp tuning.h)

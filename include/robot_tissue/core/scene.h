@@ -30,6 +30,12 @@ struct Region {
   Material material;  // the tissue's, with the region's own entries in place
 };
 
+// The tissue moves in time, by its mass; in its stress the rate of strain counts, too:
+// stress = elastic + damping_time * rate of it.
+struct TimeConfig {
+  double damping_time = 0.0;  // s
+};
+
 struct TissueConfig {
   std::string frame_id = "tissue";
   Box shape{Vec3::Zero(), Vec3::Zero()};     // unused when mesh is set
@@ -37,9 +43,10 @@ struct TissueConfig {
   double spacing = 0.0;
   std::string model = "elastic";
   Material material;
-  std::vector<Region> regions;  // a later one wins where two overlap
-  std::vector<Box> fixed;       // nodes in these never move; none: the block floats in space
-  Vec3 gravity = Vec3::Zero();  // m/s^2
+  std::vector<Region> regions;     // a later one wins where two overlap
+  std::vector<Box> fixed;          // nodes in these never move; none: the block floats in space
+  Vec3 gravity = Vec3::Zero();     // m/s^2
+  std::optional<TimeConfig> time;  // empty: every shape is an equilibrium
 };
 
 struct SolverConfig {

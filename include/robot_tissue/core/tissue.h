@@ -21,7 +21,9 @@
 namespace robot_tissue {
 
 class SolverMethod;
+class TimeIntegrator;
 class TissueModel;
+struct NodeMotion;
 struct LoadRamp;
 struct SavedState;
 
@@ -87,8 +89,20 @@ class Tissue {
   // on (loadOn). None: solver.max_ms bounds each solve.
   void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
 
-  // Equilibrium under what acts now.
+  // Equilibrium under what acts now, at rest.
   SolveReport settle();
+
+  // Where tissue.time is set. Time goes by in steps: what is called between beginTimeStep and
+  // endTimeStep is of the step, its shape the one at the step's end; between two steps the shape
+  // stays as it is. After stopTime, and before the first step, shapes are equilibria, at rest.
+  bool hasTime() const { return time_ != nullptr; }
+  bool isMoving() const;           // time will change the shape
+  double longestTimeStep() const;  // that the error of the last one allows (s)
+  void beginTimeStep(double duration);
+  void endTimeStep();
+  void stopTime();
+  // Time goes by while no tool moves, in steps of an error within the tolerance.
+  SolveReport wait(double duration);
   // Brings the step's patches to their loads in increments; they stand until released. Refused when
   // the method needs more than most_increments.
   void load(const LoadStep& step, const OnIncrement& on_increment = {},
@@ -116,15 +130,15 @@ class Tissue {
     std::size_t named_patches = 0;
     SolveReport report;
     bool is_late = false;
+    std::shared_ptr<const NodeMotion> motion;  // null: at rest
   };
-  Shape shape() const {
-    return {displacements(), state_.cells, patches_, named_patches_, last_report_, is_late_};
-  }
+  Shape shape() const;
   void restore(const Shape& shape);
   // In between, solves teach the method nothing that later ones depend on.
   void beginAside();
   void endAside();
-  // Severs the springs that cross the polygon in the deformed shape, then balances.
+  // Severs the springs that cross the polygon in the deformed shape, then balances; in time it only
+  // severs them.
   CutReport cut(const std::vector<Vec3>& corners);
   // Rest shape, bit for bit; cuts mended, loads gone.
   void reset();
@@ -142,6 +156,8 @@ class Tissue {
 
  private:
   SolveReport solve(const std::vector<int>& disturbed);
+  bool takesNoTime() const;
+  SolveReport asItIs();
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
   void renewContacts();
@@ -195,6 +211,9 @@ class Tissue {
   double max_ms_ = 0.0;   // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
   ContactUpdate* contact_update_ = nullptr;
+  std::unique_ptr<TimeIntegrator> time_;  // null: there is none
+  bool in_time_ = false;                  // since the last stopTime there was a time step
+  bool in_time_step_ = false;
 };
 
 }  // namespace robot_tissue

@@ -8,7 +8,8 @@
 
 namespace robot_tissue {
 
-ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config) : lattice_(lattice) {
+ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
+    : lattice_(lattice), moves_in_time_(config.time.has_value()) {
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
   std::vector<const Material*> materials;
   kinds_.reserve(lattice.cells().size());
@@ -18,7 +19,8 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config) :
     kinds_.push_back(static_cast<std::uint16_t>(found - materials.begin()));
     if (found != materials.end()) continue;
     materials.push_back(&material);
-    substances_.push_back({moduliOf(material), material.density * corner_volume * config.gravity});
+    const double corner_mass = material.density * corner_volume;
+    substances_.push_back({moduliOf(material), corner_mass * config.gravity, corner_mass});
   }
 }
 
@@ -32,20 +34,58 @@ Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
   return cell.share * substanceOf(cell).corner_weight;
 }
 
+double ElasticModel::cornerMass(const Cell& cell) const {
+  return cell.share * substanceOf(cell).corner_mass;
+}
+
+std::vector<double> ElasticModel::nodeMasses(const CellSet& cells) const {
+  std::vector<double> masses(at(cells.nodeCount()), 0.0);
+  for (const Cell& cell : cells.all()) {
+    for (const int node : cell.nodes) masses[at(node)] += cornerMass(cell);
+  }
+  return masses;
+}
+
+Moduli ElasticModel::stepModuli(const Cell& cell) const {
+  const Moduli moduli = cellModuli(cell);
+  if (inertia_ == nullptr) return moduli;
+  return {inertia_->elastic_scale * moduli.shear, inertia_->elastic_scale * moduli.bulk};
+}
+
+double ElasticModel::cornerInertia(const Cell& cell) const {
+  return inertia_ == nullptr ? 0.0 : inertia_->per_mass * cornerMass(cell);
+}
+
+double ElasticModel::inertialForceNorm(const LatticeState& state) const {
+  if (inertia_ == nullptr) return 0.0;
+  const std::vector<double> masses = nodeMasses(*state.cells);
+  double squared = 0.0;
+  for (std::size_t node = 0; node < masses.size(); ++node) {
+    const Vec3 held = inertia_->per_mass * masses[node] * state.displacement[node];
+    squared += (inertia_->force[node] - held).squaredNorm();
+  }
+  return std::sqrt(squared);
+}
+
+Vec3 ElasticModel::inertialForce(int node) const {
+  return inertia_ == nullptr ? Vec3(Vec3::Zero()) : inertia_->force[at(node)];
+}
+
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
   ElasticCell::Corners displacement;
   for (int corner = 0; corner < kCorners; ++corner) {
     displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
   }
-  return {cellModuli(cell), lattice_.spacing(), displacement};
+  return {stepModuli(cell), lattice_.spacing(), displacement};
 }
 
 Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
-  Vec3 force = Vec3::Zero();
+  Vec3 force = inertialForce(node);
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Cell& cell = cells.all()[at(met->cell)];
-    force += cornerWeight(cell) - shaped(state, cell).gradient(met->corner);
+    force += cornerWeight(cell) - shaped(state, cell).gradient(met->corner) -
+             cornerInertia(cell) * state.displacement[at(node)];
   }
   return force;
 }
@@ -77,7 +117,9 @@ Eigen::Matrix3d ElasticModel::nodeBlock(const LatticeState& state, int node) con
   const CellSet& cells = *state.cells;
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    block += shaped(state, cells.all()[at(met->cell)]).block(met->corner);
+    const Cell& cell = cells.all()[at(met->cell)];
+    block += shaped(state, cell).block(met->corner);
+    block.diagonal().array() += cornerInertia(cell);
   }
   return block;
 }
@@ -87,18 +129,44 @@ double ElasticModel::energy(const LatticeState& state) const {
   for (const Cell& cell : state.cells->all()) {
     energy += shaped(state, cell).energy();
     Vec3 moved = Vec3::Zero();
-    for (const int node : cell.nodes) moved += state.displacement[at(node)];
-    energy -= cornerWeight(cell).dot(moved);
+    double squared = 0.0;
+    for (const int node : cell.nodes) {
+      moved += state.displacement[at(node)];
+      squared += state.displacement[at(node)].squaredNorm();
+    }
+    energy += 0.5 * cornerInertia(cell) * squared - cornerWeight(cell).dot(moved);
+  }
+  if (inertia_ == nullptr) return energy;
+  for (std::size_t node = 0; node < inertia_->force.size(); ++node) {
+    energy -= inertia_->force[node].dot(state.displacement[node]);
   }
   return energy;
 }
 
 std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
   std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
+  if (inertia_ != nullptr) forces = inertia_->force;
   for (const Cell& cell : state.cells->all()) {
     const ElasticCell shape = shaped(state, cell);
     for (int corner = 0; corner < kCorners; ++corner) {
-      forces[at(cell.nodes[at(corner)])] += cornerWeight(cell) - shape.gradient(corner);
+      const std::size_t node = at(cell.nodes[at(corner)]);
+      forces[node] += cornerWeight(cell) - shape.gradient(corner) -
+                      cornerInertia(cell) * state.displacement[node];
+    }
+  }
+  return forces;
+}
+
+std::vector<Vec3> ElasticModel::cellForces(const LatticeState& state) const {
+  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
+  for (const Cell& cell : state.cells->all()) {
+    ElasticCell::Corners displacement;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
+    }
+    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), displacement);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
     }
   }
   return forces;
@@ -107,13 +175,15 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
 NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   NodeBalance balance;
+  balance.force = inertialForce(node);
   for (auto first = cells.first(node); first != cells.last(node);) {
     const auto end = std::min(cells.last(node), first + CellModes::kMost);
     CellModes modes(lattice_.spacing());
     for (auto met = first; met != end; ++met) {
       const Cell& cell = cells.all()[at(met->cell)];
-      balance.force += cornerWeight(cell);
-      modes.add(cellModuli(cell), cell.nodes, met->corner, state.displacement);
+      balance.force += cornerWeight(cell) - cornerInertia(cell) * state.displacement[at(node)];
+      balance.block.diagonal().array() += cornerInertia(cell);
+      modes.add(stepModuli(cell), cell.nodes, met->corner, state.displacement);
     }
     modes.solve();
     balance.force -= modes.gradient();
@@ -136,16 +206,18 @@ void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& 
     CellModes modes(lattice_.spacing());
     for (std::size_t i = first; i < end; ++i) {
       const Cell& cell = state.cells->all()[at(cells[i])];
-      modes.add(cellModuli(cell), cell.nodes, 0, state.displacement);
+      modes.add(stepModuli(cell), cell.nodes, 0, state.displacement);
     }
     modes.solve();
     modes.findGradients();
     for (std::size_t i = first; i < end; ++i) {
       const Cell& cell = state.cells->all()[at(cells[i])];
       const Vec3 weight = cornerWeight(cell);
+      const double inertia = cornerInertia(cell);
       const int lane = static_cast<int>(i - first);
       for (int corner = 0; corner < kCorners; ++corner) {
-        forces[at(cell.nodes[at(corner)])] += weight - modes.gradient(lane, corner);
+        const std::size_t node = at(cell.nodes[at(corner)]);
+        forces[node] += weight - modes.gradient(lane, corner) - inertia * state.displacement[node];
       }
       if (modes.suffices(lane)) continue;
       const ElasticCell squeezed = shaped(state, cell);
@@ -157,11 +229,18 @@ void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& 
 }
 
 CellHessian ElasticModel::cellHessian(const LatticeState& state, int cell) const {
-  return shaped(state, state.cells->all()[at(cell)]).hessian();
+  const Cell& one = state.cells->all()[at(cell)];
+  CellHessian hessian = shaped(state, one).hessian();
+  hessian.diagonal().array() += cornerInertia(one);
+  return hessian;
 }
 
 void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& visit) const {
-  for (const Cell& cell : state.cells->all()) visit(cell.nodes, shaped(state, cell).hessian());
+  for (const Cell& cell : state.cells->all()) {
+    CellHessian hessian = shaped(state, cell).hessian();
+    hessian.diagonal().array() += cornerInertia(cell);
+    visit(cell.nodes, hessian);
+  }
 }
 
 }  // namespace robot_tissue

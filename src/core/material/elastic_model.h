@@ -10,6 +10,7 @@
 
 #include "material/elastic_cell.h"
 #include "material/energy_model.h"
+#include "material/inertial_term.h"
 #include "robot_tissue/core/lattice.h"
 
 namespace robot_tissue {
@@ -31,6 +32,8 @@ class ElasticModel : public EnergyModel {
                  std::vector<Vec3>& forces) const override;
   CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
+  double inertialForceNorm(const LatticeState& state) const override;
+  void setInertia(const InertialTerm* inertia) override { inertia_ = inertia; }
 
   // Second derivative of the energy in this node alone (N/m).
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
@@ -38,17 +41,29 @@ class ElasticModel : public EnergyModel {
   ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
   Moduli cellModuli(const Cell& cell) const;  // Pa, of what the cell is filled with
   Vec3 cornerWeight(const Cell& cell) const;  // gravity on an eighth of it (N)
+  double cornerMass(const Cell& cell) const;  // of an eighth of it (kg)
+  std::vector<Vec3> cellForces(const LatticeState& state) const;  // no gravity, no time step (N)
+  std::vector<double> nodeMasses(const CellSet& cells) const;     // ghosts last (kg)
+  bool movesInTime() const { return moves_in_time_; }       // solves may have an inertial term
+  const InertialTerm* inertia() const { return inertia_; }  // null: none
 
  private:
   struct Substance {
     Moduli moduli;
     Vec3 corner_weight = Vec3::Zero();  // gravity on an eighth of a full cell (N)
+    double corner_mass = 0.0;           // of such an eighth (kg)
   };
   const Substance& substanceOf(const Cell& cell) const {
     return substances_[kinds_[at(cell.place)]];
   }
 
+  Moduli stepModuli(const Cell& cell) const;     // with what a time step adds
+  double cornerInertia(const Cell& cell) const;  // N/m; zero without a time step
+  Vec3 inertialForce(int node) const;            // that does not hang on the shape (N)
+
   const Lattice& lattice_;
+  bool moves_in_time_;
+  const InertialTerm* inertia_ = nullptr;
   std::vector<Substance> substances_;
   std::vector<std::uint16_t> kinds_;  // per cell of the lattice, into substances_
 };

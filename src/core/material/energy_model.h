@@ -28,6 +28,9 @@ class EnergyModel : public TissueModel {
   // nodeForce of every node at once (N): minus the energy's gradient.
   virtual std::vector<Vec3> nodeForces(const LatticeState& state) const = 0;
 
+  // Length of the vector of all nodes' forces of inertia and viscosity (N); 0 without a time step.
+  virtual double inertialForceNorm(const LatticeState&) const { return 0.0; }
+
   virtual NodeBalance nodeBalance(const LatticeState& state, int node) const = 0;
 
   // Adds the forces of the cells (indices into state.cells->all()) on their nodes (N).

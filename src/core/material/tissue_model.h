@@ -1,5 +1,5 @@
 // What holds the nodes together: the force on a node for a given shape. Implementations are
-// constant after construction; the shape is an argument.
+// constant after construction, but for the time step; the shape is an argument.
 #pragma once
 
 #include "config/material.h"
@@ -8,11 +8,14 @@
 
 namespace robot_tissue {
 
+struct InertialTerm;
+
 class TissueModel {
  public:
   virtual ~TissueModel() = default;
 
-  // Net force on the node (N, tissue frame), gravity included; zero in equilibrium.
+  // Net force on the node (N, tissue frame), gravity included; zero in equilibrium. In a time step
+  // that of inertia and of viscosity, too.
   virtual Vec3 nodeForce(const LatticeState& state, int node) const = 0;
 
   // Stiffness against moving this node alone, at rest, along x, y and z (N/m); zero along an axis
@@ -28,6 +31,10 @@ class TissueModel {
   // Moduli behind a node of the surface: a quarter of the sum over its cells, so the material's own
   // where it meets four full ones. Zero where the model has none.
   virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }
+
+  // Energy and forces are those of a time step from now on; null: of the shape alone. The term must
+  // live so long.
+  virtual void setInertia(const InertialTerm*) {}
 };
 
 }  // namespace robot_tissue

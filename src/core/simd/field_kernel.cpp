@@ -20,6 +20,16 @@ ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict below, const Real* __rest
 }
 
 template <typename Real>
+ROBOT_TISSUE_INLINE void holdAll(const Real* __restrict stiffness,
+                                 const Real* __restrict displacement, const Real* __restrict free,
+                                 Real* __restrict whole, Real* __restrict force, int count) {
+  for (int i = 0; i < count; ++i) {
+    whole[i] -= stiffness[i] * displacement[i];
+    force[i] = free[i] * whole[i];
+  }
+}
+
+template <typename Real>
 ROBOT_TISSUE_INLINE void invertAll(const Real* __restrict below, const Real* __restrict lower,
                                    const Real* __restrict free, Real* __restrict stiffness,
                                    Real* __restrict inverse, int count) {
@@ -182,6 +192,16 @@ ROBOT_TISSUE_CLONES void invertStiffness(const double* below, const double* lowe
                                          const double* free, double* stiffness, double* inverse,
                                          int count) {
   invertAll(below, lower, free, stiffness, inverse, count);
+}
+
+ROBOT_TISSUE_CLONES void addHolds(const float* stiffness, const float* displacement,
+                                  const float* free, float* whole, float* force, int count) {
+  holdAll(stiffness, displacement, free, whole, force, count);
+}
+
+ROBOT_TISSUE_CLONES void addHolds(const double* stiffness, const double* displacement,
+                                  const double* free, double* whole, double* force, int count) {
+  holdAll(stiffness, displacement, free, whole, force, count);
 }
 
 ROBOT_TISSUE_CLONES void fasRightHandSide(const float* wanted, const float* free, float* load,

@@ -18,6 +18,12 @@ void invertStiffness(const float* below, const float* lower, const float* free, 
 void invertStiffness(const double* below, const double* lower, const double* free,
                      double* stiffness, double* inverse, int count);
 
+// Springs that hold the nodes at zero: whole -= stiffness * displacement, force = free * whole.
+void addHolds(const float* stiffness, const float* displacement, const float* free, float* whole,
+              float* force, int count);
+void addHolds(const double* stiffness, const double* displacement, const double* free,
+              double* whole, double* force, int count);
+
 // Where `free` is 1: load += wanted - force, force = wanted: the right-hand side of the full
 // approximation scheme, for which a coarse level has the fine one's force to begin with.
 void fasRightHandSide(const float* wanted, const float* free, float* load, float* force, int count);

@@ -30,6 +30,10 @@ class SolverMethod {
   // bound.
   virtual void limitTime(double) {}
 
+  // Of the cells on their nodes in that shape (N), gravity and inertia not included, where the
+  // method has a faster way than the model; empty: it has none.
+  virtual std::vector<Vec3> cellForces(const LatticeState&) { return {}; }
+
   // Drops what it has learned from earlier solves: the next answer depends on its arguments alone.
   virtual void forget() {}
   // Whether there is anything to be dropped.

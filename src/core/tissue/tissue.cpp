@@ -13,6 +13,7 @@
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
+#include "tissue/time_integrator.h"
 #include "tissue/tissue_state.h"
 #include "tissue/tuning.h"
 
@@ -45,6 +46,10 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       method_(makeMethod(solver, lattice_, *model_)),
       has_gravity_(!tissue.gravity.isZero()),
       max_ms_(solver.max_ms) {
+  if (tissue.time) {
+    time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
+                                             solver.tolerance);
+  }
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
   for (int node = 0; node < lattice_.nodeCount(); ++node) {
@@ -70,7 +75,10 @@ std::vector<int> Tissue::pieceOfNodes() const {
   return robot_tissue::pieceOfNodes(lattice_, state_);
 }
 
-SolveReport Tissue::settle() { return solve(freeNodes()); }
+SolveReport Tissue::settle() {
+  stopTime();
+  return solve(freeNodes());
+}
 
 Vec3 Tissue::weight() const { return weight_; }
 
@@ -107,6 +115,7 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
   putToolPatches(std::move(tool_patches));
   const bool last_left = one_left && patches_.size() == named_patches_;
   const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
+  if (in_time_) return in_time_step_ ? solve(disturbed) : asItIs();
   const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
   if (from_rest) return solveFromRest();
   const bool one_there = patches_.size() > named_patches_;
@@ -116,7 +125,19 @@ SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
   return one_lost && returns ? solveFromRest() : report;
 }
 
+Tissue::Shape Tissue::shape() const {
+  return {displacements(),
+          state_.cells,
+          patches_,
+          named_patches_,
+          last_report_,
+          is_late_,
+          time_ ? time_->motion() : nullptr};
+}
+
 void Tissue::restore(const Shape& shape) {
+  if (time_) time_->take(shape.motion);
+  in_time_step_ = false;
   kept_.reset();
   state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
   patches_ = shape.patches;
@@ -159,12 +180,13 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   deformSurface();
   renewContacts();
   report.pieces = state_.pieces;
-  report.solve = solve(disturbed);
+  report.solve = takesNoTime() ? asItIs() : solve(disturbed);
   return report;
 }
 
 void Tissue::reset() {
   const bool was_cut = state_.springs_cut > 0;
+  stopTime();
   endAside();
   other_method_.reset();
   method_->forget();
@@ -211,6 +233,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
     disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
   }
   SolveReport report = solveInRounds(disturbed_);
+  if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
   if (!is_late_) disturbed_.clear();
   last_report_.volume_ratio = report.volume_ratio = volumeRatio();
   return report;

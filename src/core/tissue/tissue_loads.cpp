@@ -79,6 +79,7 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, patches_);
+  stopTime();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
     ramps.push_back(makeRamp(target, standingPatch(target.name)));
@@ -129,6 +130,7 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
     --named_patches_;
     dropNamed(name, due_);
   }
+  if (takesNoTime()) return asItIs();
   const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
   return unique ? solve(freeNodes()) : solveFromRest();
 }

@@ -31,6 +31,7 @@ std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig&
   add(tissue.material, out);
   for (const Region& region : tissue.regions) add(region, out);
   out.vec3(tissue.gravity);
+  if (tissue.time) out.f64(tissue.time->damping_time);
   out.text(solver.method);
   out.f64(solver.tolerance);
   return hashOf(out.bytes());
@@ -43,7 +44,7 @@ std::string Tissue::savedState() const {
                      patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
   saved.report = last_report_;
   saved.report.patches.resize(named_patches_);  // without the tools
-  saved.in_balance = isUntouched() && !isLate();
+  saved.in_balance = isUntouched() && !isLate() && !isMoving();
   const SplitCells split = model_->splitCells();
   return encodeState(lattice_, split, saved,
                      {fingerprintOf(lattice_, split), balance_fingerprint_});
@@ -59,6 +60,7 @@ std::shared_ptr<const SavedState> Tissue::readState(const std::string& bytes) co
 
 // Nothing of what was there stays, nor of what the method learned of it.
 SolveReport Tissue::loadState(const SavedState& saved) {
+  stopTime();
   endAside();
   other_method_.reset();
   method_->forget();

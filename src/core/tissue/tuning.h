@@ -53,6 +53,29 @@ constexpr double kShareOfTime = 0.5;
 // ms: a solve has so much at least; one cycle, however short. Chosen.
 constexpr double kLeastMs = 1e-6;
 
+// Motion in time.
+// In spacings (1): what goes less in a step, and by its velocity and acceleration would, is at
+// rest. More: slow motions end early; less: the rounding of single precision never rests. Chosen.
+constexpr double kAtRest = 4e-6;
+// Of the step's error, over h^2 |a' - a| (1): 5/6 by Zienkiewicz and Xie 1991 for beta = 1.
+constexpr double kErrorOfStep = 5.0 / 6.0;
+// What a step's error is held against, besides the way of the step: a share of the displacement
+// (1), and spacings (1) for each node. More: longer steps where the tissue turns back. Chosen.
+constexpr double kShareOfDisplacement = 0.1;
+constexpr double kLeastMotion = 1e-3;
+// Of the error allowed (1): what the next step aims at; and of the last step, how much longer or
+// shorter the next one may be at most. Chosen.
+constexpr double kSafety = 0.5;
+constexpr double kMostShrink = 0.3;
+constexpr double kMostGrowthOfStep = 2.0;
+// Of the error allowed (1): a step of a larger one is made anew. More: fewer are. Chosen.
+constexpr double kRefusedError = 4.0;
+// s: the first step from rest, and bounds of those that follow. Longer: coarser starts; shorter:
+// more steps where something snaps. Chosen.
+constexpr double kFirstStep = 1e-3;
+constexpr double kShortestStep = 5e-5;
+constexpr double kLongestStep = 0.05;
+
 // Memory.
 // Bytes of a sparse factor of n nodes over n^(4/3), the growth by nested dissection in three
 // dimensions. More: scenes are refused that the memory holds; less: the system ends the program.

@@ -210,7 +210,8 @@ Balance balanceOf(const EnergyModel& model, const DofMap& unknowns, const Constr
     }
   }
   balance.unbalanced = unknowns.gather(shape, forces) + on_patches;
-  balance.holding = std::max(std::sqrt(held_squared), pushed);
+  balance.holding =
+      std::max({std::sqrt(held_squared), pushed, model.inertialForceNorm(shape.state)});
   return balance;
 }
 

@@ -3,7 +3,8 @@
 //   error = factor |x| / max(|u|, least)
 //
 // |x| is the length of the motion left that cycles see (CompositeShape::correctionNorm); the factor
-// makes up for what they do not see, |u| is the length of the displacement.
+// makes up for what they do not see, |u| is the length of the displacement. In a time step it is
+// the length of the way from where the nodes would go without a force: what forces do in that time.
 #pragma once
 
 #include "solvers/multigrid/cycle/composite_shape.h"
@@ -36,6 +37,10 @@ class ErrorEstimator {
 
   ErrorFactor factor;
 
+  // The motion without a force, that errors are relative to the way from; null: no time step. It
+  // must live as long as the cycles.
+  void measureFrom(const CompositeVector<Real>* free_motion) { free_motion_ = free_motion; }
+
   // Cycles begin, from the shape as it is.
   void begin();
   // Another part is open: earlier shapes are of other nodes, and distances from them are not known.
@@ -60,6 +65,7 @@ class ErrorEstimator {
   void mark(int cycles);
 
   const CompositeShape<Real>& shape_;
+  const CompositeVector<Real>* free_motion_ = nullptr;
   MotionLeft left_;
   double trend_ = 0.0;  // |x|, as it falls under conjugate gradients, where it swings
   double error_ = 0.0;

@@ -13,6 +13,10 @@ namespace robot_tissue {
 template <typename Real>
 class FasCgIteration {
  public:
+  // As ErrorEstimator.
+  void measureFrom(const CompositeVector<Real>* free_motion) {
+    estimator_.measureFrom(free_motion);
+  }
   // What it reads and moves must outlive it.
   struct On {
     CompositeShape<Real>& shape;

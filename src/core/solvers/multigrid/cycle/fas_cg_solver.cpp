@@ -121,12 +121,41 @@ void FasCgSolver<Real>::open(const SolveContext& solve, const GridBox& box) {
 template <typename Real>
 void FasCgSolver<Real>::prepare(const SolveContext& solve) {
   const std::vector<Vec3>& displacement = solve.shape.state.displacement;
+  takeTimeStep(solve);
   shape_.levels().constraints().bind(solve.shape, solve.hold);
   shape_.levels().displacements().take(displacement, solve.hold.dirichletMask());
   limits_.begin(displacement);
   warm_start_.noteStart();
   shape_.finest().findForces();
   forces_.begin();
+}
+
+template <typename Real>
+void FasCgSolver<Real>::takeTimeStep(const SolveContext& solve) {
+  const InertialTerm* inertia = model_.inertia();
+  shape_.levels().takeTimeStep(inertia);
+  iteration_.measureFrom(inertia == nullptr ? nullptr : &free_motion_);
+  if (inertia == nullptr) return;
+  shape_.levels().displacements().take(inertia->free_motion, solve.hold.dirichletMask());
+  shape_.keepPlaces(free_motion_);
+}
+
+template <typename Real>
+std::vector<Vec3> FasCgSolver<Real>::cellForces(const LatticeState& shape) {
+  findLevels(shape);
+  const CompositeGrid<Real>& grid = shape_.levels().grid();
+  shape_.levels().takeTimeStep(nullptr);
+  shape_.levels().displacements().take(shape.displacement,
+                                       std::vector<std::uint8_t>(shape.displacement.size(), 0));
+  shape_.finest().findForces();
+  const double unit = grid.modulus() * lattice_.spacing() * lattice_.spacing();
+  std::vector<Vec3> forces(shape.displacement.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < grid.nodes().size(); ++i) {
+    const int entry = grid.entries()[i];
+    forces[at(grid.nodes()[i])] = unit * (shape_.finest().forceOfCells(entry) -
+                                          vectorAt(shape_.finest().right_hand_side, entry));
+  }
+  return forces;
 }
 
 template <typename Real>
@@ -164,7 +193,7 @@ void FasCgSolver<Real>::answer(const SolveContext& solve, SolveReport& report) {
 std::unique_ptr<MultigridSolver> makeMultigridSolver(const Lattice& lattice,
                                                      const ElasticModel& model,
                                                      const LayeredOptions& options) {
-  if (options.tolerance >= tuning::kSinglePrecision) {
+  if (options.tolerance >= tuning::kSinglePrecision && !model.movesInTime()) {
     return std::make_unique<FasCgSolver<float>>(lattice, model, options);
   }
   return std::make_unique<FasCgSolver<double>>(lattice, model, options);

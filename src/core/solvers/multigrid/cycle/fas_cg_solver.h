@@ -34,8 +34,10 @@ class FasCgSolver : public MultigridSolver {
   Vec3 forceLeft() override;
   const GridBox* visited() const override;
   void forget() override;
+  std::vector<Vec3> cellForces(const LatticeState& shape) override;
 
  private:
+  void takeTimeStep(const SolveContext& solve);
   void findLevels(const LatticeState& state);
   void open(const SolveContext& solve, const GridBox& box);
   void prepare(const SolveContext& solve);
@@ -55,6 +57,7 @@ class FasCgSolver : public MultigridSolver {
   ForceBalance<Real> forces_;
   WarmStart<Real> warm_start_;
   FasCgIteration<Real> iteration_;
+  CompositeVector<Real> free_motion_;  // in a time step
 };
 
 extern template class FasCgSolver<float>;

@@ -64,9 +64,15 @@ class CompositeGrid {
 
   const Lattice& lattice() const { return lattice_; }
   Workers* workers() const { return workers_; }
-  double modulus() const { return modulus_; }            // E0 (Pa)
-  double spacing() const { return spacing_; }            // h (m), of the finest lattice
-  const Field<Real>& weight() const { return weight_; }  // of nodes (E0 h^2); empty without gravity
+  // E0 (Pa); in a time step times InertialTerm::elastic_scale.
+  double modulus() const { return scale_ * modulus_; }
+  double spacing() const { return spacing_; }  // h (m), of the finest lattice
+  // Of nodes (E0 h^2), with what acts on them in a time step besides; empty: no gravity, no step.
+  const Field<Real>& weight() const { return is_in_step_ ? load_of_step_ : weight_; }
+
+  // Solves are of a time step from now on; null: they are not. What holds the nodes is to be bound
+  // anew, forces are stale.
+  void takeTimeStep(const InertialTerm* inertia);
 
  private:
   void measureStiffness();
@@ -78,6 +84,7 @@ class CompositeGrid {
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);
   void findWeight(const ElasticModel& model, const CellSet& cells);
+  void findMasses(const ElasticModel& model, const CellSet& cells);
 
   const Lattice& lattice_;
   Workers* workers_;
@@ -91,6 +98,10 @@ class CompositeGrid {
   std::vector<int> nodes_;
   std::vector<int> entries_;
   Field<Real> weight_;
+  std::vector<std::vector<double>> masses_;  // of the nodes of each level (kg); empty: not needed
+  double scale_ = 1.0;
+  bool is_in_step_ = false;
+  Field<Real> load_of_step_;
 };
 
 template <typename Real>

@@ -39,6 +39,9 @@ class GridHierarchy {
   GridLevel<Real>& finest() { return grid_.finest(); }
   const GridLevel<Real>& finest() const { return grid_.finest(); }
 
+  // As CompositeGrid::takeTimeStep.
+  void takeTimeStep(const InertialTerm* inertia) { grid_.takeTimeStep(inertia); }
+
   LevelConstraints<Real>& constraints() { return constraints_; }
   NodeDisplacements<Real>& displacements() { return displacements_; }
   const NodeDisplacements<Real>& displacements() const { return displacements_; }

@@ -189,9 +189,27 @@ void CellOperator<Real>::finishPlane(const Loads& loads, Find what, int plane, c
               loads.right_hand_side[axis].data() + first, loads.free.data() + first,
               whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
   }
+  if (what == Find::kForcesAndStiffness) {
+    invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
+                    stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
+  }
+  if (!inertia.empty()) addInertia(loads, what, first, grid_.plane);
+}
+
+// To sums that are there.
+template <typename Real>
+void CellOperator<Real>::addInertia(const Loads& loads, Find what, int first, int count) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addHolds(inertia.data() + first, loads.displacement[axis].data() + first,
+             loads.free.data() + first, whole[axis].data() + first,
+             loads.force[axis].data() + first, count);
+  }
   if (what == Find::kForces) return;
-  invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
-                  stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
+  addShare(inertia.data() + first, Real(1), stiffness.data() + first, count);
+  for (int node = first; node < first + count; ++node) {
+    const bool is_free = loads.free[at(node)] != Real(0);
+    loads.inverse[at(node)] = is_free ? Real(1) / stiffness[at(node)] : Real(0);
+  }
 }
 
 // Nodes beside the grid, and those on it that loose cells have.
@@ -207,12 +225,15 @@ void CellOperator<Real>::finishBeside(const Loads& loads, Find what) {
     const std::size_t node = at(loose_nodes_[i]);
     const bool is_free = loads.free[node] != Real(0), is_beside = loose_nodes_[i] >= grid_.beside;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (is_beside) whole[axis][node] = loads.right_hand_side[axis][node];
+      if (is_beside) {
+        whole[axis][node] = loads.right_hand_side[axis][node];
+        if (!inertia.empty()) whole[axis][node] -= inertia[node] * loads.displacement[axis][node];
+      }
       whole[axis][node] += loose_sums_[axis][i];
       loads.force[axis][node] = is_free ? whole[axis][node] : Real(0);
     }
     if (what == Find::kForces) continue;
-    if (is_beside) stiffness[node] = Real(0);
+    if (is_beside) stiffness[node] = inertia.empty() ? Real(0) : inertia[node];
     stiffness[node] += loose_sums_[3][i];
     loads.inverse[node] = is_free ? Real(1) / stiffness[node] : Real(0);
   }

@@ -59,6 +59,8 @@ class CellOperator {
   void share(Workers& workers);
   Field<Real> whole;
   std::vector<Real> stiffness;
+  // Of the nodes' inertia in a time step, against displacement (E0 h); empty: none.
+  std::vector<Real> inertia;
 
  private:
   // Forces (0 to 2) and stiffness (3) on planes of nodes: of a plane of cells on its lower and
@@ -79,6 +81,7 @@ class CellOperator {
   void addPlane(const Loads& loads, Find what, const std::vector<CellBlock>& blocks, int plane,
                 Sums& sums) const;
   void finishPlane(const Loads& loads, Find what, int plane, const Sums& sums);
+  void addInertia(const Loads& loads, Find what, int first, int count);
   void finishBeside(const Loads& loads, Find what);
 
   LevelGrid grid_;

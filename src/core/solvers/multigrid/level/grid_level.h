@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -45,6 +46,11 @@ class GridLevel {
   void hideInterface();
 
   void share(Workers& workers) { cells_.share(workers); }
+
+  // Per entry, stiffness of the nodes' inertia in a time step; empty: none. Forces are stale then.
+  void setInertia(std::vector<Real> stiffness) { cells_.inertia = std::move(stiffness); }
+  // Of cells and the right-hand side alone, as last found.
+  Vec3 forceOfCells(int node) const { return vectorAt(cells_.whole, node); }
 
   // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
   void findForces();

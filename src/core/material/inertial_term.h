@@ -1,0 +1,20 @@
+// What a time step adds to the energy that a solve makes least (doc/time.md), with E the energy of
+// the cells and m_i the mass of a node:
+//
+//   elastic_scale E(u) + per_mass / 2 sum m_i |u_i|^2 - sum force_i . u_i
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+struct InertialTerm {
+  double elastic_scale = 1.0;     // stress that the rate of strain adds to is so much greater
+  double per_mass = 0.0;          // stiffness that a kilogram has against motion (1/s^2)
+  std::vector<Vec3> force;        // per node, ghosts last (N)
+  std::vector<Vec3> free_motion;  // displacements to which nodes would go without a force (m)
+};
+
+}  // namespace robot_tissue

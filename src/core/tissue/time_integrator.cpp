@@ -1,0 +1,119 @@
+#include "tissue/time_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+// Of a motion that had fewer nodes: ghosts start as the nodes that they are of.
+std::vector<Vec3> extended(const std::vector<Vec3>& values, const CellSet& cells) {
+  std::vector<Vec3> all = values;
+  all.resize(at(cells.nodeCount()), Vec3::Zero());
+  const int known = std::max(cells.latticeNodeCount(), static_cast<int>(values.size()));
+  for (int node = known; node < cells.nodeCount(); ++node) {
+    all[at(node)] = all[at(cells.original(node))];
+  }
+  return all;
+}
+
+}  // namespace
+
+void TimeIntegrator::wake(const LatticeState& state) {
+  NodeMotion motion;
+  if (motion_) motion = *motion_;
+  motion.velocity = extended(motion.velocity, *state.cells);
+  motion.acceleration.assign(motion.velocity.size(), Vec3::Zero());
+  motion.begins = true;
+  motion.next_duration = 0.0;
+  motion_ = std::make_shared<const NodeMotion>(std::move(motion));
+}
+
+const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& state,
+                                          std::vector<double> masses,
+                                          const CellForces& cell_forces) {
+  if (!motion_ || motion_->velocity.size() != state.displacement.size()) wake(state);
+  duration_ = duration;
+  before_ = state.displacement;
+  const std::size_t nodes = before_.size();
+  const std::vector<Vec3>& v = motion_->velocity;
+  const std::vector<Vec3>& a = motion_->acceleration;
+  const double h = duration;
+  const double rate = motion_->begins ? 2.0 / h : 1.5 / h;  // of df/dt, in f(u') - f(...)
+  term_.elastic_scale = 1.0 + damping_time_ * rate;
+  term_.per_mass = 2.0 / (h * h);
+  term_.free_motion.resize(nodes);
+  term_.force.resize(nodes);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    term_.free_motion[node] = before_[node] + h * v[node];
+    term_.force[node] = masses[node] * term_.per_mass * term_.free_motion[node];
+  }
+  if (damping_time_ == 0.0) return term_;
+  LatticeState there = state;
+  for (std::size_t node = 0; node < nodes; ++node) {
+    there.displacement[node] =
+        motion_->begins ? Vec3(before_[node] + 0.5 * h * v[node])
+                        : Vec3(before_[node] + h / 3.0 * v[node] - h * h / 6.0 * a[node]);
+  }
+  const std::vector<Vec3> forces = cell_forces(there);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    term_.force[node] -= damping_time_ * rate * forces[node];
+  }
+  return term_;
+}
+
+void TimeIntegrator::end(const LatticeState& state) {
+  NodeMotion motion = *motion_;
+  const double h = duration_;
+  for (std::size_t node = 0; node < before_.size(); ++node) {
+    const Vec3 by_forces = state.displacement[node] - term_.free_motion[node];
+    Vec3 &v = motion.velocity[node], &a = motion.acceleration[node];
+    if (motion.begins) {
+      a = 2.0 / (h * h) * by_forces;
+      v += h * a;
+    } else {
+      const Vec3 now = by_forces / (h * h) + 0.5 * a;
+      v += h * (1.5 * now - 0.5 * a);
+      a = now;
+    }
+  }
+  judge(state, motion);
+}
+
+// The local error of a step is about h^2 |a' - a| times a number below one (Zienkiewicz and Xie
+// 1991); it is held against what moves: the way of the step, a share of the displacement.
+void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
+  const double h = duration_;
+  double way = 0.0, displacement = 0.0, error = 0.0, farthest = 0.0;
+  for (std::size_t node = 0; node < before_.size(); ++node) {
+    const Vec3 moved = state.displacement[node] - before_[node];
+    way += moved.squaredNorm();
+    displacement += state.displacement[node].squaredNorm();
+    const Vec3 before =
+        motion_->begins ? Vec3(motion.acceleration[node]) : motion_->acceleration[node];
+    error += (motion.acceleration[node] - before).squaredNorm();
+    farthest = std::max({farthest, moved.squaredNorm(), (h * motion.velocity[node]).squaredNorm(),
+                         (h * h * motion.acceleration[node]).squaredNorm()});
+  }
+  if (std::sqrt(farthest) < tuning::kAtRest * spacing_) return rest();
+  const double least =
+      tuning::kLeastMotion * spacing_ * std::sqrt(static_cast<double>(before_.size()));
+  const double scale =
+      std::max({std::sqrt(way), tuning::kShareOfDisplacement * std::sqrt(displacement), least});
+  error_ratio_ = tuning::kErrorOfStep * h * h * std::sqrt(error) / (tolerance_ * scale);
+  const double growth = std::cbrt(tuning::kSafety / std::max(error_ratio_, 1e-9));
+  motion.next_duration =
+      motion.begins ? h : h * std::clamp(growth, tuning::kMostShrink, tuning::kMostGrowthOfStep);
+  motion.begins = false;
+  motion_ = std::make_shared<const NodeMotion>(std::move(motion));
+}
+
+double TimeIntegrator::longestStep() const {
+  if (!motion_ || motion_->next_duration == 0.0) return tuning::kFirstStep;
+  return std::clamp(motion_->next_duration, tuning::kShortestStep, tuning::kLongestStep);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,68 @@
+// How the tissue moves in time (doc/time.md): the generalized-alpha method without dissipation of
+// its own at low frequencies and with all of it at high ones (Chung and Hulbert 1993; rho = 0,
+// alpha_f = 0), which is the backward differentiation formula of second order in one-step form.
+// With h the length of a step, u, v, a displacement, velocity and acceleration of the nodes:
+//
+//   (2 m / h^2) (u' - u - h v) = f(u') + damping_time df/dt + m g + contacts
+//   a' = (u' - u - h v) / h^2 + a / 2,   v' = v - h a / 2 + 3 h a' / 2
+//
+// so that u' makes an energy least (material/inertial_term.h); f, the cells' forces, have the rate
+// (f(u') - f(u + h v / 3 - h^2 a / 6)) 3 / (2 h). The first step after a rest, or after a load came
+// or went at once, takes a' = 2 (u' - u - h v) / h^2, v' = v + h a'.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "material/inertial_term.h"
+#include "robot_tissue/core/lattice_state.h"
+
+namespace robot_tissue {
+
+// Of the nodes, ghosts last, beside where they are.
+struct NodeMotion {
+  std::vector<Vec3> velocity;      // m/s
+  std::vector<Vec3> acceleration;  // m/s^2
+  bool begins = true;              // the acceleration is not known yet
+  double next_duration = 0.0;      // longest good step from here on (s)
+};
+
+class TimeIntegrator {
+ public:
+  // masses: kg, per node; of a shape that is at rest.
+  TimeIntegrator(double damping_time, double spacing, double tolerance)
+      : damping_time_(damping_time), spacing_(spacing), tolerance_(tolerance) {}
+
+  using Motion = std::shared_ptr<const NodeMotion>;  // null: at rest
+  bool moves() const { return motion_ != nullptr; }
+  const Motion& motion() const { return motion_; }
+  void take(Motion motion) { motion_ = std::move(motion); }
+  void rest() { motion_.reset(); }
+  // Something changed at once: the nodes have the velocities that they have, and new forces.
+  void wake(const LatticeState& state);
+
+  // Forces of the cells in a shape (N), asked for where there is damping.
+  using CellForces = std::function<std::vector<Vec3>(const LatticeState&)>;
+  // The term of a step of that length (s) from the shape on.
+  const InertialTerm& begin(double duration, const LatticeState& state, std::vector<double> masses,
+                            const CellForces& cell_forces);
+  // The step ended in that shape; where nothing moves any more, the nodes are at rest.
+  void end(const LatticeState& state);
+  // Estimated error of the last step over the one allowed.
+  double errorRatio() const { return error_ratio_; }
+
+  double longestStep() const;  // from here on (s)
+
+ private:
+  void judge(const LatticeState& state, NodeMotion& motion);
+
+  double damping_time_, spacing_, tolerance_;
+  Motion motion_;
+  double duration_ = 0.0;  // of the step under way (s)
+  std::vector<Vec3> before_;
+  InertialTerm term_;
+  double error_ratio_ = 0.0;
+};
+
+}  // namespace robot_tissue
