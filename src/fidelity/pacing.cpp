@@ -84,6 +84,7 @@ class Pacer {
 struct IncrementsOf {
   int operator()(const LoadStep& step) const { return step.increments.value_or(1); }
   int operator()(const MoveStep& step) const { return step.increments.value_or(1); }
+  int operator()(const WaitStep& step) const { return step.increments.value_or(1); }
   int operator()(const PushStep& step) const { return step.increments.value_or(1); }
   template <typename Other>
   int operator()(const Other&) const {

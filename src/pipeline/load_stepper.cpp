@@ -27,6 +27,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
     goBackTo(good);
     return false;
   }
+  world_.tissue.endTimeStep();
   grasping_.closeJaws();
   world_.sliding.commit(pose, world_.tissue);
   tearOff();
@@ -44,9 +45,13 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     pushRigid(pose);  // robot pose -> contacts -> loading patches
     std::vector<LoadingPatch> patches = patchesOfTools(world_);
     const std::vector<LoadingPatch>& before = world_.tissue.patches();
-    if (!anyToolIn(patches, world_) && !anyToolIn(before, world_)) return true;
+    const bool stands = round == 1 && !world_.tissue.isMoving();
+    if (stands && !anyToolIn(patches, world_) && !anyToolIn(before, world_)) return true;
     if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
-    if (round == 1) good.shape = world_.tissue.shape();
+    if (round == 1) {
+      good.shape = world_.tissue.shape();
+      beginTimeStep(pose.stamp_s - good.pose.stamp_s);
+    }
     follow(std::move(patches));  // loading patches -> solve
     if (!world_.tools.anyRigid()) return settlesFrom(good, otherwise);
     if (leaptFrom(good) || turnedOver(good)) return false;
@@ -56,6 +61,11 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     world_.unfinished = world_.deadline.isOver();
     if (world_.unfinished) return true;
   }
+}
+
+// Without a duration the tools are elsewhere at once, as where they come in anew.
+void LoadStepper::beginTimeStep(double duration) {
+  if (world_.tissue.hasTime() && duration > 0.0) world_.tissue.beginTimeStep(duration);
 }
 
 // Solves on, kMoreSolves times at most, while the solve has not settled (isUnsettled). False: the

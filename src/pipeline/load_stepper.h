@@ -49,6 +49,7 @@ class LoadStepper {
   double throughAt(std::size_t link) const;
 
  private:
+  void beginTimeStep(double duration);
   void meet(const RobotPose& pose);
   void pushRigid(const RobotPose& pose);
   double deepestInRigid(const RobotPose& pose);

@@ -63,10 +63,13 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   beginReport();
   world_.report.lost = was_lost;
   if (was_lost) world_.report.behind = behind;
-  if (stands && !isLate()) return world_.report;
+  if (stands && !isLate() && !world_.tissue.isMoving()) {
+    if (world_.last_pose) world_.last_pose->stamp_s = world_.pose.stamp_s = goal.stamp_s;
+    return world_.report;
+  }
   const Bounded bounded(*this);
   if (world_.tissue.isLoading()) loadOn();
-  if (stands) {
+  if (stands && !world_.tissue.isMoving()) {
     finish();
     countLate();
   } else {
@@ -119,8 +122,29 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   describeTools();
 }
 
+SolveReport Pipeline::wait(double duration) {
+  if (world_.tools.size() == 0 && !world_.has_supports) {
+    const Bounded bounded(*this);
+    const SolveReport report = world_.tissue.wait(duration);
+    describeTools();
+    return report;
+  }
+  RobotPose pose = world_.last_pose ? world_.asked : world_.tools.complete({});
+  pose.links.resize(world_.tools.linkCount());
+  pose.stamp_s = world_.pose.stamp_s + duration;
+  step(pose);
+  return world_.tissue.lastReport();
+}
+
+void Pipeline::stopTime() {
+  if (!world_.tissue.hasTime()) return;
+  world_.tissue.stopTime();
+  touched_ = true;
+}
+
 SolveReport Pipeline::settle() {
   const Bounded bounded(*this);
+  world_.tissue.stopTime();
   const SolveReport report = parts_->load_step.balance();
   touch();
   return report;
@@ -178,7 +202,8 @@ double Pipeline::freeStepsTo(const RobotPose& pose) const {
 
 std::optional<StillPose> Pipeline::stillPose() const {
   const bool is_driven = parts_->drive.drivesAny();
-  if (!world_.last_pose || touched_ || isLate() || is_driven) return std::nullopt;
+  const bool stands = !touched_ && !isLate() && !is_driven && !world_.tissue.isMoving();
+  if (!world_.last_pose || !stands) return std::nullopt;
   RobotPose of_tools = world_.asked;
   of_tools.links.resize(world_.tools.linkCount());
   std::vector<double> reach;

@@ -12,6 +12,7 @@ namespace {
 
 RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
   RobotPose between = to;
+  between.stamp_s = from.stamp_s + share * (to.stamp_s - from.stamp_s);
   for (std::size_t link = 0; link < to.links.size(); ++link) {
     const Pose& start = from.links[link];
     const Pose& end = to.links[link];
@@ -54,24 +55,36 @@ bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
 RobotPose ToolMotion::walk(const RobotPose& pose) {
   RobotPose start = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
   world_.asked = pose;
-  if (letPass(start, pose)) {
+  const bool moves = world_.tissue.isMoving();
+  if (!moves && letPass(start, pose)) {
     passTo(pose);
     return pose;
   }
-  if (leadsNowhere(start, pose)) {
+  if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
   }
   return walkFrom(start, pose);
 }
 
+// Load steps of the way, or time steps, if these are more: whole ones, as a short one at the end
+// would be one of high accelerations.
+double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const {
+  const double duration = pose.stamp_s - start.stamp_s;
+  if (!world_.tissue.hasTime() || !(duration > 0.0)) return load_steps;
+  const double longest = std::max(world_.tissue.longestTimeStep(), tuning::kShortestTimeStep);
+  return std::ceil(std::max(load_steps, duration / longest) - tuning::kTimeRounding);
+}
+
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
-  const double steps = ways_.stepsBetween(start, pose);
+  const double load_steps = ways_.stepsBetween(start, pose);
+  const double steps = stepsOf(load_steps, start, pose);
   double gone = 0.0, longest = 1.0;
   load_step_.forgetCyclesInVain();
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
-    const double free = ways_.freeSteps(came(), pose);
+    const bool flies = load_steps > 0.0 && !world_.tissue.isMoving();
+    const double free = flies ? ways_.freeSteps(came(), pose) * (steps / load_steps) : 0.0;
     const double stride = std::max(longest, free);
     const bool is_last = gone + stride >= steps;
     const double there = is_last ? steps : gone + stride;

@@ -44,6 +44,7 @@ class ToolMotion {
 
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
   bool letPass(RobotPose& start, const RobotPose& pose) const;
+  double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);

@@ -122,4 +122,12 @@ constexpr double kFarthestLearned = 5e-3;
 // the square. Chosen: twice what is asked for.
 constexpr double kFarthestPredicted = 1e-3;
 
+// Time.
+// s: of a time step while a tool is there. Touches are solved to some micrometers, which over the
+// square of the step are accelerations: of shorter steps the forces would be noise. Longer: contact
+// begins late. Chosen.
+constexpr double kShortestTimeStep = 1e-3;
+// Of a time step (1): so little more than whole ones is rounding. Chosen.
+constexpr double kTimeRounding = 1e-6;
+
 }  // namespace robot_tissue::tuning

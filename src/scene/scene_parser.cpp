@@ -39,7 +39,7 @@ void readTissuePart(const Entry& entry, SceneReading& reading) {
 
 void readSolverPart(const Entry& entry, SceneReading& reading) {
   Scene& scene = reading.scene;
-  scene.solver = readSolver(entry, scene.tissue.model, reading.source.overrides, scene.remarks);
+  scene.solver = readSolver(entry, scene.tissue, reading.source.overrides, scene.remarks);
   requireMemoryOfMethod(reading.map["tissue"], scene);
 }
 

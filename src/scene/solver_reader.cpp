@@ -20,8 +20,17 @@ void requireFit(const Entry& entry, const std::string& method, const std::string
              " does not fit this model");
 }
 
+void requireSolvesInTime(const Entry& entry, const std::string& method) {
+  if (traitsOf(method).solves_in_time) return;
+  std::vector<std::string> fit;
+  for (const std::string& name : methodNames()) {
+    if (traitsOf(name).solves_in_time) fit.push_back(name);
+  }
+  entry.fail("with tissue.time must be " + joined(fit) + ": " + method + " has no time steps");
+}
+
 struct SolverReading {
-  const std::string& model;
+  const TissueConfig& tissue;
   const SolverOverrides& overrides;
   Remarks& remarks;
   SolverConfig solver;
@@ -31,7 +40,8 @@ void readMethod(const Entry& entry, SolverReading& reading) {
   const Entry method = overridden(entry, reading.overrides.method, "--method");
   if (!method.given()) return;
   reading.solver.method = method.choice(methodNames(), {});
-  requireFit(method, reading.solver.method, reading.model);
+  requireFit(method, reading.solver.method, reading.tissue.model);
+  if (reading.tissue.time) requireSolvesInTime(method, reading.solver.method);
 }
 
 void readTolerance(const Entry& entry, SolverReading& reading) {
@@ -66,11 +76,11 @@ const KeyTable<SolverReading> kSolverKeys = {
 
 }  // namespace
 
-SolverConfig readSolver(const Entry& entry, const std::string& model,
+SolverConfig readSolver(const Entry& entry, const TissueConfig& tissue,
                         const SolverOverrides& overrides, Remarks& remarks) {
   const Entry map_entry = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
-  SolverReading reading{model, overrides, remarks, {}};
-  reading.solver.method = methodsFor(model).front();
+  SolverReading reading{tissue, overrides, remarks, {}};
+  reading.solver.method = methodsFor(tissue.model).front();
   readKeys(MapReader(map_entry, namesOf(kSolverKeys)), kSolverKeys, reading);
   return reading.solver;
 }

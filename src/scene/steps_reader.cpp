@@ -61,6 +61,11 @@ void checkPolygon(const Entry& entry, const std::vector<Vec3>& corners, double s
   }
 }
 
+void requireTime(const Entry& entry, const Program& program) {
+  if (program.tissue.time) return;
+  entry.fail("must be left out unless the scene has tissue.time");
+}
+
 struct CutReading {
   const Program& program;
   CutStep step;
@@ -176,7 +181,14 @@ const std::vector<StepKind>& stepKinds() {
       {"cut", [](const Entry& entry, Program& program) -> Step { return readCut(entry, program); }},
       {"move",
        [](const Entry& entry, Program& program) -> Step {
-         return readMove(entry, program.tools, program.lengths, program.placed_tools);
+         MoveStep step = readMove(entry, program.tools, program.lengths, program.placed_tools);
+         if (step.duration) requireTime(entry, program);
+         return step;
+       }},
+      {"wait",
+       [](const Entry& entry, Program& program) -> Step {
+         requireTime(entry, program);
+         return readWait(entry);
        }},
       {"push",
        [](const Entry& entry, Program& program) -> Step {

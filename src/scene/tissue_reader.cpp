@@ -229,10 +229,34 @@ void readFixed(const Entry& entry, TissueReading& reading) {
 void readGravity(const Entry& entry, TissueReading& reading) {
   TissueConfig& tissue = reading.tissue;
   if (entry.given()) tissue.gravity = readVector(entry, ranges::gravity(), ranges::kLeastGravity);
-  if (tissue.gravity != Vec3::Zero() && tissue.fixed.empty() && !reading.supported) {
+  const bool falls = tissue.fixed.empty() && !reading.supported && !tissue.time;
+  if (tissue.gravity != Vec3::Zero() && falls) {
     entry.fail(
-        "must be zero unless tissue.fixed holds nodes or supports bear it, the tissue would fall");
+        "must be zero unless tissue.fixed holds nodes, supports bear it or tissue.time lets it "
+        "fall, "
+        "the tissue would fall");
   }
+}
+
+const KeyTable<TimeConfig> kTimeKeys = {
+    {"mode",
+     [](const Entry& entry, TimeConfig&) {
+       if (entry.given()) entry.choice({"dynamic"}, {});
+     }},
+    {"damping_time",
+     [](const Entry& entry, TimeConfig& time) {
+       time.damping_time = entry.numberOr(time.damping_time, ranges::dampingTime());
+     }},
+};
+
+void readTime(const Entry& entry, TissueReading& reading) {
+  if (!entry.given()) return;
+  if (reading.tissue.model != "elastic") {
+    entry.fail("must be left out, only model elastic moves in time");
+  }
+  TimeConfig time;
+  readKeys(MapReader(entry, namesOf(kTimeKeys)), kTimeKeys, time);
+  reading.tissue.time = time;
 }
 
 // The tissue's keys: first those that make the grid, then those that are checked against it.
@@ -248,6 +272,7 @@ const KeyTable<TissueReading> kBodyKeys = {
        if (entry.given()) reading.tissue.model = entry.choice(modelNames(), {});
      }},
     {"material", readMaterial},
+    {"time", readTime},
 };
 const KeyTable<TissueReading> kGridKeys = {
     {"regions", readRegions},

@@ -68,7 +68,21 @@ void readIncrements(const Entry& entry, ToolStep& step) {
 }
 
 const KeyTable<MoveStep> kMoveKeys = {
-    {"tool"}, {"from"}, {"to"}, {"increments", readIncrements<MoveStep>}};
+    {"tool"},
+    {"from"},
+    {"to"},
+    {"increments", readIncrements<MoveStep>},
+    {"duration",
+     [](const Entry& entry, MoveStep& step) {
+       if (entry.given()) step.duration = entry.number(ranges::duration());
+     }},
+};
+
+const KeyTable<WaitStep> kWaitKeys = {
+    {"duration",
+     [](const Entry& entry, WaitStep& step) { step.duration = entry.number(ranges::duration()); }},
+    {"increments", readIncrements<WaitStep>},
+};
 
 const KeyTable<PushStep> kPushKeys = {
     {"tool"},
@@ -106,6 +120,12 @@ MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
   step.to = readPlace(map["to"], hasJaws(tool), lengths);
   readKeys(map, kMoveKeys, step);
   standing.insert(tool.name);
+  return step;
+}
+
+WaitStep readWait(const Entry& entry) {
+  WaitStep step;
+  readKeys(MapReader(entry, namesOf(kWaitKeys)), kWaitKeys, step);
   return step;
 }
 

@@ -69,14 +69,15 @@ std::string patchesCsv(const RunResult& result) {
 std::string incrementsCsv(const RunResult& result) {
   std::string csv =
       "step,increment,status,wall_ms,iterations,residual,error_estimate,active_nodes,layers,"
-      "volume_ratio,inverted_cells\n";
+      "volume_ratio,inverted_cells,update_ms,time\n";
   for (const IncrementRow& row : result.increments) {
     const SolveReport& report = row.report;
     csv += text(row.step, row.increment) + ',' + toString(report.status) + ',' +
            text(report.wall_ms) + ',' + std::to_string(report.iterations) + ',' +
            text(report.residual) + ',' + text(report.error_estimate) + ',' +
            std::to_string(report.active_nodes) + ',' + std::to_string(report.layers) + ',' +
-           text(report.volume_ratio) + ',' + std::to_string(report.inverted_cells) + '\n';
+           text(report.volume_ratio) + ',' + std::to_string(report.inverted_cells) + ',' +
+           text(row.update_ms) + ',' + text(row.time) + '\n';
   }
   return csv;
 }

@@ -16,6 +16,8 @@ struct IncrementRow {
   int step = 0;       // from 0, as in steps[0]
   int increment = 1;  // from 1, anew in every step
   SolveReport report;
+  double update_ms = 0.0;  // contacts and solve
+  double time = 0.0;       // that went by since the start (s)
 };
 
 struct PatchRow {

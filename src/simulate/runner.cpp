@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
@@ -14,6 +15,7 @@ const char* keyOf(const CutStep&) { return "cut"; }
 const char* keyOf(const ReleaseStep&) { return "release"; }
 const char* keyOf(const ResetStep&) { return "reset"; }
 const char* keyOf(const MoveStep&) { return "move"; }
+const char* keyOf(const WaitStep&) { return "wait"; }
 const char* keyOf(const PushStep&) { return "push"; }
 const char* keyOf(const GraspStep&) { return "grasp"; }
 const char* keyOf(const SaveStep&) { return "save"; }
@@ -142,7 +144,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
     if (tools_.of(tool)) keepTool(tool, increment);
   }
-  result_.increments.push_back({step_, increment, report});
+  const double update_ms = report.wall_ms + std::exchange(contact_ms_, 0.0);
+  result_.increments.push_back({step_, increment, report, update_ms, time_});
   if (on_row_) on_row_(result_.increments.back(), increments);
   const bool more = is_cut_short_ || increment < increments || at(step_) + 1 < scene_.steps.size();
   if (more && deadline_.isOver()) throw TimeIsOver();

@@ -23,6 +23,8 @@ class Runner {
     std::size_t tool = 0;
     MoveStep::Place from;
     MoveStep::Place to;
+    double begin = 0.0;     // s
+    double duration = 0.0;  // s; 0: no time goes by
     int steps = 1;
     int gone = 0;  // load steps that were walked
   };
@@ -52,9 +54,11 @@ class Runner {
 
   // tool_steps.cpp
   void perform(const MoveStep& step);
+  void perform(const WaitStep& step);
   void perform(const PushStep& step);
   void perform(const GraspStep& step);
   void appear(std::size_t tool, const MoveStep::Place& place);
+  void moveInTime(const Way& way, int increments);
   int loadSteps(double steps) const;
   void walkTo(Way& way, double share);
   void place(const Way& way, double share);
@@ -74,6 +78,8 @@ class Runner {
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)
   Updates updates_;
+  double contact_ms_ = 0.0;  // of the tools' updates since the last row
+  double time_ = 0.0;        // that went by (s)
   RunResult result_;
   int step_ = 0;
   bool is_cut_short_ = false;  // the way of a tool, as the time is over

@@ -14,11 +14,13 @@ void Runner::perform(const MoveStep& step) {
     endPush(tool);
     remark("tool '" + step.tool + "' is moved, which ends its push");
   }
+  if (!step.duration) pipeline_.stopTime();
   if (step.from) appear(tool, *step.from);
-  Way way{tool, *tools_.of(tool), step.to};
+  Way way{tool, *tools_.of(tool), step.to, time_, step.duration.value_or(0.0)};
   tools_.put(tool, step.to);
   way.steps = loadSteps(pipeline_.stepsTo(tools_.pose()));
   const int increments = step.increments.value_or(way.steps);
+  if (step.duration) return moveInTime(way, increments);
   for (int increment = 1; increment <= increments; ++increment) {
     const double share = static_cast<double>(increment) / increments;
     walkTo(way, share);
@@ -30,6 +32,15 @@ void Runner::perform(const MoveStep& step) {
     }
     keep(SolveReport(), increment, increments);
     if (is_between) pipeline_.undoTrial();
+  }
+  remarkHolds();
+}
+
+void Runner::moveInTime(const Way& way, int increments) {
+  for (int increment = 1; increment <= increments; ++increment) {
+    place(way, static_cast<double>(increment) / increments);
+    follow();
+    keep(SolveReport(), increment, increments);
   }
   remarkHolds();
 }
@@ -62,6 +73,7 @@ void Runner::walkTo(Way& way, double share) {
 }
 
 void Runner::place(const Way& way, double share) {
+  time_ = way.begin + share * way.duration;
   tools_.put(way.tool, between(way.from, way.to, share));
 }
 
@@ -77,7 +89,23 @@ void Runner::appear(std::size_t tool, const MoveStep::Place& place) {
   follow();
 }
 
+void Runner::perform(const WaitStep& step) {
+  const double begin = time_;
+  const int increments = step.increments.value_or(1);
+  for (int increment = 1; increment <= increments; ++increment) {
+    time_ = begin + step.duration * increment / increments;
+    SolveReport report;
+    if (tools_.count() > 0 || !scene_.supports.empty()) {
+      follow();
+    } else {
+      report = pipeline_.wait(step.duration / increments);
+    }
+    keep(report, increment, increments);
+  }
+}
+
 void Runner::perform(const PushStep& step) {
+  pipeline_.stopTime();
   const std::size_t tool = tools_.indexOf(step.tool);
   const int increments = step.increments.value_or(1);
   for (int increment = 1; increment <= increments; ++increment) {
@@ -125,8 +153,11 @@ void Runner::followPushes() {
 }
 
 void Runner::update() {
-  const StepReport& report = pipeline_.step(tools_.pose());
+  RobotPose pose = tools_.pose();
+  pose.stamp_s = time_;
+  const StepReport& report = pipeline_.step(pose);
   updates_.any = true;
+  contact_ms_ += report.contact_ms;
   updates_.solve_ms += report.solve_ms;
   updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
   if (report.too_fast) updates_.worst = std::max(updates_.worst, SolveStatus::kLate);

@@ -88,7 +88,13 @@ struct MoveStep {
   std::string tool;
   std::optional<Place> from;  // empty: from where it stands
   Place to;
-  std::optional<int> increments;  // empty: one a load step
+  std::optional<int> increments;   // empty: one a load step
+  std::optional<double> duration;  // s; empty: no time goes by, each increment comes to balance
+};
+// Time goes by, tools stand.
+struct WaitStep {
+  double duration = 0.0;          // s
+  std::optional<int> increments;  // empty: 1
 };
 // A force drives a tool from where it stands, along the force, until the tissue's answer equals it.
 struct PushStep {
@@ -107,8 +113,8 @@ struct SaveStep {
 struct LoadStateStep {
   std::string file;
 };
-using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, PushStep,
-                          GraspStep, SaveStep, LoadStateStep>;
+using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, WaitStep,
+                          PushStep, GraspStep, SaveStep, LoadStateStep>;
 
 // One collision shape of a tool, placed in the frame of its link.
 struct ToolShape {

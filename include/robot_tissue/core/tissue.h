@@ -131,6 +131,7 @@ class Tissue {
     SolveReport report;
     bool is_late = false;
     std::shared_ptr<const NodeMotion> motion;  // null: at rest
+    bool in_time = false;
   };
   Shape shape() const;
   void restore(const Shape& shape);

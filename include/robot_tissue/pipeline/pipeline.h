@@ -50,6 +50,10 @@ class Pipeline {
   // Follows the tools to their new pose, one entry a link of the tools. Poses with a non-finite
   // number throw InputError.
   const StepReport& step(const RobotPose& pose);
+  // Where tissue.time is set, time goes by in steps from one pose's stamp to the next one's; here
+  // while the tools stand (s). As Tissue::stopTime.
+  SolveReport wait(double duration);
+  void stopTime();
   // The poses at which step() does nothing, until one of the calls below; none while something is
   // left to do, or a force drives a tool.
   std::optional<StillPose> stillPose() const;

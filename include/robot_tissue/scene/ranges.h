@@ -24,6 +24,9 @@ inline Range friction() { return {0.0, 1e3, ""}; }
 inline Range force() { return {-1e9, 1e9, "N"}; }
 inline Range forceLimit() { return {0.0, 1e9, "N"}; }  // 0: none
 
+inline Range dampingTime() { return {0.0, 1e3, "s"}; }
+inline Range duration() { return {1e-6, 3600.0, "s"}; }  // of a step
+
 inline Range tolerance() { return {1e-9, 0.5, ""}; }
 inline Range budget() { return {0.0, 1e9, "ms"}; }  // 0: none
 

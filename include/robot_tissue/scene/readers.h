@@ -34,7 +34,7 @@ void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::
 // Keys min and max of a map, as nodes of the grid; refused when there are none.
 Box readNodeBox(const MapReader& map, const Grid& grid);
 
-SolverConfig readSolver(const Entry& entry, const std::string& model,
+SolverConfig readSolver(const Entry& entry, const TissueConfig& tissue,
                         const SolverOverrides& overrides, Remarks& remarks);
 
 // Follows the program through: which patches stand, whose nodes they hold, which tools stand.
@@ -55,6 +55,7 @@ LoadStep readLoad(const Entry& entry, const Grid& grid, const std::vector<NodeRa
 // `standing`: names of the tools that a move has placed.
 MoveStep readMove(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const LengthRanges& lengths, std::set<std::string>& standing);
+WaitStep readWait(const Entry& entry);
 PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing);
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,

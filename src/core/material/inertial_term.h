@@ -15,6 +15,9 @@ struct InertialTerm {
   double per_mass = 0.0;          // stiffness that a kilogram has against motion (1/s^2)
   std::vector<Vec3> force;        // per node, ghosts last (N)
   std::vector<Vec3> free_motion;  // displacements to which nodes would go without a force (m)
+  // Least length that a solve's error is relative to, otherwise the way from the free motion; as a
+  // vector of all nodes (m).
+  double least_way = 0.0;
 };
 
 }  // namespace robot_tissue

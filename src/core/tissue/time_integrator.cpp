@@ -47,10 +47,17 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
   term_.per_mass = 2.0 / (h * h);
   term_.free_motion.resize(nodes);
   term_.force.resize(nodes);
+  double way = 0.0, displacement = 0.0;
   for (std::size_t node = 0; node < nodes; ++node) {
+    way += (h * v[node]).squaredNorm();
+    displacement += before_[node].squaredNorm();
     term_.free_motion[node] = before_[node] + h * v[node];
     term_.force[node] = masses[node] * term_.per_mass * term_.free_motion[node];
   }
+  term_.least_way =
+      std::max({tuning::kSolvedOfWay * std::sqrt(way),
+                tuning::kSolvedOfDisplacement * std::sqrt(displacement),
+                tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(nodes))});
   if (damping_time_ == 0.0) return term_;
   LatticeState there = state;
   for (std::size_t node = 0; node < nodes; ++node) {
@@ -83,8 +90,8 @@ void TimeIntegrator::end(const LatticeState& state) {
   judge(state, motion);
 }
 
-// The local error of a step is about h^2 |a' - a| times a number below one (Zienkiewicz and Xie
-// 1991); it is held against what moves: the way of the step, a share of the displacement.
+// The local error of a step is h^2 |a' - a| / 3 (tuning.h); it is held against what moves: the way
+// of the step, and the displacement.
 void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
   const double h = duration_;
   double way = 0.0, displacement = 0.0, error = 0.0, farthest = 0.0;

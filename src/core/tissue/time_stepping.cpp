@@ -50,17 +50,20 @@ SolveReport Tissue::asItIs() {
 }
 
 SolveReport Tissue::wait(double duration) {
-  SolveReport report = last_report_;
   double left = duration;
   double longest = longestTimeStep();
   SolveStatus worst = SolveStatus::kOk;
+  double wall_ms = 0.0;
+  int iterations = 0;
   while (left > 0.0) {
     const double steps = std::ceil(left / longest - tuning::kRounding);
     const double step = left / std::max(1.0, steps);
     const Shape good = shape();
     beginTimeStep(step);
-    report = solve(freeNodes());
+    const SolveReport report = solve(freeNodes());
     endTimeStep();
+    wall_ms += report.wall_ms;
+    iterations += report.iterations;
     if (time_->errorRatio() > tuning::kRefusedError && step > tuning::kShortestStep) {
       longest = std::max(tuning::kShortestStep, tuning::kMostShrink * step);
       restore(good);
@@ -75,8 +78,10 @@ SolveReport Tissue::wait(double duration) {
       break;
     }
   }
-  report.status = last_report_.status = worst;
-  return report;
+  last_report_.status = worst;
+  last_report_.wall_ms = wall_ms;
+  last_report_.iterations = iterations;
+  return last_report_;
 }
 
 }  // namespace robot_tissue

@@ -132,11 +132,13 @@ Tissue::Shape Tissue::shape() const {
           named_patches_,
           last_report_,
           is_late_,
-          time_ ? time_->motion() : nullptr};
+          time_ ? time_->motion() : nullptr,
+          in_time_};
 }
 
 void Tissue::restore(const Shape& shape) {
   if (time_) time_->take(shape.motion);
+  in_time_ = shape.in_time;
   in_time_step_ = false;
   kept_.reset();
   state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);

@@ -37,8 +37,9 @@ void ErrorEstimator<Real>::update(const SolveContext& solve, const FasCgCycle<Re
   if (solve.cycles > 0 && knows_way_) learn(solve, last, trend_before);
   knows_way_ = true;
   const double least = tuning::kStill * std::sqrt(solve.hold.freeNodes() + 1.0);
-  const double length =
-      free_motion_ == nullptr ? shape_.displacementNorm() : shape_.distanceFrom(*free_motion_);
+  const double length = free_motion_ == nullptr
+                            ? shape_.displacementNorm()
+                            : std::max(shape_.distanceFrom(*free_motion_), least_way_);
   const double unit = std::max(length, least);
   error_ = factor.value() * trend_ / unit;
   const double gain =

@@ -37,9 +37,12 @@ class ErrorEstimator {
 
   ErrorFactor factor;
 
-  // The motion without a force, that errors are relative to the way from; null: no time step. It
-  // must live as long as the cycles.
-  void measureFrom(const CompositeVector<Real>* free_motion) { free_motion_ = free_motion; }
+  // The motion without a force, that errors are relative to the way from, or to `least` (spacings);
+  // null: no time step. It must live as long as the cycles.
+  void measureFrom(const CompositeVector<Real>* free_motion, double least) {
+    free_motion_ = free_motion;
+    least_way_ = least;
+  }
 
   // Cycles begin, from the shape as it is.
   void begin();
@@ -66,6 +69,7 @@ class ErrorEstimator {
 
   const CompositeShape<Real>& shape_;
   const CompositeVector<Real>* free_motion_ = nullptr;
+  double least_way_ = 0.0;
   MotionLeft left_;
   double trend_ = 0.0;  // |x|, as it falls under conjugate gradients, where it swings
   double error_ = 0.0;

@@ -14,8 +14,8 @@ template <typename Real>
 class FasCgIteration {
  public:
   // As ErrorEstimator.
-  void measureFrom(const CompositeVector<Real>* free_motion) {
-    estimator_.measureFrom(free_motion);
+  void measureFrom(const CompositeVector<Real>* free_motion, double least) {
+    estimator_.measureFrom(free_motion, least);
   }
   // What it reads and moves must outlive it.
   struct On {

@@ -134,8 +134,8 @@ template <typename Real>
 void FasCgSolver<Real>::takeTimeStep(const SolveContext& solve) {
   const InertialTerm* inertia = model_.inertia();
   shape_.levels().takeTimeStep(inertia);
-  iteration_.measureFrom(inertia == nullptr ? nullptr : &free_motion_);
-  if (inertia == nullptr) return;
+  if (inertia == nullptr) return iteration_.measureFrom(nullptr, 0.0);
+  iteration_.measureFrom(&free_motion_, inertia->least_way / lattice_.spacing());
   shape_.levels().displacements().take(inertia->free_motion, solve.hold.dirichletMask());
   shape_.keepPlaces(free_motion_);
 }
