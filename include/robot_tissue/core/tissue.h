@@ -158,6 +158,9 @@ class Tissue {
  private:
   SolveReport solve(const std::vector<int>& disturbed);
   bool takesNoTime() const;
+  void findFreePieces();
+  void keepMomentum();
+  void predict();
   SolveReport asItIs();
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
@@ -201,8 +204,9 @@ class Tissue {
   double rest_volume_ = 0.0;    // m^3
   Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;
-  std::vector<Vec3> vertices_;  // deformed, of the surface
-  Box bounds_;                  // of them
+  Vec3 gravity_ = Vec3::Zero();  // m/s^2
+  std::vector<Vec3> vertices_;   // deformed, of the surface
+  Box bounds_;                   // of them
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
   std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there
@@ -213,7 +217,10 @@ class Tissue {
   std::optional<Deadline> deadline_;
   ContactUpdate* contact_update_ = nullptr;
   std::unique_ptr<TimeIntegrator> time_;  // null: there is none
-  bool in_time_ = false;                  // since the last stopTime there was a time step
+  // Nodes of each piece that no fixed node holds, and the cells that they were found for.
+  std::vector<std::vector<int>> free_pieces_;
+  std::shared_ptr<const CellSet> free_pieces_of_;
+  bool in_time_ = false;  // since the last stopTime there was a time step
   bool in_time_step_ = false;
 };
 

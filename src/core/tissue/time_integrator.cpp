@@ -37,6 +37,7 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
                                           const CellForces& cell_forces) {
   if (!motion_ || motion_->velocity.size() != state.displacement.size()) wake(state);
   duration_ = duration;
+  masses_ = std::move(masses);
   before_ = state.displacement;
   const std::size_t nodes = before_.size();
   const std::vector<Vec3>& v = motion_->velocity;
@@ -52,7 +53,7 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
     way += (h * v[node]).squaredNorm();
     displacement += before_[node].squaredNorm();
     term_.free_motion[node] = before_[node] + h * v[node];
-    term_.force[node] = masses[node] * term_.per_mass * term_.free_motion[node];
+    term_.force[node] = masses_[node] * term_.per_mass * term_.free_motion[node];
   }
   term_.least_way =
       std::max({tuning::kSolvedOfWay * std::sqrt(way),
@@ -70,6 +71,18 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
     term_.force[node] -= damping_time_ * rate * forces[node];
   }
   return term_;
+}
+
+Vec3 TimeIntegrator::drift(const std::vector<int>& nodes, const LatticeState& state,
+                           const Vec3& gravity) const {
+  Vec3 moment = Vec3::Zero();
+  double mass = 0.0;
+  for (const int node : nodes) {
+    moment += masses_[at(node)] * (state.displacement[at(node)] - term_.free_motion[at(node)]);
+    mass += masses_[at(node)];
+  }
+  if (mass == 0.0) return Vec3::Zero();
+  return moment / mass - 0.5 * duration_ * duration_ * gravity;
 }
 
 void TimeIntegrator::end(const LatticeState& state) {

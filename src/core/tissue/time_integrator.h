@@ -47,6 +47,13 @@ class TimeIntegrator {
   // The term of a step of that length (s) from the shape on.
   const InertialTerm& begin(double duration, const LatticeState& state, std::vector<double> masses,
                             const CellForces& cell_forces);
+  // Where the step leads with the acceleration that there is: a first guess.
+  Vec3 predicted(std::size_t node) const {
+    return term_.free_motion[node] + 0.5 * duration_ * duration_ * motion_->acceleration[node];
+  }
+  // Of what nothing holds or touches, only gravity moves the center of mass (g: m/s^2): how far it
+  // is off that in the shape at the step's end (m), as a solve that is not exact leaves it.
+  Vec3 drift(const std::vector<int>& nodes, const LatticeState& state, const Vec3& gravity) const;
   // The step ended in that shape; where nothing moves any more, the nodes are at rest.
   void end(const LatticeState& state);
   // Estimated error of the last step over the one allowed.
@@ -61,6 +68,7 @@ class TimeIntegrator {
   Motion motion_;
   double duration_ = 0.0;  // of the step under way (s)
   std::vector<Vec3> before_;
+  std::vector<double> masses_;
   InertialTerm term_;
   double error_ratio_ = 0.0;
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutting/split_cells.h"
 #include "material/elastic_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
@@ -31,7 +32,53 @@ void Tissue::beginTimeStep(double duration) {
 void Tissue::endTimeStep() {
   if (!in_time_step_) return;
   in_time_step_ = false;
+  keepMomentum();
   time_->end(state_);
+}
+
+void Tissue::findFreePieces() {
+  if (free_pieces_of_ == state_.cells) return;
+  free_pieces_of_ = state_.cells;
+  const std::vector<int> pieces = pieceOfNodes();
+  std::vector<bool> held;
+  free_pieces_.clear();
+  for (std::size_t node = 0; node < pieces.size(); ++node) {
+    const std::size_t piece = at(std::max(pieces[node], 0));
+    if (free_pieces_.size() <= piece) free_pieces_.resize(piece + 1);
+    held.resize(free_pieces_.size(), false);
+    free_pieces_[piece].push_back(static_cast<int>(node));
+    if (isFixed(lattice_, *state_.cells, static_cast<int>(node))) held[piece] = true;
+  }
+  for (std::size_t piece = 0; piece < held.size(); ++piece) {
+    if (held[piece]) free_pieces_[piece].clear();
+  }
+}
+
+// Where nothing holds or touches a piece its center of mass goes as gravity says, to rounding.
+void Tissue::keepMomentum() {
+  findFreePieces();
+  std::vector<int> touched;
+  for (const LoadingPatch& patch : patches_) {
+    touched.insert(touched.end(), patch.nodes.begin(), patch.nodes.end());
+    for (const ContactSpring& contact : patch.contacts) {
+      for (const NodeWeight& carrier : contact.carriers) touched.push_back(carrier.node);
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  const auto is_touched = [&](int node) {
+    return std::binary_search(touched.begin(), touched.end(), node);
+  };
+  bool moved = false;
+  for (const std::vector<int>& piece : free_pieces_) {
+    if (piece.empty() || std::any_of(piece.begin(), piece.end(), is_touched)) continue;
+    const Vec3 drift = time_->drift(piece, state_, gravity_);
+    if (drift.isZero(0.0)) continue;
+    for (const int node : piece) state_.displacement[at(node)] -= drift;
+    moved = true;
+  }
+  if (!moved) return;
+  kept_.reset();
+  deformSurface();
 }
 
 void Tissue::stopTime() {
@@ -49,7 +96,22 @@ SolveReport Tissue::asItIs() {
   return last_report_;
 }
 
+// Tools would have to be looked at on the way.
+void Tissue::predict() {
+  kept_.reset();
+  for (std::size_t node = 0; node < state_.displacement.size(); ++node) {
+    if (!isFixed(lattice_, *state_.cells, static_cast<int>(node))) {
+      state_.displacement[node] = time_->predicted(node);
+    }
+  }
+}
+
 SolveReport Tissue::wait(double duration) {
+  if (in_time_ && !time_->moves()) {
+    last_report_.iterations = 0;
+    last_report_.wall_ms = 0.0;
+    return last_report_;
+  }
   double left = duration;
   double longest = longestTimeStep();
   SolveStatus worst = SolveStatus::kOk;
@@ -60,7 +122,8 @@ SolveReport Tissue::wait(double duration) {
     const double step = left / std::max(1.0, steps);
     const Shape good = shape();
     beginTimeStep(step);
-    const SolveReport report = solve(freeNodes());
+    if (patches_.empty()) predict();
+    const SolveReport report = solve({});
     endTimeStep();
     wall_ms += report.wall_ms;
     iterations += report.iterations;

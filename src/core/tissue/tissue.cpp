@@ -45,6 +45,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       balance_fingerprint_(balanceFingerprint(tissue, solver)),
       method_(makeMethod(solver, lattice_, *model_)),
       has_gravity_(!tissue.gravity.isZero()),
+      gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
   if (tissue.time) {
     time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,

@@ -59,9 +59,11 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
                                    const std::vector<int>& disturbed, const Budget& budget) {
   SolveContext solve{shape, hold, budget};
   solve.in_contact = !hold.touched().empty();
-  solve.has_changed = solve.in_contact || !disturbed.empty();
+  const bool in_time = model_.inertia() != nullptr;
+  solve.has_changed = solve.in_contact || !disturbed.empty() || in_time;
   findLevels(shape.state);
   part_.findSeeds(solve, disturbed);
+  if (in_time) part_.seedAll();
   SolveReport report;
   if (part_.isEmpty()) return report;
   for (int round = 0; round < tuning::kMostTurns; ++round) {

@@ -19,6 +19,7 @@ class OpenPart {
 
   // The seeds: nodes in patches and contacts, now and in the last solve, and disturbed ones.
   void findSeeds(const SolveContext& solve, const std::vector<int>& disturbed);
+  void seedAll() { seeds_ = wholeOf(lattice_.size()); }  // as where all nodes move in time
   bool isEmpty() const { return seeds_.isEmpty(); }
   GridBox box() const;  // the part, in grid points; may reach beyond the lattice
   int layers() const { return static_cast<int>(layers_); }

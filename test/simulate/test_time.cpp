@@ -1,0 +1,113 @@
+// Scenes in which time goes by.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "result_text.h"
+#include "tool_scenes.h"
+
+namespace robot_tissue {
+namespace {
+
+const std::string kTime = "  time: {damping_time: 0.01}\n";
+
+std::string refusalOf(const std::string& scene) {
+  try {
+    sceneOf(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string inTime(const std::string& tool, const Vec3& from, const Vec3& to, double duration,
+                   int increments) {
+  return "  - move: {tool: " + tool + ", from: {xyz: " + list(from) + "}, to: {xyz: " + list(to) +
+         "}, duration: " + std::to_string(duration) +
+         ", increments: " + std::to_string(increments) + "}\n";
+}
+
+std::string waiting(double duration, int increments) {
+  return "  - wait: {duration: " + std::to_string(duration) +
+         ", increments: " + std::to_string(increments) + "}\n";
+}
+
+TEST(TimeSteps, RowsTellTheTimeThatWentBy) {
+  const RunResult result = run(block(kTime) + kSphere + "steps:\n" +
+                               inTime("probe", sphereAt(-0.001), sphereAt(0.004), 0.1, 10) +
+                               waiting(0.2, 4) + "  - settle: {}\n");
+  ASSERT_EQ(result.increments.size(), 15U);
+  EXPECT_NEAR(result.increments[0].time, 0.01, 1e-12);
+  EXPECT_NEAR(result.increments[9].time, 0.1, 1e-12);
+  EXPECT_NEAR(result.increments[10].time, 0.15, 1e-12);
+  EXPECT_NEAR(result.increments[14].time, 0.3, 1e-12);
+  EXPECT_TRUE(result.allOk());
+  const std::string head = incrementsCsv(result).substr(0, incrementsCsv(result).find('\n'));
+  EXPECT_EQ(head.substr(head.rfind("inverted_cells")), "inverted_cells,update_ms,time");
+}
+
+// Slow, or at rest again, the tissue is where it would be without time; fast, it pushes back
+// harder, as its rate of strain counts.
+TEST(TimeSteps, SlowMotionIsThatWithoutTime) {
+  const RunResult still =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.001), sphereAt(0.004), 5));
+  const double force = still.tools.back().force.z();
+  const auto pressed = [&](double duration) {
+    return run(block(kTime) + kSphere + "steps:\n" +
+               inTime("probe", sphereAt(-0.001), sphereAt(0.004), duration, 20) + waiting(1.0, 20));
+  };
+  const RunResult slow = pressed(5.0), fast = pressed(0.05);
+  EXPECT_NEAR(rowsOf(slow, 0, "probe").back().force.z(), force, 0.03 * force);
+  EXPECT_GT(rowsOf(fast, 0, "probe").back().force.z(), 1.1 * force);
+  EXPECT_NEAR(rowsOf(fast, 1, "probe").back().force.z(), force, 0.02 * force);
+  EXPECT_NEAR(greatestDisplacement(fast), greatestDisplacement(still),
+              0.02 * greatestDisplacement(still));
+}
+
+TEST(TimeSteps, WhatHasComeToRestCostsNothing) {
+  const RunResult result = run(block(kTime) + kSphere + "steps:\n" +
+                               inTime("probe", sphereAt(-0.001), sphereAt(0.004), 0.1, 10) +
+                               waiting(5.0, 100) + waiting(5.0, 1));
+  EXPECT_EQ(result.increments.back().update_ms, 0.0);
+  const auto rows = rowsOf(result, 1, "probe");
+  EXPECT_EQ(rows[98].force, rows[99].force);
+}
+
+TEST(TimeSteps, TissueSwingsBackWhenItsToolIsGone) {
+  const RunResult result = run(block(kTime) + kSphere + "steps:\n" +
+                               inTime("probe", sphereAt(-0.001), sphereAt(0.004), 0.5, 20) +
+                               "  - move: {tool: probe, to: {xyz: " + list(sphereAt(-0.05)) +
+                               "}, duration: 0.01}\n" + waiting(2.0, 20));
+  EXPECT_TRUE(result.allOk());
+  EXPECT_EQ(rowsOf(result, 2, "probe").back().force, Vec3(Vec3::Zero()));
+  EXPECT_LT(greatestDisplacement(result), 1e-5);
+}
+
+TEST(TimeSteps, TheSameBitsEachTime) {
+  const std::string scene = block(kTime) + kSphere + "steps:\n" +
+                            inTime("probe", sphereAt(-0.001), sphereAt(0.004), 0.1, 10) +
+                            waiting(0.05, 5);
+  EXPECT_EQ(run(scene).displacement, run(scene).displacement);
+}
+
+TEST(TimeSteps, BadOnesAreRefusedInALine) {
+  const auto expect = [](const std::string& scene, const std::string& fragment) {
+    const std::string line = refusalOf(scene);
+    EXPECT_NE(line.find(fragment), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  };
+  const std::string steps = kSphere + "steps:\n";
+  expect(block() + steps + waiting(0.1, 1), "steps[0].wait");
+  expect(block() + steps + inTime("probe", sphereAt(0), sphereAt(0), 0.1, 1),
+         "unless the scene has tissue.time");
+  expect(block(kTime) + steps + waiting(0.0, 1), "steps[0].wait.duration = 0");
+  expect(block(kTime) + steps + waiting(-1.0, 1), "steps[0].wait.duration = -1");
+  expect(block("  time: {damping_time: -0.1}\n") + steps, "tissue.time.damping_time = -0.1");
+  expect(block("  time: {mode: fast}\n") + steps, "tissue.time.mode = fast");
+  expect(block("  time: {}\n  model: six_spring\n") + steps, "only model elastic");
+  expect(block(kTime) + steps + "  - settle: {}\nsolver: {method: vbd}\n",
+         "with tissue.time must be layered, newton");
+}
+
+}  // namespace
+}  // namespace robot_tissue
