@@ -28,6 +28,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
     return false;
   }
   world_.tissue.endTimeStep();
+  world_.reached_s = pose.stamp_s;
   grasping_.closeJaws();
   world_.sliding.commit(pose, world_.tissue);
   tearOff();
@@ -230,6 +231,7 @@ void LoadStepper::tearOff() {
 
 void LoadStepper::goBackTo(const Checkpoint& good) {
   world_.pose = good.pose;
+  world_.reached_s = good.pose.stamp_s;
   world_.tissue.restore(good.shape);
   world_.sticking.restore(good.attachments, world_.tissue);
   world_.sliding = good.contacts;

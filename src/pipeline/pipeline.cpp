@@ -65,6 +65,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   if (was_lost) world_.report.behind = behind;
   if (stands && !isLate() && !world_.tissue.isMoving()) {
     if (world_.last_pose) world_.last_pose->stamp_s = world_.pose.stamp_s = goal.stamp_s;
+    world_.reached_s = goal.stamp_s;
     return world_.report;
   }
   const Bounded bounded(*this);
@@ -131,10 +132,12 @@ SolveReport Pipeline::wait(double duration) {
   }
   RobotPose pose = world_.last_pose ? world_.asked : world_.tools.complete({});
   pose.links.resize(world_.tools.linkCount());
-  pose.stamp_s = world_.pose.stamp_s + duration;
+  pose.stamp_s = world_.reached_s.value_or(0.0) + duration;
   step(pose);
   return world_.tissue.lastReport();
 }
+
+void Pipeline::startClock(double seconds) { world_.reached_s = seconds; }
 
 void Pipeline::stopTime() {
   if (!world_.tissue.hasTime()) return;

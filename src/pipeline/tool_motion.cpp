@@ -130,9 +130,12 @@ void ToolMotion::startAnew(RobotPose& pose) {
   }
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) grasping_.forgetJaws(tool);
   world_.pose = world_.tools.complete({});
+  if (!world_.reached_s || *world_.reached_s > pose.stamp_s) world_.reached_s = pose.stamp_s;
+  world_.pose.stamp_s = *world_.reached_s;
   load_step_.lieDown();
   checkpoints_.clear();
   world_.last_pose = pose;
+  world_.last_pose->stamp_s = *world_.reached_s;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (waitsOutside(tool, tool > 0 ? Others::kCame : Others::kNone, pose)) {
       world_.last_pose = world_.tools.withTool(tool, pose, *world_.last_pose);
@@ -291,6 +294,7 @@ bool ToolMotion::waitsOutside(std::size_t tool, Others others, RobotPose& pose) 
 
 void ToolMotion::passTo(const RobotPose& pose) {
   world_.pose = pose;
+  world_.reached_s = pose.stamp_s;
   world_.sliding.pass(pose);
   grasping_.openJaws();
   grasping_.closeJaws();

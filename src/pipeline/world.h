@@ -40,6 +40,8 @@ struct World {
   // Where the tools are for the tissue, as Pipeline::pose tells; none before the first step.
   // [ToolMotion]
   std::optional<RobotPose> last_pose;
+  // The stamp that the tissue has come to (s); none before the first. [LoadStepper, ToolMotion]
+  std::optional<double> reached_s;
   // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
   std::optional<DeadEnd> dead_end;
   bool unfinished = false;  // the last load step had no time for all it would do [LoadStepper]

@@ -27,6 +27,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_, tool_poses_),
+      clock_(1.0 / parameters_.rate_hz, tuning::kLongestGap),
       watch_(
           buffer_, tool_poses_, parameters_.rate_hz, *ros::getGlobalCallbackQueue(),
           [this](const ros::Time& stamp) { onStill(stamp); },
@@ -90,7 +91,11 @@ bool TissueNode::timeWentBack() {
   grace_end_ = ros::WallTime::now() + kGrace;
   jumped_at_ = ros::Time();
   last_look_up_ = PoseLookUp();
-  if (robot_is_known_) pipeline_.step({});
+  if (robot_is_known_) {
+    RobotPose nowhere;
+    nowhere.stamp_s = clock_.now();
+    pipeline_.step(nowhere);
+  }
   publisher_.timeWentBack();
   diagnostics_.force_update();  // it would wait for the time of before
   return true;
@@ -164,8 +169,19 @@ bool TissueNode::waitsAfterJump() {
   return true;
 }
 
+// The pose's time is the tissue's.
+void TissueNode::setTimeOf(RobotPose& pose) {
+  pose.stamp_s = clock_.advance(last_look_up_.stamp, pipeline_.tissue().isMoving());
+  if (clock_.leftOut() > 0.0) {
+    ROS_WARN_STREAM_THROTTLE(1.0, "no pose came for a while: for "
+                                      << clock_.leftOut()
+                                      << " s of it the tissue's time stood still");
+  }
+}
+
 // At a good pose.
 void TissueNode::follow() {
+  setTimeOf(last_look_up_.pose);
   const StepReport& step = pipeline_.step(last_look_up_.pose);
   if (timeWentBack()) return;
   warned_.clear();

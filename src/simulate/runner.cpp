@@ -53,6 +53,7 @@ Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
       pipeline_(scene.tissue, scene.solver, toolsOf(movedTools(scene)).tools, scene.supports),
       pushes_(tools_.count()) {
   for (const std::string& warning : pipeline_.toolWarnings()) result_.remarks.push_back(warning);
+  pipeline_.startClock(time_);
   if (std::isfinite(deadline.leftMs())) pipeline_.setEnd(deadline);
 }
 

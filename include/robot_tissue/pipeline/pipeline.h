@@ -54,6 +54,8 @@ class Pipeline {
   // while the tools stand (s). As Tissue::stopTime.
   SolveReport wait(double duration);
   void stopTime();
+  // The stamp from which the first pose's time counts; otherwise it is that pose's own.
+  void startClock(double seconds);
   // The poses at which step() does nothing, until one of the calls below; none while something is
   // left to do, or a force drives a tool.
   std::optional<StillPose> stillPose() const;

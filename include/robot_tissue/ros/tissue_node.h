@@ -20,6 +20,7 @@
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/surgery_services.h"
+#include "robot_tissue/ros/tissue_clock.h"
 #include "robot_tissue/ros/tissue_publisher.h"
 #include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_poses.h"
@@ -45,6 +46,7 @@ class TissueNode {
   void update(PoseLookUp look_up);
   bool waitsAfterJump();
   void follow();
+  void setTimeOf(RobotPose& pose);
   bool robotIsKnown();
   void settleFromRest();
   void report(const NodeStatus& status);
@@ -64,6 +66,7 @@ class TissueNode {
   bool robot_is_known_ = false;
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
+  TissueClock clock_;
   Ticks ticks_ = Ticks::kAtRate;
   ros::Time jumped_at_;  // stamp of the first pose after a jump that is not followed yet
   NodeStatus status_;

@@ -1,0 +1,18 @@
+#include "robot_tissue/ros/tissue_clock.h"
+
+#include <algorithm>
+
+namespace robot_tissue {
+
+double TissueClock::advance(const ros::Time& stamp, bool moves) {
+  const double gap = last_.isZero() ? 0.0 : (stamp - last_).toSec();
+  last_ = stamp;
+  left_out_ = 0.0;
+  if (!(gap > 0.0)) return now_;
+  if (gap <= longest_) usual_ = gap;
+  const double passed = std::min(gap, moves ? longest_ : usual_);
+  if (moves) left_out_ = gap - passed;
+  return now_ += passed;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,53 @@
+// The node with a tissue that moves in time, beside a robot that stops talking and comes back.
+#include "node_fixture.h"
+
+namespace robot_tissue {
+namespace {
+
+class MovingTissue : public NodeTest {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
+    press(-0.01);
+    ASSERT_TRUE(reset());
+    ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
+  }
+};
+
+TEST_F(MovingTissue, SwingsBackWhenTheToolIsGoneAndRests) {
+  press(0.005);
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.004; }));
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+  depth_ = -0.05;
+  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() > kTop - 1e-5; }));
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK" && wrench_->wrench.force.z == 0.0; }));
+}
+
+TEST_F(MovingTissue, GoesOnAfterARobotWasSilent) {
+  const double force = press(0.004).wrench.force.z;
+  publishes_transform_ = false;
+  waitFor([] { return false; }, 0.3);
+  publishes_transform_ = true;
+  EXPECT_NEAR(press(0.004).wrench.force.z, force, 0.05 * std::abs(force));
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST_F(MovingTissue, ResetEndsTheMotion) {
+  press(0.005);
+  depth_ = -0.05;
+  ASSERT_TRUE(reset());
+  EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+  press(0.004);
+  EXPECT_LT(lowestOfTop(), kTop);
+}
+
+}  // namespace
+}  // namespace robot_tissue
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_moving");
+  const ros::NodeHandle keep_alive;
+  return RUN_ALL_TESTS();
+}
