@@ -104,7 +104,8 @@ class NodeTest : public ::testing::Test {
       const bool stands = before && wrench_->wrench == before->wrench;
       before = wrench_;
       return stands && state_ && state_->status != "TOO_FAST";
-    }));
+    })) << "the node says "
+        << (state_ ? state_->status + ": " + state_->message : std::string("nothing"));
     return wrench_ ? *wrench_ : geometry_msgs::WrenchStamped();
   }
 

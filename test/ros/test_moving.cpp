@@ -1,5 +1,6 @@
 // The node with a tissue that moves in time, beside a robot that stops talking and comes back.
 #include "node_fixture.h"
+#include "robot_tissue/ros/tissue_clock.h"
 
 namespace robot_tissue {
 namespace {
@@ -30,6 +31,20 @@ TEST_F(MovingTissue, GoesOnAfterARobotWasSilent) {
   publishes_transform_ = true;
   EXPECT_NEAR(press(0.004).wrench.force.z, force, 0.05 * std::abs(force));
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+}
+
+TEST(TissueClock, GoesOnByTheStampsAndStandsStillInASilence) {
+  TissueClock clock(0.005, 0.1);
+  const ros::Time start(1000.0);
+  const auto at = [&](double seconds) { return start + ros::Duration(seconds); };
+  EXPECT_EQ(clock.advance(at(0.0), true), 0.0);
+  EXPECT_NEAR(clock.advance(at(0.02), true), 0.02, 1e-9);
+  EXPECT_NEAR(clock.advance(at(0.32), true), 0.12, 1e-9);
+  EXPECT_NEAR(clock.leftOut(), 0.2, 1e-9);
+  EXPECT_NEAR(clock.advance(at(10.0), false), 0.14, 1e-9);  // at rest: a usual gap
+  EXPECT_EQ(clock.leftOut(), 0.0);
+  EXPECT_NEAR(clock.advance(at(5.0), true), 0.14, 1e-9);  // time jumped back
+  EXPECT_NEAR(clock.advance(at(5.01), true), 0.15, 1e-9);
 }
 
 TEST_F(MovingTissue, ResetEndsTheMotion) {

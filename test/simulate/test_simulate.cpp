@@ -37,7 +37,7 @@ TEST_F(Simulate, HasARowForEachIncrement) {
                                                             {"5", "1"}};
   ASSERT_EQ(rows.size(), expected.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    ASSERT_EQ(rows[i].size(), 11U);
+    ASSERT_EQ(rows[i].size(), 13U);
     EXPECT_EQ(rows[i][0], expected[i][0]);
     EXPECT_EQ(rows[i][1], expected[i][1]);
     EXPECT_EQ(rows[i][2], i > 0 ? "OK" : "status");

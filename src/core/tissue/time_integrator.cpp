@@ -22,6 +22,11 @@ std::vector<Vec3> extended(const std::vector<Vec3>& values, const CellSet& cells
 
 }  // namespace
 
+void TimeIntegrator::rest() {
+  motion_.reset();
+  mark_.clear();
+}
+
 void TimeIntegrator::wake(const LatticeState& state) {
   NodeMotion motion;
   if (motion_) motion = *motion_;
@@ -103,6 +108,22 @@ void TimeIntegrator::end(const LatticeState& state) {
   judge(state, motion);
 }
 
+// What touches a tool trembles as solves are not exact: it rests when it comes nowhere.
+bool TimeIntegrator::comesNowhere(const LatticeState& state) {
+  mark_age_ += duration_;
+  const bool has_mark = mark_.size() == state.displacement.size();
+  if (has_mark && mark_age_ < tuning::kRestTime) return false;
+  double farthest = 0.0, greatest = 0.0;
+  for (std::size_t node = 0; has_mark && node < mark_.size(); ++node) {
+    farthest = std::max(farthest, (state.displacement[node] - mark_[node]).squaredNorm());
+    greatest = std::max(greatest, state.displacement[node].squaredNorm());
+  }
+  mark_ = state.displacement;
+  mark_age_ = 0.0;
+  const double allowed = tuning::kTrembling * tolerance_ * std::sqrt(greatest);
+  return has_mark && std::sqrt(farthest) < allowed;
+}
+
 // The local error of a step is h^2 |a' - a| / 3 (tuning.h); it is held against what moves: the way
 // of the step, and the displacement.
 void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
@@ -118,7 +139,7 @@ void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
     farthest = std::max({farthest, moved.squaredNorm(), (h * motion.velocity[node]).squaredNorm(),
                          (h * h * motion.acceleration[node]).squaredNorm()});
   }
-  if (std::sqrt(farthest) < tuning::kAtRest * spacing_) return rest();
+  if (std::sqrt(farthest) < tuning::kAtRest * spacing_ || comesNowhere(state)) return rest();
   const double least =
       tuning::kLeastMotion * spacing_ * std::sqrt(static_cast<double>(before_.size()));
   const double scale =

@@ -38,7 +38,7 @@ class TimeIntegrator {
   bool moves() const { return motion_ != nullptr; }
   const Motion& motion() const { return motion_; }
   void take(Motion motion) { motion_ = std::move(motion); }
-  void rest() { motion_.reset(); }
+  void rest();
   // Something changed at once: the nodes have the velocities that they have, and new forces.
   void wake(const LatticeState& state);
 
@@ -62,6 +62,7 @@ class TimeIntegrator {
   double longestStep() const;  // from here on (s)
 
  private:
+  bool comesNowhere(const LatticeState& state);
   void judge(const LatticeState& state, NodeMotion& motion);
 
   double damping_time_, spacing_, tolerance_;
@@ -71,6 +72,8 @@ class TimeIntegrator {
   std::vector<double> masses_;
   InertialTerm term_;
   double error_ratio_ = 0.0;
+  std::vector<Vec3> mark_;  // displacements some time ago
+  double mark_age_ = 0.0;   // s
 };
 
 }  // namespace robot_tissue

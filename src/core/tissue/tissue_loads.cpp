@@ -126,7 +126,11 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
     }
   }
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
-    patches_.erase(named(name));
+    const auto patch = named(name);
+    const auto index = static_cast<std::size_t>(patch - patches_.begin());
+    std::vector<PatchAnswer>& answers = last_report_.patches;
+    if (index < answers.size()) answers.erase(answers.begin() + (patch - patches_.begin()));
+    patches_.erase(patch);
     --named_patches_;
     dropNamed(name, due_);
   }

@@ -57,6 +57,11 @@ constexpr double kLeastMs = 1e-6;
 // In spacings (1): what goes less in a step, and by its velocity and acceleration would, is at
 // rest. More: slow motions end early; less: the rounding of single precision never rests. Chosen.
 constexpr double kAtRest = 4e-6;
+// s, and of the greatest displacement times the tolerance (1): what came no farther in that time is
+// at rest. Longer or less: trembling contacts keep it awake; shorter or more: slow swings end at
+// their turning points. Chosen.
+constexpr double kRestTime = 0.1;
+constexpr double kTrembling = 0.05;
 // Of the step's error, over h^2 |a' - a| (1): 1/2 - 1/6, as u' takes h^2 / 2 times the acceleration
 // at its end (Zienkiewicz and Xie 1991, with beta = 1/2).
 constexpr double kErrorOfStep = 1.0 / 3.0;
