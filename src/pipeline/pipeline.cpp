@@ -63,7 +63,9 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   beginReport();
   world_.report.lost = was_lost;
   if (was_lost) world_.report.behind = behind;
-  if (stands && !isLate() && !world_.tissue.isMoving()) {
+  const bool time_passes =
+      world_.tissue.isMoving() && goal.stamp_s > world_.reached_s.value_or(goal.stamp_s);
+  if (stands && !isLate() && !time_passes) {
     if (world_.last_pose) world_.last_pose->stamp_s = world_.pose.stamp_s = goal.stamp_s;
     world_.reached_s = goal.stamp_s;
     return world_.report;
