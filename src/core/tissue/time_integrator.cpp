@@ -63,7 +63,8 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
   term_.least_way =
       std::max({tuning::kSolvedOfWay * std::sqrt(way),
                 tuning::kSolvedOfDisplacement * std::sqrt(displacement),
-                tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(nodes))});
+                tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(nodes))}) /
+      term_.elastic_scale;  // so that forces are as exact
   if (damping_time_ == 0.0) return term_;
   LatticeState there = state;
   for (std::size_t node = 0; node < nodes; ++node) {
