@@ -199,7 +199,7 @@ def draw():
                   row["tolerance"] == tolerance and row["damping_time_s"] == damping]
         axes.plot(numbers(picked, "time"), [1e3 * tip for tip in numbers(picked, "tip")], style,
                   label=f"tolerance {tolerance}, damping time {damping} s", linewidth=1.0)
-    axes.set(xlabel="time (s)", ylabel="tip (mm)", xlim=(0, 2),
+    axes.set(xlabel="time (s)", ylabel="tip (mm)", xlim=(0, 2), ylim=(-4.8, 7.2),
              title="A clamped bar of 400 x 40 x 40 mm is let go")
     axes.legend(fontsize=7, loc="upper right")
     figure.tight_layout()
