@@ -12,8 +12,8 @@ constexpr double kLongestUpdate = 0.1;
 // s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
 // lost is told of later. Chosen.
 constexpr double kWatchPeriod = 0.1;
-// s: time that goes by for a moving tissue from one pose to the next, at most. More: after a silence
-// of the robot an update has to make up for more. Chosen.
+// s: time that goes by for a moving tissue from one pose to the next, at most. More: after a
+// silence of the robot an update has to make up for more. Chosen.
 constexpr double kLongestGap = 0.1;
 // Share of the poses that are due (1): where more are missed, /diagnostics warns. Chosen.
 constexpr double kMostMissed = 0.1;
