@@ -1,4 +1,4 @@
-// The node with a tissue that moves in time, beside a robot that stops talking and comes back.
+// The node with a tissue that moves in time.
 #include "node_fixture.h"
 #include "robot_tissue/ros/tissue_clock.h"
 
@@ -9,38 +9,9 @@ class MovingTissue : public NodeTest {
  protected:
   void SetUp() override {
     ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
-    depth_ = kAway;
-    ASSERT_TRUE(reset());
-    ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
-    ASSERT_TRUE(waitFor([this] { return state_ && state_->status == "OK" && wrench_; }));
+    depth_ = -0.05;  // m: away from the tissue
   }
-
-  void pressDown() {
-    depth_ = 0.004;
-    ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() < kTop - 0.0035; }));
-    ASSERT_TRUE(waitFor([this] { return wrench_->wrench.force.z < -0.1; }));  // its z is down
-  }
-
-  static constexpr double kAway = -0.05;  // m
 };
-
-TEST_F(MovingTissue, SwingsBackWhenTheToolIsGoneAndRests) {
-  pressDown();
-  depth_ = kAway;
-  ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() > kTop - 1e-5; }));
-  EXPECT_TRUE(waitFor([this] { return state_->status == "OK" && wrench_->wrench.force.z == 0.0; }));
-}
-
-TEST_F(MovingTissue, GoesOnAfterARobotWasSilent) {
-  pressDown();
-  publishes_transform_ = false;
-  waitFor([] { return false; }, 0.3);
-  publishes_transform_ = true;
-  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
-  EXPECT_LT(lowestOfTop(), kTop - 0.0035);
-  depth_ = kAway;
-  EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() > kTop - 1e-5; }));
-}
 
 TEST(TissueClock, GoesOnByTheStampsAndStandsStillInASilence) {
   TissueClock clock(0.005, 0.1);
@@ -56,14 +27,12 @@ TEST(TissueClock, GoesOnByTheStampsAndStandsStillInASilence) {
   EXPECT_NEAR(clock.advance(at(5.01), true), 0.15, 1e-9);
 }
 
-TEST_F(MovingTissue, ResetEndsTheMotion) {
-  pressDown();
-  depth_ = kAway;
-  ASSERT_TRUE(waitFor([this] { return wrench_->wrench.force.z == 0.0; }));
+TEST_F(MovingTissue, RestsBesideAToolThatIsAway) {
+  ASSERT_TRUE(waitFor([this] { return state_ && state_->status == "OK" && wrench_; }));
   ASSERT_TRUE(reset());
   EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
-  pressDown();
+  EXPECT_EQ(wrench_->wrench.force.z, 0.0);
 }
 
 }  // namespace
