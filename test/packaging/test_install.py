@@ -116,7 +116,7 @@ class InstallSpace(unittest.TestCase):
         programs = WORK / "downstream/devel/lib/robot_tissue_downstream"
         self.assertIn("patch -", output_of(f"'{programs}/press'"))
         demo = start("roslaunch robot_tissue demo.launch headless:=true")
-        calls = re.findall(r"^rosservice call .*?'$", (SOURCE / "README.md").read_text(),
+        calls = re.findall(r"^rosservice call .*?'$", (SOURCE / "doc/node.md").read_text(),
                            re.MULTILINE | re.DOTALL)
         try:
             followed = output_of(f"'{programs}/follow_demo'")
