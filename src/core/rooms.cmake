@@ -12,19 +12,20 @@ robot_tissue_room(geometry
     tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC scene.h tool_role.h
+  PUBLIC removed_space.h scene.h tool_role.h
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h filled_grid.h lattice.h lattice_state.h
   FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp)
 robot_tissue_room(cutting
-  USES base lattice
-  FILES cut.cpp cut.h split_cells.cpp split_cells.h)
+  USES base config lattice
+  FILES cut.cpp cut.h removal.cpp removal.h split_cells.cpp split_cells.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC surface.h
-  FILES cut_mesh_surface.cpp cut_mesh_surface.h mesh_surface.cpp mesh_surface.h surface.cpp)
+  FILES cell_parts.cpp cell_parts.h cut_mesh_surface.cpp cut_mesh_surface.h hinges.cpp hinges.h
+    mesh_surface.cpp mesh_surface.h octant_grid.cpp octant_grid.h surface.cpp)
 robot_tissue_room(material
   USES base config lattice
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
@@ -83,6 +84,6 @@ robot_tissue_room(tissue
   USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
-  FILES load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h time_integrator.cpp
+  FILES history.cpp history.h load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h time_integrator.cpp
     time_integrator.h time_stepping.cpp tissue.cpp tissue_loads.cpp tissue_state.cpp tissue_state.h
-    tissue_surface.cpp tuning.h)
+    tissue_surface.cpp tissue_surgery.cpp tuning.h)

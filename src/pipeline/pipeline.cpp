@@ -184,6 +184,20 @@ CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
   return report;
 }
 
+RemoveReport Pipeline::remove(const RemovedSpace& space) {
+  const Bounded bounded(*this);
+  const RemoveReport report = world_.tissue.remove(space);
+  touch();
+  return report;
+}
+
+SolveReport Pipeline::undo(int count) {
+  const Bounded bounded(*this);
+  const SolveReport report = world_.tissue.undo(count);
+  touch();
+  return report;
+}
+
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.stepsBetween(
                                 *world_.last_pose,

@@ -72,7 +72,8 @@ void drawFixedNodes(const Drawn& drawn, Marker fixed, MarkerArray& array) {
   const Tissue& tissue = drawn.tissue();
   fixed.scale = sphereScale(tuning::kNodeDiameter * drawn.spacing());
   for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
-    if (tissue.lattice().isFixed(node)) fixed.points.push_back(toPoint(tissue.nodePosition(node)));
+    if (!tissue.lattice().isFixed(node) || isRemoved(tissue.state(), node)) continue;
+    fixed.points.push_back(toPoint(tissue.nodePosition(node)));
   }
   add(std::move(fixed), array);
 }

@@ -51,18 +51,22 @@ sensor_msgs::PointCloud2 nodeCloud(const Tissue& tissue, const std::vector<int>&
                                 PointField::FLOAT32, "uz", 1, PointField::FLOAT32, "piece", 1,
                                 PointField::UINT32);
   const Lattice& lattice = tissue.lattice();
-  modifier.resize(at(lattice.nodeCount()));
+  std::vector<int> nodes;  // without those that were removed
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    if (piece_of_node[at(node)] >= 0) nodes.push_back(node);
+  }
+  modifier.resize(nodes.size());
   sensor_msgs::PointCloud2Iterator<float> number(cloud, "x");
   sensor_msgs::PointCloud2Iterator<std::uint32_t> piece(cloud, "piece");
   const std::vector<Vec3> shown = tissue.shownDisplacement();
-  for (int node = 0; node < lattice.nodeCount(); ++node, ++number, ++piece) {
-    const Vec3& moved = shown[at(node)];
-    const Vec3 place = lattice.restPosition(node) + moved;
+  for (std::size_t i = 0; i < nodes.size(); ++i, ++number, ++piece) {
+    const Vec3& moved = shown[at(nodes[i])];
+    const Vec3 place = lattice.restPosition(nodes[i]) + moved;
     for (int axis = 0; axis < 3; ++axis) {
       number[axis] = singleOf(place[axis]);
       number[3 + axis] = singleOf(moved[axis]);
     }
-    *piece = static_cast<std::uint32_t>(piece_of_node[at(node)]);
+    *piece = static_cast<std::uint32_t>(piece_of_node[at(nodes[i])]);
   }
   return cloud;
 }

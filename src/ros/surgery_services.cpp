@@ -2,9 +2,34 @@
 
 #include <utility>
 
+#include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/state_file.h"
 
 namespace robot_tissue {
+namespace {
+
+std::string solved(const SolveReport& report) {
+  return report.status == SolveStatus::kOk ? "" : std::string("; ") + toString(report.status);
+}
+
+RemovedSpace spaceOf(const Remove::Request& request, const Pose& tissue_T_frame) {
+  const Vec3 low = toVec3(request.min), high = toVec3(request.max), center = toVec3(request.center);
+  requireWithin(low, kFarthestPoint, "m", "min");
+  requireWithin(high, kFarthestPoint, "m", "max");
+  requireWithin(center, kFarthestPoint, "m", "center");
+  requireWithin(Vec3(request.radius, 0.0, 0.0), kFarthestPoint, "m", "radius");
+  if (request.radius == 0.0) return PlacedBox{Box(low, high), tissue_T_frame};
+  if (request.radius < 0.0) {
+    throw InputError("radius: below 0 m; allowed: 0 for a box, or above");
+  }
+  if (!low.isZero(0.0) || !high.isZero(0.0)) {
+    throw InputError("min, max, radius: a box and a sphere given; allowed: one of them");
+  }
+  return Sphere{tissue_T_frame * center, request.radius};
+}
+
+}  // namespace
 
 template <class Service>
 void SurgeryServices::advertise(ros::NodeHandle& private_node, const std::string& name,
@@ -29,13 +54,16 @@ void SurgeryServices::advertise(ros::NodeHandle& private_node, const std::string
 
 SurgeryServices::SurgeryServices(ros::NodeHandle& private_node, std::string state_dir,
                                  Pipeline& pipeline, TissuePublisher& publisher,
-                                 std::function<void()> wake)
+                                 const ToolPoses& tool_poses, std::function<void()> wake)
     : state_dir_(std::move(state_dir)),
       pipeline_(pipeline),
       publisher_(publisher),
+      tool_poses_(tool_poses),
       wake_(std::move(wake)) {
   advertise<File>(private_node, "save_state", &SurgeryServices::onSaveState);
   advertise<File>(private_node, "load_state", &SurgeryServices::onLoadState);
+  advertise<Remove>(private_node, "remove", &SurgeryServices::onRemove);
+  advertise<std_srvs::Trigger>(private_node, "undo", &SurgeryServices::onUndo);
 }
 
 void SurgeryServices::onSaveState(const File::Request& request, File::Response& response) {
@@ -53,10 +81,30 @@ void SurgeryServices::onLoadState(const File::Request& request, File::Response& 
     throw InputError("file = '" + request.file + "': " + error.what());
   }
   publisher_.shapeChanged();
-  response.message = "loaded";
-  if (report.status != SolveStatus::kOk) {
-    response.message += std::string("; ") + toString(report.status);
+  response.message = "loaded" + solved(report);
+}
+
+void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response& response) {
+  response.pieces = pipeline_.tissue().state().pieces;
+  const Pose tissue_T_frame = tool_poses_.frame(request.header.frame_id);
+  const RemoveReport report = pipeline_.remove(spaceOf(request, tissue_T_frame));
+  publisher_.shapeChanged();
+  response.volume = report.volume;
+  response.pieces = report.pieces;
+  response.message = report.volume > 0.0 ? "removed" : "no cell has its center in the space";
+  for (const std::string& load : report.loads) response.message += ", load '" + load + "' with it";
+  response.message += solved(report.solve);
+}
+
+void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
+                             std_srvs::Trigger::Response& response) {
+  if (pipeline_.tissue().undoable() == 0) {
+    throw InputError("nothing to take back; allowed: after a cut or a removal");
   }
+  const SolveReport report = pipeline_.undo(1);
+  publisher_.shapeChanged();
+  response.message = "taken back, " + std::to_string(pipeline_.tissue().undoable()) +
+                     " more to take back" + solved(report);
 }
 
 }  // namespace robot_tissue

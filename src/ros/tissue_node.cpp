@@ -46,7 +46,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
                            [this] { follow(); }, [this] { settleFromRest(); }});
   surgery_ =
       std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_, publisher_,
-                                        [this] { watch_.standAt(std::nullopt); });
+                                        tool_poses_, [this] { watch_.standAt(std::nullopt); });
   diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
                               parameters_.scene.solver.method.c_str(),
                               pipeline_.tissue().lattice().nodeCount());

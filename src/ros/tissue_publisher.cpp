@@ -51,6 +51,7 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
   message.inverted_cells = solve.inverted_cells;
   message.pieces = lattice.pieces;
   message.springs_cut = lattice.springs_cut;
+  message.topology = static_cast<std::uint32_t>(pipeline.tissue().surface().revision);
   message.substeps = report.substeps;
   for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
     const ToolReport& met = report.tools[tool];

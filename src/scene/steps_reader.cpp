@@ -201,6 +201,11 @@ const std::vector<StepKind>& stepKinds() {
       {"release",
        [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},
       {"reset", readReset},
+      {"remove",
+       [](const Entry& entry, Program& program) -> Step {
+         return readRemove(entry, program.lengths);
+       }},
+      {"undo", [](const Entry& entry, Program&) -> Step { return readUndo(entry); }},
       {"save", followSave},
       {"load_state", followLoadState},
   };

@@ -92,6 +92,16 @@ std::string toolsCsv(const RunResult& result) {
   return csv;
 }
 
+std::string piecesCsv(const RunResult& result) {
+  std::string csv = "step,increment,piece,volume,fixed,cx,cy,cz\n";
+  for (const PieceRow& row : result.pieces) {
+    csv += text(row.step, row.increment) + ',' + std::to_string(row.number) + ',' +
+           text(row.piece.volume) + ',' + (row.piece.fixed ? '1' : '0') + ',' +
+           text(row.piece.center) + '\n';
+  }
+  return csv;
+}
+
 std::string surfaceStl(const RunResult& result) {
   std::string stl = "robot_tissue surface, m, tissue frame";
   stl.resize(kStlHeaderBytes, ' ');

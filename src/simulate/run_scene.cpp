@@ -12,6 +12,14 @@ bool RunResult::allOk() const {
          });
 }
 
+bool partsTissue(const Scene& scene) {
+  const auto parts = [](const Step& step) {
+    return std::holds_alternative<CutStep>(step) || std::holds_alternative<RemoveStep>(step) ||
+           std::holds_alternative<UndoStep>(step) || std::holds_alternative<LoadStateStep>(step);
+  };
+  return std::any_of(scene.steps.begin(), scene.steps.end(), parts);
+}
+
 RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
                    const Deadline& deadline, const std::string& state_folder) {
   return Runner(scene, on_row, on_step, deadline, state_folder).run();

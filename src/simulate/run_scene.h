@@ -37,12 +37,20 @@ struct ToolRow {
   double max_penetration = 0.0;  // m
 };
 
+struct PieceRow {
+  int step = 0;
+  int increment = 1;
+  int number = 0;  // from 0, in the order of the pieces' lowest nodes
+  TissuePiece piece;
+};
+
 struct RunResult {
   std::vector<IncrementRow> increments;
   std::vector<PatchRow> patches;
   std::vector<ToolRow> tools;      // of those that stand somewhere
-  std::vector<Vec3> rest;          // per node (m, tissue frame)
-  std::vector<Vec3> displacement;  // per node (m)
+  std::vector<PieceRow> pieces;    // where the scene parts tissue
+  std::vector<Vec3> rest;          // per node that is there (m, tissue frame)
+  std::vector<Vec3> displacement;  // likewise (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
   std::vector<std::array<int, 3>> triangles;
   std::map<std::string, std::string> saved;  // states, by file
@@ -57,6 +65,9 @@ using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 
 // Called when a step (from 0) has ended, with the tissue as it is then.
 using OnStep = std::function<void(int step, const Tissue& tissue)>;
+
+// Whether a step of the scene may part tissue, or mend it.
+bool partsTissue(const Scene& scene);
 
 // `state_folder`: where states are loaded from that no step has saved.
 // Throws InputError when a tool's shapes or a step are refused; the message names the step. After

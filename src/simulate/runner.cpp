@@ -18,6 +18,8 @@ const char* keyOf(const MoveStep&) { return "move"; }
 const char* keyOf(const WaitStep&) { return "wait"; }
 const char* keyOf(const PushStep&) { return "push"; }
 const char* keyOf(const GraspStep&) { return "grasp"; }
+const char* keyOf(const RemoveStep&) { return "remove"; }
+const char* keyOf(const UndoStep&) { return "undo"; }
 const char* keyOf(const SaveStep&) { return "save"; }
 const char* keyOf(const LoadStateStep&) { return "load_state"; }
 
@@ -93,12 +95,6 @@ void Runner::perform(const LoadStep& step) {
   });
 }
 
-void Runner::perform(const CutStep& step) {
-  const SolveReport report = pipeline_.cut(step.corners).solve;
-  followPushes();
-  keep(report);
-}
-
 void Runner::perform(const ReleaseStep& step) {
   SolveReport report;
   if (!step.patches.empty()) report = pipeline_.release(step.patches);
@@ -145,6 +141,7 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
     if (tools_.of(tool)) keepTool(tool, increment);
   }
+  if (partsTissue(scene_)) keepPieces(increment);
   const double update_ms = report.wall_ms + std::exchange(contact_ms_, 0.0);
   result_.increments.push_back({step_, increment, report, update_ms, time_});
   if (on_row_) on_row_(result_.increments.back(), increments);
@@ -186,6 +183,11 @@ void Runner::keepShape() {
   deform(tissue.surface(), result_.displacement, result_.vertices);
   result_.triangles = tissue.surface().triangles;
   result_.displacement.resize(result_.rest.size());  // ghosts are no nodes of the lattice
+  for (int node = lattice.nodeCount() - 1; node >= 0; --node) {
+    if (!isRemoved(tissue.state(), node)) continue;
+    result_.rest.erase(result_.rest.begin() + node);
+    result_.displacement.erase(result_.displacement.begin() + node);
+  }
 }
 
 }  // namespace robot_tissue

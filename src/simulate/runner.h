@@ -39,7 +39,6 @@ class Runner {
   // runner.cpp
   void perform(const SettleStep& step);
   void perform(const LoadStep& step);
-  void perform(const CutStep& step);
   void perform(const ReleaseStep& step);
   void perform(const ResetStep& step);
   void performAll();
@@ -47,6 +46,12 @@ class Runner {
   void keep(SolveReport report, int increment = 1, int increments = 1);
   void keepTool(std::size_t tool, int increment);
   void keepShape();
+
+  // surgery_steps.cpp
+  void perform(const CutStep& step);
+  void perform(const RemoveStep& step);
+  void perform(const UndoStep& step);
+  void keepPieces(int increment);
 
   // state_steps.cpp
   void perform(const SaveStep& step);

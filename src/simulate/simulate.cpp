@@ -55,6 +55,7 @@ void tellNotOk(const RunResult& result, std::ostream& err) {
 std::vector<std::string> filesOf(const Scene& scene) {
   std::vector<std::string> files = {"nodes.csv", "patches.csv", "increments.csv", "tools.csv",
                                     "surface.stl"};
+  if (partsTissue(scene)) files.push_back("pieces.csv");
   for (const Step& step : scene.steps) {
     const auto* save = std::get_if<SaveStep>(&step);
     if (save != nullptr && std::find(files.begin(), files.end(), save->file) == files.end()) {
@@ -65,12 +66,13 @@ std::vector<std::string> filesOf(const Scene& scene) {
 }
 
 // States of steps that the run was cut off before are not there, and stay as they were.
-void write(const RunResult& result, OutputFolder& folder) {
+void write(const Scene& scene, const RunResult& result, OutputFolder& folder) {
   folder.write("nodes.csv", nodesCsv(result));
   folder.write("patches.csv", patchesCsv(result));
   folder.write("increments.csv", incrementsCsv(result));
   folder.write("tools.csv", toolsCsv(result));
   folder.write("surface.stl", surfaceStl(result));
+  if (partsTissue(scene)) folder.write("pieces.csv", piecesCsv(result));
   for (const auto& [file, state] : result.saved) folder.writeState(file, state);
   folder.commit();
 }
@@ -91,7 +93,7 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const bool progress = terminal && !arguments.quiet;
   const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
   const RunResult result = runNamed(scene, arguments, on_row, deadline);
-  write(result, folder);
+  write(scene, result, folder);
   if (!arguments.quiet) {  // a refusal is told alone
     for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';
     for (const std::string& remark : result.remarks) err << "simulate: " << remark << '\n';

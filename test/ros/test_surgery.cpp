@@ -1,5 +1,7 @@
 // The node's services that change the tissue, save it and take changes back.
 #include <robot_tissue/File.h>
+#include <robot_tissue/Remove.h>
+#include <std_srvs/Trigger.h>
 
 #include <filesystem>
 #include <fstream>
@@ -73,6 +75,70 @@ TEST_F(Surgery, BadFilesAreRefusedAndChangeNothing) {
   press(-0.01);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
   EXPECT_TRUE(markers_["surface"].points == surface);
+}
+
+std_srvs::Trigger::Response undo() {
+  std_srvs::Trigger call;
+  EXPECT_TRUE(ros::service::call("/tissue/undo", call));
+  EXPECT_EQ(call.response.message.find('\n'), std::string::npos) << call.response.message;
+  return call.response;
+}
+
+Remove::Response remove(const Remove::Request& request) {
+  Remove call;
+  call.request = request;
+  EXPECT_TRUE(ros::service::call("/tissue/remove", call));
+  EXPECT_EQ(call.response.message.find('\n'), std::string::npos) << call.response.message;
+  return call.response;
+}
+
+// Of a fifth of the block's sides, at the middle of its top.
+Remove::Request ballAtTheTop() {
+  Remove::Request request;
+  request.center.x = 0.05;
+  request.center.y = 0.025;
+  request.center.z = kTop;
+  request.radius = 0.012;
+  return request;
+}
+
+TEST_F(Surgery, RemovedTissueOpensAHoleAndComesBack) {
+  const auto removed = remove(ballAtTheTop());
+  ASSERT_TRUE(removed.success) << removed.message;
+  EXPECT_GT(removed.volume, 0.0);
+  EXPECT_EQ(removed.pieces, 1);
+  ASSERT_TRUE(waitForMarkers([this] { return !markers_["cut_faces"].points.empty(); }));
+  ASSERT_TRUE(cut(kCut).success);
+  const auto first = undo();
+  EXPECT_TRUE(first.success) << first.message;
+  EXPECT_TRUE(undo().success);
+  ASSERT_TRUE(waitForMarkers([this] { return markers_["cut_faces"].points.empty(); }));
+  EXPECT_TRUE(waitFor([this] { return state_->springs_cut == 0; }));
+  const auto none = undo();
+  EXPECT_FALSE(none.success);
+  EXPECT_NE(none.message.find("; allowed: "), std::string::npos) << none.message;
+}
+
+TEST_F(Surgery, BadRemovalsAreRefusedAndChangeNothing) {
+  Remove::Request negative = ballAtTheTop(), nowhere = ballAtTheTop(), both = ballAtTheTop(), none,
+                  all = ballAtTheTop();
+  negative.radius = -1.0;
+  nowhere.header.frame_id = "no_such_frame";
+  both.max.x = 1.0;
+  all.radius = 10.0;
+  Remove::Request infinite = ballAtTheTop();
+  infinite.center.x = std::numeric_limits<double>::infinity();
+  for (const Remove::Request& request : {negative, nowhere, both, none, all, infinite}) {
+    const auto answer = remove(request);
+    EXPECT_FALSE(answer.success);
+    EXPECT_NE(answer.message.find("allowed"), std::string::npos) << answer.message;
+  }
+  Remove::Request beside = ballAtTheTop();
+  beside.center.x = 5.0;
+  const auto answer = remove(beside);
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_EQ(answer.volume, 0.0);
+  EXPECT_FALSE(undo().success);
 }
 
 }  // namespace

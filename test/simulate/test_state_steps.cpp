@@ -50,6 +50,44 @@ TEST(StateSteps, TheReaderKnowsWhatStandsInASavedState) {
   EXPECT_NE(refusalOf(kSave + kLoad + kBack + release).find("no patch stands"), std::string::npos);
 }
 
+const std::string kDrill =
+    "  - remove: {sphere: {center: [0.05, 0.05, 0.05], radius: 0.016}}\n";
+
+TEST(SurgerySteps, WhatIsTakenBackIsAsItWasBitForBit) {
+  const RunResult before = run(scene(kLoad));
+  const RunResult back = run(scene(kLoad + kCut + kDrill + "  - undo: {count: 2}\n"));
+  EXPECT_EQ(nodesCsv(back), nodesCsv(before));
+  EXPECT_EQ(surfaceStl(back), surfaceStl(before));
+  EXPECT_TRUE(back.allOk());
+}
+
+TEST(SurgerySteps, PiecesAddUpToTheBlock) {
+  const RunResult cut = run(
+      scene("  - settle: {}\n  - cut: {corners: [[0.055, -1, -1], [0.055, 1, -1], [0.055, 1, 1], "
+            "[0.055, -1, 1]]}\n"));
+  ASSERT_EQ(cut.pieces.size(), 3U);
+  EXPECT_NEAR(cut.pieces[1].piece.volume + cut.pieces[2].piece.volume, cut.pieces[0].piece.volume,
+              1e-12);
+  EXPECT_LT(cut.pieces[1].piece.center.x(), 0.055);
+  EXPECT_GT(cut.pieces[2].piece.center.x(), 0.055);
+  EXPECT_TRUE(cut.pieces[1].piece.fixed && cut.pieces[2].piece.fixed);
+  EXPECT_EQ(piecesCsv(cut).substr(0, 44), "step,increment,piece,volume,fixed,cx,cy,cz\n0");
+  EXPECT_TRUE(run(scene(kLoad)).pieces.empty());
+}
+
+TEST(SurgerySteps, RemovedNodesAreNotWritten) {
+  const RunResult whole = run(scene("  - settle: {}\n")), drilled = run(scene(kDrill));
+  EXPECT_LT(drilled.rest.size(), whole.rest.size());
+  EXPECT_EQ(drilled.rest.size(), drilled.displacement.size());
+  EXPECT_LT(drilled.pieces.back().piece.volume, 0.999 * 0.1 * 0.1 * 0.05);
+}
+
+TEST(SurgerySteps, MoreThanThereIsIsNotTakenBack) {
+  const std::string line = refusalOf(kCut + "  - undo: {count: 2}\n");
+  EXPECT_NE(line.find("steps[1].undo: count: 2 to take back; allowed: 1 to 1"), std::string::npos)
+      << line;
+}
+
 TEST(StateSteps, BadNamesAndMissingFilesAreRefused) {
   EXPECT_NE(refusalOf("  - save: {file: ../a}\n").find("steps[0].save.file = ../a: must be a plain"),
             std::string::npos);

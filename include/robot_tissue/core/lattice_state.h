@@ -16,6 +16,31 @@ struct LatticeState {
   int springs_cut = 0;
   std::shared_ptr<const CellSet> cells;  // what the cuts left of the lattice's
   int pieces = 1;                        // parts of the lattice that springs hold together
+  // Per cell of the lattice, bit c: the eighth at its corner c was removed. Empty: nothing was.
+  std::vector<std::uint8_t> taken;
+  std::vector<double> left;  // per node of the lattice, of its share of the cells; empty: all
 };
+
+// Bits of the eighths of the lattice's cell that were removed.
+inline unsigned takenOf(const LatticeState& state, int place) {
+  return state.taken.empty() ? 0U : state.taken[at(place)];
+}
+
+inline bool isTaken(const LatticeState& state, int place, int corner) {
+  return (takenOf(state, place) >> corner & 1U) != 0;
+}
+
+// Of a node of the lattice, 0 to 1.
+inline double shareLeft(const LatticeState& state, int node) {
+  return state.left.empty() ? 1.0 : state.left[at(node)];
+}
+
+// Nothing is left around the lattice's node.
+inline bool isRemoved(const LatticeState& state, int node) { return shareLeft(state, node) == 0.0; }
+
+// Nothing was cut or removed.
+inline bool isAsMade(const LatticeState& state) {
+  return state.springs_cut == 0 && state.taken.empty();
+}
 
 }  // namespace robot_tissue

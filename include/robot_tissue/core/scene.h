@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "robot_tissue/core/removed_space.h"
 #include "robot_tissue/core/tool_role.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
@@ -106,6 +107,14 @@ struct PushStep {
 struct GraspStep {
   std::string tool;
 };
+// Takes what is in the space away, as the shape is now.
+struct RemoveStep {
+  RemovedSpace space;
+};
+// Takes cuts and removals back, the latest first.
+struct UndoStep {
+  int count = 1;
+};
 // Topology, shape and named loads, to a file and back.
 struct SaveStep {
   std::string file;  // a plain name
@@ -114,7 +123,7 @@ struct LoadStateStep {
   std::string file;
 };
 using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, WaitStep,
-                          PushStep, GraspStep, SaveStep, LoadStateStep>;
+                          PushStep, GraspStep, RemoveStep, UndoStep, SaveStep, LoadStateStep>;
 
 // One collision shape of a tool, placed in the frame of its link.
 struct ToolShape {

@@ -15,17 +15,19 @@ namespace robot_tissue {
 struct TissueSurface {
   std::vector<Vec3> rest;                         // tissue frame (m)
   std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
-  std::vector<int> node;                // per vertex: the lattice's node it stands at or, on a cut,
-                                        // beside; -1 = beside several
+  std::vector<int> node;                // per vertex: the lattice's node it stands at or, along a
+                                        // cut, beside; -1 = beside several
   std::vector<MeshTriangle> triangles;  // counter-clockwise seen from outside
   std::vector<std::uint8_t> opened;     // per triangle, 1 = face opened by a cut
   // Surfaces with the same number have the same rest and triangles; 0: that is not known.
   std::uint64_t revision = 0;
 };
 
-// Faces of the cells' parts that the uncut springs hold together. A part of a cut cell reaches half
-// way to each corner it lost. What is there is carried half by the part's own corners nearest to it
-// and half by the ghost, so as the material between them; without ghosts by the own corners alone.
+// Sides of the cells that nothing joins to others. A part of a cut cell has the eighths of the cell
+// around its own corners, and shows their sides: the surface encloses the parts' volumes, and its
+// sides along a cut lie on each other at rest. A vertex is carried as the part's material there, by
+// its corners, and by ghosts where it lost them; where the model has none, by the own corners that
+// are nearest. Two triangles run along every edge.
 TissueSurface extractSurface(const Lattice& lattice, const LatticeState& state);
 
 // Deformed vertices (m, tissue frame) for node displacements (m, from rest). Returns their bounds.

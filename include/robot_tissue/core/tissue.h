@@ -14,12 +14,14 @@
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/removed_space.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/solve_report.h"
 #include "robot_tissue/core/surface.h"
 
 namespace robot_tissue {
 
+class History;
 class SolverMethod;
 class TimeIntegrator;
 class TissueModel;
@@ -31,6 +33,20 @@ struct CutReport {
   int springs_cut = 0;  // by this cut
   int pieces = 1;       // of the lattice, after it
   SolveReport solve;    // balance after it; the last one when nothing was cut
+};
+
+struct RemoveReport {
+  double volume = 0.0;             // of what was removed, at rest (m^3)
+  int pieces = 1;                  // of the lattice, after it
+  std::vector<std::string> loads;  // named loads that went with all their nodes
+  SolveReport solve;               // balance after it; the last one when nothing was removed
+};
+
+// What hangs together, over springs.
+struct TissuePiece {
+  double volume = 0.0;         // at rest (m^3)
+  bool fixed = false;          // a fixed node holds it
+  Vec3 center = Vec3::Zero();  // of its volume, deformed (m, tissue frame)
 };
 
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
@@ -52,8 +68,10 @@ class Tissue {
   // Deformed vertices of the surface (m, tissue frame).
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const Box& bounds() const { return bounds_; }  // of the vertices
-  // Number of the piece that each node is of, the ghosts last; found when it is asked for.
+  // Number of the piece that each node is of, the ghosts last, -1: removed; found when it is asked
+  // for, as are the pieces by their numbers.
   std::vector<int> pieceOfNodes() const;
+  std::vector<TissuePiece> pieces() const;
   // No tool touched it in the last solve.
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
@@ -141,6 +159,15 @@ class Tissue {
   // Severs the springs that cross the polygon in the deformed shape, then balances; in time it only
   // severs them.
   CutReport cut(const std::vector<Vec3>& corners);
+  // Takes what has its center in the space away, in whole cells and parts that cuts made of cells,
+  // then as cut. Named loads lose the nodes that go. Throws InputError when nothing would be left.
+  RemoveReport remove(const RemovedSpace& space);
+  // How many cuts and removals there are to take back: all since the last reset, or loaded state.
+  int undoable() const;
+  // Takes the last ones back. Where the named loads are those of then, no tool touches and the
+  // shape was in balance, it is that one, bit for bit; else it is balanced under what stands now.
+  // Throws InputError for less than 1, or more than there are.
+  SolveReport undo(int count);
   // Rest shape, bit for bit; cuts mended, loads gone.
   void reset();
 
@@ -162,6 +189,10 @@ class Tissue {
   void keepMomentum();
   void predict();
   SolveReport asItIs();
+  // tissue_surgery.cpp
+  void keepHistory();
+  std::vector<std::string> dropLostLoads();
+  SolveReport changeTopology(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
   void renewContacts();
@@ -199,7 +230,8 @@ class Tissue {
   std::unique_ptr<SolverMethod> method_;
   std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;
-  TriangleMesh mesh_;  // with edges of a spacing at most; empty: the shape is a box
+  std::unique_ptr<History> history_;  // of cuts and removals
+  TriangleMesh mesh_;                 // with edges of a spacing at most; empty: the shape is a box
   TissueSurface surface_;
   double rest_volume_ = 0.0;    // m^3
   Vec3 weight_ = Vec3::Zero();  // N

@@ -89,6 +89,8 @@ class Pipeline {
             int most_increments = 100000);
   SolveReport release(const std::vector<std::string>& names);
   CutReport cut(const std::vector<Vec3>& corners);
+  RemoveReport remove(const RemovedSpace& space);
+  SolveReport undo(int count);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
   // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <robot_tissue/File.h>
+#include <robot_tissue/Remove.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
+#include <std_srvs/Trigger.h>
 
 #include <functional>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/tissue_publisher.h"
+#include "robot_tissue/ros/tool_poses.h"
 
 namespace robot_tissue {
 
@@ -19,11 +22,14 @@ class SurgeryServices {
  public:
   // The arguments must outlive the services. `wake` is called before each request.
   SurgeryServices(ros::NodeHandle& private_node, std::string state_dir, Pipeline& pipeline,
-                  TissuePublisher& publisher, std::function<void()> wake);
+                  TissuePublisher& publisher, const ToolPoses& tool_poses,
+                  std::function<void()> wake);
 
  private:
   void onSaveState(const File::Request& request, File::Response& response);
   void onLoadState(const File::Request& request, File::Response& response);
+  void onRemove(const Remove::Request& request, Remove::Response& response);
+  void onUndo(const std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   template <class Service>
   void advertise(ros::NodeHandle& private_node, const std::string& name,
                  void (SurgeryServices::*answer)(const typename Service::Request&,
@@ -32,6 +38,7 @@ class SurgeryServices {
   std::string state_dir_;
   Pipeline& pipeline_;
   TissuePublisher& publisher_;
+  const ToolPoses& tool_poses_;
   std::function<void()> wake_;
   std::vector<ros::ServiceServer> servers_;
 };

@@ -60,6 +60,8 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing);
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
                         const std::set<std::string>& standing);
+RemoveStep readRemove(const Entry& entry, const LengthRanges& lengths);
+UndoStep readUndo(const Entry& entry);
 SaveStep readSave(const Entry& entry);
 LoadStateStep readLoadState(const Entry& entry);
 void requireStands(const Entry& entry, const std::string& tool,

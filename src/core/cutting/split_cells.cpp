@@ -155,12 +155,12 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
   for (const Cell& cell : lattice.cells()) {
     const Parts parts = cellParts(lattice, state, cell.nodes);
     if (isWhole(parts)) {
-      left.push_back(cell);
+      if (takenOf(state, cell.place) == 0) left.push_back(cell);
       continue;
     }
     if (split == SplitCells::kLost) continue;
     for (int part = 0; part < kCorners; ++part) {
-      if (parts[at(part)] != part) continue;
+      if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
       Cell parted = cell;
       parted.own = 0;
       for (int corner = part; corner < kCorners; ++corner) {

@@ -11,7 +11,7 @@ int countPieces(const Lattice& lattice, const LatticeState& state) {
   std::vector<int> pending;
   int pieces = 0;
   for (int start = 0; start < lattice.nodeCount(); ++start) {
-    if (reached[at(start)] != 0) continue;
+    if (reached[at(start)] != 0 || isRemoved(state, start)) continue;
     ++pieces;
     reached[at(start)] = 1;
     pending.assign(1, start);
@@ -49,6 +49,7 @@ std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state)
   std::vector<int> piece(at(cells.nodeCount()), -1);
   int pieces = 0;
   for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (!cells.isGhost(node) && isRemoved(state, node)) continue;
     const int lowest = nodes.lowest(node);
     piece[at(node)] = lowest == node ? pieces++ : piece[at(lowest)];
   }

@@ -12,7 +12,7 @@ namespace robot_tissue {
 int countPieces(const Lattice& lattice, const LatticeState& state);
 
 // Of each node, the ghosts last: the number of its part, from 0 on, in the order of the parts'
-// lowest nodes. A ghost is of the part whose cell has it.
+// lowest nodes; -1: it was removed. A ghost is of the part whose cell has it.
 std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state);
 
 }  // namespace robot_tissue

@@ -90,6 +90,12 @@ Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
   return force;
 }
 
+Vec3 ElasticModel::weight(const LatticeState& state) const {
+  Vec3 weight = Vec3::Zero();
+  for (const Cell& cell : state.cells->all()) weight += kCorners * cornerWeight(cell);
+  return weight;
+}
+
 // The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis.
 Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;

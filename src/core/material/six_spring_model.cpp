@@ -36,7 +36,17 @@ Vec3 SixSpringModel::nodeForce(const LatticeState& state, int node) const {
   const Vec3 along_x = springForce(state, node, 0) + springForce(state, node, 1);
   const Vec3 along_y = springForce(state, node, 2) + springForce(state, node, 3);
   const Vec3 along_z = springForce(state, node, 4) + springForce(state, node, 5);
-  return (along_x + along_y) + along_z + lattice_.mass(node) * gravity_;
+  return (along_x + along_y) + along_z + nodeWeight(state, node);
+}
+
+Vec3 SixSpringModel::nodeWeight(const LatticeState& state, int node) const {
+  return shareLeft(state, node) * lattice_.mass(node) * gravity_;
+}
+
+Vec3 SixSpringModel::weight(const LatticeState& state) const {
+  Vec3 weight = Vec3::Zero();
+  for (int node = 0; node < lattice_.nodeCount(); ++node) weight += nodeWeight(state, node);
+  return weight;
 }
 
 Vec3 SixSpringModel::nodeStiffness(const LatticeState& state, int node) const {

@@ -14,8 +14,10 @@ class SixSpringModel : public TissueModel {
 
   Vec3 nodeForce(const LatticeState& state, int node) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
+  Vec3 weight(const LatticeState& state) const override;
 
  private:
+  Vec3 nodeWeight(const LatticeState& state, int node) const;
   Vec3 springForce(const LatticeState& state, int node, int direction) const;
 
   const Lattice& lattice_;

@@ -22,6 +22,9 @@ class TissueModel {
   // that nothing resists.
   virtual Vec3 nodeStiffness(const LatticeState& state, int node) const = 0;
 
+  // Of all that there is (N).
+  virtual Vec3 weight(const LatticeState& state) const = 0;
+
   // A model of cells needs their parts; one of springs needs no ghosts, which have none.
   virtual SplitCells splitCells() const { return SplitCells::kLost; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 #include "saving/bytes.h"
@@ -13,7 +14,10 @@ namespace {
 
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
-constexpr std::uint32_t kVersion = 1;
+// Newest that is read; the oldest that holds a state is the one that is written.
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kWithoutRemovals = 1;
+constexpr std::uint8_t kHasRemovals = 1;  // bit of what version 2 has more
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -21,9 +25,10 @@ constexpr std::size_t kBodyHashAt = 24;
 constexpr double kFarthest = 1e4;
 constexpr double kShareSteps = 1e6;  // shares of cells are compared to a millionth
 
-std::string headerFor(const std::string& body, const StateFingerprint& fingerprint) {
+std::string headerFor(const std::string& body, std::uint32_t version,
+                      const StateFingerprint& fingerprint) {
   ByteWriter header;
-  header.u32(kVersion);
+  header.u32(version);
   header.u32(0);
   header.u64(body.size());
   header.u64(hashOf(body));
@@ -37,6 +42,7 @@ std::string headerFor(const std::string& body, const StateFingerprint& fingerpri
 
 struct Opened {
   std::string_view body;
+  std::uint32_t version = 0;
   bool of_this_scene = false;
 };
 
@@ -65,7 +71,7 @@ Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
         "is of another lattice; allowed: a state of the same shape, spacing, model "
         "and fixed nodes");
   }
-  return {body, scene == fingerprint.scene};
+  return {body, version, scene == fingerprint.scene};
 }
 
 void putBits(const std::vector<std::uint8_t>& flags, ByteWriter& out) {
@@ -91,12 +97,42 @@ std::vector<std::uint8_t> takeBits(std::size_t count, ByteReader& in) {
   return flags;
 }
 
-// Ghosts hang on the severed springs alone, but for their numbers: those hang on the order of the
-// cuts. Cells and ghosts as one cut would have left them.
+void putRemovals(const LatticeState& state, ByteWriter& out) {
+  out.u8(kHasRemovals);
+  for (const std::uint8_t bits : state.taken) out.u8(bits);
+}
+
+void takeRemovals(const Lattice& lattice, LatticeState& state, ByteReader& in) {
+  if (in.u8() != kHasRemovals) throw InputError("is damaged: it has nothing of its version");
+  state.taken.resize(lattice.cells().size());
+  for (std::uint8_t& bits : state.taken) bits = in.u8();
+  const auto is_there = [](unsigned bits) { return bits < 0xff; };
+  if (std::none_of(state.taken.begin(), state.taken.end(), is_there)) {
+    throw InputError("is damaged: nothing is left of the tissue");
+  }
+  const std::vector<std::uint8_t> severed = state.severed;
+  noteTaken(lattice, state);
+  if (state.severed != severed || !isOfWholeParts(lattice, state)) {
+    throw InputError("is damaged: what was removed does not fit its severed springs");
+  }
+}
+
+void requireNotRemoved(const LatticeState& state, const LoadingPatch& load) {
+  const auto is_gone = [&](int node) { return isRemoved(state, node); };
+  const auto springs_gone = [&](const RimSpring& spring) { return is_gone(spring.node); };
+  if (std::any_of(load.nodes.begin(), load.nodes.end(), is_gone) ||
+      std::any_of(load.rim.begin(), load.rim.end(), springs_gone)) {
+    throw InputError("is damaged: a load is on a removed node");
+  }
+}
+
+// Ghosts hang on the severed springs and on what was removed, but for their numbers: those hang on
+// the order of the cuts. Cells and ghosts as one cut would have left them.
 CellSet cellsOfOneCut(const Lattice& lattice, const LatticeState& state, SplitCells split) {
   LatticeState whole = lattice.restState();
   whole.severed = state.severed;
   whole.springs_cut = state.springs_cut;
+  whole.taken = state.taken;
   return *cellsLeft(lattice, whole, split);
 }
 
@@ -143,7 +179,7 @@ std::shared_ptr<const CellSet> takeCells(const Lattice& lattice, SplitCells spli
                                          const LatticeState& state, ByteReader& in) {
   std::vector<Ghost> ghosts(in.count(sizeof(std::uint32_t)));
   for (Ghost& ghost : ghosts) ghost.original = takeNode(lattice.nodeCount(), in);
-  if (state.springs_cut == 0 && ghosts.empty()) return lattice.restState().cells;
+  if (isAsMade(state) && ghosts.empty()) return lattice.restState().cells;
   const CellSet cells = cellsOfOneCut(lattice, state, split);
   std::vector<int> number;
   std::vector<char> taken(ghosts.size(), 0);
@@ -166,8 +202,9 @@ void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& i
     if (!(displacement.cwiseAbs().maxCoeff() <= most)) {
       throw InputError("is damaged: a displacement is beyond all bounds");
     }
-    if (isFixed(lattice, *state.cells, node) && !displacement.isZero(0.0)) {
-      throw InputError("is damaged: a fixed node is displaced");
+    const bool is_gone = !state.cells->isGhost(node) && isRemoved(state, node);
+    if ((is_gone || isFixed(lattice, *state.cells, node)) && !displacement.isZero(0.0)) {
+      throw InputError("is damaged: a fixed or removed node is displaced");
     }
     state.displacement[at(node)] = displacement;
   }
@@ -195,12 +232,15 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   body.index(lattice.nodeCount());
   body.count(state.lattice.severed.size());
   putBits(state.lattice.severed, body);
+  const bool has_removals = !state.lattice.taken.empty();
+  if (has_removals) putRemovals(state.lattice, body);
   putGhosts(lattice, split, state.lattice, body);
   for (const Vec3& displacement : state.lattice.displacement) body.vec3(displacement);
   putLoads(state.loads, body);
   body.u8(state.in_balance ? 1 : 0);
   putReport(state.report, body);
-  return headerFor(body.bytes(), fingerprint) + body.bytes();
+  return headerFor(body.bytes(), has_removals ? kVersion : kWithoutRemovals, fingerprint) +
+         body.bytes();
 }
 
 SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_view bytes,
@@ -215,10 +255,12 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   }
   state.severed = takeBits(springs, in);
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+  if (opened.version > kWithoutRemovals) takeRemovals(lattice, state, in);
   state.pieces = countPieces(lattice, state);
   state.cells = takeCells(lattice, split, state, in);
   takeDisplacement(lattice, state, in);
   saved.loads = takeLoads(lattice, in);
+  for (const LoadingPatch& load : saved.loads) requireNotRemoved(state, load);
   const auto has_rim = [](const LoadingPatch& load) { return !load.rim.empty(); };
   if (!opened.of_this_scene && std::any_of(saved.loads.begin(), saved.loads.end(), has_rim)) {
     throw InputError(

@@ -3,80 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 #include <utility>
 
-#include "cutting/split_cells.h"
 #include "geometry/mesh_pieces.h"
+#include "surface/cell_parts.h"
+#include "surface/hinges.h"
+#include "surface/octant_grid.h"
 
 namespace robot_tissue {
 namespace {
 
 enum class Face { kOuter, kOpened };  // opened by a cut
 
-// The parts of the split cells, with ghosts also for a model that has none (six_spring): there a
-// ghost stands for the mean of the own corners nearest to it, over the parts that have it.
-class Parts {
- public:
-  Parts(const Lattice& lattice, const LatticeState& state) : cells_(state.cells) {
-    if (cells_->all().size() >= lattice.cells().size()) return;
-    cells_ = cellsLeft(lattice, state, SplitCells::kParted);
-    replaceGhosts();
-  }
-
-  bool isSplit(int place) const { return cells_->owner(place, 0)->isPart(); }
-  const Cell& owner(int place, int corner) const { return *cells_->owner(place, corner); }
-
-  std::vector<NodeWeight> withoutGhosts(const std::vector<NodeWeight>& carriers) const {
-    if (stand_ins_.empty()) return carriers;
-    std::map<int, double> weights;
-    for (const NodeWeight& carrier : carriers) {
-      if (!cells_->isGhost(carrier.node)) {
-        weights[carrier.node] += carrier.weight;
-        continue;
-      }
-      const auto& nodes = stand_ins_[at(carrier.node - cells_->latticeNodeCount())].nodes;
-      for (const int node : nodes) {
-        weights[node] += carrier.weight / static_cast<double>(nodes.size());
-      }
-    }
-    std::vector<NodeWeight> own;
-    for (const auto& [node, weight] : weights) own.push_back({node, weight});
-    return own;
-  }
-
- private:
-  struct StandIn {
-    int distance = kCorners;  // in springs
-    std::set<int> nodes;
-  };
-
-  void replaceGhosts() {
-    stand_ins_.resize(cells_->ghosts().size());
-    for (const Cell& cell : cells_->all()) {
-      for (int lost = 0; lost < kCorners; ++lost) {
-        if (!cells_->isGhost(cell.nodes[at(lost)])) continue;
-        StandIn& ghost = stand_ins_[at(cell.nodes[at(lost)] - cells_->latticeNodeCount())];
-        for (int corner = 0; corner < kCorners; ++corner) {
-          if (!cell.owns(corner)) continue;
-          const int apart = corner ^ lost;
-          const int distance = (apart & 1) + (apart >> 1 & 1) + (apart >> 2 & 1);
-          if (distance < ghost.distance) ghost = {distance, {}};
-          if (distance == ghost.distance) ghost.nodes.insert(cell.nodes[at(corner)]);
-        }
-      }
-    }
-  }
-
-  std::shared_ptr<const CellSet> cells_;
-  std::vector<StandIn> stand_ins_;  // per ghost; empty: ghosts move by themselves
-};
-
 class CutMeshBuilder {
  public:
   CutMeshBuilder(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh)
-      : lattice_(lattice), parts_(lattice, state), mesh_(mesh), pieces_(inSpacings(), cells()) {
+      : lattice_(lattice),
+        state_(state),
+        parts_(lattice, state),
+        mesh_(mesh),
+        pieces_(inSpacings(), cells()) {
     findRegion();
   }
 
@@ -93,6 +40,7 @@ class CutMeshBuilder {
       if (!isNear(triangle)) addWhole(triangle);
     }
     for (const MeshPieces::Piece& piece : pieces_.pieces()) {
+      if (isRemoved(piece.octant)) continue;
       for (std::size_t i = 1; i + 1 < piece.outline.size(); ++i) {
         add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, Face::kOuter);
       }
@@ -100,6 +48,7 @@ class CutMeshBuilder {
     for (const auto& octant : region_) {
       for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
     }
+    separateHinges(OctantGrid(lattice_, state_), std::move(owners_), surface_);
     return std::move(surface_);
   }
 
@@ -117,10 +66,10 @@ class CutMeshBuilder {
     return points;
   }
 
-  // The octants of split cells and of the cells around them.
+  // The octants of split and removed cells, and of the cells around them.
   void findRegion() {
     for (const Cell& cell : lattice_.cells()) {
-      if (!parts_.isSplit(cell.place)) continue;
+      if (!parts_.isOpen(cell.place)) continue;
       const auto& lowest = lattice_.gridIndex(cell.nodes.front());
       HalfIndex from{}, to{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -186,6 +135,7 @@ class CutMeshBuilder {
     }
     surface_.triangles.push_back(corners);
     surface_.opened.push_back(0);
+    owners_.push_back(octantAt(pieces_.octantOf(pieces_.vertex(triangle[0]))));
   }
 
   void add(const MeshTriangle& triangle, const HalfIndex& octant, Face face) {
@@ -193,6 +143,12 @@ class CutMeshBuilder {
     for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(triangle[i], octant);
     surface_.triangles.push_back(corners);
     surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
+    owners_.push_back(octantAt(octant));
+  }
+
+  Octant octantAt(const HalfIndex& octant) const {
+    const int cell = cellOf(octant);
+    return {cell, cell < 0 ? 0 : cornerOf(cell, octant)};
   }
 
   // On the octant's upper face along the axis, one for each side. A fan from the middle has the
@@ -201,17 +157,32 @@ class CutMeshBuilder {
     HalfIndex upper = octant;
     ++upper[at(axis)];
     const auto border = pieces_.lid(octant, axis);
+    const bool below = !isRemoved(octant), above = !isRemoved(upper);
+    if (!below && !above) return;
     const bool parted = std::any_of(border.begin(), border.end(), [&](const auto& segment) {
-      return holdOf(segment.first, octant).nodes != holdOf(segment.first, upper).nodes;
+      return !below || !above ||
+             holdOf(segment.first, octant).nodes != holdOf(segment.first, upper).nodes;
     });
     if (!parted) return;
     std::vector<int> points;
     for (const auto& segment : border) points.push_back(segment.first);
     const int middle = pieces_.addVertex(meanOf(points));
     for (const auto& [from, to] : border) {
-      add({middle, from, to}, octant, Face::kOpened);
-      add({middle, to, from}, upper, Face::kOpened);
+      if (below) add({middle, from, to}, octant, Face::kOpened);
+      if (above) add({middle, to, from}, upper, Face::kOpened);
     }
+  }
+
+  // The cell that the octant is of; beyond the lattice the nearest one.
+  int cellOf(const HalfIndex& octant) const {
+    const int cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
+    const Vec3 middle(octant[0] + 0.5, octant[1] + 0.5, octant[2] + 0.5);
+    return cell >= 0 ? cell : nearestCell(lattice_, 0.5 * middle);
+  }
+
+  bool isRemoved(const HalfIndex& octant) const {
+    const int cell = cellOf(octant);
+    return cell >= 0 && parts_.owner(cell, cornerOf(cell, octant)) == nullptr;
   }
 
   struct Hold {
@@ -222,9 +193,10 @@ class CutMeshBuilder {
   // What holds a point, as the material in the octant has it.
   Hold holdOf(int point, const HalfIndex& octant) const {
     const Vec3& place = pieces_.vertex(point);
-    const int cell = cellAround(lattice_, place);
+    int cell = cellOf(octant);
+    if (cell < 0) cell = cellAround(lattice_, place);
     Hold hold;
-    hold.carriers = carriersIn(lattice_, parts_.owner(cell, cornerOf(cell, octant)), place);
+    hold.carriers = carriersIn(lattice_, *parts_.owner(cell, cornerOf(cell, octant)), place);
     for (const NodeWeight& carrier : hold.carriers) hold.nodes.push_back(carrier.node);
     std::sort(hold.nodes.begin(), hold.nodes.end());
     return hold;
@@ -261,13 +233,15 @@ class CutMeshBuilder {
   }
 
   const Lattice& lattice_;
-  Parts parts_;
+  const LatticeState& state_;
+  CellParts parts_;
   const TriangleMesh& mesh_;
   MeshPieces pieces_;
   std::set<HalfIndex> region_;
   std::set<std::pair<int, int>> cut_edges_;
   std::map<std::pair<int, std::vector<int>>, int> vertices_;  // point and its nodes
   TissueSurface surface_;
+  std::vector<Octant> owners_;  // per triangle
 };
 
 }  // namespace

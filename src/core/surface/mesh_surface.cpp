@@ -22,7 +22,7 @@ Vec3 clamped(const Vec3& place) { return place.cwiseMax(0.0).cwiseMin(1.0); }
 
 }  // namespace
 
-int cellAround(const Lattice& lattice, const Vec3& point) {
+int nearestCell(const Lattice& lattice, const Vec3& point) {
   std::array<int, 3> middle{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     middle[axis] = static_cast<int>(std::floor(point[static_cast<Eigen::Index>(axis)]));
@@ -45,8 +45,14 @@ int cellAround(const Lattice& lattice, const Vec3& point) {
       }
     }
   }
-  if (nearest < 0)
+  return nearest;
+}
+
+int cellAround(const Lattice& lattice, const Vec3& point) {
+  const int nearest = nearestCell(lattice, point);
+  if (nearest < 0) {
     throw InputError("surface: a vertex lies in no cell; allowed: the lattice's mesh");
+  }
   return nearest;
 }
 
@@ -69,7 +75,7 @@ std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, con
 
 TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
                           const TriangleMesh& mesh) {
-  if (state.springs_cut > 0) return cutMeshSurface(lattice, state, mesh);
+  if (!isAsMade(state)) return cutMeshSurface(lattice, state, mesh);
   TissueSurface surface;
   surface.rest = mesh.vertices;
   surface.node.assign(mesh.vertices.size(), -1);

@@ -14,6 +14,8 @@ namespace robot_tissue {
 // The cell that holds the point at rest, or the nearest one; of several the fullest. `point`: in
 // spacings from the grid's lowest corner, in the grid to a few thousandths.
 int cellAround(const Lattice& lattice, const Vec3& point);
+// The same, -1 where there is none next to it.
+int nearestCell(const Lattice& lattice, const Vec3& point);
 
 // Of a cell's or part's corners, for a point as above; a corner without weight is left out.
 std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point);

@@ -3,172 +3,183 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
-#include "cutting/split_cells.h"
+#include "surface/hinges.h"
+#include "surface/octant_grid.h"
 
 namespace robot_tissue {
 namespace {
 
-enum class Face { kOuter, kOpened };  // opened by a cut
+enum class Face { kOuter, kOpened };  // opened by a cut, or a removal
 
-// Corners of each face, counter-clockwise seen from outside; faces in the order -x +x -y +y -z +z.
-constexpr int kFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-
-struct Corner {
-  int node = 0;               // of the lattice, that stands at the corner
-  std::vector<int> carriers;  // the node itself, or the part's nodes nearest to it
-  bool own = true;
-  int ghost = kNone;  // that the part has in place of a lost node; of the lattice where a cut ends
-
-  static constexpr int kNone = -1;
+struct HalfPointHash {
+  std::size_t operator()(const HalfPoint& point) const {
+    std::size_t hash = 0;
+    for (const int index : point) hash = 1000003 * hash + static_cast<std::size_t>(index);
+    return hash;
+  }
 };
 
-using CornerKey = std::vector<int>;  // node, ghost, carriers
-
-CornerKey keyOf(const Corner& corner) {
-  CornerKey key = {corner.node, corner.ghost};
-  key.insert(key.end(), corner.carriers.begin(), corner.carriers.end());
-  return key;
-}
-
+// Whole cells show whole sides; split ones, and what a removal left of cells, show the sides of
+// their eighths. Where these meet, the whole sides get the points between their corners, too.
 class SurfaceBuilder {
  public:
   SurfaceBuilder(const Lattice& lattice, const LatticeState& state)
-      : lattice_(lattice), state_(state), vertex_of_node_(at(lattice.nodeCount()), -1) {}
+      : lattice_(lattice), octants_(lattice, state) {}
 
   TissueSurface build() {
-    for (const Cell& cell : lattice_.cells()) addCell(cell);
-    for (const auto& [key, quad] : between_cells_) addQuad(quad, Face::kOpened);
+    for (const Cell& cell : lattice_.cells()) {
+      for (int side = 0; side < 6; ++side) addSide(cell, side);
+      if (octants_.isOpen(cell.place)) addInside(cell);
+    }
+    for (const WholeSide& whole : whole_sides_) addWhole(whole);
+    separateHinges(octants_, std::move(owners_), surface_);
     return std::move(surface_);
   }
 
  private:
-  using Quad = std::array<Corner, 4>;
-  using QuadKey = std::array<CornerKey, 4>;
+  struct WholeSide {
+    Octant octant;  // any of the cell's at the side
+    HalfPoint lowest{};
+    int side = 0;
+    Face face = Face::kOuter;
+  };
 
-  std::array<int, kCorners> partsOf(const Cell& cell) const {
-    return cellParts(lattice_, state_, cell.nodes);
+  std::array<Octant, 4> octantsAt(const Cell& cell, int side) const {
+    std::array<Octant, 4> octants;
+    std::size_t count = 0;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if ((corner >> side / 2 & 1) == side % 2) octants[count++] = {cell.place, corner};
+    }
+    return octants;
   }
 
-  static bool isWhole(const std::array<int, kCorners>& parts) {
-    return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
+  void addSide(const Cell& cell, int side) {
+    auto index = lattice_.gridIndex(cell.nodes.front());
+    index[at(side / 2)] += side % 2 == 1 ? 1 : -1;
+    const int neighbor = lattice_.cellAt(index);
+    const bool is_whole = !octants_.isOpen(cell.place);
+    if (neighbor >= 0 && is_whole && !octants_.isOpen(neighbor)) return;
+    const Face face = neighbor < 0 ? Face::kOuter : Face::kOpened;
+    const std::array<Octant, 4> octants = octantsAt(cell, side);
+    const auto is_bare = [&](const Octant& octant) {
+      return !octants_.isThere({neighbor, octant.corner ^ 1 << side / 2});
+    };
+    if (is_whole && std::all_of(octants.begin(), octants.end(), is_bare)) {
+      whole_sides_.push_back({octants[0], octants_.lowestOf({cell.place, 0}), side, face});
+      return;
+    }
+    for (const Octant& octant : octants) {
+      if (octants_.isThere(octant) && is_bare(octant)) addEighth(octant, side, face);
+    }
   }
 
-  void addCell(const Cell& cell) {
-    const auto parts = partsOf(cell);
-    for (int face = 0; face < 6; ++face) {
-      auto index = lattice_.gridIndex(cell.nodes.front());
-      index[at(face / 2)] += face % 2 == 1 ? 1 : -1;
-      const int neighbor = lattice_.cellAt(index);
-      const bool outside = neighbor < 0;
-      if (!outside && isWhole(parts) && isWhole(partsOf(lattice_.cells()[at(neighbor)]))) continue;
-      for (int part = 0; part < kCorners; ++part) {
-        if (parts[at(part)] == part) addFace(cell, parts, part, face, outside);
+  // Where a cut runs through the cell, or a removal ends in it.
+  void addInside(const Cell& cell) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Octant octant = {cell.place, corner};
+      if (!octants_.isThere(octant)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int side = 2 * axis + (1 - (corner >> axis & 1));
+        if (!octants_.isJoined(octant, side)) addEighth(octant, side, Face::kOpened);
       }
     }
   }
 
-  void addFace(const Cell& cell, const std::array<int, kCorners>& parts, int part, int face,
-               bool outside) {
-    Quad quad;
-    bool touches_part = false;
-    for (int i = 0; i < 4; ++i) {
-      quad[at(i)] = makeCorner(cell, parts, part, kFaceCorners[face][i]);
-      touches_part = touches_part || quad[at(i)].own;
-    }
-    if (!touches_part) {
-      addQuad(quad, Face::kOpened);  // where the cut runs through the cell
-    } else if (outside) {
-      addQuad(quad, Face::kOuter);
-    } else {
-      addBetweenCells(quad);
-    }
-  }
-
-  // Two parts of neighboring cells that share a face hide it from each other.
-  void addBetweenCells(const Quad& quad) {
-    QuadKey key;
-    for (int i = 0; i < 4; ++i) key[at(i)] = keyOf(quad[at(i)]);
-    std::sort(key.begin(), key.end());
-    const auto [place, is_new] = between_cells_.emplace(key, quad);
-    if (!is_new) between_cells_.erase(place);
-  }
-
-  Corner makeCorner(const Cell& cell, const std::array<int, kCorners>& parts, int part,
-                    int corner) const {
-    const auto& nodes = cell.nodes;
-    Corner made;
-    made.node = nodes[at(corner)];
-    made.own = parts[at(corner)] == part;
-    if (made.own) {
-      made.carriers = {made.node};
-      return made;
-    }
-    if (const Cell* with_ghosts = state_.cells->owner(cell.place, part)) {
-      made.ghost = with_ghosts->nodes[at(corner)];
-    }
-    for (int distance = 1; distance <= 3 && made.carriers.empty(); ++distance) {
-      for (int other = 0; other < kCorners; ++other) {
-        const int apart = corner ^ other;
-        const int steps = (apart & 1) + (apart >> 1 & 1) + (apart >> 2 & 1);
-        if (parts[at(other)] == part && steps == distance) {
-          made.carriers.push_back(nodes[at(other)]);
-        }
+  // The diagonal begins at the node's corner of the side: symmetric where the lattice is.
+  void addEighth(const Octant& octant, int side, Face face) {
+    const auto corners = cornersOfSide(octants_.lowestOf(octant), side, 1);
+    std::array<int, 4> vertices{};
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      vertices[i] = vertex(octant, corners[i]);
+      int odd = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (axis != side / 2) odd += corners[i][at(axis)] & 1;
       }
+      if (odd == 0) first = i;
+      if (isBetweenNodes(corners[i])) fine_points_.insert(corners[i]);
     }
-    return made;
+    for (const std::size_t start : {first, first + 2}) {
+      add({vertices[start % 4], vertices[(start + 1) % 4], vertices[(start + 2) % 4]}, octant,
+          face);
+    }
+  }
+
+  static bool isBetweenNodes(const HalfPoint& point) {
+    return (point[0] & 1) + (point[1] & 1) + (point[2] & 1) == 1;
   }
 
   // The diagonal joins the even nodes, so that the triangles are symmetric where the lattice is.
-  void addQuad(const Quad& quad, Face face) {
-    std::array<int, 4> vertices{};
-    for (int i = 0; i < 4; ++i) vertices[at(i)] = vertex(quad[at(i)]);
-    const auto index = lattice_.gridIndex(quad[0].node);
-    const int first = (index[0] + index[1] + index[2]) % 2;
-    for (const int start : {first, first + 2}) {
-      surface_.triangles.push_back(
-          {vertices[at(start % 4)], vertices[at((start + 1) % 4)], vertices[at((start + 2) % 4)]});
-      surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
+  void addWhole(const WholeSide& whole) {
+    const auto corners = cornersOfSide(whole.lowest, whole.side, 2);
+    std::vector<int> outline;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfPoint& from = corners[i];
+      const HalfPoint& to = corners[(i + 1) % 4];
+      outline.push_back(vertex(whole.octant, from));
+      const HalfPoint middle = {(from[0] + to[0]) / 2, (from[1] + to[1]) / 2,
+                                (from[2] + to[2]) / 2};
+      if (fine_points_.count(middle) != 0) outline.push_back(vertex(whole.octant, middle));
+    }
+    if (outline.size() == 4) {
+      const std::size_t first =
+          (corners[0][0] + corners[0][1] + corners[0][2]) / 2 % 2 == 0 ? 0 : 1;
+      for (const std::size_t start : {first, first + 2}) {
+        add({outline[start % 4], outline[(start + 1) % 4], outline[(start + 2) % 4]}, whole.octant,
+            whole.face);
+      }
+      return;
+    }
+    HalfPoint middle{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      middle[axis] = (corners[0][axis] + corners[2][axis]) / 2;
+    const int center = vertex(whole.octant, middle);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      add({center, outline[i], outline[(i + 1) % outline.size()]}, whole.octant, whole.face);
     }
   }
 
-  int vertex(const Corner& corner) {
-    if (corner.own) {
-      int& known = vertex_of_node_[at(corner.node)];
-      if (known < 0) known = newVertex(corner);
-      return known;
-    }
-    const CornerKey key = keyOf(corner);
-    const auto known = lost_corners_.find(key);
-    if (known != lost_corners_.end()) return known->second;
-    return lost_corners_[key] = newVertex(corner);
+  void add(const MeshTriangle& triangle, const Octant& owner, Face face) {
+    surface_.triangles.push_back(triangle);
+    surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
+    owners_.push_back(owner);
   }
 
-  int newVertex(const Corner& corner) {
-    const double share = 1.0 / static_cast<double>(corner.carriers.size());
-    const bool has_ghost = corner.ghost != Corner::kNone;
-    Vec3 carriers_mean = Vec3::Zero();
-    std::vector<NodeWeight> weights;
-    for (const int carrier : corner.carriers) {
-      weights.push_back({carrier, has_ghost ? 0.5 * share : share});
-      carriers_mean += share * lattice_.restPosition(carrier);
+  // Where the point hangs on the same nodes it is the same vertex.
+  int vertex(const Octant& octant, const HalfPoint& point) {
+    const std::vector<NodeWeight> hold = octants_.holdOf(octant, point);
+    std::vector<int>& known = vertices_at_[point];
+    for (const int vertex : known) {
+      if (!holdsAlike(holds_[at(vertex)], hold)) continue;
+      int& node = surface_.node[at(vertex)];
+      if (node != octants_.nodeOf(octant) && hold.size() > 1) node = -1;
+      return vertex;
     }
-    if (has_ghost) weights.push_back({corner.ghost, 0.5});
-    surface_.rest.push_back(corner.own
-                                ? lattice_.restPosition(corner.node)
-                                : 0.5 * (carriers_mean + lattice_.restPosition(corner.node)));
-    surface_.carriers.push_back(std::move(weights));
-    surface_.node.push_back(corner.carriers.size() == 1 ? corner.carriers.front() : -1);
-    return static_cast<int>(surface_.rest.size()) - 1;
+    known.push_back(static_cast<int>(surface_.rest.size()));
+    holds_.push_back(hold);
+    surface_.rest.push_back(octants_.placeOf(point));
+    surface_.carriers.push_back(octants_.carriersOf(hold));
+    surface_.node.push_back(hold.size() > 1 ? octants_.nodeOf(octant) : hold.front().node);
+    return known.back();
+  }
+
+  static bool holdsAlike(const std::vector<NodeWeight>& a, const std::vector<NodeWeight>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& one, const auto& other) { return one.node == other.node; });
   }
 
   const Lattice& lattice_;
-  const LatticeState& state_;
+  OctantGrid octants_;
   TissueSurface surface_;
-  std::vector<int> vertex_of_node_;
-  std::map<CornerKey, int> lost_corners_;
-  std::map<QuadKey, Quad> between_cells_;
+  std::vector<Octant> owners_;  // per triangle
+  std::vector<WholeSide> whole_sides_;
+  std::vector<std::vector<NodeWeight>> holds_;  // per vertex
+  std::unordered_map<HalfPoint, std::vector<int>, HalfPointHash> vertices_at_;
+  std::unordered_set<HalfPoint, HalfPointHash> fine_points_;  // in the middle of springs
 };
 
 }  // namespace

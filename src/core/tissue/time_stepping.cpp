@@ -43,7 +43,8 @@ void Tissue::findFreePieces() {
   std::vector<bool> held;
   free_pieces_.clear();
   for (std::size_t node = 0; node < pieces.size(); ++node) {
-    const std::size_t piece = at(std::max(pieces[node], 0));
+    if (pieces[node] < 0) continue;
+    const std::size_t piece = at(pieces[node]);
     if (free_pieces_.size() <= piece) free_pieces_.resize(piece + 1);
     held.resize(free_pieces_.size(), false);
     free_pieces_[piece].push_back(static_cast<int>(node));
@@ -100,7 +101,9 @@ SolveReport Tissue::asItIs() {
 void Tissue::predict() {
   kept_.reset();
   for (std::size_t node = 0; node < state_.displacement.size(); ++node) {
-    if (!isFixed(lattice_, *state_.cells, static_cast<int>(node))) {
+    const int index = static_cast<int>(node);
+    const bool is_gone = !state_.cells->isGhost(index) && isRemoved(state_, index);
+    if (!is_gone && !isFixed(lattice_, *state_.cells, index)) {
       state_.displacement[node] = time_->predicted(node);
     }
   }

@@ -5,11 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include "cutting/cut.h"
+#include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
+#include "tissue/history.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
@@ -44,6 +45,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       solver_(solver),
       balance_fingerprint_(balanceFingerprint(tissue, solver)),
       method_(makeMethod(solver, lattice_, *model_)),
+      history_(std::make_unique<History>()),
       has_gravity_(!tissue.gravity.isZero()),
       gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
@@ -53,9 +55,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   }
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    weight_ += lattice_.mass(node) * tissue.gravity;
-  }
+  weight_ = model_->weight(state_);
 }
 
 Tissue::~Tissue() = default;
@@ -143,6 +143,7 @@ void Tissue::restore(const Shape& shape) {
   in_time_step_ = false;
   kept_.reset();
   state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
+  restRemoved(state_);
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
@@ -165,30 +166,8 @@ void Tissue::switchAside() {
   std::swap(method_, other_method_);
 }
 
-CutReport Tissue::cut(const std::vector<Vec3>& corners) {
-  const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
-  CutReport report;
-  report.springs_cut = static_cast<int>(crossing.size());
-  report.pieces = state_.pieces;
-  report.solve = last_report_;
-  if (crossing.empty()) return report;
-  std::vector<int> disturbed;
-  for (const int spring : crossing) {
-    disturbed.push_back(lattice_.springs()[at(spring)].a);
-    disturbed.push_back(lattice_.springs()[at(spring)].b);
-  }
-  kept_.reset();
-  sever(lattice_, crossing, state_, model_->splitCells());
-  rebuildSurface();
-  deformSurface();
-  renewContacts();
-  report.pieces = state_.pieces;
-  report.solve = takesNoTime() ? asItIs() : solve(disturbed);
-  return report;
-}
-
 void Tissue::reset() {
-  const bool was_cut = state_.springs_cut > 0;
+  const bool was_cut = !isAsMade(state_);
   stopTime();
   endAside();
   other_method_.reset();
@@ -201,7 +180,11 @@ void Tissue::reset() {
   disturbed_.clear();
   last_report_ = SolveReport();
   is_late_ = false;
-  if (was_cut) rebuildSurface();
+  history_->clear();
+  if (was_cut) {
+    weight_ = model_->weight(state_);
+    rebuildSurface();
+  }
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
 }
@@ -391,7 +374,7 @@ void Tissue::describeShape(SolveReport& report) {
 std::vector<int> Tissue::freeNodes() const {
   std::vector<int> nodes;
   for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    if (!lattice_.isFixed(node)) nodes.push_back(node);
+    if (!lattice_.isFixed(node) && !isRemoved(state_, node)) nodes.push_back(node);
   }
   return nodes;
 }

@@ -150,6 +150,9 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
   LoadingPatch patch;
   patch.name = config.name;
   patch.nodes = lattice_.nodesIn(config.box);
+  patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
+                                   [this](int node) { return isRemoved(state_, node); }),
+                    patch.nodes.end());
   if (patch.nodes.empty()) refuse(config.name, "no node in its box", "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
                   [this](int node) { return lattice_.isFixed(node); })) {

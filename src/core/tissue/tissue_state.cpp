@@ -6,6 +6,7 @@
 #include "saving/bytes.h"
 #include "saving/saved_state.h"
 #include "solvers/solver_method.h"
+#include "tissue/history.h"
 
 namespace robot_tissue {
 namespace {
@@ -71,6 +72,8 @@ SolveReport Tissue::loadState(const SavedState& saved) {
   state_ = saved.lattice;
   patches_ = saved.loads;
   named_patches_ = patches_.size();
+  history_->clear();
+  weight_ = model_->weight(state_);
   rebuildSurface();
   last_report_ = saved.report;
   if (!saved.in_balance) return solve(freeNodes());

@@ -4,6 +4,8 @@
 // study (doc/contact.md) passed; no other value was measured against it.
 #pragma once
 
+#include <cstddef>
+
 namespace robot_tissue::tuning {
 
 // Load steps.
@@ -93,5 +95,9 @@ constexpr double kLongestStep = 0.05;
 // dimensions. More: scenes are refused that the memory holds; less: the system ends the program.
 // Measured: 105 MB at 4,851 nodes, 1,186 MB at 35,301.
 constexpr double kFactorBytes = 1150.0;
+
+// Bytes of the shapes that cuts can be taken back to. More: more of them come back bit for bit, not
+// balanced anew. Chosen.
+constexpr std::size_t kMostHistoryBytes = 256000000;
 
 }  // namespace robot_tissue::tuning

@@ -1,0 +1,187 @@
+#include "cutting/removal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cutting/split_cells.h"
+#include "lattice/connectivity.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr unsigned kWholeCell = 0xff;
+
+void requireSpace(const RemovedSpace& space) {
+  if (const PlacedBox* placed = std::get_if<PlacedBox>(&space)) {
+    const Box& box = placed->box;
+    const bool finite =
+        box.min().allFinite() && box.max().allFinite() && placed->tissue_T_box.matrix().allFinite();
+    if (!finite || !(box.max().array() > box.min().array()).all()) {
+      throw InputError("box: not finite, or empty; allowed: min below max along x, y and z");
+    }
+    return;
+  }
+  const Sphere& sphere = std::get<Sphere>(space);
+  if (!sphere.center.allFinite() || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0)) {
+    throw InputError("sphere: not finite, or empty; allowed: a center and a radius above 0 m");
+  }
+}
+
+// Eighths of the part that the corner is of.
+unsigned bitsOfPart(const std::array<int, kCorners>& parts, int part) {
+  unsigned bits = 0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    if (parts[at(corner)] == part) bits |= 1U << corner;
+  }
+  return bits;
+}
+
+int countOf(unsigned bits) {
+  int count = 0;
+  for (; bits != 0; bits &= bits - 1) ++count;
+  return count;
+}
+
+// Share of the corner `of` in the place of the middle of the eighth at `eighth`.
+double weightIn(int eighth, int of) {
+  double weight = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+    weight *= (eighth >> axis & 1) == (of >> axis & 1) ? 0.75 : 0.25;
+  return weight;
+}
+
+// Mean of the middles of the part's eighths, deformed (m). A part that the model has lost goes with
+// its own corners.
+Vec3 centerOf(const Lattice& lattice, const LatticeState& state, const Cell& cell, unsigned bits,
+              int part) {
+  const Cell* there = state.cells->owner(cell.place, part);
+  Vec3 center = Vec3::Zero();
+  const double share = 1.0 / countOf(bits);
+  for (int eighth = 0; eighth < kCorners; ++eighth) {
+    if ((bits >> eighth & 1U) == 0) continue;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const double weight = share * weightIn(eighth, corner);
+      center += weight * lattice.restPosition(cell.nodes[at(corner)]);
+      const int mover = there != nullptr ? there->nodes[at(corner)] : cell.nodes[at(eighth)];
+      center += weight * state.displacement[at(mover)];
+    }
+  }
+  return center;
+}
+
+// Springs of which no cell has both ends any more are severed.
+void severBareSprings(const Lattice& lattice, LatticeState& state) {
+  std::vector<std::uint8_t> bare(state.severed.size(), 1);
+  for (const Cell& cell : lattice.cells()) {
+    const unsigned there = ~takenOf(state, cell.place);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int other = corner | 1 << axis;
+        if (other == corner || (there >> corner & there >> other & 1U) == 0) continue;
+        bare[at(lattice.springOf(cell.nodes[at(corner)], 2 * axis + 1))] = 0;
+      }
+    }
+  }
+  for (std::size_t spring = 0; spring < bare.size(); ++spring) {
+    if (bare[spring] != 0) state.severed[spring] = 1;
+  }
+  state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+}
+
+void weighNodes(const Lattice& lattice, LatticeState& state) {
+  std::vector<double> all(at(lattice.nodeCount()), 0.0), there(all);
+  for (const Cell& cell : lattice.cells()) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const std::size_t node = at(cell.nodes[at(corner)]);
+      all[node] += cell.share;
+      if (!isTaken(state, cell.place, corner)) there[node] += cell.share;
+    }
+  }
+  for (std::size_t node = 0; node < all.size(); ++node) there[node] /= all[node];
+  state.left = std::move(there);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> cellsWithin(const Lattice& lattice, const LatticeState& state,
+                                      const RemovedSpace& space) {
+  requireSpace(space);
+  std::vector<std::uint8_t> within(lattice.cells().size(), 0);
+  bool any = false;
+  for (const Cell& cell : lattice.cells()) {
+    const auto parts = cellParts(lattice, state, cell.nodes);
+    for (int part = 0; part < kCorners; ++part) {
+      if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
+      const unsigned bits = bitsOfPart(parts, part);
+      if (!holds(space, centerOf(lattice, state, cell, bits, part))) continue;
+      within[at(cell.place)] = static_cast<std::uint8_t>(within[at(cell.place)] | bits);
+      any = true;
+    }
+  }
+  if (!any) within.clear();
+  return within;
+}
+
+void noteTaken(const Lattice& lattice, LatticeState& state) {
+  severBareSprings(lattice, state);
+  weighNodes(lattice, state);
+  state.pieces = countPieces(lattice, state);
+}
+
+void removeCells(const Lattice& lattice, const std::vector<std::uint8_t>& cells, SplitCells split,
+                 LatticeState& state) {
+  state.taken.resize(lattice.cells().size(), 0);
+  for (std::size_t place = 0; place < cells.size(); ++place) {
+    state.taken[place] = static_cast<std::uint8_t>(state.taken[place] | cells[place]);
+  }
+  noteTaken(lattice, state);
+  const auto there = cellsLeft(lattice, state, split);
+  state.displacement = carriedOver(*state.cells, state.displacement, *there);
+  state.cells = there;
+  restRemoved(state);
+}
+
+void restRemoved(LatticeState& state) {
+  for (std::size_t node = 0; node < state.left.size(); ++node) {
+    if (state.left[node] == 0.0) state.displacement[node].setZero();
+  }
+}
+
+bool isOfWholeParts(const Lattice& lattice, const LatticeState& state) {
+  for (const Cell& cell : lattice.cells()) {
+    const unsigned taken = takenOf(state, cell.place);
+    if (taken == 0 || taken == kWholeCell) continue;
+    const auto parts = cellParts(lattice, state, cell.nodes);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const unsigned bits = bitsOfPart(parts, parts[at(corner)]);
+      if ((taken & bits) != 0 && (taken & bits) != bits) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<int> nodesAround(const Lattice& lattice, const std::vector<std::uint8_t>& cells,
+                             const LatticeState& state) {
+  std::vector<int> nodes;
+  for (const Cell& cell : lattice.cells()) {
+    if (cells[at(cell.place)] == 0) continue;
+    for (const int node : cell.nodes) {
+      if (!isRemoved(state, node)) nodes.push_back(node);
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+double volumeOf(const Lattice& lattice, const std::vector<std::uint8_t>& cells) {
+  const double eighth = std::pow(lattice.spacing(), 3) / kCorners;
+  double volume = 0.0;
+  for (const Cell& cell : lattice.cells()) {
+    volume += eighth * cell.share * countOf(cells[at(cell.place)]);
+  }
+  return volume;
+}
+
+}  // namespace robot_tissue

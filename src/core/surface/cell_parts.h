@@ -1,0 +1,42 @@
+// The parts of the lattice's cells, for surfaces along cuts.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+
+namespace robot_tissue {
+
+// With ghosts also for a model that has none (six_spring): there a ghost stands for the mean of the
+// own corners nearest to it, over the parts that have it.
+class CellParts {
+ public:
+  CellParts(const Lattice& lattice, const LatticeState& state);
+
+  // It was split, or removed.
+  bool isOpen(int place) const {
+    const Cell* first = owner(place, 0);
+    return first == nullptr || first->isPart();
+  }
+  // The part that has the eighth at the corner; null where it was removed.
+  const Cell* owner(int place, int corner) const { return cells_->owner(place, corner); }
+
+  std::vector<NodeWeight> withoutGhosts(const std::vector<NodeWeight>& carriers) const;
+
+ private:
+  bool hasAll(const Lattice& lattice, const LatticeState& state) const;
+  void replaceGhosts();
+
+  struct StandIn {
+    int distance = kCorners;  // in springs
+    std::set<int> nodes;
+  };
+
+  std::shared_ptr<const CellSet> cells_;
+  std::vector<StandIn> stand_ins_;  // per ghost; empty: ghosts move by themselves
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,250 @@
+#include "surface/hinges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "robot_tissue/core/disjoint_sets.h"
+
+namespace robot_tissue {
+namespace {
+
+// Where a triangle has an edge: 3 * triangle + the corner that the edge begins at.
+using EdgePlace = int;
+
+// Every pass splits all but edges of one triangle: more than a few are never needed. Chosen.
+constexpr int kMostPasses = 16;
+// Half spacings (1): a vertex that is nearer to a line of the half grid is on it. Rounding.
+constexpr double kOnLine = 1e-6;
+
+struct EndsHash {
+  std::size_t operator()(const std::pair<int, int>& ends) const {
+    return static_cast<std::size_t>(ends.first) * 1000003 + static_cast<std::size_t>(ends.second);
+  }
+};
+
+class HingeSeparator {
+ public:
+  HingeSeparator(const OctantGrid& octants, std::vector<Octant> owners, TissueSurface& surface)
+      : octants_(octants),
+        owners_(std::move(owners)),
+        surface_(surface),
+        fans_(3 * surface.triangles.size()) {}
+
+  void run() {
+    findEdges();
+    if (!hasHinges()) return;
+    for (const auto& [key, places] : edges_) joinAlong(places);
+    separate();
+    findEdges();
+    for (int passes = 0; hasHinges() && passes < kMostPasses; ++passes) {
+      if (!splitEdges()) return;
+      findEdges();
+    }
+  }
+
+ private:
+  void findEdges() {
+    edges_.clear();
+    for (int triangle = 0; triangle < static_cast<int>(surface_.triangles.size()); ++triangle) {
+      for (int corner = 0; corner < 3; ++corner) {
+        const int from = vertexAt(triangle, corner), to = vertexAt(triangle, (corner + 1) % 3);
+        edges_[std::minmax(from, to)].push_back(3 * triangle + corner);
+      }
+    }
+  }
+
+  bool hasHinges() const {
+    return std::any_of(edges_.begin(), edges_.end(),
+                       [](const auto& edge) { return edge.second.size() > 2; });
+  }
+
+  int vertexAt(int triangle, int corner) const {
+    return surface_.triangles[at(triangle)][at(corner)];
+  }
+
+  // Corners of triangles that meet along an edge are of one fan at both its ends.
+  void join(EdgePlace a, EdgePlace b) {
+    for (const int a_end : {0, 1}) {
+      for (const int b_end : {0, 1}) {
+        const int one = 3 * (a / 3) + (a % 3 + a_end) % 3;
+        const int other = 3 * (b / 3) + (b % 3 + b_end) % 3;
+        if (vertexAt(one / 3, one % 3) == vertexAt(other / 3, other % 3)) fans_.join(one, other);
+      }
+    }
+  }
+
+  void joinAlong(const std::vector<EdgePlace>& places) {
+    if (places.size() == 2) return join(places[0], places[1]);
+    const std::vector<int> wedge_of = wedgesOf(places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (wedge_of[i] == wedge_of[j]) join(places[i], places[j]);
+      }
+    }
+  }
+
+  // An edge inside the side of an octant has that octant on one side of it, another one beyond.
+  std::vector<int> wedgesOf(const std::vector<EdgePlace>& places) {
+    if (!findAround(places[0])) {
+      std::vector<int> owner_of;
+      for (const EdgePlace place : places) {
+        const Octant& owner = owners_[at(place / 3)];
+        owner_of.push_back(kCorners * owner.cell + owner.corner);
+      }
+      return owner_of;
+    }
+    const std::array<int, 4> wedge = wedgesAround();
+    std::vector<int> wedge_of;
+    for (const EdgePlace place : places) wedge_of.push_back(wedge[around(place)]);
+    return wedge_of;
+  }
+
+  // The four octants around the edge, one after the other; of a longer edge around its middle.
+  // False where it runs along none of the half grid's lines.
+  bool findAround(EdgePlace place) {
+    const Vec3 a = placeAt(vertexAt(place / 3, place % 3));
+    const Vec3 b = placeAt(vertexAt(place / 3, (place % 3 + 1) % 3));
+    Eigen::Index along = 0;
+    (a - b).cwiseAbs().maxCoeff(&along);
+    along_ = static_cast<int>(along);
+    HalfPoint lowest{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double middle = 0.5 * (a[axis] + b[axis]), nearest = std::round(middle);
+      lowest[at(axis)] = static_cast<int>(axis == along_ ? std::floor(middle - kOnLine) : nearest);
+      const bool is_on_line =
+          std::abs(a[axis] - nearest) < kOnLine && std::abs(b[axis] - nearest) < kOnLine;
+      if (axis != along_ && !is_on_line) return false;
+    }
+    const std::size_t u = at((along_ + 1) % 3), v = at((along_ + 2) % 3);
+    constexpr int kTurn[4][2] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
+    for (std::size_t i = 0; i < 4; ++i) {
+      HalfPoint at_turn = lowest;
+      at_turn[u] += kTurn[i][0];
+      at_turn[v] += kTurn[i][1];
+      around_[i] = octants_.octantAt(at_turn);
+    }
+    return true;
+  }
+
+  // Octants that are joined over the sides around the edge are of one wedge.
+  std::array<int, 4> wedgesAround() const {
+    const int u = (along_ + 1) % 3, v = (along_ + 2) % 3;
+    const int side_to_next[4] = {2 * u, 2 * v, 2 * u + 1, 2 * v + 1};
+    DisjointSets sets(4);
+    for (int i = 0; i < 4; ++i) {
+      const Octant& octant = around_[at(i)];
+      if (octants_.isThere(octant) && octants_.isJoined(octant, side_to_next[i])) {
+        sets.join(i, (i + 1) % 4);
+      }
+    }
+    std::array<int, 4> wedges{};
+    for (int i = 0; i < 4; ++i) wedges[at(i)] = sets.lowest(i);
+    return wedges;
+  }
+
+  // Which of the octants around the edge the triangle is of, or its cell has.
+  std::size_t around(EdgePlace place) const {
+    const Octant& owner = owners_[at(place / 3)];
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (around_[i] == owner) return i;
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (around_[i].cell == owner.cell && !octants_.isOpen(owner.cell)) return i;
+    }
+    return 0;
+  }
+
+  Vec3 placeAt(int vertex) const { return octants_.inHalfSpacings(surface_.rest[at(vertex)]); }
+
+  // The first fan at a vertex keeps it, others get copies.
+  void separate() {
+    std::vector<int> fan_of(surface_.rest.size(), -1);
+    std::unordered_map<int, int> copies;  // per fan
+    for (int place = 0; place < static_cast<int>(3 * surface_.triangles.size()); ++place) {
+      int& vertex = surface_.triangles[at(place / 3)][at(place % 3)];
+      const int fan = fans_.lowest(place);
+      int& first = fan_of[at(vertex)];
+      if (first < 0) first = fan;
+      if (first == fan) continue;
+      const auto [copy, is_new] = copies.try_emplace(fan, static_cast<int>(surface_.rest.size()));
+      if (is_new) {
+        surface_.rest.push_back(Vec3(surface_.rest[at(vertex)]));
+        surface_.carriers.push_back(std::vector<NodeWeight>(surface_.carriers[at(vertex)]));
+        surface_.node.push_back(int(surface_.node[at(vertex)]));
+      }
+      vertex = copy->second;
+    }
+  }
+
+  // Where wedges that meet along an edge are one around its ends, all but the first get a vertex of
+  // their own in the middle of the edge. False: there are none.
+  bool splitEdges() {
+    std::map<std::pair<int, int>, std::vector<EdgePlace>> hinges;  // in an order of their own
+    for (const auto& edge : edges_) {
+      if (edge.second.size() > 2) hinges.insert(edge);
+    }
+    std::set<int> changed;  // triangles whose edges are others now: left to the next pass
+    for (const auto& [ends, places] : hinges) {
+      const auto is_changed = [&](EdgePlace place) { return changed.count(place / 3) != 0; };
+      if (std::any_of(places.begin(), places.end(), is_changed)) continue;
+      const std::vector<int> wedge_of = wedgesOf(places);
+      std::map<int, int> middles;  // per wedge
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        if (wedge_of[i] == wedge_of[0]) continue;
+        const auto [middle, is_new] =
+            middles.try_emplace(wedge_of[i], static_cast<int>(surface_.rest.size()));
+        if (is_new) addMiddle(ends.first, ends.second);
+        splitAt(places[i], middle->second);
+        changed.insert(places[i] / 3);
+      }
+    }
+    return !changed.empty();
+  }
+
+  void addMiddle(int a, int b) {
+    std::map<int, double> weights;
+    for (const int end : {a, b}) {
+      for (const NodeWeight& carrier : surface_.carriers[at(end)]) {
+        weights[carrier.node] += 0.5 * carrier.weight;
+      }
+    }
+    std::vector<NodeWeight> carriers;
+    for (const auto& [node, weight] : weights) carriers.push_back({node, weight});
+    surface_.rest.push_back(0.5 * (surface_.rest[at(a)] + surface_.rest[at(b)]));
+    surface_.carriers.push_back(std::move(carriers));
+    surface_.node.push_back(-1);
+  }
+
+  // The triangle of the edge becomes two.
+  void splitAt(EdgePlace place, int middle) {
+    const std::size_t triangle = at(place / 3);
+    MeshTriangle other = surface_.triangles[triangle];
+    surface_.triangles[triangle][at((place % 3 + 1) % 3)] = middle;
+    other[at(place % 3)] = middle;
+    surface_.triangles.push_back(other);
+    owners_.push_back(Octant(owners_[triangle]));
+    surface_.opened.push_back(std::uint8_t(surface_.opened[triangle]));
+  }
+
+  const OctantGrid& octants_;
+  std::vector<Octant> owners_;  // per triangle
+  TissueSurface& surface_;
+  DisjointSets fans_;  // of corners of triangles
+  std::unordered_map<std::pair<int, int>, std::vector<EdgePlace>, EndsHash>
+      edges_;      // by their ends
+  int along_ = 0;  // axis of the edge that is looked at
+  std::array<Octant, 4> around_{};
+};
+
+}  // namespace
+
+void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, TissueSurface& surface) {
+  HingeSeparator(octants, std::move(owners), surface).run();
+}
+
+}  // namespace robot_tissue

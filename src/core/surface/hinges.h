@@ -1,0 +1,16 @@
+// Where material meets along a line alone (own).
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/surface.h"
+#include "surface/octant_grid.h"
+
+namespace robot_tissue {
+
+// Edges that more than two triangles run along, as where removed cells leave a hinge or two cuts
+// end at one line, get vertices of their own for each wedge of material, so that two triangles run
+// along every edge. `owners`: per triangle, an octant behind it.
+void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, TissueSurface& surface);
+
+}  // namespace robot_tissue

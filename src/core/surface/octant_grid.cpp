@@ -1,0 +1,105 @@
+#include "surface/octant_grid.h"
+
+#include <algorithm>
+
+namespace robot_tissue {
+namespace {
+
+// Corners of each side in the order -x +x -y +y -z +z.
+constexpr int kSideCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+bool holdTheSame(const std::vector<NodeWeight>& a, const std::vector<NodeWeight>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& one, const auto& other) { return one.node == other.node; });
+}
+
+}  // namespace
+
+std::array<HalfPoint, 4> cornersOfSide(const HalfPoint& lowest, int side, int length) {
+  std::array<HalfPoint, 4> corners{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int bit = kSideCorners[side][i] >> axis & 1;
+      corners[i][at(axis)] = lowest[at(axis)] + length * bit;
+    }
+  }
+  return corners;
+}
+
+OctantGrid::OctantGrid(const Lattice& lattice, const LatticeState& state)
+    : lattice_(lattice), state_(state), parts_(lattice, state), open_(lattice.cells().size(), 0) {
+  if (isAsMade(state)) return;
+  for (std::size_t cell = 0; cell < open_.size(); ++cell) {
+    open_[cell] = parts_.isOpen(static_cast<int>(cell)) ? 1 : 0;
+  }
+}
+
+int OctantGrid::nodeOf(const Octant& octant) const {
+  return lattice_.cells()[at(octant.cell)].nodes[at(octant.corner)];
+}
+
+HalfPoint OctantGrid::lowestOf(const Octant& octant) const {
+  HalfPoint lowest = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  for (int axis = 0; axis < 3; ++axis) {
+    lowest[at(axis)] = 2 * lowest[at(axis)] + (octant.corner >> axis & 1);
+  }
+  return lowest;
+}
+
+Octant OctantGrid::octantAt(const HalfPoint& lowest) const {
+  if (std::any_of(lowest.begin(), lowest.end(), [](int index) { return index < 0; })) return {};
+  Octant octant;
+  octant.cell = lattice_.cellAt({lowest[0] / 2, lowest[1] / 2, lowest[2] / 2});
+  for (int axis = 0; axis < 3; ++axis) octant.corner |= (lowest[at(axis)] & 1) << axis;
+  return octant;
+}
+
+Octant OctantGrid::beyond(const Octant& octant, int side) const {
+  const int axis = side / 2;
+  const bool inwards = (octant.corner >> axis & 1) != side % 2;
+  if (inwards) return {octant.cell, octant.corner ^ 1 << axis};
+  HalfPoint lowest = lowestOf(octant);
+  lowest[at(axis)] += side % 2 == 1 ? 1 : -1;
+  return octantAt(lowest);
+}
+
+std::vector<NodeWeight> OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
+  const Cell& part = *parts_.owner(octant.cell, octant.corner);
+  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  std::vector<NodeWeight> hold;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int from_low = point[at(axis)] - 2 * low[at(axis)];  // 0 to 2 half spacings
+      weight *= 0.5 * ((corner >> axis & 1) != 0 ? from_low : 2 - from_low);
+    }
+    if (weight > 0.0) hold.push_back({part.nodes[at(corner)], weight});
+  }
+  std::sort(hold.begin(), hold.end(),
+            [](const auto& one, const auto& other) { return one.node < other.node; });
+  return hold;
+}
+
+bool OctantGrid::isJoined(const Octant& octant, int side) const {
+  const Octant other = beyond(octant, side);
+  if (!isThere(octant) || !isThere(other)) return false;
+  if (other.cell != octant.cell) return true;  // of one node
+  if (parts_.owner(octant.cell, octant.corner) == parts_.owner(other.cell, other.corner)) {
+    return true;
+  }
+  const auto corners = cornersOfSide(lowestOf(octant), side, 1);
+  return std::all_of(corners.begin(), corners.end(), [&](const HalfPoint& point) {
+    return holdTheSame(holdOf(octant, point), holdOf(other, point));
+  });
+}
+
+Vec3 OctantGrid::inHalfSpacings(const Vec3& place) const {
+  return 2.0 / lattice_.spacing() * (place - lattice_.bounds().min());
+}
+
+Vec3 OctantGrid::placeOf(const HalfPoint& point) const {
+  return lattice_.bounds().min() + 0.5 * lattice_.spacing() * Vec3(point[0], point[1], point[2]);
+}
+
+}  // namespace robot_tissue

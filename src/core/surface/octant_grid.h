@@ -1,0 +1,65 @@
+// The eighths of the lattice's cells, each around one corner, and what holds their points (own).
+//
+// A point of the half grid has indices in half spacings: even ones at nodes. What a part of a cell
+// has of it moves as the material there: with trilinear weights on the part's corners, ghosts where
+// it lost them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+#include "surface/cell_parts.h"
+
+namespace robot_tissue {
+
+using HalfPoint = std::array<int, 3>;
+
+struct Octant {
+  int cell = -1;  // of the lattice; -1: none
+  int corner = 0;
+
+  bool operator==(const Octant& other) const {
+    return cell == other.cell && corner == other.corner;
+  }
+};
+
+class OctantGrid {
+ public:
+  OctantGrid(const Lattice& lattice, const LatticeState& state);
+
+  // The cell was split, or removed, at least in part.
+  bool isOpen(int cell) const { return open_[at(cell)] != 0; }
+  bool isThere(const Octant& octant) const {
+    return octant.cell >= 0 && !isTaken(state_, octant.cell, octant.corner);
+  }
+  int nodeOf(const Octant& octant) const;
+  HalfPoint lowestOf(const Octant& octant) const;
+  Octant octantAt(const HalfPoint& lowest) const;
+  // Across the side of the octant: 2 * axis, + 1 the upper one.
+  Octant beyond(const Octant& octant, int side) const;
+
+  // What holds the point, which is of the octant. Nodes ascending, ghosts for nodes that are lost.
+  std::vector<NodeWeight> holdOf(const Octant& octant, const HalfPoint& point) const;
+  // Without ghosts where the model has none.
+  std::vector<NodeWeight> carriersOf(const std::vector<NodeWeight>& hold) const {
+    return parts_.withoutGhosts(hold);
+  }
+  // Material is on both sides of the side, and the same nodes hold it there.
+  bool isJoined(const Octant& octant, int side) const;
+  Vec3 placeOf(const HalfPoint& point) const;    // at rest (m)
+  Vec3 inHalfSpacings(const Vec3& place) const;  // from the lowest point
+
+ private:
+  const Lattice& lattice_;
+  const LatticeState& state_;
+  CellParts parts_;
+  std::vector<char> open_;  // per cell
+};
+
+// Corners of an octant's or a cell's side, counter-clockwise seen from outside; the first is at the
+// lower end of both axes along the side.
+std::array<HalfPoint, 4> cornersOfSide(const HalfPoint& lowest, int side, int length);
+
+}  // namespace robot_tissue

@@ -1,0 +1,51 @@
+#include "tissue/history.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "saving/saved_loads.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+std::uint64_t hashOfLoads(const std::vector<LoadingPatch>& loads) {
+  ByteWriter out;
+  putLoads(loads, out);
+  return hashOf(out.bytes());
+}
+
+}  // namespace
+
+void History::begin(const LatticeState& lattice, std::string state,
+                    const std::vector<LoadingPatch>& named_loads) {
+  Change change;
+  change.entry.severed.assign(lattice.severed.begin(), lattice.severed.end());
+  change.entry.taken = lattice.taken;
+  change.entry.state = std::move(state);
+  change.loads_before = hashOfLoads(named_loads);
+  changes_.push_back(std::move(change));
+  // The way back to the beginning is the one that matters most; of the others the last.
+  std::size_t bytes = 0;
+  for (const Change& each : changes_) bytes += each.entry.state.size();
+  for (std::size_t i = 1; i + 1 < changes_.size() && bytes > tuning::kMostHistoryBytes; ++i) {
+    bytes -= changes_[i].entry.state.size();
+    changes_[i].entry.state = std::string();
+  }
+}
+
+void History::end(const std::vector<LoadingPatch>& named_loads) {
+  changes_.back().loads_after = hashOfLoads(named_loads);
+}
+
+void History::clear() { changes_.clear(); }
+
+bool History::hasLoadsSince(std::size_t change,
+                            const std::vector<LoadingPatch>& named_loads) const {
+  for (std::size_t i = change; i + 1 < changes_.size(); ++i) {
+    if (changes_[i].loads_after != changes_[i + 1].loads_before) return false;
+  }
+  return changes_.back().loads_after == hashOfLoads(named_loads);
+}
+
+}  // namespace robot_tissue

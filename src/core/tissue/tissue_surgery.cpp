@@ -1,0 +1,191 @@
+// Tissue: cuts, removals, and the way back.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "cutting/cut.h"
+#include "cutting/removal.h"
+#include "cutting/split_cells.h"
+#include "lattice/connectivity.h"
+#include "material/tissue_model.h"
+#include "robot_tissue/core/tissue.h"
+#include "saving/saved_state.h"
+#include "solvers/solver_method.h"
+#include "tissue/history.h"
+#include "tissue/load_ramp.h"
+
+namespace robot_tissue {
+namespace {
+
+// The lattice as an entry of the history has it, with the shape it has now.
+LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, SplitCells split,
+                      const LatticeState& now) {
+  LatticeState state = lattice.restState();
+  state.severed.assign(entry.severed.begin(), entry.severed.end());
+  state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+  state.taken = entry.taken;
+  if (!state.taken.empty()) noteTaken(lattice, state);
+  state.pieces = countPieces(lattice, state);
+  if (!isAsMade(state)) state.cells = cellsLeft(lattice, state, split);
+  state.displacement = carriedOver(*now.cells, now.displacement, *state.cells);
+  return state;
+}
+
+// Drops the nodes of the patch that are gone.
+void loseNodes(const LatticeState& state, LoadingPatch& patch) {
+  std::vector<int> nodes;
+  std::vector<Vec3> displacement;
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
+    if (isRemoved(state, patch.nodes[i])) continue;
+    nodes.push_back(patch.nodes[i]);
+    if (!byForce(patch)) displacement.push_back(patch.displacement[i]);
+  }
+  patch.nodes = std::move(nodes);
+  patch.displacement = std::move(displacement);
+  patch.rim.erase(
+      std::remove_if(patch.rim.begin(), patch.rim.end(),
+                     [&](const RimSpring& spring) { return isRemoved(state, spring.node); }),
+      patch.rim.end());
+}
+
+}  // namespace
+
+std::vector<TissuePiece> Tissue::pieces() const {
+  const std::vector<int> piece_of = pieceOfNodes();
+  const double volume = std::pow(lattice_.spacing(), 3) / kCorners;
+  std::vector<TissuePiece> pieces(at(state_.pieces));
+  for (const Cell& cell : lattice_.cells()) {
+    const double eighth = volume * cell.share;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (isTaken(state_, cell.place, corner)) continue;
+      const int node = cell.nodes[at(corner)];
+      TissuePiece& piece = pieces[at(piece_of[at(node)])];
+      piece.fixed = piece.fixed || lattice_.isFixed(node);
+      piece.volume += eighth;
+      const Vec3 middle = 0.75 * lattice_.restPosition(node) +
+                          0.25 * lattice_.restPosition(cell.nodes[at(kCorners - 1 - corner)]);
+      piece.center += eighth * (middle + state_.displacement[at(node)]);
+    }
+  }
+  for (TissuePiece& piece : pieces) piece.center /= piece.volume;
+  return pieces;
+}
+
+void Tissue::keepHistory() {
+  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  history_->begin(state_, savedState(), {patches_.begin(), first_of_tools});
+}
+
+// Of cells and springs that are others now; ends what keepHistory began.
+SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
+  kept_.reset();
+  rebuildSurface();
+  deformSurface();
+  renewContacts();
+  const SolveReport report = takesNoTime() ? asItIs() : solve(disturbed);
+  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  history_->end({patches_.begin(), first_of_tools});
+  return report;
+}
+
+CutReport Tissue::cut(const std::vector<Vec3>& corners) {
+  const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
+  CutReport report;
+  report.springs_cut = static_cast<int>(crossing.size());
+  report.pieces = state_.pieces;
+  report.solve = last_report_;
+  if (crossing.empty()) return report;
+  std::vector<int> disturbed;
+  for (const int spring : crossing) {
+    disturbed.push_back(lattice_.springs()[at(spring)].a);
+    disturbed.push_back(lattice_.springs()[at(spring)].b);
+  }
+  keepHistory();
+  sever(lattice_, crossing, state_, model_->splitCells());
+  report.pieces = state_.pieces;
+  report.solve = changeTopology(disturbed);
+  return report;
+}
+
+RemoveReport Tissue::remove(const RemovedSpace& space) {
+  const std::vector<std::uint8_t> cells = cellsWithin(lattice_, state_, space);
+  RemoveReport report;
+  report.pieces = state_.pieces;
+  report.solve = last_report_;
+  if (cells.empty()) return report;
+  const bool leaves_some =
+      std::any_of(lattice_.cells().begin(), lattice_.cells().end(), [&](const Cell& cell) {
+        return (takenOf(state_, cell.place) | cells[at(cell.place)]) < 0xff;
+      });
+  if (!leaves_some) {
+    throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
+  }
+  keepHistory();
+  removeCells(lattice_, cells, model_->splitCells(), state_);
+  weight_ = model_->weight(state_);
+  report.volume = volumeOf(lattice_, cells);
+  report.pieces = state_.pieces;
+  report.loads = dropLostLoads();
+  report.solve = changeTopology(nodesAround(lattice_, cells, state_));
+  return report;
+}
+
+// Names of those of which nothing is left.
+std::vector<std::string> Tissue::dropLostLoads() {
+  std::vector<std::string> lost;
+  std::vector<PatchAnswer>& answers = last_report_.patches;
+  for (std::size_t i = named_patches_; i-- > 0;) {
+    loseNodes(state_, patches_[i]);
+    if (!patches_[i].nodes.empty()) continue;
+    lost.push_back(patches_[i].name);
+    const auto place = static_cast<std::ptrdiff_t>(i);
+    if (i < answers.size()) answers.erase(answers.begin() + place);
+    patches_.erase(patches_.begin() + place);
+    --named_patches_;
+  }
+  for (std::size_t i = named_patches_; i < patches_.size(); ++i) loseNodes(state_, patches_[i]);
+  for (LoadingPatch& target : due_) loseNodes(state_, target);
+  for (const std::string& name : lost) dropNamed(name, due_);
+  const auto is_gone = [&](int node) {
+    return !state_.cells->isGhost(node) && isRemoved(state_, node);
+  };
+  disturbed_.erase(std::remove_if(disturbed_.begin(), disturbed_.end(), is_gone), disturbed_.end());
+  return lost;
+}
+
+int Tissue::undoable() const { return static_cast<int>(history_->size()); }
+
+SolveReport Tissue::undo(int count) {
+  if (count < 1 || count > undoable()) {
+    throw InputError("count: " + std::to_string(count) + " to take back; allowed: " +
+                     (undoable() == 0 ? "none, as nothing was cut or removed"
+                                      : "1 to " + std::to_string(undoable())));
+  }
+  const std::size_t target = history_->size() - static_cast<std::size_t>(count);
+  const History::Entry entry = history_->before(target);
+  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  const bool same_loads = history_->hasLoadsSince(target, {patches_.begin(), first_of_tools});
+  std::shared_ptr<const SavedState> saved;
+  if (!entry.state.empty() && isUntouched() && !isLate() && same_loads) {
+    saved = readState(entry.state);
+  }
+  if (saved && saved->in_balance) {
+    History kept = *history_;
+    kept.dropFrom(target);
+    const SolveReport report = loadState(*saved);
+    *history_ = std::move(kept);
+    return report;
+  }
+  stopTime();
+  state_ = asBefore(lattice_, entry, model_->splitCells(), state_);
+  weight_ = model_->weight(state_);
+  kept_.reset();
+  rebuildSurface();
+  deformSurface();
+  renewContacts();
+  history_->dropFrom(target);
+  return solve(freeNodes());
+}
+
+}  // namespace robot_tissue
