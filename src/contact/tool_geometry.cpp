@@ -141,6 +141,7 @@ ToolGeometry toolOf(const ToolConfig& config, std::size_t index) {
   tool.friction = config.friction;
   tool.max_force = config.max_force;
   tool.grasp = config.grasp;
+  tool.blade = config.blade;
   return tool;
 }
 
@@ -167,7 +168,7 @@ urdf::LinkConstSharedPtr findLink(const ParsedUrdf& urdf, const ToolLink& config
 }
 
 LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std::string& tool,
-                      const std::string& key, std::vector<std::string>& warnings) {
+                      const std::string& key, bool has_edge, std::vector<std::string>& warnings) {
   const auto link = findLink(urdf, config, tool, key);
   if (!config.shapes.empty()) {
     warnOfUselessPadding(config, key, warnings);
@@ -176,7 +177,7 @@ LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std:
   refuseHalfReadLink(urdf.errors, config.link);
   requirePaddedCollisions(*link, config, key);
   LinkGeometry loaded = linkOf(config, collisionShapes(*link, config));
-  if (loaded.shapes.empty()) {
+  if (loaded.shapes.empty() && !has_edge) {
     warnings.push_back("tool '" + tool + "': its link '" + config.link +
                        "' touches nothing, as it has no collision geometry in the URDF; give it "
                        "some under " +
@@ -205,7 +206,8 @@ LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>
         tool.links.push_back({link.link, {}});
         continue;
       }
-      tool.links.push_back(loadLink(urdf, link, tool.name, linkKey(i, j), loaded.warnings));
+      tool.links.push_back(
+          loadLink(urdf, link, tool.name, linkKey(i, j), tool.role.has_edge, loaded.warnings));
     }
     loaded.tools.push_back(std::move(tool));
   }
@@ -223,7 +225,7 @@ LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
     }
     const bool bare = std::all_of(tool.links.begin(), tool.links.end(),
                                   [](const LinkGeometry& link) { return link.shapes.empty(); });
-    if (bare) {
+    if (bare && !tool.role.has_edge) {
       loaded.warnings.push_back("tool '" + tool.name +
                                 "' touches nothing: it has no shapes; give it some under " +
                                 linkKey(i, 0) + ".shapes");

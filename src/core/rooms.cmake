@@ -6,13 +6,13 @@ robot_tissue_room(simd
   FILES field_kernel.cpp field_kernel.h lanes.h vector_clones.h workers.cpp workers.h)
 robot_tissue_room(geometry
   USES base
-  PUBLIC grid.h mesh_checks.h triangle_mesh.h
+  PUBLIC grid.h mesh_checks.h triangle_mesh.h triangle_point.h
   FILES exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_pieces.cpp mesh_pieces.h
     mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp triangle_mesh.cpp
-    tuning.h)
+    triangle_point.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC removed_space.h scene.h tool_role.h
+  PUBLIC removed_space.h scene.h suture.h tool_role.h
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
@@ -20,26 +20,29 @@ robot_tissue_room(lattice
   FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp)
 robot_tissue_room(cutting
   USES base config lattice
-  FILES cut.cpp cut.h removal.cpp removal.h split_cells.cpp split_cells.h)
+  FILES blade_surface.cpp blade_surface.h cut.cpp cut.h removal.cpp removal.h split_cells.cpp
+    split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC surface.h
   FILES cell_parts.cpp cell_parts.h cut_mesh_surface.cpp cut_mesh_surface.h hinges.cpp hinges.h
-    mesh_surface.cpp mesh_surface.h octant_grid.cpp octant_grid.h surface.cpp)
+    mesh_surface.cpp mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h
+    surface.cpp)
 robot_tissue_room(material
   USES base config lattice
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
     elastic_model.cpp elastic_model.h energy_model.h inertial_term.h six_spring_model.cpp
     six_spring_model.h tissue_model.h)
 robot_tissue_room(loads
-  USES base lattice material
+  USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
     dof_constraints.h loading_patch.cpp patch_rim.cpp patch_rim.h rim_law.cpp rim_law.h
-    solve_report.cpp)
+    solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base lattice cutting loads
-  FILES bytes.h saved_loads.cpp saved_loads.h saved_state.cpp saved_state.h)
+  FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_state.cpp
+    saved_state.h saved_sutures.cpp saved_sutures.h)
 robot_tissue_room(solvers
   USES base lattice loads
   FILES solver_method.h)
@@ -84,6 +87,7 @@ robot_tissue_room(tissue
   USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
-  FILES history.cpp history.h load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h time_integrator.cpp
-    time_integrator.h time_stepping.cpp tissue.cpp tissue_loads.cpp tissue_state.cpp tissue_state.h
-    tissue_surface.cpp tissue_surgery.cpp tuning.h)
+  FILES history.cpp history.h load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h
+    suturing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h time_stepping.cpp
+    tissue.cpp tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_state.cpp tissue_state.h
+    tissue_surface.cpp tissue_surgery.cpp topology_change.h tuning.h)

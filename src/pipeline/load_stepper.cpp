@@ -32,6 +32,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   grasping_.closeJaws();
   world_.sliding.commit(pose, world_.tissue);
   tearOff();
+  tear();
   world_.dead_end.reset();
   return true;
 }
@@ -179,8 +180,9 @@ SolveReport LoadStepper::balance() {
   world_.sliding.ride(world_.pose, world_.tissue);
   world_.sticking.ride(world_.pose, world_.tissue);
   meet(world_.pose);
-  return world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(),
-                              Bedding::kSupports);
+  world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(), Bedding::kSupports);
+  tear();
+  return world_.tissue.lastReport();
 }
 
 void LoadStepper::meet(const RobotPose& pose) {
@@ -226,6 +228,18 @@ void LoadStepper::tearOff() {
   for (const std::size_t tool : torn_off) addOnce(tool, world_.report.torn_off);
   world_.sticking.ride(world_.pose, world_.tissue);
   world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
+  world_.sliding.commit(world_.pose, world_.tissue);
+}
+
+void LoadStepper::tear() {
+  if (world_.is_trial || !world_.tissue.mayTear()) return;
+  const int before = world_.tissue.springsTorn();
+  const Stopwatch watch(world_.report.solve_ms);
+  world_.tissue.tear();
+  const int torn = world_.tissue.springsTorn() - before;
+  if (torn == 0) return;
+  world_.report.springs_torn += torn;
+  world_.report.changed = true;
   world_.sliding.commit(world_.pose, world_.tissue);
 }
 

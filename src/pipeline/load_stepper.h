@@ -39,6 +39,8 @@ class LoadStepper {
   // Equilibrium under what acts now, gravity and loads too.
   SolveReport balance();
   void lieDown();
+  // What the shape stretches too far (Tissue::tear).
+  void tear();
 
   Checkpoint checkpoint() const;
   void goBackTo(const Checkpoint& good);

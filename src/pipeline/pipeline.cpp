@@ -24,6 +24,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   world_.setTools(tools, supports_);
   parts_->drive.setTools(tools.size());
   parts_->grasping.setTools(tools.size());
+  parts_->blades.forget();
   gave_up_ = false;
   late_iterations_ = 0;
 }
@@ -95,7 +96,8 @@ void Pipeline::beginReport() {
     tools->clear();
   }
   world_.report.contact_ms = world_.report.solve_ms = 0.0;
-  world_.report.substeps = 0;
+  world_.report.substeps = world_.report.springs_cut = world_.report.springs_torn = 0;
+  world_.report.area_cut = 0.0;
 }
 
 // goal: the pose, with the ways of tools that a force drives.
@@ -116,13 +118,27 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   if (world_.report.lost && last_good) parts_->motion.stayAt(*last_good, there);
   parts_->motion.unhook(there);
   world_.asked = goal;
-  touched_ = world_.report.too_fast || drive(pose);  // there is a way left to go
+  const bool arrived = cutAlongWay();
+  touched_ = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
   if (world_.report.too_fast || world_.report.lost) {
     world_.report.behind = parts_->motion.toolsBehind();
   } else {
     parts_->grasping.forgetLetGo();
   }
   describeTools();
+}
+
+// What blades sweep to where the tools have come. False: there is a way left to go.
+bool Pipeline::cutAlongWay() {
+  const bool arrived = parts_->blades.goTo(*world_.last_pose);
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!world_.tools[tool].role.has_edge) continue;
+    world_.pose = world_.tools.withTool(tool, *world_.last_pose, std::move(world_.pose));
+  }
+  world_.report.too_fast = world_.report.too_fast || !arrived;
+  const bool comes_back = world_.tools.anyRigid() && world_.report.springs_cut > 0;
+  if (comes_back) parts_->motion.checkInAnew();
+  return arrived;
 }
 
 SolveReport Pipeline::wait(double duration) {
@@ -198,6 +214,13 @@ SolveReport Pipeline::undo(int count) {
   return report;
 }
 
+SutureResult Pipeline::suture(const SutureConfig& config) {
+  const Bounded bounded(*this);
+  const SutureResult result = world_.tissue.suture(config);
+  touch();
+  return result;
+}
+
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.stepsBetween(
                                 *world_.last_pose,
@@ -227,7 +250,7 @@ std::optional<StillPose> Pipeline::stillPose() const {
   of_tools.links.resize(world_.tools.linkCount());
   std::vector<double> reach;
   for (std::size_t link = 0; link < of_tools.links.size(); ++link) {
-    reach.push_back(world_.finder.reach(link));
+    reach.push_back(world_.reach(link));
   }
   return StillPose(std::move(of_tools), std::move(reach),
                    tuning::kStandsStill * world_.tissue.lattice().spacing());
@@ -260,6 +283,7 @@ void Pipeline::forgetTools() {
     parts_->grasping.forgetJaws(tool);
   }
   parts_->drive.setTools(world_.tools.size());
+  parts_->blades.forget();
   parts_->motion.clearCheckpoints();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
@@ -304,6 +328,10 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
     throw InputError("tool '" + world_.tools.nameOf(tool) +
                      "': the force is zero or not finite; allowed: a force");
   }
+  if (force && world_.tools[tool].role.has_edge) {
+    throw InputError("tool '" + world_.tools.nameOf(tool) + "': role " +
+                     world_.tools[tool].role.name + " only cuts; allowed: a tool that pushes");
+  }
   parts_->drive.push(tool, force);
   touched_ = true;
 }
@@ -335,6 +363,7 @@ void Pipeline::describeTools() {
     report = describeTool(world_, parts_->grasping, tool);
     report.max_penetration = deepest[tool];
     report.offset = parts_->drive.offset(tool);
+    parts_->blades.describe(tool, report);
   }
 }
 

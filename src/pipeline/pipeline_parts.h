@@ -1,6 +1,7 @@
 // The classes behind Pipeline, each on those before it.
 #pragma once
 
+#include "blades.h"
 #include "force_drive.h"
 #include "grasping.h"
 #include "load_stepper.h"
@@ -25,6 +26,7 @@ struct Pipeline::Parts {
   Grasping grasping{world};
   OverlapResolver overlap{world};
   LoadStepper load_step{world, touch_finder, contact_update, grasping};
+  Blades blades{world};
   ToolMotion motion{world, ways, overlap, grasping, load_step};
 };
 

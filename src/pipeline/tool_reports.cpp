@@ -71,6 +71,14 @@ std::vector<double> deepestPoints(const World& world) {
   return deepest;
 }
 
+void limitWrench(double max_force, ToolReport& report) {
+  const double force = report.force_on_tool.norm();
+  if (!(max_force > 0.0) || force <= max_force) return;
+  report.saturated = true;
+  report.torque_on_tool *= max_force / force;
+  report.force_on_tool *= max_force / force;
+}
+
 // The patch's answer in the tool's frame: its force is on the tissue, its torque about the origin.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool) {
   ToolReport report;
@@ -105,12 +113,7 @@ ToolReport describeTool(const World& world, const Grasping& grasping, std::size_
   const Vec3 torque = -answer.torque - tissue_T_tool.translation().cross(force);
   report.force_on_tool = tissue_T_tool.linear().transpose() * force;
   report.torque_on_tool = tissue_T_tool.linear().transpose() * torque;
-  const double most = world.tools[tool].max_force;
-  if (most > 0.0 && force.norm() > most) {
-    report.saturated = true;
-    report.torque_on_tool *= most / force.norm();
-    report.force_on_tool *= most / force.norm();
-  }
+  limitWrench(world.tools[tool].max_force, report);
   return report;
 }
 

@@ -16,6 +16,9 @@ std::vector<double> deepestPoints(const World& world);
 // caller puts in.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool);
 
+// A wrench stronger than the tool's max_force (N; 0: none) is told as that.
+void limitWrench(double max_force, ToolReport& report);
+
 // Of a node that the tool holds, from the tool into the tissue, of any length; zero where every way
 // is as good.
 Vec3 wayOutOfTool(const World& world, int node, const StickingContacts::Attachment& seat);

@@ -7,6 +7,7 @@ struct Pipeline::Mark {
   Checkpoint now;
   std::vector<Checkpoint> checkpoints;
   ForceDrive drive;
+  std::vector<BladeState> blades;
   std::optional<RobotPose> last_pose;
   RobotPose asked;
   std::optional<DeadEnd> dead_end;
@@ -20,9 +21,10 @@ struct Pipeline::Mark {
 void Pipeline::beginTrial() {
   trial_from_ = std::make_shared<const Mark>(
       Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
-           world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
-           world_.unfinished, touched_, world_.report});
+           parts_->blades.states(), world_.last_pose, world_.asked, world_.dead_end,
+           late_iterations_, gave_up_, world_.unfinished, touched_, world_.report});
   world_.tissue.beginAside();
+  world_.is_trial = true;
 }
 
 void Pipeline::undoTrial() {
@@ -32,6 +34,8 @@ void Pipeline::undoTrial() {
   parts_->load_step.goBackTo(mark.now);
   parts_->motion.restore(mark.checkpoints);
   parts_->drive = mark.drive;
+  parts_->blades.restore(mark.blades);
+  world_.is_trial = false;
   world_.last_pose = mark.last_pose;
   world_.asked = mark.asked;
   world_.dead_end = mark.dead_end;

@@ -95,6 +95,16 @@ constexpr double kOpposed = -0.5;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
 
+// Blades.
+// Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,
+// but what gives way as it is cut is met where it was. Chosen: no spring is passed in one.
+constexpr double kBladeStride = 0.25;
+// Of a stride (1): so little short of its end is rounding.
+constexpr double kStrideRounding = 1e-6;
+// rad: of a turn that is swept as one plane piece. More: the sagitta, reach * (1 - cos(arc / 2)),
+// is 0.2 % of the reach; it grows with the square. Chosen.
+constexpr double kLongestArc = 0.125;
+
 // Tools that a force drives.
 // Corrections in one update. More: the force is met sooner, by longer updates. Chosen.
 constexpr int kMostCorrections = 12;

@@ -18,7 +18,7 @@ double WayLengths::stepOf(std::size_t link) const {
 double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) const {
   double steps = 0.0;
   for (std::size_t link = 0; link < to.links.size(); ++link) {
-    const double way = longestWay(from.links[link], to.links[link], world_.finder.reach(link));
+    const double way = longestWay(from.links[link], to.links[link], world_.reach(link));
     steps = std::max(steps, way / stepOf(link));
   }
   return steps;
@@ -40,8 +40,8 @@ std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotP
 double WayLengths::freeSteps(const RobotPose& from, const RobotPose& to) const {
   double steps = std::numeric_limits<double>::infinity();
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
-    if (longestWay(from.links[link], to.links[link], world_.finder.reach(link)) == 0.0) continue;
-    const Box box = world_.finder.bounds(link, from.links[link]);
+    if (longestWay(from.links[link], to.links[link], world_.reach(link)) == 0.0) continue;
+    const Box box = world_.bounds(link, from.links[link]);
     steps = std::min(steps, distance(box, world_.tissue.bounds()) / stepOf(link));
   }
   return steps;
@@ -64,7 +64,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
   if (touchesTissue(tool)) return false;
   Box around;
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    const double way = longestWay(from.links[link], to.links[link], world_.finder.reach(link));
+    const double way = longestWay(from.links[link], to.links[link], world_.reach(link));
     for (const RobotPose* pose : {&from, &to}) {
       const Box box = world_.finder.bounds(link, pose->links[link]);
       around.extend(grownBy(0.5 * way, box));
@@ -76,7 +76,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
 bool WayLengths::isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const {
   const double still = tuning::kStandsStill * world_.tissue.lattice().spacing();
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    if (longestWay(here.links[link], there.links[link], world_.finder.reach(link)) > still) {
+    if (longestWay(here.links[link], there.links[link], world_.reach(link)) > still) {
       return false;
     }
   }

@@ -15,7 +15,11 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
                      const std::vector<SupportConfig>& supports) {
   tools = ToolSet(geometry, supports);
   has_supports = !supports.empty();
-  const std::vector<ToolGeometry> all = tools.withSupports();
+  std::vector<ToolGeometry> all = tools.withSupports();
+  for (ToolGeometry& tool : all) {
+    if (!tool.role.has_edge) continue;
+    for (LinkGeometry& link : tool.links) link.shapes.clear();
+  }
   finder = ContactFinder(all);
   sticking = StickingContacts(tissue.lattice(), tools.names());
   std::vector<std::optional<double>> friction;
@@ -33,6 +37,26 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   unfinished = false;
   report = StepReport();
   report.tools.resize(tools.size());
+}
+
+double World::reach(std::size_t link) const {
+  double reach = finder.reach(link);
+  for (const Vec3& point : edgeOn(link)) reach = std::max(reach, point.norm());
+  return reach;
+}
+
+Box World::bounds(std::size_t link, const Pose& tissue_T_link) const {
+  Box bounds = finder.bounds(link, tissue_T_link);
+  for (const Vec3& point : edgeOn(link)) bounds.extend(tissue_T_link * point);
+  return bounds;
+}
+
+const std::vector<Vec3>& World::edgeOn(std::size_t link) const {
+  static const std::vector<Vec3> none;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (tools.firstLink(tool) == link) return tools[tool].blade.edge;
+  }
+  return none;
 }
 
 PatchAnswer answerOf(const World& world, std::size_t tool) {

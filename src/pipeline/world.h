@@ -24,6 +24,12 @@ struct DeadEnd {
 struct World {
   World(const TissueConfig& tissue, const SolverConfig& solver);
 
+  // Of the link's shapes and, of a tool's first link, the tool's edge: the farthest point from the
+  // link's origin, and a box around them in the tissue's frame (m).
+  double reach(std::size_t link) const;
+  Box bounds(std::size_t link, const Pose& tissue_T_link) const;
+  const std::vector<Vec3>& edgeOn(std::size_t link) const;  // of a tool's first link; else empty
+
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
   Tissue tissue;  // [LoadStepper]
@@ -44,6 +50,7 @@ struct World {
   std::optional<double> reached_s;
   // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
   std::optional<DeadEnd> dead_end;
+  bool is_trial = false;    // what is done is undone, so nothing may sever
   bool unfinished = false;  // the last load step had no time for all it would do [LoadStepper]
   Deadline deadline;        // of the call under way
   StepReport report;        // [LoadStepper, ToolMotion; times: whoever took them]

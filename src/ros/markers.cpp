@@ -91,6 +91,16 @@ void drawLoadedNodes(const Drawn& drawn, Marker loaded, MarkerArray& array) {
   add(std::move(loaded), array);
 }
 
+void drawSutures(const Drawn& drawn, Marker threads, MarkerArray& array) {
+  threads.scale.x = tuning::kThreadWidth;
+  for (const SutureReport& suture : drawn.tissue().sutures()) {
+    if (suture.broken) continue;
+    threads.points.push_back(toPoint(suture.from));
+    threads.points.push_back(toPoint(suture.to));
+  }
+  add(std::move(threads), array);
+}
+
 // An arrow a tool, along what `ends` gives: its start and its tip, or nothing.
 template <class Ends>
 void drawArrows(const Drawn& drawn, const Marker& marker, MarkerArray& array, const Ends& ends) {
@@ -173,6 +183,7 @@ const Namespace kNamespaces[] = {
     {"wireframe", Marker::LINE_LIST, {0.30, 0.13, 0.12}, Stamp::kShape, drawWireframe},
     {"fixed_nodes", Marker::SPHERE_LIST, {0.25, 0.25, 0.30}, Stamp::kShape, drawFixedNodes},
     {"loading_patches", Marker::SPHERE_LIST, {1.0, 0.80, 0.10}, Stamp::kShape, drawLoadedNodes},
+    {"sutures", Marker::LINE_LIST, {0.95, 0.95, 0.90}, Stamp::kShape, drawSutures},
     {"contact_normals", Marker::ARROW, {0.10, 0.45, 0.85}, Stamp::kForces, drawNormals},
     {"contact_forces", Marker::ARROW, {0.10, 0.65, 0.20}, Stamp::kForces, drawForces},
     {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Stamp::kShape, drawSupports},

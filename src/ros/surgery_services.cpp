@@ -1,9 +1,11 @@
 #include "robot_tissue/ros/surgery_services.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
+#include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/scene/state_file.h"
 
 namespace robot_tissue {
@@ -64,6 +66,7 @@ SurgeryServices::SurgeryServices(ros::NodeHandle& private_node, std::string stat
   advertise<File>(private_node, "load_state", &SurgeryServices::onLoadState);
   advertise<Remove>(private_node, "remove", &SurgeryServices::onRemove);
   advertise<std_srvs::Trigger>(private_node, "undo", &SurgeryServices::onUndo);
+  advertise<Suture>(private_node, "suture", &SurgeryServices::onSuture);
 }
 
 void SurgeryServices::onSaveState(const File::Request& request, File::Response& response) {
@@ -99,12 +102,45 @@ void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response&
 void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
                              std_srvs::Trigger::Response& response) {
   if (pipeline_.tissue().undoable() == 0) {
-    throw InputError("nothing to take back; allowed: after a cut or a removal");
+    throw InputError("nothing to take back; allowed: after a cut, a removal, a tear or a suture");
   }
   const SolveReport report = pipeline_.undo(1);
   publisher_.shapeChanged();
   response.message = "taken back, " + std::to_string(pipeline_.tissue().undoable()) +
                      " more to take back" + solved(report);
+}
+
+std::string SurgeryServices::freeSutureName() const {
+  const std::vector<SutureReport> sutures = pipeline_.tissue().sutures();
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(sutures.begin(), sutures.end(),
+                       [&](const SutureReport& suture) { return suture.name == name; });
+  };
+  int number = 1;
+  while (is_taken("s" + std::to_string(number))) ++number;
+  return "s" + std::to_string(number);
+}
+
+void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response& response) {
+  const Pose tissue_T_request = tool_poses_.frame(request.header.frame_id);
+  SutureConfig suture;
+  suture.name = request.name.empty() ? freeSutureName() : request.name;
+  requirePatchName(suture.name);
+  suture.from = toVec3(request.start);
+  suture.to = toVec3(request.end);
+  requireWithin(suture.from, kFarthestPoint, "m", "start");
+  requireWithin(suture.to, kFarthestPoint, "m", "end");
+  suture.from = tissue_T_request * suture.from;
+  suture.to = tissue_T_request * suture.to;
+  suture.rest_length = request.rest_length;
+  if (request.stiffness != 0.0) suture.stiffness = request.stiffness;
+  suture.break_force = request.break_force;
+  const SutureResult result = pipeline_.suture(suture);
+  publisher_.shapeChanged();
+  response.name = suture.name;
+  response.tension = result.suture.tension;
+  response.message = result.suture.broken ? "sutured, and broken at once" : "sutured";
+  response.message += solved(result.solve);
 }
 
 }  // namespace robot_tissue

@@ -59,6 +59,11 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
     message.saturated = message.saturated || met.saturated;
     if (met.grasps) message.grasping.push_back(pipeline.tools()[tool].name);
   }
+  for (const SutureReport& suture : pipeline.tissue().sutures()) {
+    message.sutures.push_back(suture.name);
+    message.suture_tensions.push_back(suture.tension);
+    message.sutures_broken.push_back(suture.broken ? 1 : 0);
+  }
   addBalance(pipeline.forceBalance(), message);
   return message;
 }

@@ -35,6 +35,8 @@ constexpr unsigned kWrenchQueue = 10;
 // Markers. More: larger, and more of the tissue is hidden. Chosen.
 // m: width of the lines of the wireframe.
 constexpr double kWireWidth = 0.0004;
+// m: of the threads of sutures. More: they are seen from farther. Chosen.
+constexpr double kThreadWidth = 0.0006;
 // Of the spacing (1): diameter of a fixed node; of a loaded one it is twice as much.
 constexpr double kNodeDiameter = 0.2;
 // Spacings: length of a normal's arrow.

@@ -4,14 +4,12 @@
 
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/scene/readers.h"
-#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr std::size_t kMostSteps = 1000000;
 constexpr std::size_t kMostCorners = 1000;
-const std::vector<std::string> kPlannedSteps = {"suture"};
 
 // What the steps are checked against: the scene's tools, and the patches and tools that the steps
 // before have put in place.
@@ -27,6 +25,7 @@ struct Program {
   std::map<std::string, std::vector<StandingPatch>> saved;  // what stands in saved states
   bool patches_are_known =
       true;  // else a state of an earlier run was loaded, with what stood in it
+  std::set<std::string> sutures = {};  // names of all that the steps before have made
 };
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
@@ -45,19 +44,8 @@ Vec3 areaVector(const std::vector<Vec3>& corners) {
 }
 
 void checkPolygon(const Entry& entry, const std::vector<Vec3>& corners, double spacing) {
-  const Vec3 area = areaVector(corners);
-  if (area.norm() < 1e-6 * spacing * spacing) {
+  if (areaVector(corners).norm() < 1e-6 * spacing * spacing) {
     entry.fail("the polygon has no area, must have some");
-  }
-  const Vec3 normal = area.normalized();
-  Vec3 center = Vec3::Zero();
-  for (const Vec3& corner : corners) center += corner / static_cast<double>(corners.size());
-  for (const Vec3& corner : corners) {
-    const double distance = std::abs(normal.dot(corner - center));
-    if (distance <= 0.5 * spacing) continue;
-    entry.fail("a corner is " + numberText(distance) +
-               " m off the polygon's plane, must be at most half a spacing, " +
-               numberText(0.5 * spacing) + " m");
   }
 }
 
@@ -198,6 +186,10 @@ const std::vector<StepKind>& stepKinds() {
        [](const Entry& entry, Program& program) -> Step {
          return readGraspStep(entry, program.tools, program.placed_tools);
        }},
+      {"suture",
+       [](const Entry& entry, Program& program) -> Step {
+         return readSuture(entry, program.tissue.model, program.lengths, program.sutures);
+       }},
       {"release",
        [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},
       {"reset", readReset},
@@ -225,10 +217,6 @@ Step readStep(const Entry& entry, Program& program) {
   if (!entry.node().IsMap() || entry.node().size() != 1) entry.fail(allowed);
   const YAML::Node key = entry.node().begin()->first;
   const std::string name = key.IsScalar() ? key.Scalar() : "";
-  if (contains(kPlannedSteps, name)) {
-    entry.child(entry.node().begin()->second, name)
-        .fail("not available yet, must be one of " + joined(names));
-  }
   const MapReader map(entry, names);
   const auto kind = std::find_if(stepKinds().begin(), stepKinds().end(),
                                  [&name](const StepKind& each) { return each.name == name; });

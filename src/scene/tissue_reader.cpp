@@ -90,6 +90,12 @@ void readPoissonRatio(const Entry& entry, MaterialReading& reading) {
   }
 }
 
+double readTearStretch(const Entry& entry) {
+  const double stretch = entry.number(ranges::tearStretch());
+  if (stretch == 0.0 || stretch >= ranges::kLeastTearStretch) return stretch;
+  entry.fail("must be 0, for never, or " + numberText(ranges::kLeastTearStretch) + " at least");
+}
+
 const KeyTable<MaterialReading> kMaterialKeys = {
     {"young_modulus",
      [](const Entry& entry, MaterialReading& reading) {
@@ -101,6 +107,14 @@ const KeyTable<MaterialReading> kMaterialKeys = {
      [](const Entry& entry, MaterialReading& reading) {
        double& density = reading.material.density;
        density = entry.numberOr(density, ranges::density());
+     }},
+    {"tear_stretch",
+     [](const Entry& entry, MaterialReading& reading) {
+       if (entry.given()) reading.material.tear_stretch = readTearStretch(entry);
+     }},
+    {"tear_length",
+     [](const Entry& entry, MaterialReading& reading) {
+       if (entry.given()) reading.material.tear_length = entry.number(ranges::spacing());
      }},
     {"spring_stiffness",
      [](const Entry& entry, MaterialReading& reading) {

@@ -103,7 +103,7 @@ void requireSingleLinkKeysAbsent(const MapReader& map) {
 }
 
 std::vector<NamedLink> readPlainLinks(const MapReader& tool, const Surroundings& surroundings,
-                                      SceneUser user, Remarks& remarks) {
+                                      SceneUser user, const ToolRole& role, Remarks& remarks) {
   if (tool["jaws"].given())
     tool["jaws"].fail("must be left out, only role " + toolRolesWith(&ToolRole::has_jaws) +
                       " has jaws");
@@ -111,7 +111,8 @@ std::vector<NamedLink> readPlainLinks(const MapReader& tool, const Surroundings&
     requireSingleLinkKeysAbsent(tool);
     return readLinkList(tool["links"], surroundings, remarks, 1, kMostEntries);
   }
-  if (user == SceneUser::kRunner && !tool["link"].given() && !tool["shapes"].given()) {
+  const bool is_bare = !tool["link"].given() && !tool["shapes"].given();
+  if (user == SceneUser::kRunner && is_bare && !role.has_edge) {
     tool.entry().fail("must have link, links or shapes");
   }
   return {readLink(tool, surroundings, remarks)};
@@ -156,9 +157,9 @@ std::vector<std::string> toolLinkKeys() {
 
 ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
                         const ToolRole& role, Remarks& remarks) {
-  const std::vector<NamedLink> named = role.has_jaws
-                                           ? readLinksWithJaws(tool, role, surroundings, remarks)
-                                           : readPlainLinks(tool, surroundings, user, remarks);
+  const std::vector<NamedLink> named =
+      role.has_jaws ? readLinksWithJaws(tool, role, surroundings, remarks)
+                    : readPlainLinks(tool, surroundings, user, role, remarks);
   checkNames(named, user, role.has_jaws);
   ToolLinks links;
   for (const NamedLink& link : named) {

@@ -9,12 +9,16 @@ namespace {
 
 bool hasJaws(const ToolConfig& tool) { return tool.role.has_jaws; }
 
-// Whether the runner can use the tool: some link has a shape, of a tool with jaws both jaws have.
+// Whether the runner can use the tool: some link has a shape, of a tool with jaws both jaws have;
+// an edge needs none.
 bool hasShapes(const ToolConfig& tool) {
+  if (tool.role.has_edge) return true;
   const auto with_shapes = [](const ToolLink& link) { return !link.shapes.empty(); };
   if (!hasJaws(tool)) return std::any_of(tool.links.begin(), tool.links.end(), with_shapes);
   return std::all_of(tool.links.end() - 2, tool.links.end(), with_shapes);
 }
+
+bool pushes(const ToolConfig& tool) { return hasShapes(tool) && !tool.role.has_edge; }
 
 template <class Allowed>
 std::string namesOf(const std::vector<ToolConfig>& tools, const Allowed& allowed) {
@@ -133,7 +137,12 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
                   const std::set<std::string>& standing) {
   const MapReader map(entry, namesOf(kPushKeys));
   PushStep step;
-  step.tool = readTool(map["tool"], tools).name;
+  const ToolConfig& tool = readTool(map["tool"], tools);
+  step.tool = tool.name;
+  if (tool.role.has_edge) {
+    map["tool"].fail("role " + tool.role.name +
+                     " only cuts, must be a tool that pushes: " + namesOf(tools, pushes));
+  }
   requireStands(map["tool"], step.tool, standing);
   readKeys(map, kPushKeys, step);
   return step;

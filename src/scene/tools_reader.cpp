@@ -124,6 +124,12 @@ const KeyTable<ToolReading> kToolKeys = {
        reading.tool.max_force = entry.numberOr(reading.tool.max_force, ranges::forceLimit());
      }},
     {"grasp", readGrasp},
+    {"edge",
+     [](const Entry& entry, ToolReading& reading) {
+       readEdge(entry, lengthsOf(reading.tissue), reading.tool, reading.remarks);
+     }},
+    {"resistance",
+     [](const Entry& entry, ToolReading& reading) { readResistance(entry, reading.tool); }},
 };
 
 // A link of two tools: where both touch, each feels but a part of the force. With the same surface
@@ -132,7 +138,8 @@ void checkLinksAreOnce(const ToolLinks& links, const ToolConfig& tool,
                        const std::vector<ToolConfig>& earlier, Remarks& remarks) {
   const auto touches = [](const ToolConfig& of, std::size_t link) {
     const bool is_frame = of.role.has_jaws && link + 2 < of.links.size();
-    return !of.links[link].link.empty() && (!is_frame || !of.links[link].shapes.empty());
+    const bool is_bare = of.role.has_edge || (is_frame && of.links[link].shapes.empty());
+    return !of.links[link].link.empty() && !is_bare;
   };
   const auto check = [&](std::size_t i, const ToolConfig& other, std::size_t j) {
     const ToolLink &here = tool.links[i], &there = other.links[j];

@@ -102,6 +102,15 @@ std::string piecesCsv(const RunResult& result) {
   return csv;
 }
 
+std::string suturesCsv(const RunResult& result) {
+  std::string csv = "step,increment,suture,tension,length,broken\n";
+  for (const SutureRow& row : result.sutures) {
+    csv += text(row.step, row.increment) + ',' + row.suture.name + ',' + text(row.suture.tension) +
+           ',' + text(row.suture.length) + ',' + (row.suture.broken ? '1' : '0') + '\n';
+  }
+  return csv;
+}
+
 std::string surfaceStl(const RunResult& result) {
   std::string stl = "robot_tissue surface, m, tissue frame";
   stl.resize(kStlHeaderBytes, ' ');

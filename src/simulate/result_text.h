@@ -13,6 +13,7 @@ std::string patchesCsv(const RunResult& result);
 std::string incrementsCsv(const RunResult& result);
 std::string toolsCsv(const RunResult& result);
 std::string piecesCsv(const RunResult& result);
+std::string suturesCsv(const RunResult& result);
 std::string surfaceStl(const RunResult& result);
 
 }  // namespace robot_tissue

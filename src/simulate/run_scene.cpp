@@ -17,7 +17,13 @@ bool partsTissue(const Scene& scene) {
     return std::holds_alternative<CutStep>(step) || std::holds_alternative<RemoveStep>(step) ||
            std::holds_alternative<UndoStep>(step) || std::holds_alternative<LoadStateStep>(step);
   };
-  return std::any_of(scene.steps.begin(), scene.steps.end(), parts);
+  const auto tears = [](const Material& material) { return material.tear_stretch > 0.0; };
+  return std::any_of(scene.steps.begin(), scene.steps.end(), parts) ||
+         std::any_of(scene.tools.begin(), scene.tools.end(),
+                     [](const ToolConfig& tool) { return tool.role.has_edge; }) ||
+         tears(scene.tissue.material) ||
+         std::any_of(scene.tissue.regions.begin(), scene.tissue.regions.end(),
+                     [&](const Region& region) { return tears(region.material); });
 }
 
 RunResult runScene(const Scene& scene, const OnRow& on_row, const OnStep& on_step,

@@ -44,11 +44,18 @@ struct PieceRow {
   TissuePiece piece;
 };
 
+struct SutureRow {
+  int step = 0;
+  int increment = 1;
+  SutureReport suture;
+};
+
 struct RunResult {
   std::vector<IncrementRow> increments;
   std::vector<PatchRow> patches;
-  std::vector<ToolRow> tools;      // of those that stand somewhere
-  std::vector<PieceRow> pieces;    // where the scene parts tissue
+  std::vector<ToolRow> tools;    // of those that stand somewhere
+  std::vector<PieceRow> pieces;  // where the scene parts tissue
+  std::vector<SutureRow> sutures;
   std::vector<Vec3> rest;          // per node that is there (m, tissue frame)
   std::vector<Vec3> displacement;  // likewise (m)
   std::vector<Vec3> vertices;      // of the deformed surface (m, tissue frame)
@@ -66,7 +73,7 @@ using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 // Called when a step (from 0) has ended, with the tissue as it is then.
 using OnStep = std::function<void(int step, const Tissue& tissue)>;
 
-// Whether a step of the scene may part tissue, or mend it.
+// Whether a step, a blade or a stretch may part the scene's tissue, or mend it.
 bool partsTissue(const Scene& scene);
 
 // `state_folder`: where states are loaded from that no step has saved.

@@ -12,6 +12,7 @@ namespace {
 const char* keyOf(const SettleStep&) { return "settle"; }
 const char* keyOf(const LoadStep&) { return "load"; }
 const char* keyOf(const CutStep&) { return "cut"; }
+const char* keyOf(const SutureStep&) { return "suture"; }
 const char* keyOf(const ReleaseStep&) { return "release"; }
 const char* keyOf(const ResetStep&) { return "reset"; }
 const char* keyOf(const MoveStep&) { return "move"; }
@@ -74,7 +75,9 @@ void Runner::performAll() {
   for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
     step_ = static_cast<int>(i);
     try {
+      const int torn = pipeline_.tissue().springsTorn();
       std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
+      remarkTorn(torn);
       if (on_step_) on_step_(step_, pipeline_.tissue());
     } catch (const InputError& error) {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());
@@ -142,6 +145,7 @@ void Runner::keep(SolveReport report, int increment, int increments) {
     if (tools_.of(tool)) keepTool(tool, increment);
   }
   if (partsTissue(scene_)) keepPieces(increment);
+  keepSutures(increment);
   const double update_ms = report.wall_ms + std::exchange(contact_ms_, 0.0);
   result_.increments.push_back({step_, increment, report, update_ms, time_});
   if (on_row_) on_row_(result_.increments.back(), increments);
@@ -154,6 +158,14 @@ void Runner::remark(const std::string& text) {
   const std::string line = pathOf(scene_, step_) + ": " + text;
   std::vector<std::string>& all = result_.remarks;
   if (std::find(all.begin(), all.end(), line) == all.end()) all.push_back(line);
+}
+
+// `before`: springs that had torn before the step.
+void Runner::remarkTorn(int before) {
+  const int torn = pipeline_.tissue().springsTorn() - before;
+  if (torn <= 0) return;
+  remark(std::to_string(torn) +
+         " springs tore; pieces: " + std::to_string(pipeline_.tissue().state().pieces));
 }
 
 void Runner::keepTool(std::size_t tool, int increment) {

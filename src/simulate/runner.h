@@ -1,6 +1,7 @@
 // The steps of a scene, one after the other, on one Pipeline.
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -43,6 +44,7 @@ class Runner {
   void perform(const ResetStep& step);
   void performAll();
   void remark(const std::string& text);
+  void remarkTorn(int before);
   void keep(SolveReport report, int increment = 1, int increments = 1);
   void keepTool(std::size_t tool, int increment);
   void keepShape();
@@ -52,6 +54,10 @@ class Runner {
   void perform(const RemoveStep& step);
   void perform(const UndoStep& step);
   void keepPieces(int increment);
+
+  // suture_steps.cpp
+  void perform(const SutureStep& step);
+  void keepSutures(int increment);
 
   // state_steps.cpp
   void perform(const SaveStep& step);
@@ -72,6 +78,7 @@ class Runner {
   void followPushes();
   void update();
   void remarkHolds();
+  void remarkCut(std::size_t tool);
   void judgePush(std::size_t tool);
 
   const Scene& scene_;
@@ -83,8 +90,11 @@ class Runner {
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)
   Updates updates_;
-  double contact_ms_ = 0.0;  // of the tools' updates since the last row
-  double time_ = 0.0;        // that went by (s)
+  std::set<std::string> broken_sutures_;  // that a remark was made of
+  double contact_ms_ = 0.0;               // of the tools' updates since the last row
+  int springs_cut_ = 0;                   // by blades, since their move began
+  double area_cut_ = 0.0;                 // likewise (m^2)
+  double time_ = 0.0;                     // that went by (s)
   RunResult result_;
   int step_ = 0;
   bool is_cut_short_ = false;  // the way of a tool, as the time is over

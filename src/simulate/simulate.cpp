@@ -52,10 +52,16 @@ void tellNotOk(const RunResult& result, std::ostream& err) {
       << first->increment << ": " << toString(first->report.status) << '\n';
 }
 
+bool sutures(const Scene& scene) {
+  return std::any_of(scene.steps.begin(), scene.steps.end(),
+                     [](const Step& step) { return std::holds_alternative<SutureStep>(step); });
+}
+
 std::vector<std::string> filesOf(const Scene& scene) {
   std::vector<std::string> files = {"nodes.csv", "patches.csv", "increments.csv", "tools.csv",
                                     "surface.stl"};
   if (partsTissue(scene)) files.push_back("pieces.csv");
+  if (sutures(scene)) files.emplace_back("sutures.csv");
   for (const Step& step : scene.steps) {
     const auto* save = std::get_if<SaveStep>(&step);
     if (save != nullptr && std::find(files.begin(), files.end(), save->file) == files.end()) {
@@ -71,6 +77,7 @@ void write(const Scene& scene, const RunResult& result, OutputFolder& folder) {
   folder.write("patches.csv", patchesCsv(result));
   folder.write("increments.csv", incrementsCsv(result));
   folder.write("tools.csv", toolsCsv(result));
+  if (sutures(scene)) folder.write("sutures.csv", suturesCsv(result));
   folder.write("surface.stl", surfaceStl(result));
   if (partsTissue(scene)) folder.write("pieces.csv", piecesCsv(result));
   for (const auto& [file, state] : result.saved) folder.writeState(file, state);

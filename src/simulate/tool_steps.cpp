@@ -15,6 +15,8 @@ void Runner::perform(const MoveStep& step) {
     remark("tool '" + step.tool + "' is moved, which ends its push");
   }
   if (!step.duration) pipeline_.stopTime();
+  springs_cut_ = 0;
+  area_cut_ = 0.0;
   if (step.from) appear(tool, *step.from);
   Way way{tool, *tools_.of(tool), step.to, time_, step.duration.value_or(0.0)};
   tools_.put(tool, step.to);
@@ -34,6 +36,7 @@ void Runner::perform(const MoveStep& step) {
     if (is_between) pipeline_.undoTrial();
   }
   remarkHolds();
+  remarkCut(tool);
 }
 
 void Runner::moveInTime(const Way& way, int increments) {
@@ -43,6 +46,7 @@ void Runner::moveInTime(const Way& way, int increments) {
     keep(SolveReport(), increment, increments);
   }
   remarkHolds();
+  remarkCut(way.tool);
 }
 
 int Runner::loadSteps(double steps) const {
@@ -157,6 +161,8 @@ void Runner::update() {
   pose.stamp_s = time_;
   const StepReport& report = pipeline_.step(pose);
   updates_.any = true;
+  springs_cut_ += report.springs_cut;
+  area_cut_ += report.area_cut;
   contact_ms_ += report.contact_ms;
   updates_.solve_ms += report.solve_ms;
   updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
@@ -173,6 +179,13 @@ void Runner::remarkHolds() {
   for (const StepRemark& at_end : remarksOn(pipeline_)) {
     if (at_end.kind == StepRemark::Kind::kHoldsNothing) remark(at_end.text);
   }
+}
+
+void Runner::remarkCut(std::size_t tool) {
+  if (springs_cut_ == 0) return;
+  remark("tool '" + tools_.name(tool) + "' cut " + std::to_string(springs_cut_) + " springs, " +
+         numberText(area_cut_) +
+         " m^2 of new surface; pieces: " + std::to_string(pipeline_.tissue().state().pieces));
 }
 
 void Runner::judgePush(std::size_t tool) {

@@ -232,47 +232,5 @@ TEST(Removal, OpensAMeshAlongItsCells) {
   EXPECT_NEAR(volumeOf(tissue.surface()), volumeOfPieces(tissue), 1e-6 * before);
 }
 
-TEST(Undo, BringsTheTopologyBackUnderTheLoadsThatStandNow) {
-  const TissueConfig config = blockFor("elastic");
-  Tissue tissue(config, {}), uncut(config, {});
-  tissue.cut({{0.045, -1, 0.01}, {0.045, 1, 0.01}, {0.045, 1, 1}, {0.045, -1, 1}});
-  const LoadStep press = pressOn(config);
-  const double force_cut = reportsOf(tissue, press).back().patches[0].force.z();
-  const double force = reportsOf(uncut, press).back().patches[0].force.z();
-  ASSERT_LT(std::abs(force_cut), 0.999 * std::abs(force));
-  const SolveReport report = tissue.undo(1);
-  EXPECT_EQ(tissue.state().springs_cut, 0);
-  ASSERT_EQ(tissue.namedPatches(), 1U);
-  EXPECT_NEAR(report.patches[0].force.z(), force, 0.01 * std::abs(force));
-}
-
-TEST(Undo, OfManyRandomCutsIsBitForBit) {
-  const TissueConfig config = blockFor("elastic");
-  Tissue tissue(config, {});
-  tissue.load(pressOn(config));
-  std::vector<std::string> states = {tissue.savedState()};
-  Random random;
-  const Vec3 low = config.shape.min(), extent = config.shape.sizes();
-  for (int cut = 0; cut < 20; ++cut) {
-    std::vector<Vec3> corners;
-    for (int corner = 0; corner < 3; ++corner) {
-      corners.push_back(low + Vec3(random.between(-0.2, 1.2), random.between(-0.2, 1.2),
-                                   random.between(-0.2, 1.2))
-                                  .cwiseProduct(extent));
-    }
-    if (tissue.cut(corners).springs_cut > 0) states.push_back(tissue.savedState());
-    EXPECT_EQ(countOpenEdges(tissue.surface()), 0);
-  }
-  ASSERT_EQ(tissue.undoable() + 1, static_cast<int>(states.size()));
-  states.pop_back();
-  for (int half = static_cast<int>(states.size()) / 2; half > 0; --half) {
-    tissue.undo(1);
-    EXPECT_EQ(tissue.savedState(), states.back());
-    states.pop_back();
-  }
-  tissue.undo(tissue.undoable());
-  EXPECT_EQ(tissue.savedState(), states.front());
-}
-
 }  // namespace
 }  // namespace robot_tissue

@@ -1,8 +1,10 @@
 // The node's services that change the tissue, save it and take changes back.
 #include <robot_tissue/File.h>
 #include <robot_tissue/Remove.h>
+#include <robot_tissue/Suture.h>
 #include <std_srvs/Trigger.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -139,6 +141,39 @@ TEST_F(Surgery, BadRemovalsAreRefusedAndChangeNothing) {
   EXPECT_TRUE(answer.success) << answer.message;
   EXPECT_EQ(answer.volume, 0.0);
   EXPECT_FALSE(undo().success);
+}
+
+TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
+  ASSERT_TRUE(cut(kCut).success);
+  Suture call;
+  call.request.start.x = 0.04;
+  call.request.end.x = 0.065;
+  call.request.start.y = call.request.end.y = 0.025;
+  call.request.start.z = call.request.end.z = kTop;
+  call.request.rest_length = 0.02;
+  ASSERT_TRUE(ros::service::call("/tissue/suture", call));
+  EXPECT_TRUE(call.response.success) << call.response.message;
+  EXPECT_EQ(call.response.name, "s1");
+  EXPECT_GT(call.response.tension, 0.0);
+  EXPECT_TRUE(waitForMarkers([this] { return markers_["sutures"].points.size() == 2; }));
+  EXPECT_TRUE(waitFor([&] {
+    return state_->sutures == std::vector<std::string>{"s1"} && state_->suture_tensions[0] > 0.0 &&
+           state_->sutures_broken[0] == 0;
+  }));
+  for (const double height : {0.5 * kTop, std::nan("")}) {
+    Suture bad = call;
+    bad.request.name = "s2";
+    bad.request.start.z = height;
+    ASSERT_TRUE(ros::service::call("/tissue/suture", bad));
+    EXPECT_FALSE(bad.response.success);
+    EXPECT_NE(bad.response.message.find("allowed"), std::string::npos) << bad.response.message;
+  }
+  call.request.name = "s1";
+  ASSERT_TRUE(ros::service::call("/tissue/suture", call));
+  EXPECT_FALSE(call.response.success);
+  EXPECT_TRUE(undo().success);
+  EXPECT_TRUE(waitForMarkers([this] { return markers_["sutures"].points.empty(); }));
+  EXPECT_TRUE(waitFor([&] { return state_->sutures.empty() && state_->springs_cut > 0; }));
 }
 
 }  // namespace

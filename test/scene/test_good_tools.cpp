@@ -13,6 +13,21 @@ std::string onSixSprings(const std::string& scene) {
   return replaced(scene, "  spacing: 0.01\n", "  spacing: 0.01\n  model: six_spring\n");
 }
 
+TEST(GoodTools, ABladeHasItsEdgeAndNeedsNoShapes) {
+  const std::string scene =
+      "tissue:\n  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}\n  spacing: 0.01\n"
+      "  material: {young_modulus: 1000, tear_stretch: 1.5, tear_length: 0.005}\n"
+      "tools: [{name: knife, role: blade, edge: [[0, 0, 0], [0, 0.01, 0.02]], resistance: 200}]\n"
+      "steps: [{move: {tool: knife, from: {xyz: [0, 0, 1]}, to: {xyz: [0, 0, 0]}}}]\n";
+  const Scene read = parseText(scene, SceneUser::kRunner);
+  const BladeConfig& blade = read.tools.at(0).blade;
+  EXPECT_EQ(blade.edge, (std::vector<Vec3>{Vec3::Zero(), Vec3(0.0, 0.01, 0.02)}));
+  EXPECT_EQ(blade.resistance, 200.0);
+  EXPECT_EQ(read.steps.size(), 1U);
+  EXPECT_EQ(read.tissue.material.tear_stretch, 1.5);
+  EXPECT_EQ(read.tissue.material.tear_length, 0.005);
+}
+
 TEST(GoodTools, ALinkWithShapesHasEveryField) {
   const std::vector<ToolConfig> tools = parseText(kNodeScene, SceneUser::kNode).tools;
   ASSERT_EQ(tools.size(), 2U);

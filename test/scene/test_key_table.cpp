@@ -71,8 +71,9 @@ TEST(ToolRoles, EveryOneOfTheTableIsRead) {
       "[{shapes: [{type: sphere, radius: 0.003}]},"
       " {shapes: [{type: sphere, radius: 0.003}]}]";
   for (const ToolRole& role : toolRoles()) {
+    const std::string edge = role.has_edge ? "edge: [[0, 0, 0], [0, 0, 0.02]], " : "";
     const std::string own =
-        role.has_jaws ? "jaws: " + jaws : "shapes: [{type: sphere, radius: 0.003}]";
+        edge + (role.has_jaws ? "jaws: " + jaws : "shapes: [{type: sphere, radius: 0.003}]");
     const std::string text =
         "tissue:\n  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}\n  spacing: 0.01\n"
         "  material: {young_modulus: 1000}\n"

@@ -22,6 +22,7 @@ struct ToolGeometry {
   double friction = 0.3;
   double max_force = 0.0;  // N, 0 = none
   GraspConfig grasp;
+  BladeConfig blade;
 };
 
 struct LoadedTools {

@@ -10,6 +10,13 @@
 // Between solves the multiplier takes f and friction_bound the friction's share of f: then the gap
 // goes to zero whatever k is, and friction obeys Coulomb's law. In a solve both are constant, so
 // that the spring has an energy, convex in x.
+//
+// Or a thread that joins two points. Its "point" is then the way between them, x = to - from, its
+// carriers' weights are 1 in all for `to` and -1 for `from`, and it only pulls:
+//
+//   tension                 T = max(0, k (|x| - L))
+//   force on x              -T x / |x|        at `to`; the opposite one at `from`
+//   stiffness               k n n^T + T / |x| (1 - n n^T),   n = x / |x|
 #pragma once
 
 #include <cstddef>
@@ -23,7 +30,7 @@
 namespace robot_tissue {
 
 struct ContactSpring {
-  std::vector<NodeWeight> carriers;    // weights sum to 1
+  std::vector<NodeWeight> carriers;    // weights sum to 1, of a thread to 0
   Vec3 rest = Vec3::Zero();            // of the point (m)
   Vec3 normal = Vec3::Zero();          // unit, from the tool into the tissue
   Vec3 plane_point = Vec3::Zero();     // a point of the tool's surface (m)
@@ -33,6 +40,8 @@ struct ContactSpring {
   Vec3 friction_force = Vec3::Zero();  // t_0: across the normal, when it was at the anchor (N)
   double friction_stiffness = 0.0;     // k_t (N/m)
   double friction_bound = 0.0;         // N; 0: slides freely
+  bool is_thread = false;              // has carriers, rest, stiffness and, besides:
+  double rest_length = 0.0;            // L (m)
 };
 
 // The springs of a patch as a solve has them. Copies share them: patches, the shapes that are kept
@@ -61,6 +70,11 @@ Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // m
 
 double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
+
+double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacement);  // T (N)
+
+// Of a spring that counts with the sizes of its weights, |w|: their sum; 1 of a point in contact.
+double endsOf(const ContactSpring& spring);
 
 // On the tissue (N): of the shape, or of the point where it would be.
 Vec3 forceAt(const ContactSpring& spring, const Vec3& point);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "robot_tissue/core/removed_space.h"
+#include "robot_tissue/core/suture.h"
 #include "robot_tissue/core/tool_role.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/types.h"
@@ -23,6 +24,9 @@ struct Material {
   double poisson_ratio = 0.45;             // 0.25 .. 0.49; model six_spring has none
   double density = 1000.0;                 // kg/m^3
   std::optional<double> spring_stiffness;  // N/m
+  double tear_stretch = 0.0;  // > 1: of the rest length, a longer spring severs; 0: none does
+  double tear_length = 0.0;   // m: the spacing that tear_stretch is of, to be scaled to others so
+                              // that cracks go under the same force; 0: it is of any spacing
 };
 
 struct Region {
@@ -75,6 +79,9 @@ struct LoadStep {
 struct CutStep {
   std::vector<Vec3> corners;
 };
+struct SutureStep {
+  SutureConfig suture;
+};
 struct ReleaseStep {
   std::vector<std::string> patches;
   std::vector<std::string> tools;  // graspers that let go, tools that a push drives
@@ -122,8 +129,9 @@ struct SaveStep {
 struct LoadStateStep {
   std::string file;
 };
-using Step = std::variant<SettleStep, LoadStep, CutStep, ReleaseStep, ResetStep, MoveStep, WaitStep,
-                          PushStep, GraspStep, RemoveStep, UndoStep, SaveStep, LoadStateStep>;
+using Step =
+    std::variant<SettleStep, LoadStep, CutStep, SutureStep, ReleaseStep, ResetStep, MoveStep,
+                 WaitStep, PushStep, GraspStep, RemoveStep, UndoStep, SaveStep, LoadStateStep>;
 
 // One collision shape of a tool, placed in the frame of its link.
 struct ToolShape {
@@ -154,6 +162,12 @@ struct GraspConfig {
   Vec3 opening_axis = Vec3::UnitY();  // runner: the jaws move apart along it, tool frame
 };
 
+// A blade cuts where its edge goes.
+struct BladeConfig {
+  std::vector<Vec3> edge;   // a polyline of 2 points or more, in the tool's frame (m)
+  double resistance = 0.0;  // of new surface (J/m^2)
+};
+
 struct ToolConfig {
   // kConforming: each point of the tissue slides along the tool in its friction cone.
   // kRigid: what it touches moves with it as one hard piece (paper, section 4.3).
@@ -167,6 +181,7 @@ struct ToolConfig {
   double friction = 0.3;   // Coulomb's, >= 0
   double max_force = 0.0;  // N: a stronger wrench is told as this one, and flagged; 0 = none
   GraspConfig grasp;       // roles with jaws
+  BladeConfig blade;       // roles with an edge
 };
 
 // What the tissue rests on: a box or a plane that never moves.

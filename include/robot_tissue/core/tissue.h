@@ -2,6 +2,7 @@
 // Every call either succeeds as a whole or throws InputError and changes nothing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/solve_report.h"
 #include "robot_tissue/core/surface.h"
+#include "robot_tissue/core/suture.h"
 
 namespace robot_tissue {
 
@@ -25,14 +27,19 @@ class History;
 class SolverMethod;
 class TimeIntegrator;
 class TissueModel;
+class Threads;
 struct NodeMotion;
 struct LoadRamp;
 struct SavedState;
+struct SutureThread;
 
 struct CutReport {
   int springs_cut = 0;  // by this cut
   int pieces = 1;       // of the lattice, after it
   SolveReport solve;    // balance after it; the last one when nothing was cut
+  // Of cutAlong: new surface (m^2), and the mean of where its springs were crossed (m).
+  double area = 0.0;
+  Vec3 center = Vec3::Zero();
 };
 
 struct RemoveReport {
@@ -47,6 +54,17 @@ struct TissuePiece {
   double volume = 0.0;         // at rest (m^3)
   bool fixed = false;          // a fixed node holds it
   Vec3 center = Vec3::Zero();  // of its volume, deformed (m, tissue frame)
+};
+
+// Of a blade, from where it comes into the tissue to where it leaves it.
+enum class Stroke { kBegins, kGoesOn };
+
+// Corners of a triangle that cuts (m, tissue frame).
+using CutTriangle = std::array<Vec3, 3>;
+
+struct SutureResult {
+  SutureReport suture;
+  SolveReport solve;  // balance after it
 };
 
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
@@ -91,7 +109,8 @@ class Tissue {
   const SolveReport& lastReport() const { return last_report_; }
   // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.
   std::vector<Vec3> shownDisplacement() const;
-  // Net force of the springs (and of gravity) on a node (N): what a patch node hands to its tool.
+  // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
+  // its tool.
   Vec3 nodeForce(int node) const;
   std::vector<int> freeNodes() const;    // all that are not fixed
   Vec3 weight() const;                   // of the whole tissue (N)
@@ -150,6 +169,7 @@ class Tissue {
     bool is_late = false;
     std::shared_ptr<const NodeMotion> motion;  // null: at rest
     bool in_time = false;
+    std::vector<std::string> whole_sutures;  // that have not broken
   };
   Shape shape() const;
   void restore(const Shape& shape);
@@ -162,13 +182,28 @@ class Tissue {
   // Takes what has its center in the space away, in whole cells and parts that cuts made of cells,
   // then as cut. Named loads lose the nodes that go. Throws InputError when nothing would be left.
   RemoveReport remove(const RemovedSpace& space);
-  // How many cuts and removals there are to take back: all since the last reset, or loaded state.
+  // How many cuts, removals, tears and sutures there are to take back: all since the last reset, or
+  // loaded state.
   int undoable() const;
   // Takes the last ones back. Where the named loads are those of then, no tool touches and the
   // shape was in balance, it is that one, bit for bit; else it is balanced under what stands now.
   // Throws InputError for less than 1, or more than there are.
   SolveReport undo(int count);
-  // Rest shape, bit for bit; cuts mended, loads gone.
+  // The same of a surface of triangles, such as a blade's edge sweeps. All of a stroke is taken
+  // back as one cut.
+  CutReport cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke = Stroke::kBegins);
+  // Severs what is stretched beyond tear_stretch and balances, over and over, until nothing is; for
+  // shapes that tools make. Shapes of the other calls but follow have torn already. LATE: the rest
+  // is left to the next call.
+  SolveReport tear();
+  bool mayTear() const { return !tear_strains_.empty(); }
+  int springsTorn() const { return springs_torn_; }  // since rest, or the state that was loaded
+  // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut
+  // leaves each end on its side; where the tissue of an end goes the thread goes.
+  SutureResult suture(const SutureConfig& config);
+  // In the order in which they were made, broken ones, too.
+  std::vector<SutureReport> sutures() const;
+  // Rest shape, bit for bit; cuts mended, loads and sutures gone.
   void reset();
 
   // Topology, shape and named loads as bytes (doc/state_file.md); a load on its way is the one that
@@ -179,19 +214,21 @@ class Tissue {
   // Throws InputError, the reason alone, for bytes that are no state of this tissue.
   std::shared_ptr<const SavedState> readState(const std::string& bytes) const;
   // Back to it, bit for bit where it was in balance without tools; else it is balanced. Tools'
-  // patches go.
+  // patches and sutures go.
   SolveReport loadState(const SavedState& saved);
 
  private:
   SolveReport solve(const std::vector<int>& disturbed);
+  SolveReport severAndBalance(const std::vector<int>& springs);
   bool takesNoTime() const;
   void findFreePieces();
   void keepMomentum();
   void predict();
   SolveReport asItIs();
   // tissue_surgery.cpp
-  void keepHistory();
+  class TopologyChange;
   std::vector<std::string> dropLostLoads();
+  std::vector<LoadingPatch> namedLoads() const;
   SolveReport changeTopology(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
@@ -202,6 +239,14 @@ class Tissue {
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   double mostMs() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
+  // suturing.cpp
+  SutureThread threadOf(const SutureConfig& config) const;
+  SolveReport drawThreadsIn();
+  bool solveOnThreads(SolveReport& report);
+  SolveReport settleFromRest();
+  SolveReport solveWithThreads(const std::vector<int>& disturbed);
+  SolveReport solveAndBreak(const std::vector<int>& disturbed);
+  void rebindThreads();
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
   void deformSurface();
@@ -230,9 +275,12 @@ class Tissue {
   std::unique_ptr<SolverMethod> method_;
   std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;
-  std::unique_ptr<History> history_;  // of cuts and removals
+  std::unique_ptr<History> history_;  // of what changed the topology
   TriangleMesh mesh_;                 // with edges of a spacing at most; empty: the shape is a box
   TissueSurface surface_;
+  std::vector<double> tear_strains_;  // per spring (tearStrains)
+  int springs_torn_ = 0;
+  std::unique_ptr<Threads> threads_;
   double rest_volume_ = 0.0;    // m^3
   Vec3 weight_ = Vec3::Zero();  // N
   bool has_gravity_ = false;

@@ -91,6 +91,7 @@ class Pipeline {
   CutReport cut(const std::vector<Vec3>& corners);
   RemoveReport remove(const RemovedSpace& space);
   SolveReport undo(int count);
+  SutureResult suture(const SutureConfig& config);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
   // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a
@@ -134,6 +135,7 @@ class Pipeline {
   void forgetTools();
   void beginReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
+  bool cutAlongWay();
   bool drive(const RobotPose& pose);
   void touch();
   void describeTools();

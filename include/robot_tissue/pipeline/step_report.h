@@ -45,7 +45,10 @@ struct StepReport {
   std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
   std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
   std::vector<std::size_t> torn_off;     // graspers that lost what they held
-  int substeps = 0;                      // load steps that the way took
+  int springs_cut = 0;                   // by blades
+  double area_cut = 0.0;                 // new surface of these cuts (m^2)
+  int springs_torn = 0;
+  int substeps = 0;  // load steps that the way took
   double contact_ms = 0.0;
   double solve_ms = 0.0;
   std::vector<ToolReport> tools;  // in the order of the tools

@@ -4,6 +4,7 @@
 
 #include <robot_tissue/File.h>
 #include <robot_tissue/Remove.h>
+#include <robot_tissue/Suture.h>
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 #include <std_srvs/Trigger.h>
@@ -30,6 +31,8 @@ class SurgeryServices {
   void onLoadState(const File::Request& request, File::Response& response);
   void onRemove(const Remove::Request& request, Remove::Response& response);
   void onUndo(const std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void onSuture(const Suture::Request& request, Suture::Response& response);
+  std::string freeSutureName() const;
   template <class Service>
   void advertise(ros::NodeHandle& private_node, const std::string& name,
                  void (SurgeryServices::*answer)(const typename Service::Request&,

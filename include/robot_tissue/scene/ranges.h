@@ -24,11 +24,18 @@ inline Range friction() { return {0.0, 1e3, ""}; }
 inline Range force() { return {-1e9, 1e9, "N"}; }
 inline Range forceLimit() { return {0.0, 1e9, "N"}; }  // 0: none
 
+inline Range sutureStiffness() { return {1e-6, kStiffestSuture, "N/m"}; }
+
 inline Range dampingTime() { return {0.0, 1e3, "s"}; }
 inline Range duration() { return {1e-6, 3600.0, "s"}; }  // of a step
 
+inline Range resistance() { return {0.0, 1e9, "J/m^2"}; }
+inline Range tearStretch() { return {0.0, 1e3, ""}; }  // 0: never
+
 inline Range tolerance() { return {1e-9, 0.5, ""}; }
 inline Range budget() { return {0.0, 1e9, "ms"}; }  // 0: none
+
+constexpr double kLeastTearStretch = 1.001;  // of one that is not 0
 
 constexpr double kLeastForce = 1e-9;      // N, of one that is not zero
 constexpr double kLeastGravity = 1e-6;    // m/s^2, likewise

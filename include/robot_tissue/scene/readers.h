@@ -62,6 +62,9 @@ GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools
                         const std::set<std::string>& standing);
 RemoveStep readRemove(const Entry& entry, const LengthRanges& lengths);
 UndoStep readUndo(const Entry& entry);
+// `names`: of sutures before it; one without a name gets the first of s1, s2, ... that is free.
+SutureStep readSuture(const Entry& entry, const std::string& model, const LengthRanges& lengths,
+                      std::set<std::string>& names);
 SaveStep readSave(const Entry& entry);
 LoadStateStep readLoadState(const Entry& entry);
 void requireStands(const Entry& entry, const std::string& tool,
@@ -84,6 +87,11 @@ struct ToolLinks {
 std::vector<std::string> toolLinkKeys();  // of a tool's map, that readToolLinks reads
 ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
                         const ToolRole& role, Remarks& remarks);
+
+// Keys edge and resistance of a tool, whose role and links are read: refused where the role has no
+// edge.
+void readEdge(const Entry& entry, const LengthRanges& lengths, ToolConfig& tool, Remarks& remarks);
+void readResistance(const Entry& entry, ToolConfig& tool);
 
 std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue);
 

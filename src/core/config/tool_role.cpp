@@ -5,12 +5,13 @@
 namespace robot_tissue {
 
 const std::vector<ToolRole>& toolRoles() {
-  static const std::vector<ToolRole> all = {{"push", false, true}, {"grasper", true, false}};
+  static const std::vector<ToolRole> all = {
+      {"push", false, false, true}, {"blade", false, true, true}, {"grasper", true, false, false}};
   return all;
 }
 
 const std::vector<std::string>& plannedToolRoles() {
-  static const std::vector<std::string> planned = {"blade"};
+  static const std::vector<std::string> planned;
   return planned;
 }
 

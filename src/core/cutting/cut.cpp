@@ -1,8 +1,8 @@
 #include "cutting/cut.h"
 
 #include <cmath>
-#include <sstream>
 
+#include "cutting/blade_surface.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 
@@ -12,10 +12,6 @@ namespace {
 // Of the spacing (1): what is nearer to the blade's plane or outline is on it. More: more springs
 // are severed along the outline; less: nodes in the plane fall to either side by rounding. Chosen.
 constexpr double kOnPlane = 1e-3;
-// Of the spacing (1): a corner farther off the mean plane is refused. More: warped blades cut along
-// a plane that is not theirs. Chosen: beyond a half, other springs would be cut than the blade
-// meets.
-constexpr double kMostWarped = 0.5;
 
 // A polygon on its mean plane.
 class CutPolygon {
@@ -41,10 +37,12 @@ class CutPolygon {
     along_ = normal_.unitOrthogonal();
     across_ = normal_.cross(along_);
     for (const Vec3& corner : corners) {
-      requireNearPlane(corner, spacing);
+      is_flat_ = is_flat_ && std::abs(normal_.dot(corner - center_)) <= slack_;
       outline_.emplace_back(along_.dot(corner - center_), across_.dot(corner - center_));
     }
   }
+
+  bool isFlat() const { return is_flat_; }
 
   // Whether the segment crosses; its ends count as on the positive side when on the plane.
   bool crosses(const Vec3& from, const Vec3& to) const {
@@ -57,15 +55,6 @@ class CutPolygon {
   }
 
  private:
-  void requireNearPlane(const Vec3& corner, double spacing) const {
-    const double distance = std::abs(normal_.dot(corner - center_));
-    if (distance <= kMostWarped * spacing) return;
-    std::ostringstream line;
-    line << "corners: a corner is " << distance << " m off the polygon's plane; allowed: at most "
-         << kMostWarped * spacing << " (half a spacing); cut in flatter pieces";
-    throw InputError(line.str());
-  }
-
   // Closed, with slack: a point on the outline is inside.
   bool contains(const Eigen::Vector2d& point) const {
     bool inside = false;
@@ -85,6 +74,7 @@ class CutPolygon {
   }
 
   double slack_;
+  bool is_flat_ = true;
   Vec3 center_ = Vec3::Zero();
   Vec3 normal_ = Vec3::Zero();
   Vec3 along_ = Vec3::Zero();
@@ -97,10 +87,15 @@ class CutPolygon {
 std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
                                const std::vector<Vec3>& corners) {
   const CutPolygon polygon(corners, lattice.spacing());
+  std::vector<int> crossing;
+  if (!polygon.isFlat()) {
+    const BladeSurface surface = BladeSurface::of(corners, lattice.spacing());
+    for (const Crossing& each : surface.crossings(lattice, state)) crossing.push_back(each.spring);
+    return crossing;
+  }
   const auto position = [&](int node) -> Vec3 {
     return lattice.restPosition(node) + state.displacement[at(node)];
   };
-  std::vector<int> crossing;
   for (std::size_t index = 0; index < lattice.springs().size(); ++index) {
     const Spring& spring = lattice.springs()[index];
     if (state.severed[index] == 0 && polygon.crosses(position(spring.a), position(spring.b))) {

@@ -11,9 +11,9 @@ namespace robot_tissue {
 
 // Springs, not yet severed, that cross the polygon (3 or more corners in order, m, tissue frame).
 // A node on the polygon's plane, within a thousandth of the spacing, counts as on the side that
-// the normal points to (right-handed along the corners), so that each spring is cut once or not.
-// Throws InputError: fewer than 3 corners, not finite, no area, or further from a plane than half
-// a spacing.
+// the normal points to (right-handed along the corners), so that each spring is cut once or not. A
+// polygon that is not flat to that is cut as triangles (BladeSurface).
+// Throws InputError: fewer than 3 corners, not finite, or no area.
 std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
                                const std::vector<Vec3>& corners);
 

@@ -18,6 +18,31 @@ Vec3 trialFriction(const ContactSpring& spring, const Vec3& point) {
          spring.friction_stiffness * (slip - spring.normal.dot(slip) * spring.normal);
 }
 
+double tensionAt(const ContactSpring& thread, const Vec3& way) {
+  return std::max(0.0, thread.stiffness * (way.norm() - thread.rest_length));
+}
+
+// Ends at one place: no direction is the thread's, and no force is left.
+Vec3 pullAt(const ContactSpring& thread, const Vec3& way) {
+  const double length = way.norm();
+  return length > 0.0 ? Vec3(-tensionAt(thread, way) / length * way) : Vec3(Vec3::Zero());
+}
+
+// Of T / |x| the limit where the ends come to one place is k, as of a thread of no length, the only
+// one that is taut there.
+Eigen::Matrix3d threadStiffnessAt(const ContactSpring& thread, const Vec3& way) {
+  const double length = way.norm(), tension = tensionAt(thread, way);
+  if (length > 0.0 && tension <= 0.0) return Eigen::Matrix3d::Zero();
+  if (length <= 0.0) {
+    const double stiffness = thread.rest_length > 0.0 ? 0.0 : thread.stiffness;
+    return stiffness * Eigen::Matrix3d::Identity();
+  }
+  const Vec3 along = way / length;
+  const double across = tension / length;
+  return across * Eigen::Matrix3d::Identity() +
+         (thread.stiffness - across) * along * along.transpose();
+}
+
 }  // namespace
 
 Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
@@ -36,11 +61,23 @@ double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displ
   return pressAt(spring, pointOf(spring, displacement));
 }
 
+double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacement) {
+  return tensionAt(thread, pointOf(thread, displacement));
+}
+
+double endsOf(const ContactSpring& spring) {
+  if (!spring.is_thread) return 1.0;
+  double sum = 0.0;
+  for (const NodeWeight& carrier : spring.carriers) sum += std::abs(carrier.weight);
+  return sum;
+}
+
 Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
   return forceAt(spring, pointOf(spring, displacement));
 }
 
 Vec3 forceAt(const ContactSpring& spring, const Vec3& point) {
+  if (spring.is_thread) return pullAt(spring, point);
   Vec3 force = pressAt(spring, point) * spring.normal;
   if (spring.friction_bound <= 0.0) return force;
   const Vec3 trial = trialFriction(spring, point);
@@ -50,6 +87,10 @@ Vec3 forceAt(const ContactSpring& spring, const Vec3& point) {
 }
 
 double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  if (spring.is_thread) {
+    const double tension = tensionOf(spring, displacement);
+    return 0.5 * tension * tension / spring.stiffness;
+  }
   const double normal_force = normalForceOf(spring, displacement);
   const double energy = 0.5 * normal_force * normal_force / spring.stiffness;
   if (spring.friction_bound <= 0.0) return energy;
@@ -64,6 +105,7 @@ Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>
 }
 
 Eigen::Matrix3d stiffnessAt(const ContactSpring& spring, const Vec3& point) {
+  if (spring.is_thread) return threadStiffnessAt(spring, point);
   const Eigen::Matrix3d along = spring.normal * spring.normal.transpose();
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   if (pressAt(spring, point) > 0.0) stiffness += spring.stiffness * along;

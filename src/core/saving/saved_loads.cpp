@@ -1,49 +1,17 @@
 #include "saving/saved_loads.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
+
+#include "saving/checked_values.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kLongestName = 64;       // bytes, as a scene allows
 constexpr std::size_t kRimBytes = 4 + 6 * 8;   // of a spring of a rim
 constexpr std::size_t kLeastPatchBytes = 100;  // of a patch
-constexpr double kLargest = 1e15;              // of any number of a load; none is as large
 constexpr double kUnlikeRotation = 1e-6;       // of R^T R from one
 
-[[noreturn]] void fail(const std::string& what) { throw InputError("is damaged: " + what); }
-
-double takeNumber(ByteReader& in) {
-  const double value = in.f64();
-  if (!(std::abs(value) <= kLargest)) fail("a number of a load is beyond all bounds");
-  return value;
-}
-
-Vec3 takeVector(ByteReader& in) {
-  Vec3 value;
-  for (double& component : value) component = takeNumber(in);
-  return value;
-}
-
-bool takeTruth(ByteReader& in) {
-  const std::uint8_t value = in.u8();
-  if (value > 1) fail("a truth is neither true nor false");
-  return value == 1;
-}
-
-std::string takeName(ByteReader& in) {
-  const std::string name = in.text();
-  const auto allowed = [](char c) {
-    return c != ',' && c != '"' && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
-  };
-  if (name.empty() || name.size() > kLongestName ||
-      !std::all_of(name.begin(), name.end(), allowed)) {
-    fail("a load has no name that a scene allows");
-  }
-  return name;
-}
+[[noreturn]] void fail(const std::string& what) { failAsDamaged(what); }
 
 Eigen::Matrix3d takeRotation(ByteReader& in) {
   Eigen::Matrix3d rotation;
@@ -122,12 +90,6 @@ LoadingPatch takePatch(const Lattice& lattice, ByteReader& in) {
 }
 
 }  // namespace
-
-int takeNode(int node_count, ByteReader& in) {
-  const std::uint32_t node = in.u32();
-  if (node >= static_cast<std::uint32_t>(node_count)) fail("it names a node that is not there");
-  return static_cast<int>(node);
-}
 
 void putLoads(const std::vector<LoadingPatch>& loads, ByteWriter& out) {
   out.count(loads.size());

@@ -8,10 +8,9 @@
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/solve_report.h"
 #include "saving/bytes.h"
+#include "saving/checked_values.h"
 
 namespace robot_tissue {
-
-int takeNode(int node_count, ByteReader& in);
 
 void putLoads(const std::vector<LoadingPatch>& loads, ByteWriter& out);
 std::vector<LoadingPatch> takeLoads(const Lattice& lattice, ByteReader& in);

@@ -8,6 +8,7 @@
 #include "lattice/connectivity.h"
 #include "saving/bytes.h"
 #include "saving/saved_loads.h"
+#include "saving/saved_sutures.h"
 
 namespace robot_tissue {
 namespace {
@@ -16,8 +17,10 @@ namespace {
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
 constexpr std::uint32_t kVersion = 2;
-constexpr std::uint32_t kWithoutRemovals = 1;
-constexpr std::uint8_t kHasRemovals = 1;  // bit of what version 2 has more
+constexpr std::uint32_t kPlain = 1;
+// Bits of what version 2 has more.
+constexpr std::uint8_t kHasRemovals = 1;
+constexpr std::uint8_t kHasSutures = 2;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -98,12 +101,10 @@ std::vector<std::uint8_t> takeBits(std::size_t count, ByteReader& in) {
 }
 
 void putRemovals(const LatticeState& state, ByteWriter& out) {
-  out.u8(kHasRemovals);
   for (const std::uint8_t bits : state.taken) out.u8(bits);
 }
 
 void takeRemovals(const Lattice& lattice, LatticeState& state, ByteReader& in) {
-  if (in.u8() != kHasRemovals) throw InputError("is damaged: it has nothing of its version");
   state.taken.resize(lattice.cells().size());
   for (std::uint8_t& bits : state.taken) bits = in.u8();
   const auto is_there = [](unsigned bits) { return bits < 0xff; };
@@ -232,15 +233,18 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   body.index(lattice.nodeCount());
   body.count(state.lattice.severed.size());
   putBits(state.lattice.severed, body);
-  const bool has_removals = !state.lattice.taken.empty();
-  if (has_removals) putRemovals(state.lattice, body);
+  std::uint8_t extras = 0;
+  if (!state.lattice.taken.empty()) extras |= kHasRemovals;
+  if (!state.sutures.empty()) extras |= kHasSutures;
+  if (extras != 0) body.u8(extras);
+  if ((extras & kHasRemovals) != 0) putRemovals(state.lattice, body);
   putGhosts(lattice, split, state.lattice, body);
   for (const Vec3& displacement : state.lattice.displacement) body.vec3(displacement);
   putLoads(state.loads, body);
   body.u8(state.in_balance ? 1 : 0);
   putReport(state.report, body);
-  return headerFor(body.bytes(), has_removals ? kVersion : kWithoutRemovals, fingerprint) +
-         body.bytes();
+  if ((extras & kHasSutures) != 0) putSutures(state.sutures, body);
+  return headerFor(body.bytes(), extras != 0 ? kVersion : kPlain, fingerprint) + body.bytes();
 }
 
 SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_view bytes,
@@ -255,7 +259,11 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   }
   state.severed = takeBits(springs, in);
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
-  if (opened.version > kWithoutRemovals) takeRemovals(lattice, state, in);
+  const std::uint8_t extras = opened.version > kPlain ? in.u8() : 0;
+  if (opened.version > kPlain && (extras == 0 || extras > (kHasRemovals | kHasSutures))) {
+    throw InputError("is damaged: it has nothing of its version, or more");
+  }
+  if ((extras & kHasRemovals) != 0) takeRemovals(lattice, state, in);
   state.pieces = countPieces(lattice, state);
   state.cells = takeCells(lattice, split, state, in);
   takeDisplacement(lattice, state, in);
@@ -269,6 +277,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   }
   saved.in_balance = in.u8() == 1 && opened.of_this_scene;
   saved.report = takeReport(saved.loads.size(), in);
+  if ((extras & kHasSutures) != 0) saved.sutures = takeSutures(state.cells->nodeCount(), in);
   if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
   return saved;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "loads/suture_thread.h"
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
@@ -18,8 +19,9 @@ namespace robot_tissue {
 struct SavedState {
   LatticeState lattice;
   std::vector<LoadingPatch> loads;  // the named ones
-  SolveReport report;               // status, residual, error estimate and answers of the loads
-  bool in_balance = false;          // the shape is the one under these loads alone
+  std::vector<SutureThread> sutures;
+  SolveReport report;       // status, residual, error estimate and answers of the loads
+  bool in_balance = false;  // the shape is the one under these loads alone
 };
 
 // What a saved state is of. `lattice`: nodes, cells, what is fixed, what cuts do. `scene`: what the

@@ -17,12 +17,18 @@ std::uint64_t hashOfLoads(const std::vector<LoadingPatch>& loads) {
 
 }  // namespace
 
-void History::begin(const LatticeState& lattice, std::string state,
-                    const std::vector<LoadingPatch>& named_loads) {
+bool History::begins(Kind kind) {
+  const bool goes_on = !changes_.empty() && (kind == Kind::kStrokeGoesOn ||
+                                             (kind == Kind::kTear && changes_.back().kind == kind));
+  is_under_way_ = is_under_way_ || goes_on;
+  return !goes_on;
+}
+
+void History::begin(Kind kind, Entry before, const std::vector<LoadingPatch>& named_loads) {
+  is_under_way_ = true;
   Change change;
-  change.entry.severed.assign(lattice.severed.begin(), lattice.severed.end());
-  change.entry.taken = lattice.taken;
-  change.entry.state = std::move(state);
+  change.kind = kind;
+  change.entry = std::move(before);
   change.loads_before = hashOfLoads(named_loads);
   changes_.push_back(std::move(change));
   // The way back to the beginning is the one that matters most; of the others the last.
@@ -35,6 +41,7 @@ void History::begin(const LatticeState& lattice, std::string state,
 }
 
 void History::end(const std::vector<LoadingPatch>& named_loads) {
+  is_under_way_ = false;
   changes_.back().loads_after = hashOfLoads(named_loads);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "robot_tissue/core/lattice_state.h"
+#include "loads/suture_thread.h"
 #include "robot_tissue/core/loading_patch.h"
 
 namespace robot_tissue {
@@ -17,12 +17,19 @@ class History {
   struct Entry {
     std::vector<bool> severed;        // per spring
     std::vector<std::uint8_t> taken;  // as LatticeState's
-    std::string state;                // as saved; empty: to find it anew is all that is left
+    std::vector<SutureThread> sutures;
+    std::string state;  // as saved; empty: to find it anew is all that is left
   };
 
+  // Changes of these kinds that follow each other are one: a blade's stroke goes on, and tissue
+  // goes on to tear.
+  enum class Kind { kByItself, kStrokeGoesOn, kTear };
+
+  // False: it goes on with the last one.
+  bool begins(Kind kind);
   // Before the change, and after it.
-  void begin(const LatticeState& lattice, std::string state,
-             const std::vector<LoadingPatch>& named_loads);
+  void begin(Kind kind, Entry before, const std::vector<LoadingPatch>& named_loads);
+  bool isUnderWay() const { return is_under_way_; }
   void end(const std::vector<LoadingPatch>& named_loads);
   void clear();
 
@@ -35,10 +42,12 @@ class History {
  private:
   struct Change {
     Entry entry;
+    Kind kind = Kind::kByItself;
     std::uint64_t loads_before = 0, loads_after = 0;  // hashes
   };
 
   std::vector<Change> changes_;
+  bool is_under_way_ = false;
 };
 
 }  // namespace robot_tissue

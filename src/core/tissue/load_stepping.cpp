@@ -115,6 +115,7 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
       continue;
     }
     share = to;
+    report = tear();
     worst = std::max(worst, report.status);
     const int left = share < 1.0 ? wholeParts((1.0 - share) / stride) : 0;
     if (on_increment) on_increment(increment, increment + left, report);
@@ -158,6 +159,7 @@ SolveReport Tissue::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
     report.iterations += earlier.iterations;
     report.wall_ms += earlier.wall_ms;
     last_report_ = report;
+    report = tear();
     if (part < parts && stopsOnTheWay(ramps)) {
       report.status = last_report_.status;
       break;

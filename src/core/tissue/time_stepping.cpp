@@ -6,6 +6,7 @@
 #include "material/elastic_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
+#include "tissue/threads.h"
 #include "tissue/time_integrator.h"
 #include "tissue/tuning.h"
 
@@ -58,7 +59,7 @@ void Tissue::findFreePieces() {
 // Where nothing holds or touches a piece its center of mass goes as gravity says, to rounding.
 void Tissue::keepMomentum() {
   findFreePieces();
-  std::vector<int> touched;
+  std::vector<int> touched = threads_->nodes();
   for (const LoadingPatch& patch : patches_) {
     touched.insert(touched.end(), patch.nodes.begin(), patch.nodes.end());
     for (const ContactSpring& contact : patch.contacts) {
@@ -135,6 +136,7 @@ SolveReport Tissue::wait(double duration) {
       restore(good);
       continue;
     }
+    tear();
     longest = longestTimeStep();
     worst = std::max(worst, report.status);
     left = steps > 1.0 ? left - step : 0.0;

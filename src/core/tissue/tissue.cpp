@@ -7,6 +7,7 @@
 
 #include "cutting/removal.h"
 #include "cutting/split_cells.h"
+#include "cutting/tear.h"
 #include "lattice/connectivity.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
@@ -14,18 +15,13 @@
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/round_gain.h"
+#include "tissue/threads.h"
 #include "tissue/time_integrator.h"
 #include "tissue/tissue_state.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-Vec3 forceOfPatches(const SolveReport& report) {
-  Vec3 force = Vec3::Zero();
-  for (const PatchAnswer& answer : report.patches) force += answer.force;
-  return force;
-}
 
 bool isFinite(const Vec3& vector) { return vector.allFinite(); }
 
@@ -46,6 +42,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       balance_fingerprint_(balanceFingerprint(tissue, solver)),
       method_(makeMethod(solver, lattice_, *model_)),
       history_(std::make_unique<History>()),
+      threads_(std::make_unique<Threads>()),
       has_gravity_(!tissue.gravity.isZero()),
       gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
@@ -53,14 +50,13 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
     time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
                                              solver.tolerance);
   }
+  tear_strains_ = tearStrains(lattice_, tissue);
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
   weight_ = model_->weight(state_);
 }
 
 Tissue::~Tissue() = default;
-
-Vec3 Tissue::nodeForce(int node) const { return model_->nodeForce(state_, node); }
 
 // Contacts are found anew after each step: what a tool meets on the way must not be far.
 double Tissue::stepLength() const {
@@ -78,33 +74,9 @@ std::vector<int> Tissue::pieceOfNodes() const {
 
 SolveReport Tissue::settle() {
   stopTime();
-  return solve(freeNodes());
+  solve(freeNodes());
+  return tear();
 }
-
-Vec3 Tissue::weight() const { return weight_; }
-
-// Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
-// them. Where the method does not visit all nodes: by the balance of all forces.
-Vec3 Tissue::forceOfFixedNodes() const {
-  if (method_->visited() != nullptr)
-    return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
-  const CellSet& cells = *state_.cells;
-  Vec3 force = Vec3::Zero();
-  for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(lattice_, cells, node)) force -= nodeForce(node);
-  }
-  for (const LoadingPatch& patch : patches_) {
-    for (const ContactSpring& spring : patch.contacts) {
-      for (const NodeWeight& carrier : spring.carriers) {
-        if (!isFixed(lattice_, cells, carrier.node)) continue;
-        force -= carrier.weight * robot_tissue::forceOf(spring, state_.displacement);
-      }
-    }
-  }
-  return force;
-}
-
-double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
 
 SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
                            const std::vector<int>& disturbed, Bedding bedding) {
@@ -134,7 +106,8 @@ Tissue::Shape Tissue::shape() const {
           last_report_,
           is_late_,
           time_ ? time_->motion() : nullptr,
-          in_time_};
+          in_time_,
+          threads_->whole()};
 }
 
 void Tissue::restore(const Shape& shape) {
@@ -148,6 +121,7 @@ void Tissue::restore(const Shape& shape) {
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
   is_late_ = shape.is_late;
+  threads_->mend(shape.whole_sutures);
   deformSurface();
 }
 
@@ -174,12 +148,14 @@ void Tissue::reset() {
   method_->forget();
   kept_.reset();
   state_ = lattice_.restState();
+  threads_->clear();
   patches_.clear();
   named_patches_ = 0;
   due_.clear();
   disturbed_.clear();
   last_report_ = SolveReport();
   is_late_ = false;
+  springs_torn_ = 0;
   history_->clear();
   if (was_cut) {
     weight_ = model_->weight(state_);
@@ -218,7 +194,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
     std::sort(disturbed_.begin(), disturbed_.end());
     disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
   }
-  SolveReport report = solveInRounds(disturbed_);
+  SolveReport report = solveAndBreak(disturbed_);
   if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
   if (!is_late_) disturbed_.clear();
   last_report_.volume_ratio = report.volume_ratio = volumeRatio();
@@ -312,7 +288,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   kept_.reset();
   limitWays();
   method_->limitTime(mostMs());
-  SolveReport report = method_->solve(patches_, disturbed, state_);
+  SolveReport report = solveWithThreads(disturbed);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
       (method_->staysFinite() ||
@@ -338,10 +314,11 @@ SolveReport Tissue::solveFromRest() {
   kept_.reset();
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   SolveReport report;
-  if (has_gravity_) {
+  const bool sutured = threads_->anyWhole();
+  if (has_gravity_ || sutured) {
     const std::size_t named = std::exchange(named_patches_, 0);
     patches_.clear();
-    report = settle();
+    report = settleFromRest();
     patches_.insert(patches_.begin(), standing.begin(), standing.end());
     named_patches_ = named;
   }
@@ -354,7 +331,7 @@ SolveReport Tissue::solveFromRest() {
   }
   if (!ramps.empty()) {
     report = stepLoadsByItself(ramps, {});
-  } else if (!has_gravity_) {
+  } else if (!has_gravity_ && !sutured) {
     describeShape(report);
     report.volume_ratio = volumeRatio();
     last_report_ = report;

@@ -136,7 +136,8 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
   }
   if (takesNoTime()) return asItIs();
   const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
-  return unique ? solve(freeNodes()) : solveFromRest();
+  unique ? solve(freeNodes()) : solveFromRest();
+  return tear();
 }
 
 PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {

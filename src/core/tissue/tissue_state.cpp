@@ -7,6 +7,7 @@
 #include "saving/saved_state.h"
 #include "solvers/solver_method.h"
 #include "tissue/history.h"
+#include "tissue/threads.h"
 
 namespace robot_tissue {
 namespace {
@@ -43,6 +44,7 @@ std::string Tissue::savedState() const {
   saved.lattice = state_;
   saved.loads.assign(patches_.begin(),
                      patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
+  saved.sutures = threads_->all();
   saved.report = last_report_;
   saved.report.patches.resize(named_patches_);  // without the tools
   saved.in_balance = isUntouched() && !isLate() && !isMoving();
@@ -69,12 +71,15 @@ SolveReport Tissue::loadState(const SavedState& saved) {
   due_.clear();
   disturbed_.clear();
   is_late_ = false;
+  springs_torn_ = 0;
   state_ = saved.lattice;
   patches_ = saved.loads;
   named_patches_ = patches_.size();
   history_->clear();
   weight_ = model_->weight(state_);
+  threads_->clear();
   rebuildSurface();
+  threads_->take(saved.sutures);
   last_report_ = saved.report;
   if (!saved.in_balance) return solve(freeNodes());
   deformSurface();

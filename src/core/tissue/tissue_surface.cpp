@@ -52,6 +52,7 @@ void Tissue::rebuildSurface() {
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
+  rebindThreads();
 }
 
 }  // namespace robot_tissue

@@ -1,4 +1,4 @@
-// Tissue: cuts, removals, and the way back.
+// Tissue: cuts, removals, pieces, and the way back.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,6 +14,7 @@
 #include "solvers/solver_method.h"
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
+#include "tissue/topology_change.h"
 
 namespace robot_tissue {
 namespace {
@@ -72,21 +73,17 @@ std::vector<TissuePiece> Tissue::pieces() const {
   return pieces;
 }
 
-void Tissue::keepHistory() {
-  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  history_->begin(state_, savedState(), {patches_.begin(), first_of_tools});
+std::vector<LoadingPatch> Tissue::namedLoads() const {
+  return {patches_.begin(), patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)};
 }
 
-// Of cells and springs that are others now; ends what keepHistory began.
+// Balances what other cells and springs leave.
 SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
   kept_.reset();
   rebuildSurface();
   deformSurface();
   renewContacts();
-  const SolveReport report = takesNoTime() ? asItIs() : solve(disturbed);
-  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  history_->end({patches_.begin(), first_of_tools});
-  return report;
+  return takesNoTime() ? asItIs() : solve(disturbed);
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
@@ -96,15 +93,10 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   report.pieces = state_.pieces;
   report.solve = last_report_;
   if (crossing.empty()) return report;
-  std::vector<int> disturbed;
-  for (const int spring : crossing) {
-    disturbed.push_back(lattice_.springs()[at(spring)].a);
-    disturbed.push_back(lattice_.springs()[at(spring)].b);
-  }
-  keepHistory();
-  sever(lattice_, crossing, state_, model_->splitCells());
+  const TopologyChange change(*this, History::Kind::kByItself);
+  severAndBalance(crossing);
+  report.solve = tear();
   report.pieces = state_.pieces;
-  report.solve = changeTopology(disturbed);
   return report;
 }
 
@@ -121,13 +113,14 @@ RemoveReport Tissue::remove(const RemovedSpace& space) {
   if (!leaves_some) {
     throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
   }
-  keepHistory();
+  const TopologyChange change(*this, History::Kind::kByItself);
   removeCells(lattice_, cells, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
   report.volume = volumeOf(lattice_, cells);
-  report.pieces = state_.pieces;
   report.loads = dropLostLoads();
-  report.solve = changeTopology(nodesAround(lattice_, cells, state_));
+  changeTopology(nodesAround(lattice_, cells, state_));
+  report.solve = tear();
+  report.pieces = state_.pieces;
   return report;
 }
 
@@ -159,13 +152,12 @@ int Tissue::undoable() const { return static_cast<int>(history_->size()); }
 SolveReport Tissue::undo(int count) {
   if (count < 1 || count > undoable()) {
     throw InputError("count: " + std::to_string(count) + " to take back; allowed: " +
-                     (undoable() == 0 ? "none, as nothing was cut or removed"
+                     (undoable() == 0 ? "none, as nothing was cut, removed, torn or sutured"
                                       : "1 to " + std::to_string(undoable())));
   }
   const std::size_t target = history_->size() - static_cast<std::size_t>(count);
   const History::Entry entry = history_->before(target);
-  const auto first_of_tools = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  const bool same_loads = history_->hasLoadsSince(target, {patches_.begin(), first_of_tools});
+  const bool same_loads = history_->hasLoadsSince(target, namedLoads());
   std::shared_ptr<const SavedState> saved;
   if (!entry.state.empty() && isUntouched() && !isLate() && same_loads) {
     saved = readState(entry.state);
@@ -173,19 +165,22 @@ SolveReport Tissue::undo(int count) {
   if (saved && saved->in_balance) {
     History kept = *history_;
     kept.dropFrom(target);
+    const int torn = springs_torn_;
     const SolveReport report = loadState(*saved);
+    springs_torn_ = torn;
     *history_ = std::move(kept);
     return report;
   }
   stopTime();
   state_ = asBefore(lattice_, entry, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
-  kept_.reset();
-  rebuildSurface();
-  deformSurface();
-  renewContacts();
+  threads_->take(entry.sutures);
   history_->dropFrom(target);
-  return solve(freeNodes());
+  if (takesNoTime()) return changeTopology({});
+  threads_->loosen(state_.displacement);
+  changeTopology(freeNodes());
+  if (threads_->anyWhole()) drawThreadsIn();
+  return tear();
 }
 
 }  // namespace robot_tissue

@@ -48,6 +48,14 @@ constexpr double kNearer = 0.7;
 // Less: creeping counts as gain. Chosen.
 constexpr double kFarther = 1.1;
 
+// Cuts.
+// Spacings (1): how far the lattice's nodes are from the surface that is shown, at most: a cell's
+// diagonal, rounded up. More: blades beside the tissue are looked at in vain.
+constexpr double kNodesBeyondSurface = 2.0;
+// Solves after springs that tore, in one update. More: long cracks come to their end at once; then
+// the rest is left to the next update. Chosen.
+constexpr int kMostTearRounds = 500;
+
 // Time.
 // Of what is left of the budget (1): the next solve has so much, as the contacts are to be looked
 // at again. More: fewer, longer solves; the last may leave none for the contacts. Chosen.
@@ -89,6 +97,27 @@ constexpr double kRefusedError = 4.0;
 constexpr double kFirstStep = 1e-3;
 constexpr double kShortestStep = 5e-5;
 constexpr double kLongestStep = 0.05;
+
+// Sutures.
+// Spacings (1): a suture's point that is farther from the surface is nowhere. More: points that are
+// meant for something else join. Chosen.
+constexpr double kReachOfSuture = 1.0;
+// Spacings (1): farther from a thread's end the surface that a cut or a removal left is not where
+// it was; the thread is dropped. More: threads jump on; less: threads at a cut are lost. Chosen.
+constexpr double kFarthestFromEnd = 0.5;
+// Of the stiffness of a node at a thread's end (1): a stiffer thread is drawn in as one of that, in
+// so many rounds to the length that its own stiffness has, and then made stiff. More: fewer solves
+// where that is not needed, but threads that go taut and slack take long (a hundred times the
+// stiffness, at once: up to 0.7 s at 4,851 nodes; so: 0.03 s). Rounds: each leaves about a tenth of
+// what was off. Chosen.
+constexpr double kSoftThread = 5.0;
+constexpr int kRoundsOfThread = 3;
+// Spacings (1): triangles as near to an end but for so much are alike, as the sides of a cut are.
+// Rounding.
+constexpr double kSameDistance = 1e-6;
+// Spacings (1): below the surface, where the tissue of a triangle is. Any that is less than a cell
+// tells sides apart. Chosen.
+constexpr double kInnerDepth = 0.25;
 
 // Memory.
 // Bytes of a sparse factor of n nodes over n^(4/3), the growth by nested dissection in three

@@ -73,8 +73,8 @@ void DofMap::measure(const ConstrainedState& shape) {
     for (const int node : patch.nodes) {
       sum += (restPosition(*lattice_, *shape.state.cells, node) - patch.center).norm();
     }
-    patches_[index].length =
-        std::max(sum / static_cast<double>(patch.nodes.size()), lattice_->spacing());
+    const double nodes = static_cast<double>(std::max<std::size_t>(patch.nodes.size(), 1));
+    patches_[index].length = std::max(sum / nodes, lattice_->spacing());
   }
 }
 

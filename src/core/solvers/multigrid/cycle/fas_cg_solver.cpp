@@ -11,6 +11,11 @@ namespace {
 
 namespace tuning = cycle_tuning;
 
+// Threads count as tissue: they hold on, and need no rounds.
+bool isTouched(const LoadingPatch& patch) {
+  return !patch.contacts.empty() && !patch.contacts[0].is_thread;
+}
+
 }  // namespace
 
 template <typename Real>
@@ -58,7 +63,7 @@ template <typename Real>
 SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints& hold,
                                    const std::vector<int>& disturbed, const Budget& budget) {
   SolveContext solve{shape, hold, budget};
-  solve.in_contact = !hold.touched().empty();
+  solve.in_contact = std::any_of(shape.patches.begin(), shape.patches.end(), isTouched);
   const bool in_time = model_.inertia() != nullptr;
   solve.has_changed = solve.in_contact || !disturbed.empty() || in_time;
   findLevels(shape.state);

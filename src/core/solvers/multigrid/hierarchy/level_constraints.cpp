@@ -95,6 +95,7 @@ void LevelConstraints<Real>::addSpringsToFinest(const ConstrainedState& shape,
     }
     for (const ContactSpring& contact : patch.contacts) {
       springs.emplace_back();
+      springs.back().ends = endsOf(contact);
       for (const NodeWeight& carrier : contact.carriers) {
         springs.back().carriers.push_back({grid_.entryOf(carrier.node), carrier.weight});
       }

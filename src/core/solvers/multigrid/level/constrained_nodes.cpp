@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "solvers/multigrid/level/tuning.h"
@@ -35,8 +36,9 @@ double stiffnessAlong(const LevelSpring& spring) {
   return normal.dot(spring.stiffness * normal);
 }
 
-// Without that: K - (n . K n) n n^T.
+// Without what joins: K - (n . K n) n n^T. A thread joins in all directions.
 Eigen::Matrix3d stiffnessAcross(const LevelSpring& spring) {
+  if (spring.contact->is_thread) return Eigen::Matrix3d::Zero();
   const Vec3& normal = spring.contact->normal;
   Eigen::Matrix3d stiffness = spring.stiffness;
   stiffness -= stiffnessAlong(spring) * normal * normal.transpose();
@@ -136,7 +138,7 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
   } else {
     const Vec3 point = spring.contact->rest + spacing_ * mean;
     on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
-    contact_force_ += on_nodes;
+    if (!spring.contact->is_thread) contact_force_ += on_nodes;
     if (what == Find::kForcesAndStiffness) {
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
       joins = isJoining(spring, point);
@@ -146,7 +148,7 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
     all_[at(carrier.constrained)].force += carrier.weight * on_nodes;
   }
   if (what == Find::kForcesAndStiffness) {
-    if (joins) join(spring);
+    if (joins) join(spring, spring.contact->rest + spacing_ * mean);
     addStiffness(spring, joins ? stiffnessAcross(spring) : spring.stiffness);
   }
   if (spring.group < 0) return;
@@ -154,15 +156,15 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
   force[group] -= jacobianAt(groups[group], spring.arm).transpose() * on_nodes;
 }
 
-// The stiffness matrix's row sums, w_i (sum over j of |w_j|) K, in the place of its diagonal w_i^2
-// K: no motion is stiffer than the smoother's steps allow (l1-Jacobi: Baker, Falgout, Kolev, Yang
-// 2011). Of a joining spring what is along its normal is left out, as WoodburyUpdate has that.
+// The stiffness matrix's row sums, |w_i| (sum over j of |w_j|) K, in the place of its diagonal
+// w_i^2 K: no motion is stiffer than the smoother's steps allow (l1-Jacobi: Baker, Falgout, Kolev,
+// Yang 2011). Of a joining spring what is along its normal is left out, as WoodburyUpdate has that.
 template <typename Real>
 void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring,
                                           const Eigen::Matrix3d& stiffness) {
-  const double ends = spring.group >= 0 ? kBothEnds : 1.0;
+  const double ends = spring.group >= 0 ? kBothEnds : spring.ends;
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
-    all_[at(carrier.constrained)].stiffness += ends * carrier.weight * stiffness;
+    all_[at(carrier.constrained)].stiffness += ends * std::abs(carrier.weight) * stiffness;
   }
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
@@ -170,23 +172,45 @@ void ConstrainedNodes<Real>::addStiffness(const LevelSpring& spring,
   group_stiffness_[group] += ends * jacobian.transpose() * stiffness * jacobian;
 }
 
-// A spring in contact that pushes, or would with its gap less by `soon_touches`.
+// A spring in contact that pushes, or would with its gap less by `soon_touches`; a taut thread.
 template <typename Real>
 bool ConstrainedNodes<Real>::isJoining(const LevelSpring& spring, const Vec3& point) const {
   const ContactSpring& contact = *spring.contact;
-  const double gap = contact.normal.dot(point - contact.plane_point) - soon_touches * spacing_;
-  if (contact.multiplier - contact.stiffness * gap <= 0.0) return false;
+  if (contact.is_thread) {
+    if (spring.stiffness.isZero(0.0)) return false;
+  } else {
+    const double gap = contact.normal.dot(point - contact.plane_point) - soon_touches * spacing_;
+    if (contact.multiplier - contact.stiffness * gap <= 0.0) return false;
+  }
   return std::none_of(spring.carriers.begin(), spring.carriers.end(), [this](const auto& carrier) {
     return all_[at(carrier.constrained)].group >= 0;
   });
 }
 
+// A thread that is much longer than its rest length is about as stiff across itself as along: it
+// joins in three directions.
 template <typename Real>
-void ConstrainedNodes<Real>::join(const LevelSpring& spring) {
+void ConstrainedNodes<Real>::join(const LevelSpring& spring, const Vec3& point) {
+  if (!spring.contact->is_thread) {
+    return joinAlong(spring, spring.contact->normal,
+                     spring.contact->stiffness / (modulus_ * spacing_));
+  }
+  const double length = point.norm();
+  const Vec3 along = length > 0.0 ? Vec3(point / length) : Vec3(Vec3::UnitX());
+  const Vec3 across = along.unitOrthogonal();
+  for (const Vec3& direction : {along, across, Vec3(along.cross(across))}) {
+    const double stiffness = direction.dot(spring.stiffness * direction);
+    if (stiffness > level_tuning::kNoStiffness) joinAlong(spring, direction, stiffness);
+  }
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::joinAlong(const LevelSpring& spring, const Vec3& direction,
+                                       double stiffness) {
   joining_.emplace_back();
-  joining_.back().stiffness = spring.contact->stiffness / (modulus_ * spacing_);
+  joining_.back().stiffness = stiffness;
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
-    Vec3 along = carrier.weight * spring.contact->normal;
+    Vec3 along = carrier.weight * direction;
     for (int axis = 0; axis < 3; ++axis) {
       if ((all_[at(carrier.constrained)].held >> axis & 1U) != 0) along[axis] = 0.0;
     }

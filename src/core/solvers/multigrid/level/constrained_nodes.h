@@ -13,7 +13,8 @@
 
 namespace robot_tissue {
 
-// Joins a weighted mean of nodes to a place, or to a group.
+// Joins a weighted mean of nodes to a place, or to a group; or, with weights of both signs, nodes
+// to nodes.
 struct LevelSpring {
   struct Carrier {
     int node = 0;
@@ -21,6 +22,7 @@ struct LevelSpring {
     int constrained = 0;  // set by ConstrainedNodes
   };
   std::vector<Carrier> carriers;
+  double ends = 1.0;                                    // at least the sum of its |weight|
   int group = -1;                                       // whose motion counts with weight -1
   Vec3 arm = Vec3::Zero();                              // of its end there, from the center
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // as it is now
@@ -105,7 +107,8 @@ class ConstrainedNodes {
   void addSpring(LevelSpring& spring, const Field<Real>& displacement, Find what);
   void addStiffness(const LevelSpring& spring, const Eigen::Matrix3d& stiffness);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
-  void join(const LevelSpring& spring);
+  void join(const LevelSpring& spring, const Vec3& point);
+  void joinAlong(const LevelSpring& spring, const Vec3& direction, double stiffness);
   // D^-1 f of the nodes that are in no group, per entry of all_ (D with joining springs:
   // WoodburyUpdate); the reference holds until the next call.
   const std::vector<Vec3>& balancing() const;
@@ -115,7 +118,7 @@ class ConstrainedNodes {
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
   std::vector<ConstrainedNode> all_;
-  std::vector<WoodburyUpdate::Spring> joining_;  // springs in contact, along their normals
+  std::vector<WoodburyUpdate::Spring> joining_;  // of springs in contact, one a direction
   WoodburyUpdate joined_;
   mutable std::vector<Vec3> balancing_;
   std::vector<Matrix6> group_stiffness_, group_inverse_;

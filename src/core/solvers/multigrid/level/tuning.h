@@ -20,7 +20,8 @@ constexpr double kStiffnessMargin = 1.1;
 // cell turns over at once (chosen). Up: far motions in fewer steps, less surely.
 constexpr double kLongestStep = 0.25;
 // Of a patch's greatest stiffness: directions in which it has less count as this stiff (chosen;
-// far above rounding). Up: loose patches are moved in shorter steps.
+// far above rounding). Up: loose patches are moved in shorter steps. Likewise of E0 h: a thread's
+// stiffness across itself that is less is none.
 constexpr double kNoStiffness = 1e-12;
 
 // --- Threads

@@ -1,0 +1,53 @@
+#include "saving/checked_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kLongestName = 64;  // bytes, as a scene allows
+constexpr double kLargest = 1e15;         // of any number of a load or suture; none is as large
+
+}  // namespace
+
+void failAsDamaged(const std::string& what) { throw InputError("is damaged: " + what); }
+
+double takeNumber(ByteReader& in) {
+  const double value = in.f64();
+  if (!(std::abs(value) <= kLargest)) failAsDamaged("a number is beyond all bounds");
+  return value;
+}
+
+Vec3 takeVector(ByteReader& in) {
+  Vec3 value;
+  for (double& component : value) component = takeNumber(in);
+  return value;
+}
+
+bool takeTruth(ByteReader& in) {
+  const std::uint8_t value = in.u8();
+  if (value > 1) failAsDamaged("a truth is neither true nor false");
+  return value == 1;
+}
+
+std::string takeName(ByteReader& in) {
+  const std::string name = in.text();
+  const auto allowed = [](char c) {
+    return c != ',' && c != '"' && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+  };
+  if (name.empty() || name.size() > kLongestName ||
+      !std::all_of(name.begin(), name.end(), allowed)) {
+    failAsDamaged("a name is none that a scene allows");
+  }
+  return name;
+}
+
+int takeNode(int node_count, ByteReader& in) {
+  const std::uint32_t node = in.u32();
+  if (node >= static_cast<std::uint32_t>(node_count))
+    failAsDamaged("it names a node that is not there");
+  return static_cast<int>(node);
+}
+
+}  // namespace robot_tissue

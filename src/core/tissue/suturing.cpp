@@ -1,0 +1,192 @@
+// Tissue: sutures, and how solves have their threads.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "robot_tissue/core/tissue.h"
+#include "solvers/solver_method.h"
+#include "surface/nearest_point.h"
+#include "tissue/load_ramp.h"
+#include "tissue/registry.h"
+#include "tissue/threads.h"
+#include "tissue/topology_change.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+[[noreturn]] void refuse(const std::string& suture, const std::string& problem,
+                         const std::string& allowed) {
+  throw InputError("suture '" + suture + "': " + problem + "; allowed: " + allowed);
+}
+
+void requireNumbers(const SutureConfig& config) {
+  if (config.name.empty()) refuse(config.name, "no name", "a name");
+  const auto require_finite = [&](const Vec3& point, const char* key) {
+    if (point.allFinite()) return;
+    refuse(config.name, std::string(key) + " is not finite", "finite coordinates");
+  };
+  const auto require = [&](bool holds, double value, const char* key, const char* allowed) {
+    if (holds) return;
+    std::ostringstream problem;
+    problem << key << " = " << value;
+    refuse(config.name, problem.str(), allowed);
+  };
+  require_finite(config.from, "from");
+  require_finite(config.to, "to");
+  const double length = config.rest_length, stiffness = config.stiffness;
+  const double force = config.break_force;
+  require(length >= 0.0 && std::isfinite(length), length, "rest_length", "0 m or more");
+  require(stiffness > 0.0 && stiffness <= kStiffestSuture, stiffness, "stiffness",
+          "more than 0 N/m, at most 1e5 N/m");
+  require(force >= 0.0 && std::isfinite(force), force, "break_force", "0 (never), or more N");
+}
+
+}  // namespace
+
+// The end at the surface's point that is nearest in the deformed shape.
+SutureThread Tissue::threadOf(const SutureConfig& config) const {
+  const double spacing = lattice_.spacing();
+  SutureThread thread;
+  const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
+    const auto nearest = nearestPoint(surface_, vertices_, point);
+    if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
+      refuse(config.name, std::string(key) + " is nowhere at the tissue's surface",
+             "a point within a spacing of it");
+    }
+    end.rest = restOf(surface_, nearest->on);
+    end.inside = innerPlace(surface_, nearest->on.triangle, tuning::kInnerDepth * spacing);
+    bindEnd(surface_, spacing, end);
+  };
+  place("from", config.from, thread.from);
+  place("to", config.to, thread.to);
+  thread.name = config.name;
+  thread.rest_length = thread.length = config.rest_length;
+  thread.stiffness = config.stiffness;
+  thread.break_force = config.break_force;
+  if (springOf(thread).carriers.empty()) {
+    refuse(config.name, "from and to are one point of the surface", "two points");
+  }
+  return thread;
+}
+
+SutureResult Tissue::suture(const SutureConfig& config) {
+  requireNumbers(config);
+  if (!method_->findsEquilibrium()) {
+    std::string allowed;
+    for (const std::string& name : methodsFor("elastic")) {
+      allowed += (allowed.empty() ? "solver.method " : ", ") + name;
+    }
+    refuse(config.name, "this method finds no equilibrium that a thread could pull to", allowed);
+  }
+  if (threads_->has(config.name)) {
+    refuse(config.name, "a suture of this name is there", "another name");
+  }
+  SutureThread thread = threadOf(config);
+  const TopologyChange change(*this, History::Kind::kByItself);
+  SutureResult result;
+  if (takesNoTime()) {
+    threads_->add(std::move(thread));
+    result.solve = asItIs();
+  } else {
+    const double now = reportOf(thread, state_.displacement).length;
+    const double same = tuning::kSameDistance * lattice_.spacing();
+    const bool is_slack = now <= thread.rest_length + same;
+    if (!is_slack) thread.length = now;
+    threads_->add(std::move(thread));
+    result.solve = is_slack ? last_report_ : drawThreadsIn();
+  }
+  result.suture = sutures().back();
+  return result;
+}
+
+std::vector<SutureReport> Tissue::sutures() const {
+  std::vector<SutureReport> reports;
+  for (const SutureThread& thread : threads_->all()) {
+    reports.push_back(reportOf(thread, state_.displacement));
+  }
+  return reports;
+}
+
+// Adds a solve to the report. False: the time is over.
+bool Tissue::solveOnThreads(SolveReport& report) {
+  const SolveReport earlier = report;
+  report = solve(threads_->nodes());
+  report.status = std::max(report.status, earlier.status);
+  report.iterations += earlier.iterations;
+  report.wall_ms += earlier.wall_ms;
+  return !deadline_ || !deadline_->isOver();
+}
+
+// To their rest lengths, in steps that the method follows well. Out of time they are there at once,
+// and what is left to balance is due.
+SolveReport Tissue::drawThreadsIn() {
+  threads_->soften([this](int node) { return tuning::kSoftThread * nodeStiffness(node); },
+                   state_.displacement);
+  const int steps = wholeParts(threads_->wayLeft() / method_->patchStep());
+  SolveReport report;
+  bool in_time = true;
+  for (int step = 1; step <= steps && in_time; ++step) {
+    threads_->drawIn(1.0 / (steps - step + 1));
+    in_time = solveOnThreads(report);
+  }
+  const double same = tuning::kSameDistance * lattice_.spacing();
+  bool changes = threads_->wayLeft() > 0.0;
+  if (!in_time) changes = changes || threads_->correct(state_.displacement) > same;
+  for (int round = 1; round <= tuning::kRoundsOfThread && in_time; ++round) {
+    if (threads_->correct(state_.displacement) <= same) break;
+    changes = true;
+    in_time = solveOnThreads(report);
+  }
+  threads_->harden();
+  if (in_time && changes) {
+    solveOnThreads(report);
+  } else if (changes) {
+    const std::vector<int> due = threads_->nodes();
+    disturbed_.insert(disturbed_.end(), due.begin(), due.end());
+    is_late_ = true;
+    report.status = std::max(report.status, SolveStatus::kLate);
+  }
+  last_report_ = report;
+  return report;
+}
+
+// Under gravity and threads alone, these drawn in from where the rest shape has their ends.
+SolveReport Tissue::settleFromRest() {
+  SolveReport report;
+  threads_->loosen(state_.displacement);
+  if (has_gravity_) report = settle();
+  return threads_->anyWhole() ? drawThreadsIn() : report;
+}
+
+SolveReport Tissue::solveWithThreads(const std::vector<int>& disturbed) {
+  if (!threads_->anyWhole()) return method_->solve(patches_, disturbed, state_);
+  patches_.push_back(threads_->patch());
+  SolveReport report = method_->solve(patches_, disturbed, state_);
+  patches_.pop_back();
+  report.patches.resize(patches_.size());
+  return report;
+}
+
+// Threads break in balance, one after the other: what one leaves, the others may bear.
+SolveReport Tissue::solveAndBreak(const std::vector<int>& disturbed) {
+  SolveReport report = solveInRounds(disturbed);
+  while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
+    const std::vector<int> left = threads_->breakOne(state_.displacement);
+    if (left.empty()) break;
+    const SolveReport earlier = report;
+    report = solveInRounds(left);
+    report.iterations += earlier.iterations;
+    report.wall_ms += earlier.wall_ms;
+    last_report_ = report;
+  }
+  return report;
+}
+
+void Tissue::rebindThreads() {
+  for (const int node : threads_->rebind(surface_, lattice_.spacing())) {
+    disturbed_.push_back(state_.cells->original(node));
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,174 @@
+#include "tissue/threads.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surface/nearest_point.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+void addNodes(const SutureThread& thread, std::vector<int>& nodes) {
+  for (const SutureThread::End* end : {&thread.from, &thread.to}) {
+    for (const NodeWeight& carrier : end->carriers) nodes.push_back(carrier.node);
+  }
+}
+
+}  // namespace
+
+bool Threads::anyWhole() const {
+  return std::any_of(threads_.begin(), threads_.end(),
+                     [](const SutureThread& thread) { return !thread.broken; });
+}
+
+bool Threads::has(const std::string& name) const {
+  return std::any_of(threads_.begin(), threads_.end(),
+                     [&](const SutureThread& thread) { return thread.name == name; });
+}
+
+std::vector<std::string> Threads::whole() const {
+  std::vector<std::string> names;
+  for (const SutureThread& thread : threads_) {
+    if (!thread.broken) names.push_back(thread.name);
+  }
+  return names;
+}
+
+void Threads::mend(const std::vector<std::string>& names) {
+  for (SutureThread& thread : threads_) {
+    if (std::find(names.begin(), names.end(), thread.name) != names.end()) thread.broken = false;
+  }
+}
+
+LoadingPatch Threads::patch() const {
+  LoadingPatch patch;
+  patch.name = "threads of sutures";
+  std::vector<ContactSpring> springs;
+  for (const SutureThread& thread : threads_) {
+    if (!thread.broken) springs.push_back(springOf(thread));
+  }
+  patch.contacts = ContactSprings(std::move(springs));
+  return patch;
+}
+
+std::vector<int> Threads::nodes() const {
+  std::vector<int> nodes;
+  for (const SutureThread& thread : threads_) {
+    if (!thread.broken) addNodes(thread, nodes);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+Vec3 Threads::forceOn(int node, const std::vector<Vec3>& displacement) const {
+  Vec3 force = Vec3::Zero();
+  for (const SutureThread& thread : threads_) {
+    if (thread.broken) continue;
+    const ContactSpring spring = springOf(thread);
+    for (const NodeWeight& carrier : spring.carriers) {
+      if (carrier.node == node) force += carrier.weight * forceOf(spring, displacement);
+    }
+  }
+  return force;
+}
+
+void Threads::loosen(const std::vector<Vec3>& displacement) {
+  for (SutureThread& thread : threads_) {
+    const double now =
+        (placeOf(thread.to, displacement) - placeOf(thread.from, displacement)).norm();
+    thread.length = std::max(thread.rest_length, now);
+  }
+}
+
+void Threads::drawIn(double share) {
+  for (SutureThread& thread : threads_) {
+    if (thread.length <= thread.rest_length) continue;
+    thread.length = share < 1.0 ? thread.length - share * (thread.length - thread.rest_length)
+                                : thread.rest_length;
+  }
+}
+
+double Threads::wayLeft() const {
+  double way = 0.0;
+  for (const SutureThread& thread : threads_) {
+    if (!thread.broken) way = std::max(way, thread.length - thread.rest_length);
+  }
+  return way;
+}
+
+void Threads::soften(const std::function<double(int node)>& stiffness,
+                     const std::vector<Vec3>& displacement) {
+  for (SutureThread& thread : threads_) {
+    std::vector<int> nodes;
+    addNodes(thread, nodes);
+    double most = 0.0;
+    for (const int node : nodes) most = std::max(most, stiffness(node));
+    const double tension = tensionOf(springOf(thread), displacement);
+    thread.softness = most > 0.0 ? std::max(0.0, 1.0 / most - 1.0 / thread.stiffness) : 0.0;
+    thread.length = std::max(0.0, thread.length - tension * thread.softness);
+  }
+}
+
+void Threads::harden() {
+  for (SutureThread& thread : threads_) {
+    thread.softness = 0.0;
+    thread.length = thread.rest_length;
+  }
+}
+
+// Tension T stretches a soft thread by T (1 / k + softness), where it should be by T / k.
+double Threads::correct(const std::vector<Vec3>& displacement) {
+  double change = 0.0;
+  for (SutureThread& thread : threads_) {
+    if (thread.broken || thread.softness <= 0.0) continue;
+    const double before = thread.length;
+    const double tension = tensionOf(springOf(thread), displacement);
+    thread.length = std::max(0.0, thread.rest_length - tension * thread.softness);
+    change = std::max(change, std::abs(thread.length - before));
+  }
+  return change;
+}
+
+std::vector<int> Threads::breakOne(const std::vector<Vec3>& displacement) {
+  SutureThread* weakest = nullptr;
+  double most = 1.0;  // tension over break force
+  for (SutureThread& thread : threads_) {
+    if (thread.broken || thread.break_force <= 0.0) continue;
+    const double over = tensionOf(springOf(thread), displacement) / thread.break_force;
+    if (over <= most) continue;
+    most = over;
+    weakest = &thread;
+  }
+  std::vector<int> nodes;
+  if (weakest == nullptr) return nodes;
+  weakest->broken = true;
+  addNodes(*weakest, nodes);
+  return nodes;
+}
+
+bool bindEnd(const TissueSurface& surface, double spacing, SutureThread::End& end) {
+  const auto nearest = nearestAtRest(surface, end.rest, tuning::kSameDistance * spacing, end.inside,
+                                     tuning::kInnerDepth * spacing);
+  if (!nearest || nearest->distance > tuning::kFarthestFromEnd * spacing) return false;
+  end.carriers = carriersAt(surface, nearest->on);
+  if (nearest->distance > tuning::kSameDistance * spacing) end.rest = restOf(surface, nearest->on);
+  return true;
+}
+
+std::vector<int> Threads::rebind(const TissueSurface& surface, double spacing) {
+  std::vector<int> left;
+  const auto is_lost = [&](SutureThread& thread) {
+    const SutureThread before = thread;
+    if (bindEnd(surface, spacing, thread.from) && bindEnd(surface, spacing, thread.to)) {
+      return false;
+    }
+    addNodes(before, left);
+    return true;
+  };
+  threads_.erase(std::remove_if(threads_.begin(), threads_.end(), is_lost), threads_.end());
+  return left;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,83 @@
+// Tissue: springs that blades cut, and those that tear.
+#include <algorithm>
+#include <optional>
+
+#include "cutting/blade_surface.h"
+#include "cutting/cut.h"
+#include "cutting/tear.h"
+#include "material/tissue_model.h"
+#include "robot_tissue/core/tissue.h"
+#include "tissue/topology_change.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+
+// Severs the springs and balances what they leave.
+SolveReport Tissue::severAndBalance(const std::vector<int>& springs) {
+  std::vector<int> disturbed;
+  for (const int spring : springs) {
+    disturbed.push_back(lattice_.springs()[at(spring)].a);
+    disturbed.push_back(lattice_.springs()[at(spring)].b);
+  }
+  sever(lattice_, springs, state_, model_->splitCells());
+  return changeTopology(disturbed);
+}
+
+CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
+  CutReport report;
+  report.pieces = state_.pieces;
+  report.solve = last_report_;
+  const BladeSurface surface(swept, lattice_.spacing());
+  // Nodes round a mesh are up to a cell's diagonal off its surface.
+  const double margin = tuning::kNodesBeyondSurface * lattice_.spacing();
+  if (!grownBy(margin, bounds_).intersects(surface.bounds())) return report;
+  const std::vector<Crossing> crossings = surface.crossings(lattice_, state_);
+  if (crossings.empty()) return report;
+  std::vector<int> springs;
+  for (const Crossing& crossing : crossings) {
+    springs.push_back(crossing.spring);
+    report.center += crossing.point / static_cast<double>(crossings.size());
+  }
+  report.springs_cut = static_cast<int>(springs.size());
+  report.area = newSurface(lattice_, crossings);
+  const TopologyChange change(
+      *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
+  severAndBalance(springs);
+  report.solve = tear();
+  report.pieces = state_.pieces;
+  return report;
+}
+
+// In time the shape gives way by and by: what goes next is seen after the next step.
+SolveReport Tissue::tear() {
+  if (!mayTear()) return last_report_;
+  SolveStatus worst = last_report_.status;
+  double wall_ms = last_report_.wall_ms;
+  int iterations = last_report_.iterations;
+  bool any = false;
+  std::optional<TopologyChange> change;
+  for (int round = 0; !isLate(); ++round) {
+    const std::vector<int> weakest = weakestSprings(lattice_, state_, tear_strains_);
+    if (weakest.empty()) break;
+    if (round == tuning::kMostTearRounds || (any && deadline_ && deadline_->isOver())) {
+      is_late_ = true;
+      worst = std::max(worst, SolveStatus::kLate);
+      break;
+    }
+    if (!any) change.emplace(*this, History::Kind::kTear);
+    any = true;
+    springs_torn_ += static_cast<int>(weakest.size());
+    const SolveReport round_report = severAndBalance(weakest);
+    if (takesNoTime()) break;
+    worst = std::max(worst, round_report.status);
+    wall_ms += round_report.wall_ms;
+    iterations += round_report.iterations;
+  }
+  if (!any) return last_report_;
+  last_report_.status = worst;
+  last_report_.wall_ms = wall_ms;
+  last_report_.iterations = iterations;
+  return last_report_;
+}
+
+}  // namespace robot_tissue

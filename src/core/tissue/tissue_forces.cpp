@@ -1,0 +1,47 @@
+// Tissue: forces on it.
+#include "material/tissue_model.h"
+#include "robot_tissue/core/tissue.h"
+#include "solvers/solver_method.h"
+#include "tissue/threads.h"
+
+namespace robot_tissue {
+namespace {
+
+Vec3 forceOfPatches(const SolveReport& report) {
+  Vec3 force = Vec3::Zero();
+  for (const PatchAnswer& answer : report.patches) force += answer.force;
+  return force;
+}
+
+}  // namespace
+
+Vec3 Tissue::nodeForce(int node) const {
+  return model_->nodeForce(state_, node) + threads_->forceOn(node, state_.displacement);
+}
+
+Vec3 Tissue::weight() const { return weight_; }
+
+// Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
+// them. Where the method does not visit all nodes: by the balance of all forces.
+Vec3 Tissue::forceOfFixedNodes() const {
+  if (method_->visited() != nullptr)
+    return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
+  const CellSet& cells = *state_.cells;
+  Vec3 force = Vec3::Zero();
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (isFixed(lattice_, cells, node)) force -= nodeForce(node);
+  }
+  for (const LoadingPatch& patch : patches_) {
+    for (const ContactSpring& spring : patch.contacts) {
+      for (const NodeWeight& carrier : spring.carriers) {
+        if (!isFixed(lattice_, cells, carrier.node)) continue;
+        force -= carrier.weight * robot_tissue::forceOf(spring, state_.displacement);
+      }
+    }
+  }
+  return force;
+}
+
+double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+
+}  // namespace robot_tissue

@@ -1,0 +1,37 @@
+// While one lives, what is severed, removed or sutured, and what tears of that, is one change to
+// take back.
+#pragma once
+
+#include "robot_tissue/core/tissue.h"
+#include "tissue/history.h"
+#include "tissue/threads.h"
+
+namespace robot_tissue {
+
+class Tissue::TopologyChange {
+ public:
+  // To be made before the change, where something will change. One within another is part of it.
+  TopologyChange(Tissue& tissue, History::Kind kind)
+      : tissue_(tissue), is_outermost_(!tissue.history_->isUnderWay()) {
+    if (is_outermost_ && tissue_.history_->begins(kind)) {
+      const LatticeState& state = tissue_.state_;
+      tissue_.history_->begin(kind,
+                              {{state.severed.begin(), state.severed.end()},
+                               state.taken,
+                               tissue_.threads_->all(),
+                               tissue_.savedState()},
+                              tissue_.namedLoads());
+    }
+  }
+  ~TopologyChange() {
+    if (is_outermost_) tissue_.history_->end(tissue_.namedLoads());
+  }
+  TopologyChange(const TopologyChange&) = delete;
+  TopologyChange& operator=(const TopologyChange&) = delete;
+
+ private:
+  Tissue& tissue_;
+  bool is_outermost_;
+};
+
+}  // namespace robot_tissue

@@ -1,0 +1,64 @@
+// Tools with an edge: what they cut on their way, and what that takes of force.
+//
+// The way of an edge is gone in strides of a fixed length, counted from where the tool came in. At
+// the end of each, what the edge swept on it is cut in the shape as it is then, and the tissue
+// comes to balance: so the same springs go whether the way was told in one pose or in a hundred.
+// What is left of the way, less than a stride, is cut with the next one.
+//
+// A spring that goes is new surface at once, of a spacing's length; the edge pays for it while it
+// goes on by one spacing: force = resistance * area / spacing, against its motion. Over that way
+// its work is resistance * area.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "robot_tissue/core/robot_pose.h"
+#include "world.h"
+
+namespace robot_tissue {
+
+// What is left to be paid of one cut.
+struct CutDebt {
+  double force = 0.0;  // N
+  double way = 0.0;    // m
+};
+
+// Of one tool; nothing of it is used for tools without an edge.
+struct BladeState {
+  std::optional<Pose> stands;     // tissue_T_tool; empty: nowhere
+  std::vector<Pose> path;         // since the end of the last stride
+  double way = 0.0;               // of the path (m)
+  Vec3 point = Vec3::Zero();      // where it cut last, tool frame (m)
+  Vec3 direction = Vec3::Zero();  // of the point's motion, unit, tissue frame
+  std::vector<CutDebt> debts;
+};
+
+class Blades {
+ public:
+  explicit Blades(World& world) : world_(world) {}
+
+  // They stand nowhere.
+  void forget() { states_.assign(world_.tools.size(), BladeState()); }
+  const std::vector<BladeState>& states() const { return states_; }
+  void restore(const std::vector<BladeState>& states) { states_ = states; }
+
+  // They go to their place in the pose, from where they were last. A tool that comes from nowhere,
+  // or jumped, cuts nothing on its way. False: there was no time for all of the way; the pose has
+  // where they came to.
+  bool goTo(RobotPose& pose);
+
+  // Puts the wrench of cutting in the report of a tool with an edge.
+  void describe(std::size_t tool, ToolReport& report) const;
+
+ private:
+  bool goTo(std::size_t tool, Pose& there);
+  void moveTo(const Pose& pose, BladeState& state) const;
+  void cutAlongPath(std::size_t tool, BladeState& state);
+  std::vector<CutTriangle> sweptBy(std::size_t tool, const std::vector<Pose>& path) const;
+
+  World& world_;
+  std::vector<BladeState> states_;
+};
+
+}  // namespace robot_tissue

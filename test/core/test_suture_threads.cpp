@@ -1,0 +1,173 @@
+// The thread of a suture: its law, what it hangs on, and its bytes.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <functional>
+
+#include "elastic_fixtures.h"
+#include "saving/saved_sutures.h"
+#include "surface/nearest_point.h"
+#include "suture_fixtures.h"
+#include "tissue/threads.h"
+
+namespace robot_tissue {
+namespace {
+
+// `from` is carried by nodes 0 and 1, `to` by nodes 1 and 2: node 1 has a share of both.
+SutureThread threadOnNodes(double rest_length) {
+  SutureThread thread;
+  thread.name = "s1";
+  thread.from = {Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, -0.001), {{0, 0.7}, {1, 0.3}}};
+  thread.to = {Vec3(0.02, 0.0, 0.0), Vec3(0.02, 0.0, -0.001), {{1, 0.1}, {2, 0.9}}};
+  thread.rest_length = thread.length = rest_length;
+  thread.stiffness = 200.0;
+  return thread;
+}
+
+std::vector<Vec3> shaken(unsigned seed) {
+  Shaker shaker(seed);
+  std::vector<Vec3> displacement;
+  for (int node = 0; node < 3; ++node) displacement.push_back(shaker.displacement(0.01));
+  return displacement;
+}
+
+TEST(Thread, PullsWithTheSlopeOfItsEnergy) {
+  constexpr double kStep = 1e-7;
+  for (const double rest_length : {0.0, 0.005, 1.0}) {
+    const ContactSpring spring = springOf(threadOnNodes(rest_length));
+    for (unsigned seed = 1; seed < 20; ++seed) {
+      const std::vector<Vec3> at_rest = shaken(seed);
+      for (const NodeWeight& carrier : spring.carriers) {
+        for (int axis = 0; axis < 3; ++axis) {
+          std::vector<Vec3> more = at_rest, less = at_rest;
+          more[at(carrier.node)][axis] += kStep;
+          less[at(carrier.node)][axis] -= kStep;
+          const double slope = (energyOf(spring, more) - energyOf(spring, less)) / (2.0 * kStep);
+          EXPECT_NEAR(carrier.weight * forceOf(spring, at_rest)[axis], -slope, 1e-6);
+          const Vec3 bend = (forceOf(spring, more) - forceOf(spring, less)) / (2.0 * kStep);
+          const Vec3 wanted = -carrier.weight * stiffnessOf(spring, at_rest).col(axis);
+          EXPECT_LT((bend - wanted).norm(), 1e-3);
+        }
+      }
+    }
+  }
+}
+
+TEST(Thread, HasWeightsThatCancelAndAStiffnessThatIsNotNegative) {
+  const ContactSpring spring = springOf(threadOnNodes(0.005));
+  double sum = 0.0;
+  for (const NodeWeight& carrier : spring.carriers) sum += carrier.weight;
+  EXPECT_NEAR(sum, 0.0, 1e-15);
+  EXPECT_NEAR(endsOf(spring), 0.7 + 0.2 + 0.9, 1e-15);
+  for (unsigned seed = 1; seed < 20; ++seed) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(stiffnessOf(spring, shaken(seed)));
+    EXPECT_GE(solver.eigenvalues().minCoeff(), -1e-9);
+    EXPECT_LE(solver.eigenvalues().maxCoeff(), spring.stiffness * (1.0 + 1e-12));
+  }
+}
+
+TEST(Thread, OfEndsAtOnePlaceStaysFinite) {
+  for (const double rest_length : {0.0, 0.005}) {
+    const ContactSpring spring = springOf(threadOnNodes(rest_length));
+    EXPECT_EQ(forceAt(spring, Vec3::Zero()), Vec3(Vec3::Zero()));
+    const double wanted = rest_length > 0.0 ? 0.0 : 200.0;
+    EXPECT_EQ(stiffnessAt(spring, Vec3::Zero()),
+              Eigen::Matrix3d(wanted * Eigen::Matrix3d::Identity()));
+  }
+}
+
+// Both sides of the cut have a surface there; the end's own side is told by what is inside it.
+TEST(Thread, StaysOnItsSideOfACut) {
+  const TissueConfig config = barOf();
+  Tissue tissue(config, solverWith("newton"));
+  tissue.cut(planeAt(kCutAt));
+  for (const double side : {-1.0, 1.0}) {
+    SutureThread::End end;
+    end.rest = Vec3(kCutAt, 0.01, 0.02);
+    end.inside = end.rest + Vec3(side * 1e-3, 0.0, -1e-3);
+    ASSERT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, end));
+    double x = 0.0;
+    for (const NodeWeight& carrier : end.carriers) {
+      x += carrier.weight * restPosition(tissue.lattice(), *tissue.state().cells, carrier.node).x();
+    }
+    EXPECT_GT(side * (x - kCutAt), -1e-9);
+    const std::vector<int> pieces = tissue.pieceOfNodes();
+    const int piece = pieces[at(tissue.lattice().node(side < 0.0 ? 1 : 8, 2, 2))];
+    for (const NodeWeight& carrier : end.carriers) EXPECT_EQ(pieces[at(carrier.node)], piece);
+  }
+}
+
+TEST(Thread, IsDroppedWhereItsTissueIsGone) {
+  const Tissue tissue(barOf(), solverWith("newton"));
+  TissueConfig smaller = barOf();
+  smaller.shape.max().x() = 0.03;
+  const Tissue left(smaller, solverWith("newton"));
+  const auto threadTo = [&](double x) {
+    SutureThread thread;
+    thread.from.rest = Vec3(0.01, 0.01, 0.02);
+    thread.to.rest = Vec3(x, 0.01, 0.02);
+    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, thread.from));
+    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, thread.to));
+    return thread;
+  };
+  Threads threads;
+  threads.add(threadTo(0.025));
+  threads.add(threadTo(0.04));
+  EXPECT_TRUE(threads.rebind(tissue.surface(), kSutureSpacing).empty());
+  EXPECT_EQ(threads.all().size(), 2U);
+  EXPECT_FALSE(threads.rebind(left.surface(), kSutureSpacing).empty());
+  ASSERT_EQ(threads.all().size(), 1U);
+  EXPECT_EQ(threads.all()[0].to.rest, Vec3(0.025, 0.01, 0.02));
+}
+
+std::string bytesOf(const std::vector<SutureThread>& threads) {
+  ByteWriter out;
+  putSutures(threads, out);
+  return out.bytes();
+}
+
+TEST(Thread, ComesBackFromItsBytes) {
+  SutureThread other = threadOnNodes(0.0);
+  other.name = "s2";
+  other.break_force = 0.5;
+  other.broken = true;
+  const std::string bytes = bytesOf({threadOnNodes(0.005), other});
+  ByteReader in(bytes);
+  const std::vector<SutureThread> back = takeSutures(3, in);
+  EXPECT_TRUE(in.isAtEnd());
+  EXPECT_EQ(bytesOf(back), bytes);
+  EXPECT_TRUE(back[1].broken);
+  EXPECT_EQ(back[0].length, 0.005);
+}
+
+TEST(Thread, IsRefusedFromDamagedBytes) {
+  const auto refusalOf = [](const std::string& bytes, int nodes) {
+    return inputErrorOf([&] {
+      ByteReader in(bytes);
+      takeSutures(nodes, in);
+    });
+  };
+  const std::string good = bytesOf({threadOnNodes(0.005)});
+  EXPECT_EQ(refusalOf(good, 3), "");
+  EXPECT_TRUE(mentions(refusalOf(good, 2), "node that is not there"));
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_TRUE(isOneLine(refusalOf(good.substr(0, size), 3)));
+  }
+  EXPECT_TRUE(
+      mentions(refusalOf(bytesOf({threadOnNodes(0.0), threadOnNodes(0.0)}), 3), "one name"));
+  const auto refused = [&](const std::function<void(SutureThread&)>& spoil) {
+    SutureThread thread = threadOnNodes(0.005);
+    spoil(thread);
+    return isOneLine(refusalOf(bytesOf({thread}), 3));
+  };
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.stiffness = 0.0; }));
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.stiffness = std::nan(""); }));
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.rest_length = -1.0; }));
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.name = "a,b"; }));
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.from.carriers[0].weight = 0.6; }));
+  EXPECT_TRUE(refused([](SutureThread& thread) { thread.from = thread.to; }));
+}
+
+}  // namespace
+}  // namespace robot_tissue
