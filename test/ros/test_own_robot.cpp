@@ -16,8 +16,8 @@ constexpr double kDeadline = 60.0;  // s, wall time; reached only when something
 sensor_msgs::JointState jointsAtZero() {
   sensor_msgs::JointState joints;
   joints.header.stamp = ros::Time::now();
-  joints.name = {"yaw_joint",  "pitch_joint",    "insertion_joint",
-                 "roll_joint", "jaw_left_joint", "jaw_right_joint", "blade_joint"};
+  joints.name = {"yaw_joint",      "pitch_joint",     "insertion_joint", "roll_joint",
+                 "jaw_left_joint", "jaw_right_joint", "blade_joint"};
   joints.position.assign(joints.name.size(), 0.0);
   return joints;
 }
