@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -21,9 +22,13 @@ constexpr int kMostPasses = 16;
 // Half spacings (1): a vertex that is nearer to a line of the half grid is on it. Rounding.
 constexpr double kOnLine = 1e-6;
 
-struct EndsHash {
-  std::size_t operator()(const std::pair<int, int>& ends) const {
-    return static_cast<std::size_t>(ends.first) * 1000003 + static_cast<std::size_t>(ends.second);
+struct Edge {
+  int low = 0, high = 0;  // vertices
+  EdgePlace place = 0;
+
+  bool joinsAs(const Edge& other) const { return low == other.low && high == other.high; }
+  bool operator<(const Edge& other) const {
+    return std::tie(low, high, place) < std::tie(other.low, other.high, other.place);
   }
 };
 
@@ -38,7 +43,7 @@ class HingeSeparator {
   void run() {
     findEdges();
     if (!hasHinges()) return;
-    for (const auto& [key, places] : edges_) joinAlong(places);
+    forAll([this](const std::vector<EdgePlace>& places) { joinAlong(places); });
     separate();
     findEdges();
     for (int passes = 0; hasHinges() && passes < kMostPasses; ++passes) {
@@ -50,17 +55,33 @@ class HingeSeparator {
  private:
   void findEdges() {
     edges_.clear();
+    edges_.reserve(3 * surface_.triangles.size());
     for (int triangle = 0; triangle < static_cast<int>(surface_.triangles.size()); ++triangle) {
       for (int corner = 0; corner < 3; ++corner) {
         const int from = vertexAt(triangle, corner), to = vertexAt(triangle, (corner + 1) % 3);
-        edges_[std::minmax(from, to)].push_back(3 * triangle + corner);
+        edges_.push_back({std::min(from, to), std::max(from, to), 3 * triangle + corner});
       }
     }
+    std::sort(edges_.begin(), edges_.end());
   }
 
   bool hasHinges() const {
-    return std::any_of(edges_.begin(), edges_.end(),
-                       [](const auto& edge) { return edge.second.size() > 2; });
+    for (std::size_t i = 2; i < edges_.size(); ++i) {
+      if (edges_[i].joinsAs(edges_[i - 2])) return true;
+    }
+    return false;
+  }
+
+  // Calls with the places of each edge.
+  template <class Call>
+  void forAll(const Call& call) const {
+    std::vector<EdgePlace> places;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      places.push_back(edges_[i].place);
+      if (i + 1 < edges_.size() && edges_[i].joinsAs(edges_[i + 1])) continue;
+      call(places);
+      places.clear();
+    }
   }
 
   int vertexAt(int triangle, int corner) const {
@@ -184,29 +205,26 @@ class HingeSeparator {
   // Where wedges that meet along an edge are one around its ends, all but the first get a vertex of
   // their own in the middle of the edge. False: there are none.
   bool splitEdges() {
-    std::map<std::pair<int, int>, std::vector<EdgePlace>> hinges;  // in an order of their own
-    for (const auto& edge : edges_) {
-      if (edge.second.size() > 2) hinges.insert(edge);
-    }
     std::set<int> changed;  // triangles whose edges are others now: left to the next pass
-    for (const auto& [ends, places] : hinges) {
+    forAll([&](const std::vector<EdgePlace>& places) {
       const auto is_changed = [&](EdgePlace place) { return changed.count(place / 3) != 0; };
-      if (std::any_of(places.begin(), places.end(), is_changed)) continue;
+      if (places.size() < 3 || std::any_of(places.begin(), places.end(), is_changed)) return;
       const std::vector<int> wedge_of = wedgesOf(places);
       std::map<int, int> middles;  // per wedge
       for (std::size_t i = 0; i < places.size(); ++i) {
         if (wedge_of[i] == wedge_of[0]) continue;
         const auto [middle, is_new] =
             middles.try_emplace(wedge_of[i], static_cast<int>(surface_.rest.size()));
-        if (is_new) addMiddle(ends.first, ends.second);
+        if (is_new) addMiddle(places[i]);
         splitAt(places[i], middle->second);
         changed.insert(places[i] / 3);
       }
-    }
+    });
     return !changed.empty();
   }
 
-  void addMiddle(int a, int b) {
+  void addMiddle(EdgePlace place) {
+    const int a = vertexAt(place / 3, place % 3), b = vertexAt(place / 3, (place % 3 + 1) % 3);
     std::map<int, double> weights;
     for (const int end : {a, b}) {
       for (const NodeWeight& carrier : surface_.carriers[at(end)]) {
@@ -234,10 +252,9 @@ class HingeSeparator {
   const OctantGrid& octants_;
   std::vector<Octant> owners_;  // per triangle
   TissueSurface& surface_;
-  DisjointSets fans_;  // of corners of triangles
-  std::unordered_map<std::pair<int, int>, std::vector<EdgePlace>, EndsHash>
-      edges_;      // by their ends
-  int along_ = 0;  // axis of the edge that is looked at
+  DisjointSets fans_;        // of corners of triangles
+  std::vector<Edge> edges_;  // by their ends
+  int along_ = 0;            // axis of the edge that is looked at
   std::array<Octant, 4> around_{};
 };
 
