@@ -221,6 +221,21 @@ SutureResult Pipeline::suture(const SutureConfig& config) {
   return result;
 }
 
+void Pipeline::retune(const TissueConfig& tissue, const SolverConfig& solver) {
+  if (!world_.tissue.retune(tissue, solver)) return;
+  const Bounded bounded(*this);
+  parts_->load_step.balance();
+  touch();
+}
+
+void Pipeline::setFriction(double friction) {
+  world_.tools.setFriction(friction);
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    world_.sliding.setFriction(static_cast<int>(tool), friction);
+  }
+  touch();
+}
+
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.stepsBetween(
                                 *world_.last_pose,

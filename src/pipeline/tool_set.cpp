@@ -33,6 +33,10 @@ ToolSet::ToolSet(const std::vector<ToolGeometry>& tools, const std::vector<Suppo
   }
 }
 
+void ToolSet::setFriction(double friction) {
+  for (ToolGeometry& tool : tools_) tool.friction = friction;
+}
+
 std::vector<ToolGeometry> ToolSet::withSupports() const {
   std::vector<ToolGeometry> all = tools_;
   all.insert(all.end(), supports_.begin(), supports_.end());

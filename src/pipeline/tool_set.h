@@ -25,6 +25,7 @@ class ToolSet {
   // Numbers of supports follow those of tools.
   ToolSet(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
+  void setFriction(double friction);                                    // not of supports
   const std::vector<ToolGeometry>& geometry() const { return tools_; }  // without supports
   std::vector<ToolGeometry> withSupports() const;
   std::size_t size() const { return tools_.size(); }

@@ -11,22 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "node_ranges.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/key_table.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kLowestRate = 0.01;      // Hz
-constexpr double kHighestRate = 10000.0;  // Hz
-const Range kRates{kLowestRate, kHighestRate, "Hz"};
-constexpr double kHighestWrenchRate = 1000.0;  // Hz
-constexpr double kShortestTimeout = 1e-3;      // s
-constexpr double kLongestTimeout = 1e6;        // s
-constexpr double kLeastForceScale = 1e-9;      // m/N
-constexpr double kMostForceScale = 1e9;        // m/N
 
 // The fewest digits that are read back as the same number: 0.1, not 0.10000000000000001.
 std::string shortestText(double value) {
@@ -111,26 +104,23 @@ std::string readStateDir(const Entry& entry) {
 const KeyTable<NodeParameters> kOwnKeys = {
     {"rate",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.rate_hz = entry.numberOr(parameters.rate_hz, kRates);
+       parameters.rate_hz = entry.numberOr(parameters.rate_hz, ranges::rate());
      }},
     {"marker_rate",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.marker_rate_hz = entry.numberOr(parameters.marker_rate_hz, kRates);
+       parameters.marker_rate_hz = entry.numberOr(parameters.marker_rate_hz, ranges::rate());
      }},
     {"wrench_rate",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.wrench_rate_hz =
-           entry.numberOr(parameters.wrench_rate_hz, {0.0, kHighestWrenchRate, "Hz"});
+       parameters.wrench_rate_hz = entry.numberOr(parameters.wrench_rate_hz, ranges::wrenchRate());
      }},
     {"tf_timeout",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.tf_timeout_s =
-           entry.numberOr(parameters.tf_timeout_s, {kShortestTimeout, kLongestTimeout, "s"});
+       parameters.tf_timeout_s = entry.numberOr(parameters.tf_timeout_s, ranges::poseTimeout());
      }},
     {"force_scale",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.force_scale =
-           entry.numberOr(parameters.force_scale, {kLeastForceScale, kMostForceScale, "m/N"});
+       parameters.force_scale = entry.numberOr(parameters.force_scale, ranges::forceScale());
      }},
     {"robot_description_param",
      [](const Entry& entry, NodeParameters& parameters) {
@@ -144,6 +134,11 @@ const KeyTable<NodeParameters> kOwnKeys = {
 };
 
 }  // namespace
+
+double updateBudget(const NodeParameters& parameters) {
+  const double budget_ms = parameters.scene.solver.max_ms;
+  return budget_ms > 0.0 ? 1e-3 * budget_ms : tuning::kLongestUpdate;
+}
 
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   XmlRpc::XmlRpcValue all;

@@ -52,6 +52,11 @@ void PoseWatch::start() {
   started_ = true;
 }
 
+void PoseWatch::setRate(double rate_hz) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  pace_ = UpdatePace(rate_hz);
+}
+
 PoseWatch::Seen PoseWatch::seen() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(seen_, Seen());

@@ -34,19 +34,19 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
           [this](PoseLookUp look_up) { update(std::move(look_up)); }) {
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   grace_end_ = ros::WallTime::now() + kGrace;
-  const double budget_ms = parameters_.scene.solver.max_ms;
-  const double budget_s = budget_ms > 0.0 ? 1e-3 * budget_ms : tuning::kLongestUpdate;
-  pipeline_.setBudget(budget_s);
+  pipeline_.setBudget(updateBudget(parameters_));
   robotIsKnown();
   settleFromRest();
   services_ = std::make_unique<TissueServices>(
-      private_node_, parameters_, pipeline_, publisher_, tool_poses_, budget_s,
+      private_node_, parameters_, pipeline_, publisher_, tool_poses_,
       TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
                            [this] { follow(); }, [this] { settleFromRest(); }});
   surgery_ =
       std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_, publisher_,
                                         tool_poses_, [this] { watch_.standAt(std::nullopt); });
+  live_ = std::make_unique<LiveParameters>(
+      private_node_, parameters_, [this](const NodeParameters& wanted) { retune(wanted); });
   diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
                               parameters_.scene.solver.method.c_str(),
                               pipeline_.tissue().lattice().nodeCount());
@@ -68,9 +68,27 @@ void TissueNode::onStill(const ros::Time& stamp) { publisher_.publishStill(stamp
 void TissueNode::tick(Ticks ticks) {
   if (ticks == ticks_) return;
   ticks_ = ticks;
-  const double period = 1.0 / parameters_.rate_hz;
-  timer_.setPeriod(
-      ros::Duration(ticks == Ticks::kSeldom ? std::max(period, tuning::kWatchPeriod) : period));
+  timer_.setPeriod(period());
+}
+
+// Of the timer.
+ros::Duration TissueNode::period() const {
+  const double at_rate = 1.0 / parameters_.rate_hz;
+  return ros::Duration(ticks_ == Ticks::kSeldom ? std::max(at_rate, tuning::kWatchPeriod)
+                                                : at_rate);
+}
+
+// Becomes what the parameters say, as far as LiveParameters changes them.
+void TissueNode::retune(const NodeParameters& wanted) {
+  const bool other_friction = frictionOf(wanted) != frictionOf(parameters_);
+  parameters_ = wanted;
+  watch_.standAt(std::nullopt);  // there may be something to do at the next pose
+  watch_.setRate(parameters_.rate_hz);
+  timer_.setPeriod(period());
+  pipeline_.setBudget(updateBudget(parameters_));
+  if (other_friction) pipeline_.setFriction(*frictionOf(parameters_));
+  pipeline_.retune(parameters_.scene.tissue, parameters_.scene.solver);
+  publisher_.retune(parameters_);
 }
 
 // Timers of simulated time stand still without a clock.

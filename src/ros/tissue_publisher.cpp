@@ -89,6 +89,13 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
   state_ = private_node_.advertise<TissueState>("state", 10);
 }
 
+void TissuePublisher::retune(const NodeParameters& parameters) {
+  marker_builder_.setForceScale(parameters.force_scale);
+  marker_pace_ = UpdatePace(parameters.marker_rate_hz);
+  shape_.setRate(parameters.marker_rate_hz);
+  shapeChanged();
+}
+
 void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
                               const NodeStatus& status) {
   const auto start = std::chrono::steady_clock::now();

@@ -77,12 +77,11 @@ ros::ServiceServer TissueServices::advertise(ros::NodeHandle& private_node, cons
 
 TissueServices::TissueServices(ros::NodeHandle& private_node, const NodeParameters& parameters,
                                Pipeline& pipeline, TissuePublisher& publisher,
-                               const ToolPoses& tool_poses, double budget_s, Node node)
+                               const ToolPoses& tool_poses, Node node)
     : parameters_(parameters),
       pipeline_(pipeline),
       publisher_(publisher),
       tool_poses_(tool_poses),
-      budget_s_(budget_s),
       node_(std::move(node)) {
   reset_ = advertise(private_node, "reset", &TissueServices::onReset);
   cut_ = advertise(private_node, "cut", &TissueServices::onCut);

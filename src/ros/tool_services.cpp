@@ -105,7 +105,7 @@ void TissueServices::pushTool(const ApplyLoad::Request& request, ApplyLoad::Resp
 
 // Until the tool stands, or the time of an update is over. Returns what became of it.
 std::string TissueServices::followPush(std::size_t tool, const Vec3& force) {
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(budget_s_);
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(updateBudget(parameters_));
   do {
     node_.follow();
   } while (pipeline_.report().changed && ros::WallTime::now() < end);

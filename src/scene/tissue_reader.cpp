@@ -196,6 +196,7 @@ Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& gr
   region.material = tissue.material;
   MaterialReading reading{tissue.model, remarks, region.material};
   readKeys(map, kMaterialKeys, reading);
+  region.own_modulus = map["young_modulus"].given();
   requireContrast(map, tissue.material, region.material);
   return region;
 }

@@ -1,8 +1,9 @@
 // The constant model: nodes on a rectangular grid, joined by one spring to each of their up to six
-// neighbors (paper, section 4.1 and figure 1). Never changes after construction; what changes is
-// in LatticeState. Own: cells, moduli, regions, fixed nodes, shapes by a mesh: a cell that a mesh
-// fills in part has that share of the material, spread evenly. Cells that meet in an edge or corner
-// alone are joined by their common nodes, so by a hinge; a gap thinner than a cell is bridged.
+// neighbors (paper, section 4.1 and figure 1). Never changes after construction, but for its
+// material (weigh); what changes is in LatticeState. Own: cells, moduli, regions, fixed nodes,
+// shapes by a mesh: a cell that a mesh fills in part has that share of the material, spread evenly.
+// Cells that meet in an edge or corner alone are joined by their common nodes, so by a hinge; a gap
+// thinner than a cell is bridged.
 #pragma once
 
 #include <array>
@@ -99,6 +100,10 @@ class Lattice {
 
   LatticeState restState() const;
 
+  // Masses of the nodes and stiffnesses of the springs, from the materials of the cells around
+  // them.
+  void weigh(const TissueConfig& config);
+
  private:
   friend class SpringList;
 
@@ -106,7 +111,6 @@ class Lattice {
   void placeNodes(const std::vector<double>& filled);
   void placeCells(const std::vector<double>& filled);
   void placeSprings();
-  void weigh(const TissueConfig& config);
   void fix(const std::vector<Box>& boxes);
 
   Grid grid_;

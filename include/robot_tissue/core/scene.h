@@ -32,7 +32,8 @@ struct Material {
 struct Region {
   std::string name;
   Box box;
-  Material material;  // the tissue's, with the region's own entries in place
+  Material material;         // the tissue's, with the region's own entries in place
+  bool own_modulus = false;  // its young_modulus is such an entry
 };
 
 // The tissue moves in time, by its mass; in its stress the rate of strain counts, too:

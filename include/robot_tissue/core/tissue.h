@@ -205,6 +205,10 @@ class Tissue {
   std::vector<SutureReport> sutures() const;
   // Rest shape, bit for bit; cuts mended, loads and sutures gone.
   void reset();
+  // The same tissue with other moduli, and another tolerance or max_ms: `tissue` and `solver` are
+  // otherwise those that it was made of. Shape, cuts and loads stay. True: the shape has to be
+  // balanced anew.
+  bool retune(const TissueConfig& tissue, const SolverConfig& solver);
 
   // Topology, shape and named loads as bytes (doc/state_file.md); a load on its way is the one that
   // it has come to.

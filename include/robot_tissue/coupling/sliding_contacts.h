@@ -73,6 +73,10 @@ class SlidingContacts {
 
   void clear();
   void clear(int tool);
+  // Coulomb's, of a tool that tissue does not stick to; from the next solve on.
+  void setFriction(int tool, double friction) {
+    if (friction_[at(tool)]) friction_[at(tool)] = friction;
+  }
 
   // Whether a spring in contact pushes harder in the tissue's last solve than any tissue does: the
   // node's stiffness times kMostForce spacings.

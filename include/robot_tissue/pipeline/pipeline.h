@@ -92,6 +92,10 @@ class Pipeline {
   RemoveReport remove(const RemovedSpace& space);
   SolveReport undo(int count);
   SutureResult suture(const SutureConfig& config);
+  // As Tissue's; the shape is balanced under what stands.
+  void retune(const TissueConfig& tissue, const SolverConfig& solver);
+  // Of all tools, from the next contact on; that of supports stays, and rigid patches have none.
+  void setFriction(double friction);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
   // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a

@@ -27,6 +27,7 @@ class MarkerBuilder {
   visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
                                                const ros::Time& reached);
   void tellAll() { told_.clear(); }
+  void setForceScale(double force_scale) { force_scale_ = force_scale; }  // m/N
 
  private:
   void findSurfaceSprings(const Tissue& tissue);

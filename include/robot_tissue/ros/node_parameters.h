@@ -20,6 +20,9 @@ struct NodeParameters {
   std::string robot_description_param = "robot_description";  // ~robot_description_param
 };
 
+// Of an update, and of a service's call (s).
+double updateBudget(const NodeParameters& parameters);
+
 // Throws InputError.
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node);
 

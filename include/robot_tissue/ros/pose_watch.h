@@ -35,6 +35,7 @@ class PoseWatch {
   PoseWatch(const PoseWatch&) = delete;
   PoseWatch& operator=(const PoseWatch&) = delete;
 
+  void setRate(double rate_hz);
   // From here on `poses` is asked: its links are known and stay.
   void start();
   // How many good poses came since this was last asked.

@@ -21,6 +21,7 @@ class ShapePublisher {
  public:
   ShapePublisher(ros::NodeHandle& private_node, std::string frame_id, double rate_hz);
 
+  void setRate(double rate_hz) { pace_ = UpdatePace(rate_hz); }
   void shapeChanged() { surface_due_ = nodes_due_ = true; }
   // Where it is due and not too soon. The shape is as it is at `stamp`.
   void publish(const Tissue& tissue, const ros::Time& stamp);

@@ -17,6 +17,7 @@
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/pipeline/step_remarks.h"
+#include "robot_tissue/ros/live_parameters.h"
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/surgery_services.h"
@@ -40,6 +41,8 @@ class TissueNode {
   void onTimer();
   void onWallTimer();
   void tick(Ticks ticks);
+  ros::Duration period() const;
+  void retune(const NodeParameters& wanted);
   bool timeWentBack();
   void tellStill(const ros::Time& stamp);
   bool isStill() const;
@@ -79,6 +82,7 @@ class TissueNode {
   diagnostic_updater::Updater diagnostics_;
   std::unique_ptr<TissueServices> services_;
   std::unique_ptr<SurgeryServices> surgery_;
+  std::unique_ptr<LiveParameters> live_;
   ros::Timer timer_;
   ros::WallTimer wall_timer_;  // in simulated time, until there is some
   PoseWatch watch_;            // the first to go: it calls into the others

@@ -36,6 +36,9 @@ class TissuePublisher {
   // Two wrench topics a tool.
   void setTools(const std::vector<ToolGeometry>& tools) { wrenches_.setTools(tools); }
 
+  // Takes the markers' rate and the scale of forces; all is published anew.
+  void retune(const NodeParameters& parameters);
+
   // After an update at a good pose. `stamp` is the pose's.
   void publish(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
   // At a pose at which nothing was to do; in any thread. What else is due then waits for

@@ -30,10 +30,10 @@ class TissueServices {
     std::function<void()> settle_from_rest;
   };
 
-  // budget_s: of a call (s). What is handed in must outlive them.
+  // What is handed in must outlive them.
   TissueServices(ros::NodeHandle& private_node, const NodeParameters& parameters,
                  Pipeline& pipeline, TissuePublisher& publisher, const ToolPoses& tool_poses,
-                 double budget_s, Node node);
+                 Node node);
 
  private:
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -55,7 +55,6 @@ class TissueServices {
   Pipeline& pipeline_;
   TissuePublisher& publisher_;
   const ToolPoses& tool_poses_;
-  double budget_s_;
   Node node_;
   ros::ServiceServer reset_, cut_, load_, grasp_, release_;
 };

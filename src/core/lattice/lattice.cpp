@@ -98,7 +98,6 @@ void Lattice::placeSprings() {
   }
 }
 
-// Masses of the nodes and stiffnesses of the springs, from the cells around them.
 void Lattice::weigh(const TissueConfig& config) {
   mass_.assign(index_of_.size(), 0.0);
   std::vector<SpringStiffness> stiffness(lower_ends_.size());
@@ -114,6 +113,7 @@ void Lattice::weigh(const TissueConfig& config) {
       }
     }
   }
+  spring_stiffness_.clear();
   spring_stiffness_.reserve(stiffness.size());
   for (const SpringStiffness& each : stiffness) spring_stiffness_.push_back(each.value());
 }

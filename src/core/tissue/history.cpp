@@ -47,6 +47,10 @@ void History::end(const std::vector<LoadingPatch>& named_loads) {
 
 void History::clear() { changes_.clear(); }
 
+void History::forgetStates() {
+  for (Change& change : changes_) change.entry.state = std::string();
+}
+
 bool History::hasLoadsSince(std::size_t change,
                             const std::vector<LoadingPatch>& named_loads) const {
   for (std::size_t i = change; i + 1 < changes_.size(); ++i) {

@@ -32,6 +32,8 @@ class History {
   bool isUnderWay() const { return is_under_way_; }
   void end(const std::vector<LoadingPatch>& named_loads);
   void clear();
+  // Shapes of before are to be found anew, as the material is another one.
+  void forgetStates();
 
   std::size_t size() const { return changes_.size(); }
   const Entry& before(std::size_t change) const { return changes_[change].entry; }

@@ -34,6 +34,8 @@ class TimeIntegrator {
   TimeIntegrator(double damping_time, double spacing, double tolerance)
       : damping_time_(damping_time), spacing_(spacing), tolerance_(tolerance) {}
 
+  void setTolerance(double tolerance) { tolerance_ = tolerance; }
+
   using Motion = std::shared_ptr<const NodeMotion>;  // null: at rest
   bool moves() const { return motion_ != nullptr; }
   const Motion& motion() const { return motion_; }

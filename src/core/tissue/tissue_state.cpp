@@ -1,5 +1,7 @@
-// Tissue: its state as bytes, and back.
+// Tissue: its state as bytes, and back; its material.
 #include "tissue/tissue_state.h"
+
+#include <utility>
 
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
@@ -7,7 +9,9 @@
 #include "saving/saved_state.h"
 #include "solvers/solver_method.h"
 #include "tissue/history.h"
+#include "tissue/registry.h"
 #include "tissue/threads.h"
+#include "tissue/time_integrator.h"
 
 namespace robot_tissue {
 namespace {
@@ -25,6 +29,16 @@ void add(const Region& region, ByteWriter& out) {
   add(region.material, out);
 }
 
+// Rim springs are as stiff as the shear modulus at their nodes (loads/patch_rim.h); exact where all
+// cells at a node have one Poisson's ratio.
+void scaleRim(const LatticeState& state, const TissueModel& earlier, const TissueModel& now,
+              LoadingPatch& patch) {
+  for (RimSpring& spring : patch.rim) {
+    const double before = earlier.moduliAt(state, spring.node).shear;
+    if (before > 0.0) spring.stiffness *= now.moduliAt(state, spring.node).shear / before;
+  }
+}
+
 }  // namespace
 
 std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig& solver) {
@@ -37,6 +51,27 @@ std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig&
   out.text(solver.method);
   out.f64(solver.tolerance);
   return hashOf(out.bytes());
+}
+
+// What the method learned was of the other material.
+bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
+  solver_ = solver;
+  max_ms_ = solver.max_ms;
+  const std::uint64_t fingerprint = balanceFingerprint(tissue, solver);
+  if (fingerprint == balance_fingerprint_) return false;
+  balance_fingerprint_ = fingerprint;
+  endAside();
+  other_method_.reset();
+  lattice_.weigh(tissue);
+  method_.reset();  // it refers to the model
+  const std::unique_ptr<TissueModel> earlier = std::exchange(model_, makeModel(tissue, lattice_));
+  method_ = makeMethod(solver, lattice_, *model_);
+  for (auto* patches : {&patches_, &due_}) {
+    for (LoadingPatch& patch : *patches) scaleRim(state_, *earlier, *model_, patch);
+  }
+  history_->forgetStates();
+  if (time_) time_->setTolerance(solver.tolerance);
+  return true;
 }
 
 std::string Tissue::savedState() const {

@@ -1,0 +1,151 @@
+#include "robot_tissue/ros/live_parameters.h"
+
+#include <XmlRpcValue.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "node_ranges.h"
+#include "robot_tissue/core/method_names.h"
+#include "robot_tissue/scene/ranges.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+using Found = std::optional<double>;
+
+// Regions that have a modulus of their own keep it.
+void setModulus(double young_modulus, NodeParameters& parameters) {
+  TissueConfig& tissue = parameters.scene.tissue;
+  for (const Region& region : tissue.regions) {
+    const double contrast = region.material.young_modulus / young_modulus;
+    if (!region.own_modulus || std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast)
+      continue;
+    throw InputError("young_modulus = " + numberText(young_modulus) +
+                     ": must be within a factor of " + numberText(ranges::kMostContrast) +
+                     " of region '" + shortText(region.name) + "', " +
+                     numberText(region.material.young_modulus) + " Pa");
+  }
+  tissue.material.young_modulus = young_modulus;
+  for (Region& region : tissue.regions) {
+    if (!region.own_modulus) region.material.young_modulus = young_modulus;
+  }
+}
+
+bool hasFriction(const ToolConfig& tool) { return tool.patch == ToolConfig::Patch::kConforming; }
+
+void setFriction(double friction, NodeParameters& parameters) {
+  for (ToolConfig& tool : parameters.scene.tools) {
+    if (hasFriction(tool)) tool.friction = friction;
+  }
+}
+
+struct Live {
+  const char* name;
+  const char* description;
+  Range range;
+  Found (*get)(const NodeParameters&);  // empty: the scene has none
+  void (*set)(double, NodeParameters&);
+  const char* path;  // in the node's namespace; null: of each tool
+};
+
+const std::vector<Live>& table() {
+  static const std::vector<Live> all = {
+      {"young_modulus", "Pa; regions with a modulus of their own keep it", ranges::youngModulus(),
+       [](const NodeParameters& parameters) {
+         const Material& material = parameters.scene.tissue.material;
+         return material.spring_stiffness ? Found() : Found(material.young_modulus);
+       },
+       setModulus, "tissue/material/young_modulus"},
+      {"tolerance", "relative error of displacements that is allowed", ranges::tolerance(),
+       [](const NodeParameters& parameters) {
+         const SolverConfig& solver = parameters.scene.solver;
+         return traitsOf(solver.method).uses_tolerance ? Found(solver.tolerance) : Found();
+       },
+       [](double value, NodeParameters& parameters) { parameters.scene.solver.tolerance = value; },
+       "solver/tolerance"},
+      {"max_ms", "ms; time of an update; 0: 100 ms", ranges::budget(),
+       [](const NodeParameters& parameters) { return Found(parameters.scene.solver.max_ms); },
+       [](double value, NodeParameters& parameters) { parameters.scene.solver.max_ms = value; },
+       "solver/max_ms"},
+      {"friction", "Coulomb's, of all tools", ranges::friction(), frictionOf, setFriction, nullptr},
+      {"rate", "Hz; updates at most", ranges::rate(),
+       [](const NodeParameters& parameters) { return Found(parameters.rate_hz); },
+       [](double value, NodeParameters& parameters) { parameters.rate_hz = value; }, "rate"},
+      {"marker_rate", "Hz; markers, surface and nodes at most", ranges::rate(),
+       [](const NodeParameters& parameters) { return Found(parameters.marker_rate_hz); },
+       [](double value, NodeParameters& parameters) { parameters.marker_rate_hz = value; },
+       "marker_rate"},
+      {"force_scale", "m/N; length of the force arrows", ranges::forceScale(),
+       [](const NodeParameters& parameters) { return Found(parameters.force_scale); },
+       [](double value, NodeParameters& parameters) { parameters.force_scale = value; },
+       "force_scale"},
+  };
+  return all;
+}
+
+std::vector<ReconfigureServer::Number> numbersOf(const NodeParameters& parameters) {
+  std::vector<ReconfigureServer::Number> numbers;
+  for (const Live& live : table()) {
+    const Found value = live.get(parameters);
+    if (value) numbers.push_back({live.name, live.description, live.range, *value});
+  }
+  return numbers;
+}
+
+// On the parameter server, so that it tells what is so and a node that is started again has it.
+void keepFriction(const NodeParameters& parameters, ros::NodeHandle& private_node) {
+  XmlRpc::XmlRpcValue tools;
+  if (!private_node.getParam("tools", tools)) return;
+  const std::vector<ToolConfig>& of_scene = parameters.scene.tools;
+  const bool are_same = tools.getType() == XmlRpc::XmlRpcValue::TypeArray &&
+                        tools.size() == static_cast<int>(of_scene.size());
+  if (!are_same) return;
+  for (int tool = 0; tool < tools.size(); ++tool) {
+    const bool is_map = tools[tool].getType() == XmlRpc::XmlRpcValue::TypeStruct;
+    if (is_map && hasFriction(of_scene[at(tool)])) {
+      tools[tool]["friction"] = of_scene[at(tool)].friction;
+    }
+  }
+  private_node.setParam("tools", tools);
+}
+
+}  // namespace
+
+std::optional<double> frictionOf(const NodeParameters& parameters) {
+  const auto& tools = parameters.scene.tools;
+  const auto first = std::find_if(tools.begin(), tools.end(), hasFriction);
+  return first == tools.end() ? Found() : Found(first->friction);
+}
+
+LiveParameters::LiveParameters(const ros::NodeHandle& private_node,
+                               const NodeParameters& parameters, Apply apply)
+    : private_node_(private_node),
+      parameters_(parameters),
+      apply_(std::move(apply)),
+      server_(private_node_, numbersOf(parameters),
+              [this](const ReconfigureServer::Values& values) { change(values); }) {}
+
+void LiveParameters::change(const ReconfigureServer::Values& values) {
+  NodeParameters wanted = parameters_;
+  for (const Live& live : table()) {
+    const auto value = values.find(live.name);
+    if (value != values.end()) live.set(value->second, wanted);
+  }
+  apply_(wanted);
+  for (const Live& live : table()) {
+    const auto value = values.find(live.name);
+    if (value == values.end()) continue;
+    if (live.path == nullptr) {
+      keepFriction(parameters_, private_node_);
+    } else {
+      private_node_.setParam(live.path, value->second);
+    }
+    ROS_INFO_STREAM(live.name << " is " << numberText(value->second));
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,13 @@
+// The ranges of the node's own numbers; those of the scene's are in scene/ranges.h.
+#pragma once
+
+#include "robot_tissue/scene/entry.h"
+
+namespace robot_tissue::ranges {
+
+inline Range rate() { return {0.01, 1e4, "Hz"}; }
+inline Range wrenchRate() { return {0.0, 1e3, "Hz"}; }  // 0: one an update
+inline Range poseTimeout() { return {1e-3, 1e6, "s"}; }
+inline Range forceScale() { return {1e-9, 1e9, "m/N"}; }
+
+}  // namespace robot_tissue::ranges
