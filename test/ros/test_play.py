@@ -51,6 +51,17 @@ class TestPlay(unittest.TestCase):
         notes = self.last.get("/play/notes", MarkerArray())
         return next((marker.text for marker in notes.markers if marker.ns == name), "")
 
+    # One after the other: the markers' server keeps one message at a time.
+    def reset(self):
+        self.tell("tool", entry=RESET)
+        self.until(lambda: "rest shape" in self.note("message"), "no reset")
+        self.until(lambda: self.state().springs_cut == 0, "cuts after a reset")
+
+    def corner(self, number):
+        notes = self.last.get("/play/notes", MarkerArray())
+        points = next((marker.points for marker in notes.markers if marker.ns == "cut"), [])
+        return (points[number].x, points[number].y, points[number].z) if points else None
+
     def shown_force(self):
         words = self.note("force").split()
         return float(words[0]) if len(words) > 1 and words[1].startswith("N") else 0.0
@@ -63,29 +74,27 @@ class TestPlay(unittest.TestCase):
         self.until(lambda: self.push() == 0.0, "the tissue holds on")
 
     def test_the_menu_cuts_and_takes_back(self):
-        self.tell("tool", entry=RESET)
-        self.until(lambda: self.state().springs_cut == 0, "no reset")
+        self.reset()
         self.tell("corner_1", entry=CUT)
         self.until(lambda: self.state().springs_cut > 0, "no cut: " + self.note("message"))
         self.tell("tool", entry=UNDO)
         self.until(lambda: self.state().springs_cut == 0, "not taken back: " + self.note("message"))
 
     def test_a_cut_without_an_area_is_refused(self):
-        self.tell("tool", entry=RESET)
-        for corner in ("corner_1", "corner_2", "corner_3"):
+        self.reset()
+        for number, corner in enumerate(("corner_1", "corner_2", "corner_3")):
             self.tell(corner, (0.05, 0.05, 0.05))
+            self.until(lambda number=number: self.corner(number) == (0.05, 0.05, 0.05), "not moved")
         self.tell("tool", entry=CUT)
         self.until(lambda: "allowed" in self.note("message"), "not refused")
         self.assertEqual(self.state().springs_cut, 0)
-        self.tell("tool", entry=RESET)
-        self.until(lambda: "rest shape" in self.note("message"), "no reset")
+        self.reset()
 
     def test_a_place_that_is_none_is_refused(self):
         self.tell("tool", (float("nan"), 0.0, 0.0))
         self.until(lambda: "allowed" in self.note("message"), "not refused")
-        self.tell("tool", entry=RESET)
-        self.until(lambda: "rest shape" in self.note("message"), "no reset")
+        self.reset()
 
 
 if __name__ == "__main__":
-    rostest.rosrun("robot_tissue", "play", TestPlay, sys.argv)
+    rostest.rosrun("robot_tissue", "playing", TestPlay, sys.argv)
