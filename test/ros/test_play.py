@@ -21,6 +21,7 @@ class TestPlay(unittest.TestCase):
         for topic, kind in (("/robot_tissue/state", TissueState), ("/play/notes", MarkerArray),
                             ("/robot_tissue/sphere/measured_cf", WrenchStamped)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.last.update({topic: message}))
+        rospy.wait_for_service("/robot_tissue/reset", DEADLINE)
         cls.feedback = rospy.Publisher("/play/feedback", InteractiveMarkerFeedback, queue_size=10)
 
     def until(self, holds, what):
@@ -30,7 +31,8 @@ class TestPlay(unittest.TestCase):
         self.assertTrue(holds(), what)
 
     def tell(self, marker, place=None, entry=None):
-        self.until(lambda: self.feedback.get_num_connections() > 0, "nobody hears of the markers")
+        self.until(lambda: self.feedback.get_num_connections() > 0 and self.note("message") != "",
+                   "nobody hears of the markers")
         message = InteractiveMarkerFeedback(client_id="test", marker_name=marker)
         message.header.frame_id = "tissue"
         message.event_type = message.MENU_SELECT if entry else message.POSE_UPDATE
@@ -51,10 +53,14 @@ class TestPlay(unittest.TestCase):
         notes = self.last.get("/play/notes", MarkerArray())
         return next((marker.text for marker in notes.markers if marker.ns == name), "")
 
-    # One after the other: the markers' server keeps one message at a time.
+    # One after the other: the markers' server keeps one message at a time, and hears none while it
+    # comes up.
     def reset(self):
-        self.tell("tool", entry=RESET)
-        self.until(lambda: "rest shape" in self.note("message"), "no reset")
+        def is_done():
+            self.tell("tool", entry=RESET)
+            rospy.sleep(0.2)
+            return "rest shape" in self.note("message")
+        self.until(is_done, "no reset")
         self.until(lambda: self.state().springs_cut == 0, "cuts after a reset")
 
     def corner(self, number):
