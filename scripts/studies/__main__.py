@@ -9,7 +9,7 @@ from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
 STUDIES = ["rooms", "liver", "paper", "motion", "economy", "fidelity", "growth", "threads", "stages", "speed",
-           "node", "still_node", "shape_topics", "play", "contact_search", "contact", "accuracy", "stability",
+           "node", "still_node", "shape_topics", "screens", "soak", "contact_search", "contact", "accuracy", "stability",
            "speed_accuracy"]
 
 

@@ -18,7 +18,7 @@ class Screen:
         try:
             self._server = subprocess.Popen(
                 ["Xvfb", "-displayfd", str(tell), "-screen", "0", f"{width}x{height}x24", "-fbdir",
-                 self._folder.name, "-nolisten", "tcp"], pass_fds=[tell], stderr=subprocess.DEVNULL)
+                 self._folder.name, "-nolisten", "tcp", "-nocursor"], pass_fds=[tell], stderr=subprocess.DEVNULL)
         except FileNotFoundError:
             sys.exit("study: no Xvfb; install what scripts/study_packages lists")
         finally:

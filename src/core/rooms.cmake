@@ -17,7 +17,8 @@ robot_tissue_room(config
 robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h filled_grid.h lattice.h lattice_state.h
-  FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp)
+  FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
+    piece_numbers.h)
 robot_tissue_room(cutting
   USES base config lattice
   FILES blade_surface.cpp blade_surface.h cut.cpp cut.h removal.cpp removal.h split_cells.cpp
@@ -41,8 +42,8 @@ robot_tissue_room(loads
     solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base lattice cutting loads
-  FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_state.cpp
-    saved_state.h saved_sutures.cpp saved_sutures.h)
+  FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_pieces.cpp
+    saved_pieces.h saved_state.cpp saved_state.h saved_sutures.cpp saved_sutures.h)
 robot_tissue_room(solvers
   USES base lattice loads
   FILES solver_method.h)
@@ -89,5 +90,5 @@ robot_tissue_room(tissue
   PUBLIC method_names.h tissue.h
   FILES history.cpp history.h load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h
     suturing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h time_stepping.cpp
-    tissue.cpp tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_state.cpp tissue_state.h
-    tissue_surface.cpp tissue_surgery.cpp topology_change.h tuning.h)
+    tissue.cpp tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_pieces.cpp tissue_state.cpp
+    tissue_state.h tissue_surface.cpp tissue_surgery.cpp topology_change.h tuning.h)

@@ -11,17 +11,6 @@
 namespace robot_tissue {
 namespace {
 
-Pose between(const Pose& from, const Pose& to, double share) {
-  if (share <= 0.0) return from;
-  if (share >= 1.0) return to;
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(from.linear())
-                      .slerp(share, Eigen::Quaterniond(to.linear()))
-                      .toRotationMatrix();
-  pose.translation() = from.translation() + share * (to.translation() - from.translation());
-  return pose;
-}
-
 Vec3 nearestOf(const std::vector<Vec3>& edge, const Vec3& point) {
   Vec3 nearest = edge.front();
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
@@ -39,55 +28,34 @@ bool Blades::goTo(RobotPose& pose) {
   bool all = true;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!world_.tools[tool].role.has_edge) continue;
-    all = goTo(tool, pose.links[world_.tools.firstLink(tool)]) && all;
+    all = goTo(tool, pose) && all;
   }
   return all;
 }
 
-// On a trial step nothing is cut, as that could not be undone.
-bool Blades::goTo(std::size_t tool, Pose& there) {
+bool Blades::goTo(std::size_t tool, RobotPose& pose) {
   BladeState& state = states_[tool];
-  if (ToolSet::isAway(there)) {
-    state = BladeState();
-    return true;
-  }
-  const Pose from = state.stands.value_or(there);
-  const double reach = world_.reach(world_.tools.firstLink(tool));
-  const double way = longestWay(from, there, reach);
-  const bool jumps = way > Pipeline::kMostLoadSteps * world_.tissue.stepLength();
-  if (jumps) addOnce(tool, world_.report.jumped);
-  if (!state.stands || jumps) {
-    state = BladeState();
-    state.stands = there;
-    state.path = {there};
-    state.point = nearestOf(world_.tools[tool].blade.edge, Vec3::Zero());
-    return true;
-  }
-  if (world_.is_trial) {
-    moveTo(there, state);
-    return true;
-  }
-  const double stride = tuning::kBladeStride * world_.tissue.lattice().spacing();
-  for (double gone = 0.0; gone < way;) {
-    const double rest = stride - state.way;
-    const bool ends_stride = gone + rest <= way + tuning::kStrideRounding * stride;
-    const double next = ends_stride ? std::min(gone + rest, way) : way;
-    moveTo(between(from, there, next / way), state);
-    state.way += next - gone;
-    gone = next;
-    if (ends_stride) cutAlongPath(tool, state);
-    if (gone >= way || !world_.deadline.isOver()) continue;
-    there = *state.stands;
-    return false;
-  }
-  return true;
+  const std::size_t link = world_.tools.firstLink(tool);
+  StrideActions actions;
+  actions.length = tuning::kBladeStride * world_.tissue.lattice().spacing();
+  actions.forget = [&] { comeIn(tool, state); };
+  actions.move = [&](const std::vector<Pose>& there) { moveTo(there.front(), state); };
+  actions.act = [&] { cutAlongPath(tool, state); };
+  return goInStrides(world_, tool, {link, link + 1}, actions, state.strides, pose);
+}
+
+void Blades::comeIn(std::size_t tool, BladeState& state) const {
+  const Strides strides = state.strides;
+  state = BladeState();
+  state.strides = strides;
+  state.path = strides.stands;
+  state.point = nearestOf(world_.tools[tool].blade.edge, Vec3::Zero());
 }
 
 // The edge pays on the way of its point.
 void Blades::moveTo(const Pose& pose, BladeState& state) const {
-  const Vec3 way = pose * state.point - *state.stands * state.point;
+  const Vec3 way = pose * state.point - state.stands() * state.point;
   const double length = way.norm();
-  state.stands = pose;
   state.path.push_back(pose);
   if (!(length > 0.0)) return;
   state.direction = way / length;
@@ -100,8 +68,7 @@ void Blades::moveTo(const Pose& pose, BladeState& state) const {
 
 void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
   const std::vector<CutTriangle> swept = sweptBy(tool, state.path);
-  state.path = {*state.stands};
-  state.way = 0.0;
+  state.path = {state.stands()};
   const Stopwatch watch(world_.report.solve_ms);
   const Stroke stroke = state.debts.empty() ? Stroke::kBegins : Stroke::kGoesOn;
   const CutReport cut = world_.tissue.cutAlong(swept, stroke);
@@ -109,7 +76,7 @@ void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
   const BladeConfig& blade = world_.tools[tool].blade;
   const double spacing = world_.tissue.lattice().spacing();
   state.debts.push_back({blade.resistance * cut.area / spacing, spacing});
-  state.point = nearestOf(blade.edge, state.stands->inverse() * cut.center);
+  state.point = nearestOf(blade.edge, state.stands().inverse() * cut.center);
   world_.sliding.commit(world_.pose, world_.tissue);
   world_.dead_end.reset();
   world_.report.changed = true;
@@ -143,9 +110,9 @@ void Blades::describe(std::size_t tool, ToolReport& report) const {
   if (!world_.tools[tool].role.has_edge || state.debts.empty()) return;
   double force = 0.0;
   for (const CutDebt& debt : state.debts) force += debt.force;
-  report.force_on_tool = -force * (state.stands->linear().transpose() * state.direction);
+  report.force_on_tool = -force * (state.stands().linear().transpose() * state.direction);
   report.torque_on_tool = state.point.cross(report.force_on_tool);
-  report.point = *state.stands * state.point;
+  report.point = state.stands() * state.point;
   limitWrench(world_.tools[tool].max_force, report);
 }
 

@@ -1,19 +1,18 @@
 // Tools with an edge: what they cut on their way, and what that takes of force.
 //
-// The way of an edge is gone in strides of a fixed length, counted from where the tool came in. At
-// the end of each, what the edge swept on it is cut in the shape as it is then, and the tissue
-// comes to balance: so the same springs go whether the way was told in one pose or in a hundred.
-// What is left of the way, less than a stride, is cut with the next one.
+// The way of an edge is gone in strides (strides.h). At the end of each, what the edge swept on it
+// is cut in the shape as it is then, and the tissue comes to balance. What is left of the way, less
+// than a stride, is cut with the next one.
 //
 // A spring that goes is new surface at once, of a spacing's length; the edge pays for it while it
 // goes on by one spacing: force = resistance * area / spacing, against its motion. Over that way
 // its work is resistance * area.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "robot_tissue/core/robot_pose.h"
+#include "strides.h"
 #include "world.h"
 
 namespace robot_tissue {
@@ -26,12 +25,13 @@ struct CutDebt {
 
 // Of one tool; nothing of it is used for tools without an edge.
 struct BladeState {
-  std::optional<Pose> stands;     // tissue_T_tool; empty: nowhere
+  Strides strides;                // of the first link
   std::vector<Pose> path;         // since the end of the last stride
-  double way = 0.0;               // of the path (m)
   Vec3 point = Vec3::Zero();      // where it cut last, tool frame (m)
   Vec3 direction = Vec3::Zero();  // of the point's motion, unit, tissue frame
   std::vector<CutDebt> debts;
+
+  const Pose& stands() const { return strides.stands.front(); }  // tissue_T_tool
 };
 
 class Blades {
@@ -52,7 +52,8 @@ class Blades {
   void describe(std::size_t tool, ToolReport& report) const;
 
  private:
-  bool goTo(std::size_t tool, Pose& there);
+  bool goTo(std::size_t tool, RobotPose& pose);
+  void comeIn(std::size_t tool, BladeState& state) const;
   void moveTo(const Pose& pose, BladeState& state) const;
   void cutAlongPath(std::size_t tool, BladeState& state);
   std::vector<CutTriangle> sweptBy(std::size_t tool, const std::vector<Pose>& path) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "stopwatch.h"
@@ -234,11 +235,11 @@ void LoadStepper::tearOff() {
 void LoadStepper::tear() {
   if (world_.is_trial || !world_.tissue.mayTear()) return;
   const int before = world_.tissue.springsTorn();
+  const std::uint64_t topology = world_.tissue.surface().revision;
   const Stopwatch watch(world_.report.solve_ms);
   world_.tissue.tear();
-  const int torn = world_.tissue.springsTorn() - before;
-  if (torn == 0) return;
-  world_.report.springs_torn += torn;
+  if (world_.tissue.surface().revision == topology) return;
+  world_.report.springs_torn += world_.tissue.springsTorn() - before;
   world_.report.changed = true;
   world_.sliding.commit(world_.pose, world_.tissue);
 }

@@ -25,6 +25,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   parts_->drive.setTools(tools.size());
   parts_->grasping.setTools(tools.size());
   parts_->blades.forget();
+  parts_->burrs.forget();
   gave_up_ = false;
   late_iterations_ = 0;
 }
@@ -39,7 +40,7 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
 
 Pose Pipeline::away() { return ToolSet::away(); }
 
-const std::vector<std::string>& Pipeline::toolWarnings() const { return world_.finder.warnings(); }
+const std::vector<std::string>& Pipeline::toolWarnings() const { return world_.warnings; }
 
 const std::vector<ToolGeometry>& Pipeline::tools() const { return world_.tools.geometry(); }
 
@@ -97,13 +98,15 @@ void Pipeline::beginReport() {
   }
   world_.report.contact_ms = world_.report.solve_ms = 0.0;
   world_.report.substeps = world_.report.springs_cut = world_.report.springs_torn = 0;
-  world_.report.area_cut = 0.0;
+  world_.report.area_cut = world_.report.volume_removed = 0.0;
+  world_.report.lost_loads.clear();
 }
 
 // goal: the pose, with the ways of tools that a force drives.
 void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   if (touched_) world_.dead_end.reset();
   world_.report.changed = world_.report.changed || !world_.tissue.isUntouched();
+  const std::size_t dropped = world_.tissue.droppedPieces().size();
   RobotPose there = goal;  // but for tools that wait outside
   if (!world_.last_pose || !parts_->motion.hasCheckpoints()) {
     parts_->motion.startAnew(there);
@@ -118,7 +121,9 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   if (world_.report.lost && last_good) parts_->motion.stayAt(*last_good, there);
   parts_->motion.unhook(there);
   world_.asked = goal;
-  const bool arrived = cutAlongWay();
+  const bool arrived = partAlongWay();
+  // Shapes to go back to may have patches on what was dropped.
+  if (world_.tissue.droppedPieces().size() > dropped) parts_->motion.checkInAnew();
   touched_ = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
   if (world_.report.too_fast || world_.report.lost) {
     world_.report.behind = parts_->motion.toolsBehind();
@@ -126,19 +131,6 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
     parts_->grasping.forgetLetGo();
   }
   describeTools();
-}
-
-// What blades sweep to where the tools have come. False: there is a way left to go.
-bool Pipeline::cutAlongWay() {
-  const bool arrived = parts_->blades.goTo(*world_.last_pose);
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (!world_.tools[tool].role.has_edge) continue;
-    world_.pose = world_.tools.withTool(tool, *world_.last_pose, std::move(world_.pose));
-  }
-  world_.report.too_fast = world_.report.too_fast || !arrived;
-  const bool comes_back = world_.tools.anyRigid() && world_.report.springs_cut > 0;
-  if (comes_back) parts_->motion.checkInAnew();
-  return arrived;
 }
 
 SolveReport Pipeline::wait(double duration) {
@@ -299,6 +291,7 @@ void Pipeline::forgetTools() {
   }
   parts_->drive.setTools(world_.tools.size());
   parts_->blades.forget();
+  parts_->burrs.forget();
   parts_->motion.clearCheckpoints();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
@@ -343,9 +336,10 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
     throw InputError("tool '" + world_.tools.nameOf(tool) +
                      "': the force is zero or not finite; allowed: a force");
   }
-  if (force && world_.tools[tool].role.has_edge) {
-    throw InputError("tool '" + world_.tools.nameOf(tool) + "': role " +
-                     world_.tools[tool].role.name + " only cuts; allowed: a tool that pushes");
+  const ToolRole& role = world_.tools[tool].role;
+  if (force && !role.touches()) {
+    throw InputError("tool '" + world_.tools.nameOf(tool) + "': role " + role.name + " only " +
+                     role.deed() + "; allowed: a tool that pushes");
   }
   parts_->drive.push(tool, force);
   touched_ = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "blades.h"
+#include "burrs.h"
 #include "force_drive.h"
 #include "grasping.h"
 #include "load_stepper.h"
@@ -27,6 +28,7 @@ struct Pipeline::Parts {
   OverlapResolver overlap{world};
   LoadStepper load_step{world, touch_finder, contact_update, grasping};
   Blades blades{world};
+  Burrs burrs{world};
   ToolMotion motion{world, ways, overlap, grasping, load_step};
 };
 

@@ -13,8 +13,45 @@ std::string namesOf(const std::vector<std::size_t>& numbers,
   return names;
 }
 
+namespace {
+
+using Kind = StepRemark::Kind;
+
+void addOfJaws(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
+  const StepReport& report = pipeline.report();
+  const auto names = [&](const auto& numbers) { return namesOf(numbers, pipeline.tools()); };
+  std::vector<std::size_t> jaws_meet;
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    if (report.tools[tool].jaws_overlap) jaws_meet.push_back(tool);
+  }
+  if (!jaws_meet.empty()) {
+    remarks.push_back({Kind::kJawsMeet, "the jaws of " + names(jaws_meet) + " touch or overlap"});
+  }
+  std::string empty_jaws;
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    const std::string& why = report.tools[tool].holds_nothing;
+    if (why.empty()) continue;
+    empty_jaws += (empty_jaws.empty() ? "" : "; ") + names(std::vector<std::size_t>{tool}) +
+                  " holds nothing: " + why;
+  }
+  if (!empty_jaws.empty()) remarks.push_back({Kind::kHoldsNothing, empty_jaws});
+}
+
+void addOfBurrs(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
+  const StepReport& report = pipeline.report();
+  for (const std::string& load : report.lost_loads) {
+    remarks.push_back({Kind::kDrills, "load '" + load + "' went with all its nodes"});
+  }
+  if (!report.would_take_all.empty()) {
+    remarks.push_back({Kind::kDrills, namesOf(report.would_take_all, pipeline.tools()) +
+                                          " would remove all of the tissue that is left: drills "
+                                          "no more until it comes in anew"});
+  }
+}
+
+}  // namespace
+
 std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
-  using Kind = StepRemark::Kind;
   const StepReport& report = pipeline.report();
   std::vector<StepRemark> remarks;
   const auto names = [&](const auto& numbers) { return namesOf(numbers, pipeline.tools()); };
@@ -41,21 +78,8 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
     remarks.push_back({Kind::kLost, "no shape follows " + names(report.behind) +
                                         ", as between tools that meet: the last good one stays"});
   }
-  std::vector<std::size_t> jaws_meet;
-  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
-    if (report.tools[tool].jaws_overlap) jaws_meet.push_back(tool);
-  }
-  if (!jaws_meet.empty()) {
-    remarks.push_back({Kind::kJawsMeet, "the jaws of " + names(jaws_meet) + " touch or overlap"});
-  }
-  std::string empty_jaws;
-  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
-    const std::string& why = report.tools[tool].holds_nothing;
-    if (why.empty()) continue;
-    empty_jaws += (empty_jaws.empty() ? "" : "; ") + names(std::vector<std::size_t>{tool}) +
-                  " holds nothing: " + why;
-  }
-  if (!empty_jaws.empty()) remarks.push_back({Kind::kHoldsNothing, empty_jaws});
+  addOfJaws(pipeline, remarks);
+  addOfBurrs(pipeline, remarks);
   return remarks;
 }
 

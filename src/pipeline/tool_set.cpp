@@ -26,8 +26,7 @@ ToolSet::ToolSet(const std::vector<ToolGeometry>& tools, const std::vector<Suppo
     : tools_(tools), first_link_({0}) {
   for (const SupportConfig& support : supports) supports_.push_back(asTool(support));
   for (const ToolGeometry& tool : withSupports()) {
-    const bool touches = !tool.role.has_edge;
-    any_rigid_ = any_rigid_ || (touches && tool.patch == ToolConfig::Patch::kRigid);
+    any_rigid_ = any_rigid_ || (tool.role.touches() && tool.patch == ToolConfig::Patch::kRigid);
     names_.push_back(tool.name);
     first_link_.push_back(first_link_.back() + tool.links.size());
   }

@@ -8,6 +8,7 @@ struct Pipeline::Mark {
   std::vector<Checkpoint> checkpoints;
   ForceDrive drive;
   std::vector<BladeState> blades;
+  std::vector<BurrState> burrs;
   std::optional<RobotPose> last_pose;
   RobotPose asked;
   std::optional<DeadEnd> dead_end;
@@ -19,10 +20,10 @@ struct Pipeline::Mark {
 };
 
 void Pipeline::beginTrial() {
-  trial_from_ = std::make_shared<const Mark>(
-      Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
-           parts_->blades.states(), world_.last_pose, world_.asked, world_.dead_end,
-           late_iterations_, gave_up_, world_.unfinished, touched_, world_.report});
+  trial_from_ = std::make_shared<const Mark>(Mark{
+      parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
+      parts_->blades.states(), parts_->burrs.states(), world_.last_pose, world_.asked,
+      world_.dead_end, late_iterations_, gave_up_, world_.unfinished, touched_, world_.report});
   world_.tissue.beginAside();
   world_.is_trial = true;
 }
@@ -35,6 +36,7 @@ void Pipeline::undoTrial() {
   parts_->motion.restore(mark.checkpoints);
   parts_->drive = mark.drive;
   parts_->blades.restore(mark.blades);
+  parts_->burrs.restore(mark.burrs);
   world_.is_trial = false;
   world_.last_pose = mark.last_pose;
   world_.asked = mark.asked;

@@ -95,10 +95,15 @@ constexpr double kOpposed = -0.5;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
 
-// Blades.
+// Blades and burrs.
 // Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,
 // but what gives way as it is cut is met where it was. Chosen: no spring is passed in one.
 constexpr double kBladeStride = 0.25;
+// Of the thickness (1) of a burr: its longest stride, within that of a blade. More: cells that a
+// thin one passes slip between two strides. Chosen. And of the spacing (1): its shortest, so that
+// hairs need not drill for hours.
+constexpr double kStrideOfBurr = 0.5;
+constexpr double kLeastStride = 0.01;
 // Of a stride (1): so little short of its end is rounding.
 constexpr double kStrideRounding = 1e-6;
 // rad: of a turn that is swept as one plane piece. More: the sagitta, reach * (1 - cos(arc / 2)),
@@ -131,6 +136,9 @@ constexpr double kFarthestLearned = 5e-3;
 // m: the farthest that is predicted. More: bolder where a solve takes long; the error grows with
 // the square. Chosen: twice what is asked for.
 constexpr double kFarthestPredicted = 1e-3;
+
+// Of the spacing (1): least stride along a line that leaves a tool. More: coarser.
+constexpr double kExitStride = 0.1;
 
 // Time.
 // s: of a time step while a tool is there. Touches are solved to some micrometers, which over the

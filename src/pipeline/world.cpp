@@ -3,11 +3,25 @@
 #include <algorithm>
 
 namespace robot_tissue {
+namespace {
+
+// The tools, with shapes only where their role has them.
+template <class HasShapes>
+std::vector<ToolGeometry> shapesOf(std::vector<ToolGeometry> tools, const HasShapes& has_shapes) {
+  for (ToolGeometry& tool : tools) {
+    if (has_shapes(tool.role)) continue;
+    for (LinkGeometry& link : tool.links) link.shapes.clear();
+  }
+  return tools;
+}
+
+}  // namespace
 
 World::World(const TissueConfig& tissue_config, const SolverConfig& solver)
     : tissue(tissue_config, solver),
       tools({}, {}),
       finder({}),
+      drills({}),
       sticking(tissue.lattice(), {}),
       sliding({}, {}) {}
 
@@ -15,12 +29,11 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
                      const std::vector<SupportConfig>& supports) {
   tools = ToolSet(geometry, supports);
   has_supports = !supports.empty();
-  std::vector<ToolGeometry> all = tools.withSupports();
-  for (ToolGeometry& tool : all) {
-    if (!tool.role.has_edge) continue;
-    for (LinkGeometry& link : tool.links) link.shapes.clear();
-  }
-  finder = ContactFinder(all);
+  const std::vector<ToolGeometry> all = tools.withSupports();
+  finder = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.touches(); }));
+  drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
+  warnings = finder.warnings();
+  warnings.insert(warnings.end(), drills.warnings().begin(), drills.warnings().end());
   sticking = StickingContacts(tissue.lattice(), tools.names());
   std::vector<std::optional<double>> friction;
   for (const ToolGeometry& tool : all) {
@@ -40,13 +53,14 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
 }
 
 double World::reach(std::size_t link) const {
-  double reach = finder.reach(link);
+  double reach = std::max(finder.reach(link), drills.reach(link));
   for (const Vec3& point : edgeOn(link)) reach = std::max(reach, point.norm());
   return reach;
 }
 
 Box World::bounds(std::size_t link, const Pose& tissue_T_link) const {
   Box bounds = finder.bounds(link, tissue_T_link);
+  bounds.extend(drills.bounds(link, tissue_T_link));
   for (const Vec3& point : edgeOn(link)) bounds.extend(tissue_T_link * point);
   return bounds;
 }

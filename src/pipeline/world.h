@@ -34,7 +34,9 @@ struct World {
 
   Tissue tissue;  // [LoadStepper]
   ToolSet tools;
-  ContactFinder finder;  // of tools and supports
+  ContactFinder finder;               // of tools and supports that touch
+  ContactFinder drills;               // of the shapes of tools that drill; links as in `finder`
+  std::vector<std::string> warnings;  // of both
   // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
   StickingContacts sticking;
   // Of the other tools, and supports. [LoadStepper, ToolContactUpdate, ToolMotion, Grasping]

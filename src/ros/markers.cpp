@@ -2,8 +2,9 @@
 
 #include <utility>
 
+#include "drawn_state.h"
 #include "robot_tissue/ros/conversions.h"
-#include "robot_tissue/ros/tool_forces.h"
+#include "thread_lines.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -18,40 +19,22 @@ geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Con
 // is the same in all of these.
 bool looksAlike(const Marker& a, const Marker& b) {
   return a.ns == b.ns && a.id == b.id && a.action == b.action && a.scale == b.scale &&
-         a.pose == b.pose && a.points == b.points;
+         a.pose == b.pose && a.points == b.points && a.colors == b.colors && a.text == b.text;
 }
-
-// rviz refuses an empty list: the marker is taken away instead.
-void add(Marker marker, MarkerArray& array) {
-  if (marker.points.empty()) {
-    marker.action = Marker::DELETE;
-  }
-  array.markers.push_back(std::move(marker));
-}
-
-// The state of the tissue that the markers are drawn from.
-struct Drawn {
-  const Pipeline& pipeline;
-  const std::vector<SupportConfig>& supports;
-  const std::vector<int>& surface_springs;
-  double force_scale;  // m/N
-
-  const Tissue& tissue() const { return pipeline.tissue(); }
-  double spacing() const { return tissue().lattice().spacing(); }
-};
 
 // Each takes a marker with all but its places and sizes.
 using Draw = void (*)(const Drawn& drawn, Marker marker, MarkerArray& array);
 
+// What a cut opened keeps its own color, so that a wound is always told from the skin.
 template <bool opened>
 void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  const TissueSurface& surface = drawn.tissue().surface();
-  marker.points.reserve(opened ? 0 : 3 * surface.triangles.size());
-  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
-    if ((surface.opened[triangle] != 0) != opened) continue;
-    for (const int vertex : surface.triangles[triangle]) {
-      marker.points.push_back(toPoint(drawn.tissue().vertices()[at(vertex)]));
-    }
+  DrawnTriangles triangles;
+  const bool colored = !opened && !drawn.values.empty();
+  drawn.display.draw(opened, colored ? &drawn.values : nullptr, triangles);
+  marker.points = toPoints(triangles.points);
+  marker.colors.reserve(triangles.values.size());
+  for (std::size_t i = 0; i < triangles.values.size(); ++i) {
+    marker.colors.push_back(litColorOf(triangles.values[i] / drawn.scale, triangles.normals[i]));
   }
   add(std::move(marker), array);
 }
@@ -59,13 +42,27 @@ void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
 void drawWireframe(const Drawn& drawn, Marker wires, MarkerArray& array) {
   const Tissue& tissue = drawn.tissue();
   wires.scale.x = tuning::kWireWidth;
-  wires.points.reserve(2 * drawn.surface_springs.size());
-  for (const int spring : drawn.surface_springs) {
-    const Spring& ends = tissue.lattice().springs()[at(spring)];
-    wires.points.push_back(toPoint(tissue.nodePosition(ends.a)));
-    wires.points.push_back(toPoint(tissue.nodePosition(ends.b)));
+  std::vector<Vec3> ends;
+  ends.reserve(2 * drawn.wires.size());
+  for (const Wire& wire : drawn.wires) {
+    if (wire.edge >= 0) {
+      drawn.display.drawEdge(wire.edge, ends);
+      continue;
+    }
+    const Spring& spring = tissue.lattice().springs()[at(wire.spring)];
+    ends.push_back(tissue.nodePosition(spring.a));
+    ends.push_back(tissue.nodePosition(spring.b));
   }
+  wires.points = toPoints(ends);
   add(std::move(wires), array);
+}
+
+void drawLips(const Drawn& drawn, Marker lips, MarkerArray& array) {
+  lips.scale.x = tuning::kLipWidth;
+  std::vector<Vec3> ends;
+  drawn.display.drawLips(ends);
+  lips.points = toPoints(ends);
+  add(std::move(lips), array);
 }
 
 void drawFixedNodes(const Drawn& drawn, Marker fixed, MarkerArray& array) {
@@ -93,45 +90,8 @@ void drawLoadedNodes(const Drawn& drawn, Marker loaded, MarkerArray& array) {
 
 void drawSutures(const Drawn& drawn, Marker threads, MarkerArray& array) {
   threads.scale.x = tuning::kThreadWidth;
-  for (const SutureReport& suture : drawn.tissue().sutures()) {
-    if (suture.broken) continue;
-    threads.points.push_back(toPoint(suture.from));
-    threads.points.push_back(toPoint(suture.to));
-  }
+  threads.points = toPoints(threadLines(drawn.tissue()));
   add(std::move(threads), array);
-}
-
-// An arrow a tool, along what `ends` gives: its start and its tip, or nothing.
-template <class Ends>
-void drawArrows(const Drawn& drawn, const Marker& marker, MarkerArray& array, const Ends& ends) {
-  const std::vector<ToolReport>& tools = drawn.pipeline.report().tools;
-  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
-    Marker arrow = marker;
-    arrow.id = static_cast<int>(tool);
-    arrow.scale.x = tuning::kShaftDiameter * drawn.spacing();
-    arrow.scale.y = 2.0 * tuning::kShaftDiameter * drawn.spacing();
-    arrow.scale.z = 0.0;
-    if (tools[tool].contacts > 0) arrow.points = ends(tool, tools[tool]);
-    add(std::move(arrow), array);
-  }
-}
-
-using Points = std::vector<geometry_msgs::Point>;
-
-void drawNormals(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  drawArrows(drawn, marker, array, [&](std::size_t, const ToolReport& tool) {
-    if (tool.normal.isZero()) return Points();
-    const Vec3 start = tool.point - tuning::kNormalLength * drawn.spacing() * tool.normal;
-    return Points{toPoint(start), toPoint(tool.point)};
-  });
-}
-
-void drawForces(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  drawArrows(drawn, marker, array, [&](std::size_t index, const ToolReport& tool) {
-    const Vec3 force_on_tissue = forceOnTissue(drawn.pipeline, index);
-    if (force_on_tissue.norm() <= tuning::kSmallestForce) return Points();
-    return Points{toPoint(tool.point - drawn.force_scale * force_on_tissue), toPoint(tool.point)};
-  });
 }
 
 // Markers of the supports, which never move; a plane is a box as long as the tissue's diagonal.
@@ -180,12 +140,16 @@ struct Namespace {
 const Namespace kNamespaces[] = {
     {"surface", Marker::TRIANGLE_LIST, {0.85, 0.47, 0.43}, Stamp::kShape, drawSurface<false>},
     {"cut_faces", Marker::TRIANGLE_LIST, {0.55, 0.06, 0.10}, Stamp::kShape, drawSurface<true>},
+    {"cut_edges", Marker::LINE_LIST, {0.35, 0.0, 0.04}, Stamp::kShape, drawLips},
     {"wireframe", Marker::LINE_LIST, {0.30, 0.13, 0.12}, Stamp::kShape, drawWireframe},
     {"fixed_nodes", Marker::SPHERE_LIST, {0.25, 0.25, 0.30}, Stamp::kShape, drawFixedNodes},
     {"loading_patches", Marker::SPHERE_LIST, {1.0, 0.80, 0.10}, Stamp::kShape, drawLoadedNodes},
     {"sutures", Marker::LINE_LIST, {0.95, 0.95, 0.90}, Stamp::kShape, drawSutures},
     {"contact_normals", Marker::ARROW, {0.10, 0.45, 0.85}, Stamp::kForces, drawNormals},
-    {"contact_forces", Marker::ARROW, {0.10, 0.65, 0.20}, Stamp::kForces, drawForces},
+    {"contact_forces", Marker::ARROW, {0.20, 0.85, 0.35}, Stamp::kForces, drawForces},
+    {"force_labels", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceLabels},
+    {"force_list", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceList},
+    {"legend", Marker::TEXT_VIEW_FACING, {0.95, 0.95, 0.95}, Stamp::kShape, drawLegend},
     {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Stamp::kShape, drawSupports},
 };
 
@@ -207,15 +171,22 @@ Marker blankOf(const Namespace& of, const std::string& frame_id, const ros::Time
 
 }  // namespace
 
-MarkerBuilder::MarkerBuilder(std::string frame_id, double force_scale,
+MarkerBuilder::MarkerBuilder(std::string frame_id, const MarkerStyle& style,
                              std::vector<SupportConfig> supports)
-    : frame_id_(std::move(frame_id)), force_scale_(force_scale), supports_(std::move(supports)) {}
+    : frame_id_(std::move(frame_id)), style_(style), supports_(std::move(supports)) {}
 
 MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
                                  const ros::Time& reached) {
-  if (springs_revision_ != pipeline.tissue().surface().revision)
-    findSurfaceSprings(pipeline.tissue());
-  const Drawn drawn{pipeline, supports_, surface_springs_, force_scale_};
+  const Tissue& tissue = pipeline.tissue();
+  if (springs_revision_ != tissue.surface().revision) {
+    display_.bind(tissue.surface());
+    findWires(tissue);
+  }
+  display_.fit(tissue.vertices());
+  const std::vector<double> values = surfaceValues(style_.color, pipeline);
+  scale_ = scaleFor(values, scale_);
+  const ForceArrows arrows = forceArrows(pipeline, style_.force_scale);
+  const Drawn drawn{pipeline, supports_, display_, wires_, style_, values, scale_, arrows};
   MarkerArray array;
   for (const Namespace& each : kNamespaces) {
     const ros::Time& time = each.stamp == Stamp::kForces ? reached : stamp;
@@ -237,18 +208,18 @@ MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Tim
   return changed;
 }
 
-void MarkerBuilder::findSurfaceSprings(const Tissue& tissue) {
+void MarkerBuilder::findWires(const Tissue& tissue) {
   const Lattice& lattice = tissue.lattice();
   std::vector<char> on_surface(at(lattice.nodeCount()), 0);
   for (const int node : tissue.surface().node) {
     if (node >= 0) on_surface[at(node)] = 1;
   }
-  surface_springs_.clear();
+  wires_.clear();
   for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
     const Spring& ends = lattice.springs()[spring];
     if (tissue.state().severed[spring] == 0 && on_surface[at(ends.a)] != 0 &&
         on_surface[at(ends.b)] != 0) {
-      surface_springs_.push_back(static_cast<int>(spring));
+      wires_.push_back({static_cast<int>(spring), display_.edgeBetween(ends.a, ends.b)});
     }
   }
   springs_revision_ = tissue.surface().revision;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <locale>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,7 +15,6 @@
 #include "node_ranges.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/key_table.h"
-#include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
 
@@ -100,6 +100,13 @@ std::string readStateDir(const Entry& entry) {
   return folder.string();
 }
 
+ColorBy readColor(const Entry& entry) {
+  if (!entry.given()) return ColorBy::kNone;
+  const std::optional<ColorBy> color = colorByName(entry.word(colorNames()));
+  if (!color) entry.fail("must be one of " + colorNames());
+  return *color;
+}
+
 // The node's own parameters, beside those of the scene.
 const KeyTable<NodeParameters> kOwnKeys = {
     {"rate",
@@ -122,6 +129,8 @@ const KeyTable<NodeParameters> kOwnKeys = {
      [](const Entry& entry, NodeParameters& parameters) {
        parameters.force_scale = entry.numberOr(parameters.force_scale, ranges::forceScale());
      }},
+    {"color",
+     [](const Entry& entry, NodeParameters& parameters) { parameters.color = readColor(entry); }},
     {"robot_description_param",
      [](const Entry& entry, NodeParameters& parameters) {
        if (!entry.given()) return;
@@ -140,6 +149,17 @@ double updateBudget(const NodeParameters& parameters) {
   return budget_ms > 0.0 ? 1e-3 * budget_ms : tuning::kLongestUpdate;
 }
 
+NodeParameters parseNodeParameters(const YAML::Node& root, SceneSource source) {
+  source.user = SceneUser::kNode;
+  source.other_keys = namesOf(kOwnKeys);
+  NodeParameters parameters;
+  parameters.scene = parseScene(root, source);
+  for (const Key<NodeParameters>& key : kOwnKeys) {
+    if (key.read != nullptr) key.read(Entry(root[key.name], key.name, source.name), parameters);
+  }
+  return parameters;
+}
+
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   XmlRpc::XmlRpcValue all;
   YAML::Node root(YAML::NodeType::Map);
@@ -147,20 +167,10 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
       all.getType() == XmlRpc::XmlRpcValue::TypeStruct) {
     root = toYaml(all);
   }
-  const std::string name = private_node.getNamespace();
-  const auto own = [&](const std::string& key) { return Entry(root[key], key, name); };
   SceneSource source;
-  source.name = name;
-  source.user = SceneUser::kNode;
-  source.folder = readSceneFolder(own("scene_file"));
-  source.other_keys = namesOf(kOwnKeys);
-
-  NodeParameters parameters;
-  for (const Key<NodeParameters>& key : kOwnKeys) {
-    if (key.read != nullptr) key.read(own(key.name), parameters);
-  }
-  parameters.scene = parseScene(root, source);
-  return parameters;
+  source.name = private_node.getNamespace();
+  source.folder = readSceneFolder(Entry(root["scene_file"], "scene_file", source.name));
+  return parseNodeParameters(root, source);
 }
 
 }  // namespace robot_tissue

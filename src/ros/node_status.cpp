@@ -1,4 +1,6 @@
-// TissueNode: how it is, in the words of its state and of the diagnostics.
+// How the node is, in the words of its state and of the diagnostics.
+#include "robot_tissue/ros/node_status.h"
+
 #include <string>
 
 #include "robot_tissue/pipeline/step_remarks.h"
@@ -12,7 +14,7 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 // The word of TissueState.msg for a remark. Jaws that meet, or hold nothing, are no fault by
-// themselves: jaws that close where no tissue is do both.
+// themselves: jaws that close where no tissue is do both. A burr that stops has done all it could.
 std::string wordOf(StepRemark::Kind kind) {
   switch (kind) {
     case StepRemark::Kind::kInside:
@@ -25,6 +27,7 @@ std::string wordOf(StepRemark::Kind kind) {
       return "UNCONVERGED";
     case StepRemark::Kind::kJawsMeet:
     case StepRemark::Kind::kHoldsNothing:
+    case StepRemark::Kind::kDrills:
       break;
   }
   return "OK";
@@ -37,15 +40,13 @@ void say(const std::string& word, const std::string& message, NodeStatus& status
 
 }  // namespace
 
-// The first word that applies; the message has all. What is said of the tools is kept for the
-// diagnostics, which come seldom.
-NodeStatus TissueNode::statusOf(const StepReport& report) {
+NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& remarks) {
+  const StepReport& report = pipeline.report();
   NodeStatus status;
-  for (const StepRemark& remark : remarksOn(pipeline_)) {
+  for (const StepRemark& remark : remarks) {
     say(wordOf(remark.kind), remark.text, status);
-    if (remark.kind != StepRemark::Kind::kHoldsNothing) tools_said_[remark.kind] = remark.text;
   }
-  const SolveReport& solve = pipeline_.tissue().lastReport();
+  const SolveReport& solve = pipeline.tissue().lastReport();
   if (report.late) {
     say("LATE", "the update ran out of its time (solver.max_ms, else 0.1 s) and is carried on",
         status);
@@ -54,8 +55,15 @@ NodeStatus TissueNode::statusOf(const StepReport& report) {
   } else if (solve.status == SolveStatus::kInverted) {
     say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted", status);
   }
-  was_late_ = was_late_ || report.late;
   return status;
+}
+
+// Of an update, for the diagnostics, which come seldom.
+void TissueNode::remember(const std::vector<StepRemark>& remarks) {
+  for (const StepRemark& remark : remarks) {
+    if (remark.kind != StepRemark::Kind::kHoldsNothing) tools_said_[remark.kind] = remark.text;
+  }
+  was_late_ = was_late_ || pipeline_.report().late;
 }
 
 // Poses may come as seldom as they do: `~rate` is how often they are followed at most.

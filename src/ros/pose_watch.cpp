@@ -28,11 +28,10 @@ void PoseWatch::AtOnce::removeByID(std::uint64_t) {}
 PoseWatch::PoseWatch(tf2_ros::Buffer& buffer, const ToolPoses& poses, double rate_hz,
                      ros::CallbackQueueInterface& queue, OnStill on_still, OnPose on_pose)
     : buffer_(buffer),
-      poses_(poses),
       queue_(queue),
       on_still_(std::move(on_still)),
       on_pose_(std::move(on_pose)),
-      pace_(rate_hz) {
+      pick_(poses, rate_hz) {
   connection_ = buffer_._addTransformsChangedListener([this] { onTransforms(); });
   const auto time_went_back = [this, jumps = 0]() mutable {
     const int before = std::exchange(jumps, timeJumps());
@@ -54,7 +53,7 @@ void PoseWatch::start() {
 
 void PoseWatch::setRate(double rate_hz) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  pace_ = UpdatePace(rate_hz);
+  pick_.setRate(rate_hz);
 }
 
 PoseWatch::Seen PoseWatch::seen() {
@@ -82,7 +81,7 @@ void PoseWatch::noticeTime() {
     waiting_.reset();
     still_.reset();
     seen_ = Seen();
-    last_stamp_ = ros::Time();
+    pick_.timeWentBack();
   }
   last_time_ = now;
 }
@@ -96,18 +95,14 @@ void PoseWatch::standAt(std::optional<StillPose> still) {
 // to be done at it. Others are left to the timer, which tells what is wrong.
 void PoseWatch::onTransforms() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const ros::Time now = ros::Time::now();
-  if (!started_ || !pace_.isDue(now.toSec())) return;
-  PoseLookUp look_up = poses_.lookUp(now);
-  const bool is_good = look_up.status == PoseLookUp::Status::kOk && !look_up.is_static;
-  if (!is_good || look_up.stamp == last_stamp_) return;
-  pace_.take(now.toSec());
-  last_stamp_ = look_up.stamp;
+  if (!started_) return;
+  std::optional<PoseLookUp> look_up = pick_.take(ros::Time::now());
+  if (!look_up) return;
   seen_.any = true;
   ++counts_.came;
-  if (!waiting_ && still_ && still_->holds(look_up.pose)) {
-    seen_.still = look_up.stamp;
-    return on_still_(look_up.stamp);
+  if (!waiting_ && still_ && still_->holds(look_up->pose)) {
+    seen_.still = look_up->stamp;
+    return on_still_(look_up->stamp);
   }
   const bool is_awake = waiting_.has_value();
   if (is_awake) ++counts_.missed;

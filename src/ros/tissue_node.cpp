@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
-#include "robot_tissue/pipeline/step_remarks.h"
-#include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -17,7 +15,7 @@ namespace {
 
 const ros::WallDuration kRobotLookUpPeriod(1.0);
 const ros::WallDuration kGrace(2.0);        // after a start or a jump of time
-const ros::WallDuration kClockPeriod(0.5);  // between looks for a clock
+const ros::WallDuration kClockPeriod(0.5);  // between looks at a clock that is told
 
 }  // namespace
 
@@ -27,7 +25,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
       pipeline_(parameters_.scene.tissue, parameters_.scene.solver, {}, parameters_.scene.supports),
       tool_poses_(buffer_, parameters_.scene.tissue.frame_id, parameters_.tf_timeout_s),
       publisher_(private_node_, parameters_, tool_poses_),
-      clock_(1.0 / parameters_.rate_hz, tuning::kLongestGap),
+      follower_(parameters_, pipeline_),
       watch_(
           buffer_, tool_poses_, parameters_.rate_hz, *ros::getGlobalCallbackQueue(),
           [this](const ros::Time& stamp) { onStill(stamp); },
@@ -36,12 +34,12 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   grace_end_ = ros::WallTime::now() + kGrace;
   pipeline_.setBudget(updateBudget(parameters_));
   robotIsKnown();
-  settleFromRest();
+  follower_.settleFromRest();
   services_ = std::make_unique<TissueServices>(
       private_node_, parameters_, pipeline_, publisher_, tool_poses_,
       TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
-                           [this] { follow(); }, [this] { settleFromRest(); }});
+                           [this] { follow(); }, [this] { follower_.settleFromRest(); }});
   surgery_ =
       std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_, publisher_,
                                         tool_poses_, [this] { watch_.standAt(std::nullopt); });
@@ -91,10 +89,13 @@ void TissueNode::retune(const NodeParameters& wanted) {
   publisher_.retune(parameters_);
 }
 
-// Timers of simulated time stand still without a clock.
+// Timers of simulated time stand still without a clock, and where time goes back one whose period
+// was set since it last came may sleep until it is as late as before.
 void TissueNode::onWallTimer() {
-  if (!ros::Time::now().isZero()) return wall_timer_.stop();
-  report({"NO_TRANSFORM", "use_sim_time is true, but nothing publishes a time on /clock"});
+  if (ros::Time::now().isZero()) {
+    return report({"NO_TRANSFORM", "use_sim_time is true, but nothing publishes a time on /clock"});
+  }
+  timeWentBack();
 }
 
 // Time is another one, as where a bag plays again: what was before says nothing of what is now. The
@@ -106,14 +107,10 @@ bool TissueNode::timeWentBack() {
                        "time went back, as where a bag plays again or a simulation is reset: the "
                        "shape stays, the tools come in anew (said once)");
   time_jumps_ = jumps;
+  timer_.setPeriod(period());  // it comes again from now on
   grace_end_ = ros::WallTime::now() + kGrace;
-  jumped_at_ = ros::Time();
   last_look_up_ = PoseLookUp();
-  if (robot_is_known_) {
-    RobotPose nowhere;
-    nowhere.stamp_s = clock_.now();
-    pipeline_.step(nowhere);
-  }
+  if (robot_is_known_) follower_.timeWentBack();
   publisher_.timeWentBack();
   diagnostics_.force_update();  // it would wait for the time of before
   return true;
@@ -155,8 +152,7 @@ void TissueNode::update(PoseLookUp look_up) {
   if (timeWentBack()) return;  // the pose may be one of before
   last_look_up_ = std::move(look_up);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
-    const bool stale = last_look_up_.status == PoseLookUp::Status::kStale;
-    return report({stale ? "STALE" : "NO_TRANSFORM", last_look_up_.message});
+    return report(statusWithoutPose(last_look_up_));
   }
   try {
     if (waitsAfterJump()) return;
@@ -168,54 +164,29 @@ void TissueNode::update(PoseLookUp look_up) {
   }
 }
 
-// A pose that a tool jumped to may be a wrong one: while tools touch, it has to last before the
-// good shape is given up for it.
 bool TissueNode::waitsAfterJump() {
-  const auto jumped = pipeline_.tissue().isUntouched() ? std::vector<std::size_t>()
-                                                       : pipeline_.jumpsTo(last_look_up_.pose);
-  const ros::Time now = last_look_up_.stamp;
-  if (jumped.empty() || now < jumped_at_) jumped_at_ = ros::Time();
-  if (jumped.empty()) return false;
-  if (jumped_at_.isZero()) jumped_at_ = now;
-  if ((now - jumped_at_).toSec() >= parameters_.tf_timeout_s) return false;
+  const std::string waits = follower_.waitsAfterJump(last_look_up_);
+  if (waits.empty()) return false;
   last_look_up_.status = PoseLookUp::Status::kStale;
-  last_look_up_.message = namesOf(jumped, pipeline_.tools()) +
-                          " jumped, farther than is followed: the last good shape stays, until "
-                          "the pose has lasted for " +
-                          numberText(parameters_.tf_timeout_s) + " s (~tf_timeout)";
-  report({"TOO_FAST", last_look_up_.message});
+  last_look_up_.message = waits;
+  report({"TOO_FAST", waits});
   return true;
-}
-
-// The pose's time is the tissue's.
-void TissueNode::setTimeOf(RobotPose& pose) {
-  pose.stamp_s = clock_.advance(last_look_up_.stamp, pipeline_.tissue().isMoving());
-  if (clock_.leftOut() > 0.0) {
-    ROS_WARN_STREAM_THROTTLE(1.0, "no pose came for a while: for "
-                                      << clock_.leftOut()
-                                      << " s of it the tissue's time stood still");
-  }
 }
 
 // At a good pose.
 void TissueNode::follow() {
-  setTimeOf(last_look_up_.pose);
-  const StepReport& step = pipeline_.step(last_look_up_.pose);
+  const StepReport& step = follower_.follow(last_look_up_);
   if (timeWentBack()) return;
   warned_.clear();
-  status_ = statusOf(step);
+  const std::vector<StepRemark> remarks = remarksOn(pipeline_);
+  status_ = statusOf(pipeline_, remarks);
+  remember(remarks);
   const bool comes_anew = time_jumps_ > 0 && ros::WallTime::now() < grace_end_;
   if (!comes_anew && (step.too_fast || !step.were_inside.empty() || !step.torn_off.empty())) {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   }
   publisher_.publish(pipeline_, last_look_up_.stamp, status_);
   if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
-}
-
-// Balances the tissue under what acts without tools: gravity and the supports.
-void TissueNode::settleFromRest() {
-  const Scene& scene = parameters_.scene;
-  if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline_.settle();
 }
 
 // Loads the tools once the robot's description is there; without tools none is needed.
@@ -234,12 +205,7 @@ bool TissueNode::robotIsKnown() {
     pipeline_.setTools(loaded.tools);
     for (const std::string& warning : pipeline_.toolWarnings()) ROS_WARN_STREAM(warning);
     publisher_.setTools(loaded.tools);
-    std::vector<std::string> links;
-    for (const ToolGeometry& tool : loaded.tools) {
-      const std::vector<std::string> frames = linkFrames(tool);
-      links.insert(links.end(), frames.begin(), frames.end());
-    }
-    tool_poses_.setLinks(links);
+    tool_poses_.setLinks(linkFrames(loaded.tools));
     watch_.start();
   }
   robot_is_known_ = true;

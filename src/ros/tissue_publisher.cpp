@@ -1,13 +1,8 @@
 #include "robot_tissue/ros/tissue_publisher.h"
 
-#include <robot_tissue/ContactArray.h>
-#include <robot_tissue/TissueState.h>
-
-#include <algorithm>
 #include <chrono>
 
-#include "robot_tissue/ros/conversions.h"
-#include "robot_tissue/ros/tool_forces.h"
+#include "robot_tissue/ros/tissue_messages.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -15,66 +10,14 @@ namespace {
 
 const ros::Duration kStatePeriod(1.0);  // of the state while nothing changes
 
-void addBalance(const ForceBalance& balance, TissueState& message) {
-  message.force_of_tools = toVector3(balance.tools);
-  message.force_of_supports = toVector3(balance.supports);
-  message.force_of_loads = toVector3(balance.loads);
-  message.force_of_fixed = toVector3(balance.fixed);
-  message.weight = toVector3(balance.weight);
-  message.unbalanced_force = balance.unbalanced().norm();
-}
-
-Touch touchMessage(const ToolTouch& touch) {
-  Touch message;
-  message.point = toPoint(touch.point);
-  message.normal = toVector3(touch.normal);
-  message.depth = touch.depth_m;
-  message.normal_force = touch.normal_force;
-  message.friction_force = toVector3(touch.friction_force);
-  return message;
-}
-
-TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
-  const StepReport& report = pipeline.report();
-  const LatticeState& lattice = pipeline.tissue().state();
-  TissueState message;
-  message.status = status.status;
-  message.message = status.message;
-  const SolveReport& solve = pipeline.tissue().lastReport();
-  message.residual = solve.residual;
-  message.error_estimate = solve.error_estimate;
-  message.contact_ms = report.contact_ms;
-  message.solve_ms = report.solve_ms;
-  message.active_nodes = solve.active_nodes;
-  message.layers = solve.layers;
-  message.volume_ratio = solve.volume_ratio;
-  message.inverted_cells = solve.inverted_cells;
-  message.pieces = lattice.pieces;
-  message.springs_cut = lattice.springs_cut;
-  message.topology = static_cast<std::uint32_t>(pipeline.tissue().surface().revision);
-  message.substeps = report.substeps;
-  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
-    const ToolReport& met = report.tools[tool];
-    message.max_penetration = std::max(message.max_penetration, met.max_penetration);
-    message.saturated = message.saturated || met.saturated;
-    if (met.grasps) message.grasping.push_back(pipeline.tools()[tool].name);
-  }
-  for (const SutureReport& suture : pipeline.tissue().sutures()) {
-    message.sutures.push_back(suture.name);
-    message.suture_tensions.push_back(suture.tension);
-    message.sutures_broken.push_back(suture.broken ? 1 : 0);
-  }
-  addBalance(pipeline.forceBalance(), message);
-  return message;
-}
-
 }  // namespace
 
 TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters,
                                  const ToolPoses& poses)
     : private_node_(private_node),
       frame_id_(parameters.scene.tissue.frame_id),
-      marker_builder_(frame_id_, parameters.force_scale, parameters.scene.supports),
+      marker_builder_(frame_id_, {parameters.force_scale, parameters.color},
+                      parameters.scene.supports),
       marker_pace_(parameters.marker_rate_hz),
       shape_(private_node_, frame_id_, parameters.marker_rate_hz),
       wrenches_(private_node_, poses, parameters.wrench_rate_hz) {
@@ -182,25 +125,9 @@ void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time&
   if (!due || contacts_.getNumSubscribers() == 0 || !pipeline.hasArrived()) return;
   contacts_due_ = false;
   last_contacts_ = stamp;
-  ContactArray array;
+  ContactArray array = contactArray(pipeline);
   array.header.stamp = stamp;
   array.header.frame_id = frame_id_;
-  for (std::size_t tool = 0; tool < pipeline.tools().size(); ++tool) {
-    const ToolReport& report = pipeline.report().tools[tool];
-    if (report.contacts == 0) continue;
-    TissueContact contact;
-    contact.tool = pipeline.tools()[tool].name;
-    contact.nodes.assign(report.nodes.begin(), report.nodes.end());
-    contact.point = toPoint(report.point);
-    contact.normal = toVector3(report.normal);
-    contact.depth = report.max_penetration;
-    contact.force = toVector3(forceOnTissue(pipeline, tool));
-    contact.saturated = report.saturated;
-    for (const ToolTouch& touch : pipeline.touchesOf(tool)) {
-      contact.touches.push_back(touchMessage(touch));
-    }
-    array.contacts.push_back(contact);
-  }
   contacts_.publish(array);
 }
 

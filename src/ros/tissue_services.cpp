@@ -108,9 +108,13 @@ bool TissueServices::onCut(Cut::Request& request, Cut::Response& response) {
     publisher_.shapeChanged();
     response.success = true;
     response.springs_cut = cut.springs_cut;
+    response.springs_torn = cut.springs_torn;
     response.pieces = cut.pieces;
     response.message = cut.springs_cut > 0 ? std::to_string(cut.springs_cut) + " springs cut"
                                            : "no spring crosses the polygon";
+    if (cut.springs_torn > 0) {
+      response.message += ", " + std::to_string(cut.springs_torn) + " torn thereafter";
+    }
     response.message += solved(cut.solve, pipeline_.isLate());
   } catch (const InputError& error) {
     response.success = false;

@@ -25,7 +25,16 @@ std::vector<std::string> linkFrames(const ToolGeometry& tool) {
   return frames;
 }
 
-ToolPoses::ToolPoses(const tf2_ros::Buffer& buffer, std::string tissue_frame, double timeout_s)
+std::vector<std::string> linkFrames(const std::vector<ToolGeometry>& tools) {
+  std::vector<std::string> frames;
+  for (const ToolGeometry& tool : tools) {
+    const std::vector<std::string> own = linkFrames(tool);
+    frames.insert(frames.end(), own.begin(), own.end());
+  }
+  return frames;
+}
+
+ToolPoses::ToolPoses(const tf2::BufferCore& buffer, std::string tissue_frame, double timeout_s)
     : buffer_(buffer), tissue_frame_(std::move(tissue_frame)), timeout_s_(timeout_s) {}
 
 PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {

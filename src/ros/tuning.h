@@ -3,6 +3,8 @@
 // the node's tests passed; no other value was measured against it.
 #pragma once
 
+#include <cstddef>
+
 namespace robot_tissue::tuning {
 
 // Updates.
@@ -37,6 +39,12 @@ constexpr unsigned kWrenchQueue = 10;
 constexpr double kWireWidth = 0.0004;
 // m: of the threads of sutures. More: they are seen from farther. Chosen.
 constexpr double kThreadWidth = 0.0006;
+// m: of the lines along the edges of a wound.
+constexpr double kLipWidth = 0.0008;
+// Of the spacing (1): how high its arch stands over the skin. More: it hovers; less: a bulge
+// between the ends hides it. Chosen.
+constexpr double kThreadHeight = 0.3;
+constexpr int kThreadParts = 8;  // straight ones of the arch
 // Of the spacing (1): diameter of a fixed node; of a loaded one it is twice as much.
 constexpr double kNodeDiameter = 0.2;
 // Spacings: length of a normal's arrow.
@@ -47,6 +55,48 @@ constexpr double kShaftDiameter = 0.25;
 constexpr double kPlaneThickness = 0.2;
 // N: no arrow up to here, as rviz complains of one without length. More: weak touches show none.
 constexpr double kSmallestForce = 1e-9;
+
+// The surface as it is drawn.
+// 1: cosine of 40 degrees, between neighboring triangles at rest; what is sharper stays sharp.
+// More: blunt edges of an organ stay sharp, too. Chosen.
+constexpr double kCreaseCosine = 0.766;
+// 1: of an edge's length, by which a tangent plane lifts the end of a curve, at most. More: rounder
+// where the lattice folds, to the point of bulges. Chosen.
+constexpr double kMostRise = 0.5;
+// 1: sine of the angle between the planes that meet in a crease; below, their line is uncertain.
+constexpr double kLeastSine = 0.2;
+// rad: bends of an edge, both ends together, up to which it is drawn straight, and in two pieces;
+// in four beyond. More: fewer triangles, and facets that one sees. Chosen: 3 and 10 degrees.
+constexpr double kDrawnStraight = 0.05;
+constexpr double kDrawnInHalves = 0.17;
+// Triangles: beyond, all edges are drawn in halves, and then straight. More: finer, and more bytes:
+// 72 a triangle. Chosen: some 4 MB.
+constexpr std::size_t kMostDrawn = 60000;
+
+// Colors and labels.
+// Of the diagonal of the tissue at rest (1): height of letters, of the legend, its width and its
+// distance from the tissue.
+constexpr double kTextHeight = 0.035;
+constexpr double kLegendHeight = 0.45;
+constexpr double kLegendWidth = 0.035;
+constexpr double kLegendGap = 0.14;
+// Of the letters' height (1): from an arrow to its number.
+constexpr double kLabelGap = 1.6;
+// Of the letters' height (1): of the list of forces over the tissue's foot; its lines go down.
+constexpr double kListHeight = 5.0;
+// Strips of the legend.
+constexpr int kLegendSteps = 16;
+// 1: the scale of colors shrinks when less than this of it is needed. More: it changes more often.
+constexpr double kScaleInUse = 0.2;
+// mm, % and kPa: the shortest scale; below lies the solver's error. Chosen.
+constexpr double kLeastScale = 0.1;
+// 1: brightness of a color that looks away from the light. More: flatter.
+constexpr double kDarkest = 0.55;
+// Of the tissue's diagonal (1): an arrow of a force starts where the tool ends along it, up to
+// here; else beside the tool.
+constexpr double kFarthestArrow = 0.25;
+// 1: a way out of the tool is taken for another when it is shorter by more.
+constexpr double kClearlyLess = 0.9;
 
 // m: arm of a turn in the prediction of wrenches. More: turns teach and foretell less. Chosen, as
 // long as tips of instruments are.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/tissue_messages.h"
 #include "robot_tissue/ros/tool_poses.h"
 #include "tuning.h"
 
@@ -50,8 +51,7 @@ void WrenchPublisher::publish(const Pipeline& pipeline, const ros::Time& stamp) 
     const ToolReport& report = pipeline.report().tools[tool];
     Told& told = tools_[tool];
     told.message.header.stamp = stamp;
-    told.message.wrench.force = toVector3(report.force_on_tool);
-    told.message.wrench.torque = toVector3(report.torque_on_tool);
+    told.message.wrench = wrenchOn(report);
     if (!pipeline.pose()) continue;
     const Pose& pose = pipeline.pose()->links[told.first_link];
     told.prediction.learn(

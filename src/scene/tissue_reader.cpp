@@ -274,6 +274,12 @@ void readTime(const Entry& entry, TissueReading& reading) {
   reading.tissue.time = time;
 }
 
+void readFreePieces(const Entry& entry, TissueReading& reading) {
+  if (!entry.given()) return;
+  const bool drops = entry.choice({"stay", "drop"}, {}) == "drop";
+  reading.tissue.free_pieces = drops ? FreePieces::kDrop : FreePieces::kStay;
+}
+
 // The tissue's keys: first those that make the grid, then those that are checked against it.
 const KeyTable<TissueReading> kBodyKeys = {
     {"frame_id",
@@ -288,6 +294,7 @@ const KeyTable<TissueReading> kBodyKeys = {
      }},
     {"material", readMaterial},
     {"time", readTime},
+    {"free_pieces", readFreePieces},
 };
 const KeyTable<TissueReading> kGridKeys = {
     {"regions", readRegions},

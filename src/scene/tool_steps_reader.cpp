@@ -18,7 +18,7 @@ bool hasShapes(const ToolConfig& tool) {
   return std::all_of(tool.links.end() - 2, tool.links.end(), with_shapes);
 }
 
-bool pushes(const ToolConfig& tool) { return hasShapes(tool) && !tool.role.has_edge; }
+bool pushes(const ToolConfig& tool) { return hasShapes(tool) && tool.role.touches(); }
 
 template <class Allowed>
 std::string namesOf(const std::vector<ToolConfig>& tools, const Allowed& allowed) {
@@ -139,9 +139,9 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
   PushStep step;
   const ToolConfig& tool = readTool(map["tool"], tools);
   step.tool = tool.name;
-  if (tool.role.has_edge) {
-    map["tool"].fail("role " + tool.role.name +
-                     " only cuts, must be a tool that pushes: " + namesOf(tools, pushes));
+  if (!tool.role.touches()) {
+    map["tool"].fail("role " + tool.role.name + " only " + tool.role.deed() +
+                     ", must be a tool that pushes: " + namesOf(tools, pushes));
   }
   requireStands(map["tool"], step.tool, standing);
   readKeys(map, kPushKeys, step);

@@ -138,7 +138,7 @@ void checkLinksAreOnce(const ToolLinks& links, const ToolConfig& tool,
                        const std::vector<ToolConfig>& earlier, Remarks& remarks) {
   const auto touches = [](const ToolConfig& of, std::size_t link) {
     const bool is_frame = of.role.has_jaws && link + 2 < of.links.size();
-    const bool is_bare = of.role.has_edge || (is_frame && of.links[link].shapes.empty());
+    const bool is_bare = !of.role.touches() || (is_frame && of.links[link].shapes.empty());
     return !of.links[link].link.empty() && !is_bare;
   };
   const auto check = [&](std::size_t i, const ToolConfig& other, std::size_t j) {

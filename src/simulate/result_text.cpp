@@ -95,7 +95,7 @@ std::string toolsCsv(const RunResult& result) {
 std::string piecesCsv(const RunResult& result) {
   std::string csv = "step,increment,piece,volume,fixed,cx,cy,cz\n";
   for (const PieceRow& row : result.pieces) {
-    csv += text(row.step, row.increment) + ',' + std::to_string(row.number) + ',' +
+    csv += text(row.step, row.increment) + ',' + std::to_string(row.piece.number) + ',' +
            text(row.piece.volume) + ',' + (row.piece.fixed ? '1' : '0') + ',' +
            text(row.piece.center) + '\n';
   }

@@ -20,7 +20,7 @@ bool partsTissue(const Scene& scene) {
   const auto tears = [](const Material& material) { return material.tear_stretch > 0.0; };
   return std::any_of(scene.steps.begin(), scene.steps.end(), parts) ||
          std::any_of(scene.tools.begin(), scene.tools.end(),
-                     [](const ToolConfig& tool) { return tool.role.has_edge; }) ||
+                     [](const ToolConfig& tool) { return !tool.role.touches(); }) ||
          tears(scene.tissue.material) ||
          std::any_of(scene.tissue.regions.begin(), scene.tissue.regions.end(),
                      [&](const Region& region) { return tears(region.material); });

@@ -40,7 +40,6 @@ struct ToolRow {
 struct PieceRow {
   int step = 0;
   int increment = 1;
-  int number = 0;  // from 0, in the order of the pieces' lowest nodes
   TissuePiece piece;
 };
 

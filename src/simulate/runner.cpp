@@ -76,8 +76,10 @@ void Runner::performAll() {
     step_ = static_cast<int>(i);
     try {
       const int torn = pipeline_.tissue().springsTorn();
+      const std::size_t dropped = pipeline_.tissue().droppedPieces().size();
       std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
       remarkTorn(torn);
+      remarkDropped(dropped);
       if (on_step_) on_step_(step_, pipeline_.tissue());
     } catch (const InputError& error) {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());

@@ -54,6 +54,7 @@ class Runner {
   void perform(const RemoveStep& step);
   void perform(const UndoStep& step);
   void keepPieces(int increment);
+  void remarkDropped(std::size_t before);
 
   // suture_steps.cpp
   void perform(const SutureStep& step);
@@ -94,6 +95,7 @@ class Runner {
   double contact_ms_ = 0.0;               // of the tools' updates since the last row
   int springs_cut_ = 0;                   // by blades, since their move began
   double area_cut_ = 0.0;                 // likewise (m^2)
+  double volume_removed_ = 0.0;           // by burrs, likewise (m^3)
   double time_ = 0.0;                     // that went by (s)
   RunResult result_;
   int step_ = 0;

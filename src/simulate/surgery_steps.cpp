@@ -27,9 +27,17 @@ void Runner::perform(const UndoStep& step) {
 }
 
 void Runner::keepPieces(int increment) {
-  const std::vector<TissuePiece> pieces = pipeline_.tissue().pieces();
-  for (std::size_t number = 0; number < pieces.size(); ++number) {
-    result_.pieces.push_back({step_, increment, static_cast<int>(number), pieces[number]});
+  for (const TissuePiece& piece : pipeline_.tissue().pieces()) {
+    result_.pieces.push_back({step_, increment, piece});
+  }
+}
+
+// `before`: how many had been dropped before the step.
+void Runner::remarkDropped(std::size_t before) {
+  if (std::holds_alternative<LoadStateStep>(scene_.steps[at(step_)])) return;
+  const std::vector<int>& dropped = pipeline_.tissue().droppedPieces();
+  for (std::size_t i = before; i < dropped.size(); ++i) {
+    remark("piece " + std::to_string(dropped[i]) + " was dropped, nothing holds it");
   }
 }
 

@@ -16,7 +16,7 @@ void Runner::perform(const MoveStep& step) {
   }
   if (!step.duration) pipeline_.stopTime();
   springs_cut_ = 0;
-  area_cut_ = 0.0;
+  area_cut_ = volume_removed_ = 0.0;
   if (step.from) appear(tool, *step.from);
   Way way{tool, *tools_.of(tool), step.to, time_, step.duration.value_or(0.0)};
   tools_.put(tool, step.to);
@@ -163,6 +163,7 @@ void Runner::update() {
   updates_.any = true;
   springs_cut_ += report.springs_cut;
   area_cut_ += report.area_cut;
+  volume_removed_ += report.volume_removed;
   contact_ms_ += report.contact_ms;
   updates_.solve_ms += report.solve_ms;
   updates_.worst = std::max(updates_.worst, pipeline_.tissue().lastReport().status);
@@ -182,6 +183,10 @@ void Runner::remarkHolds() {
 }
 
 void Runner::remarkCut(std::size_t tool) {
+  if (volume_removed_ > 0.0) {
+    remark("tool '" + tools_.name(tool) + "' removed " + numberText(volume_removed_) +
+           " m^3; pieces: " + std::to_string(pipeline_.tissue().state().pieces));
+  }
   if (springs_cut_ == 0) return;
   remark("tool '" + tools_.name(tool) + "' cut " + std::to_string(springs_cut_) + " springs, " +
          numberText(area_cut_) +

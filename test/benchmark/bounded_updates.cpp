@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -31,13 +32,6 @@ double processorSeconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const auto last = static_cast<double>(values.size() - 1);
-  return values[static_cast<std::size_t>(
-      std::min(last, share * static_cast<double>(values.size())))];
 }
 
 RobotPose poseAt(double gone) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/core/tissue.h"
+#include "timing.h"
 
 namespace robot_tissue {
 
@@ -65,12 +66,6 @@ inline double errorOf(const Tissue& tissue, const Tissue& exact) {
     moved += right.squaredNorm();
   }
   return std::sqrt(missed / moved);
-}
-
-inline double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
 }  // namespace robot_tissue

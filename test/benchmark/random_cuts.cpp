@@ -7,54 +7,20 @@
 // The scene's first load stands. SIZE (m): how far corners are from the polygon's middle along each
 // axis, at most.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
-#include <random>
 #include <utility>
 #include <vector>
 
+#include "../random_polygons.h"
 #include "robot_tissue/core/tissue.h"
 #include "robot_tissue/scene/scene_parser.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double millisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-class Polygons {
- public:
-  Polygons(const Box& bounds, double size) : bounds_(bounds), size_(size) {}
-
-  std::vector<Vec3> next() {
-    const int corners = 3 + static_cast<int>(between(0.0, 3.0));
-    Vec3 middle;
-    for (int axis = 0; axis < 3; ++axis) {
-      middle[axis] = between(bounds_.min()[axis], bounds_.max()[axis]);
-    }
-    std::vector<Vec3> polygon;
-    for (int corner = 0; corner < corners; ++corner) {
-      const double x = between(-size_, size_), y = between(-size_, size_);
-      polygon.emplace_back(middle + Vec3(x, y, between(-size_, size_)));
-    }
-    return polygon;
-  }
-
- private:
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_()) / 4294967296.0;
-  }
-
-  Box bounds_;
-  double size_;
-  std::mt19937 engine_{1};
-};
 
 // Edges that one triangle runs along, or several the same way.
 std::pair<int, int> openAndManifoldFaults(const TissueSurface& surface) {
@@ -81,7 +47,7 @@ void run(const Scene& scene, int cuts, double size) {
   }
   const std::string before = tissue.savedState();
   const double volume = enclosedVolume(tissue.surface(), tissue.surface().rest);
-  Polygons polygons(tissue.lattice().bounds(), size);
+  RandomPolygons polygons(tissue.lattice().bounds(), size);
   double sum = 0.0, longest = 0.0;
   int not_ok = 0, refused = 0;
   std::printf(

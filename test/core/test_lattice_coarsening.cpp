@@ -1,6 +1,7 @@
 // Lattices of twice the spacing: same volume, same neighbors, parted where cuts have parted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "solvers/multigrid/level/lattice_coarsening.h"
@@ -50,7 +51,7 @@ TEST(Coarsening, OfABlockIsTheBlockOfTwiceTheSpacing) {
   const Coarsening coarse = coarsened(grid, cells, grid.beside);
   EXPECT_EQ(coarse.grid.size, (std::array<int, 3>{3, 4, 2}));
   EXPECT_EQ(coarse.nodes_beside, 0);
-  EXPECT_TRUE(coarse.carriers.empty());
+  EXPECT_TRUE(coarse.carried.empty());
   EXPECT_TRUE(coarse.starts.empty());
   ASSERT_EQ(coarse.cells.size(), 6U);
   for (const LevelCell& cell : coarse.cells) EXPECT_EQ(cell.shear, 1.0);
@@ -85,9 +86,10 @@ TEST(Coarsening, WhatACutPartsStaysPartedWhereverTheCutRuns) {
     for (const LevelCell& cell : cells) {
       std::set<int>& side = nodes[cell.place[0] >= x ? 1 : 0];
       for (const int node : cell.nodes) {
-        const auto found = coarse.carriers.find(node);
-        const NodeShares shares = found != coarse.carriers.end()
-                                      ? found->second
+        const auto found = std::find_if(coarse.carried.begin(), coarse.carried.end(),
+                                        [node](const auto& each) { return each.node == node; });
+        const NodeShares shares = found != coarse.carried.end()
+                                      ? found->carriers
                                       : sharesAround(coarse.grid, grid.placeOf(node));
         for (const NodeShare& share : shares) side.insert(share.node);
       }

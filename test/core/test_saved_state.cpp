@@ -129,8 +129,8 @@ TEST_P(SavedStateOf, TruncatedForeignAndNewerOnesAreRefused) {
   }
   EXPECT_TRUE(mentions(refusalOf(tissue, "PK\x03\x04 of another program"), "is no saved state"));
   std::string newer = bytes;
-  newer[kVersionAt] = 3;
-  EXPECT_TRUE(mentions(refusalOf(tissue, newer), "version 3; allowed: up to 2"));
+  newer[kVersionAt] = 4;
+  EXPECT_TRUE(mentions(refusalOf(tissue, newer), "version 4; allowed: up to 3"));
   EXPECT_TRUE(mentions(refusalOf(tissue, bytes + "x"), "damaged"));
   expectUnchanged(tissue, before);
 }

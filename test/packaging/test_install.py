@@ -81,8 +81,10 @@ class InstallSpace(unittest.TestCase):
         self.assertTrue(filecmp.cmp(self.share / "package.xml", SOURCE / "package.xml", False))
         headers = set(files_in(prefix() / "include/robot_tissue"))
         self.assertLessEqual(set(files_in(SOURCE / "include/robot_tissue")), headers)
-        for program in ("robot_tissue_node", "simulate", "fidelity", "check_setup", "demo_player"):
+        for program in ("robot_tissue_node", "simulate", "fidelity", "check_setup", "replay",
+                        "demo_player", "play"):
             self.assertTrue(os.access(self.programs / program, os.X_OK), program)
+        self.assertTrue((self.programs / "play_markers.py").is_file())
         self.assertEqual(output_of("rospack find robot_tissue").strip(), str(self.share))
 
     def test_only_programs_of_the_command_line_carry_cholmod(self):

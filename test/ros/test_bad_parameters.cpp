@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"wrench_rate", "wrench_rate", 1001, "wrench_rate = 1001"},
                       Case{"negative_wrench_rate", "wrench_rate", -1, "wrench_rate = -1"},
                       Case{"scene_file", "scene_file", "scene.yaml", "scene_file = scene.yaml"},
+                      Case{"color", "color", "rainbow", "color = rainbow"},
                       Case{"timeout", "tf_timeout", -1, "tf_timeout = -1"},
                       Case{"description", "robot_description_param", "/broken_description", "URDF"},
                       Case{"other_robot", "robot_description_param", "/other_description",

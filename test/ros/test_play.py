@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tool and the cut of play.launch, moved as the mouse in rviz does."""
+"""The tools and the cut of play.launch, moved as the mouse in rviz does."""
 import sys
 import unittest
 
@@ -7,10 +7,18 @@ import rospy
 import rostest
 from geometry_msgs.msg import WrenchStamped
 from robot_tissue.msg import TissueState
-from visualization_msgs.msg import InteractiveMarkerFeedback, MarkerArray
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit, MarkerArray
 
 DEADLINE = 25.0  # s
-CUT, UNDO, RESET = 1, 2, 3  # entries of the menu
+LOST = 1.0  # s: what did not show by then was not heard
+HOME = (0.05, 0.05, 0.085)  # m, where a tool begins
+
+
+def holds_within(seconds, condition):
+    end = rospy.Time.now() + rospy.Duration(seconds)
+    while not condition() and rospy.Time.now() < end:
+        rospy.sleep(0.02)
+    return condition()
 
 
 class TestPlay(unittest.TestCase):
@@ -19,28 +27,31 @@ class TestPlay(unittest.TestCase):
         rospy.init_node("test_play")
         cls.last = {}
         for topic, kind in (("/robot_tissue/state", TissueState), ("/play/notes", MarkerArray),
+                            ("/play/update_full", InteractiveMarkerInit),
                             ("/robot_tissue/sphere/measured_cf", WrenchStamped)):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.last.update({topic: message}))
         rospy.wait_for_service("/robot_tissue/reset", DEADLINE)
         cls.feedback = rospy.Publisher("/play/feedback", InteractiveMarkerFeedback, queue_size=10)
 
     def until(self, holds, what):
-        end = rospy.Time.now() + rospy.Duration(DEADLINE)
-        while not holds() and rospy.Time.now() < end:
-            rospy.sleep(0.02)
-        self.assertTrue(holds(), what)
+        self.assertTrue(holds_within(DEADLINE, holds), what)
 
     def tell(self, marker, place=None, entry=None):
-        self.until(lambda: self.feedback.get_num_connections() > 0 and self.note("message") != "",
-                   "nobody hears of the markers")
+        self.until(lambda: self.feedback.get_num_connections() > 0 and self.note("message") != ""
+                   and self.menu(), "nobody hears of the markers")
         message = InteractiveMarkerFeedback(client_id="test", marker_name=marker)
         message.header.frame_id = "tissue"
         message.event_type = message.MENU_SELECT if entry else message.POSE_UPDATE
-        message.menu_entry_id = entry or 0
+        message.menu_entry_id = self.menu()[entry] if entry else 0
         message.pose.orientation.w = 1.0
         if place:
             message.pose.position.x, message.pose.position.y, message.pose.position.z = place
         self.feedback.publish(message)
+
+    def menu(self):
+        """The number of each entry, by its title; the numbers come anew with the markers."""
+        markers = self.last.get("/play/update_full", InteractiveMarkerInit()).markers
+        return {each.title: each.id for marker in markers for each in marker.menu_entries}
 
     def state(self):
         return self.last.get("/robot_tissue/state", TissueState(springs_cut=-1))
@@ -53,15 +64,23 @@ class TestPlay(unittest.TestCase):
         notes = self.last.get("/play/notes", MarkerArray())
         return next((marker.text for marker in notes.markers if marker.ns == name), "")
 
-    # One after the other: the markers' server keeps one message at a time, and hears none while it
-    # comes up.
+    # The markers' server keeps one message at a time, and for about a second after markers were made
+    # it hears none, and no menu: so all is told again and again, until it shows.
+    def tell_until(self, holds, what, *told, **said):
+        def is_so():
+            self.tell(*told, **said)
+            return holds_within(LOST, holds)
+        self.until(lambda: holds() or is_so(), what + self.note("message"))
+
+    def choose(self, entry, done):
+        self.tell_until(lambda: done in self.note("message"), "no %s: " % entry, "tool", entry=entry)
+
     def reset(self):
-        def is_done():
-            self.tell("tool", entry=RESET)
-            rospy.sleep(0.2)
-            return "rest shape" in self.note("message")
-        self.until(is_done, "no reset")
+        self.choose("Reset", "rest shape")
         self.until(lambda: self.state().springs_cut == 0, "cuts after a reset")
+
+    def take(self, tool):
+        self.choose("Take the " + tool, "the %s is at work" % tool)
 
     def corner(self, number):
         notes = self.last.get("/play/notes", MarkerArray())
@@ -81,24 +100,58 @@ class TestPlay(unittest.TestCase):
 
     def test_the_menu_cuts_and_takes_back(self):
         self.reset()
-        self.tell("corner_1", entry=CUT)
-        self.until(lambda: self.state().springs_cut > 0, "no cut: " + self.note("message"))
-        self.tell("tool", entry=UNDO)
-        self.until(lambda: self.state().springs_cut == 0, "not taken back: " + self.note("message"))
+        self.choose("Cut", "springs cut")
+        self.until(lambda: self.state().springs_cut > 0, "no cut")
+        self.tell_until(lambda: self.state().springs_cut == 0, "not taken back: ", "tool", entry="Undo")
 
     def test_a_cut_without_an_area_is_refused(self):
         self.reset()
         for number, corner in enumerate(("corner_1", "corner_2", "corner_3")):
             self.tell(corner, (0.05, 0.05, 0.05))
             self.until(lambda number=number: self.corner(number) == (0.05, 0.05, 0.05), "not moved")
-        self.tell("tool", entry=CUT)
-        self.until(lambda: "allowed" in self.note("message"), "not refused")
+        self.choose("Cut", "allowed")
         self.assertEqual(self.state().springs_cut, 0)
         self.reset()
 
     def test_a_place_that_is_none_is_refused(self):
         self.tell("tool", (float("nan"), 0.0, 0.0))
         self.until(lambda: "allowed" in self.note("message"), "not refused")
+        self.reset()
+
+    def test_what_was_saved_comes_back(self):
+        self.reset()
+        self.choose("Cut", "springs cut")
+        self.until(lambda: self.state().springs_cut > 0, "no cut")
+        cut = self.state().springs_cut
+        self.choose("Save", "save_state")
+        self.reset()
+        self.choose("Load", "load_state")
+        self.until(lambda: self.state().springs_cut == cut, "not as it was saved")
+        self.reset()
+
+    def test_the_knife_cuts_where_it_goes(self):
+        self.reset()
+        self.take("knife")
+        self.assertEqual(self.state().springs_cut, 0)
+        # Down and forward, between two planes of nodes.
+        self.tell_until(lambda: self.state().springs_cut > 0, "the knife cuts nothing: ", "tool",
+                        (0.0525, 0.03, 0.03))
+        self.assertEqual(self.state().pieces, 1)
+        self.tell("tool", HOME)
+        self.take("sphere")
+        self.reset()
+
+    def test_the_forceps_hold_and_let_go(self):
+        self.reset()
+        self.take("forceps")
+        self.tell("tool", (0.05, 0.05, 0.046))
+        self.until(lambda: self.shown_force() > 0.1, "the open jaws do not press")
+        self.choose("Open or close the forceps", "close")
+        self.until(lambda: "forceps" in self.state().grasping, "the jaws hold nothing")
+        self.choose("Open or close the forceps", "open")
+        self.until(lambda: "forceps" not in self.state().grasping, "the jaws hold on")
+        self.tell("tool", HOME)
+        self.take("sphere")
         self.reset()
 
 

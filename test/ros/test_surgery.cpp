@@ -155,7 +155,7 @@ TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
   EXPECT_TRUE(call.response.success) << call.response.message;
   EXPECT_EQ(call.response.name, "s1");
   EXPECT_GT(call.response.tension, 0.0);
-  EXPECT_TRUE(waitForMarkers([this] { return markers_["sutures"].points.size() == 2; }));
+  EXPECT_TRUE(waitForMarkers([this] { return !markers_["sutures"].points.empty(); }));
   EXPECT_TRUE(waitFor([&] {
     return state_->sutures == std::vector<std::string>{"s1"} && state_->suture_tensions[0] > 0.0 &&
            state_->sutures_broken[0] == 0;

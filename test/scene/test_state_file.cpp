@@ -54,12 +54,11 @@ TEST_F(StateFile, IsReadAsItWasWritten) {
 TEST_F(StateFile, OnlyPlainNamesAreTaken) {
   for (const std::string& name :
        {std::string(), std::string("."), std::string(".."), std::string("../a"),
-        std::string("/etc/passwd"), std::string("a/b"), std::string(".hidden"),
-        std::string("a b"), std::string("a\nb"), std::string("a\0b", 3), std::string("nodes.csv"),
+        std::string("/etc/passwd"), std::string("a/b"), std::string(".hidden"), std::string("a b"),
+        std::string("a\nb"), std::string("a\0b", 3), std::string("nodes.csv"),
         std::string("surface.stl"), std::string(101, 'a')}) {
-    for (const std::string& line :
-         {refusalOf([&] { writeStateFile(folder(), name, "x"); }),
-          refusalOf([&] { readStateFile(folder(), name); })}) {
+    for (const std::string& line : {refusalOf([&] { writeStateFile(folder(), name, "x"); }),
+                                    refusalOf([&] { readStateFile(folder(), name); })}) {
       EXPECT_NE(line.find("must be a plain name"), std::string::npos) << name;
       EXPECT_EQ(line.find('\n'), std::string::npos) << line;
     }

@@ -50,8 +50,7 @@ TEST(StateSteps, TheReaderKnowsWhatStandsInASavedState) {
   EXPECT_NE(refusalOf(kSave + kLoad + kBack + release).find("no patch stands"), std::string::npos);
 }
 
-const std::string kDrill =
-    "  - remove: {sphere: {center: [0.05, 0.05, 0.05], radius: 0.016}}\n";
+const std::string kDrill = "  - remove: {sphere: {center: [0.05, 0.05, 0.05], radius: 0.016}}\n";
 
 TEST(SurgerySteps, WhatIsTakenBackIsAsItWasBitForBit) {
   const RunResult before = run(scene(kLoad));
@@ -89,8 +88,9 @@ TEST(SurgerySteps, MoreThanThereIsIsNotTakenBack) {
 }
 
 TEST(StateSteps, BadNamesAndMissingFilesAreRefused) {
-  EXPECT_NE(refusalOf("  - save: {file: ../a}\n").find("steps[0].save.file = ../a: must be a plain"),
-            std::string::npos);
+  EXPECT_NE(
+      refusalOf("  - save: {file: ../a}\n").find("steps[0].save.file = ../a: must be a plain"),
+      std::string::npos);
   EXPECT_NE(refusalOf("  - save: {}\n").find("steps[0].save.file"), std::string::npos);
   const std::string line = refusalOf("  - load_state: {file: never-saved}\n");
   EXPECT_NE(line.find("steps[0].load_state: file = 'never-saved'"), std::string::npos) << line;

@@ -1,6 +1,7 @@
 // The space in which tissue is removed, as the shape is then (m).
 #pragma once
 
+#include <functional>
 #include <variant>
 
 #include "robot_tissue/core/types.h"
@@ -17,13 +18,22 @@ struct PlacedBox {
   Pose tissue_T_box = Pose::Identity();
 };
 
-using RemovedSpace = std::variant<PlacedBox, Sphere>;
+// Any other, such as what the shapes of a tool cover.
+struct CoveredSpace {
+  Box bounds;                               // all of it is in there
+  std::function<bool(const Vec3&)> covers;  // of a point in the tissue's frame
+};
+
+using RemovedSpace = std::variant<PlacedBox, Sphere, CoveredSpace>;
 
 inline bool holds(const PlacedBox& placed, const Vec3& point) {
   return placed.box.contains(placed.tissue_T_box.inverse() * point);
 }
 inline bool holds(const Sphere& sphere, const Vec3& point) {
   return (point - sphere.center).squaredNorm() <= sphere.radius * sphere.radius;
+}
+inline bool holds(const CoveredSpace& space, const Vec3& point) {
+  return space.bounds.contains(point) && space.covers(point);
 }
 inline bool holds(const RemovedSpace& space, const Vec3& point) {
   return std::visit([&](const auto& each) { return holds(each, point); }, space);

@@ -42,6 +42,9 @@ struct TimeConfig {
   double damping_time = 0.0;  // s
 };
 
+// What becomes of a piece that cuts, or tools that let go, leave with nothing that holds it.
+enum class FreePieces { kStay, kDrop };
+
 struct TissueConfig {
   std::string frame_id = "tissue";
   Box shape{Vec3::Zero(), Vec3::Zero()};     // unused when mesh is set
@@ -53,6 +56,7 @@ struct TissueConfig {
   std::vector<Box> fixed;          // nodes in these never move; none: the block floats in space
   Vec3 gravity = Vec3::Zero();     // m/s^2
   std::optional<TimeConfig> time;  // empty: every shape is an equilibrium
+  FreePieces free_pieces = FreePieces::kStay;
 };
 
 struct SolverConfig {

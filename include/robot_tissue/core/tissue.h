@@ -24,6 +24,7 @@
 namespace robot_tissue {
 
 class History;
+class PieceNumbers;
 class SolverMethod;
 class TimeIntegrator;
 class TissueModel;
@@ -34,9 +35,10 @@ struct SavedState;
 struct SutureThread;
 
 struct CutReport {
-  int springs_cut = 0;  // by this cut
-  int pieces = 1;       // of the lattice, after it
-  SolveReport solve;    // balance after it; the last one when nothing was cut
+  int springs_cut = 0;   // by this cut
+  int springs_torn = 0;  // by tear_stretch, thereafter
+  int pieces = 1;        // of the lattice, after it
+  SolveReport solve;     // balance after it; the last one when nothing was cut
   // Of cutAlong: new surface (m^2), and the mean of where its springs were crossed (m).
   double area = 0.0;
   Vec3 center = Vec3::Zero();
@@ -46,17 +48,20 @@ struct RemoveReport {
   double volume = 0.0;             // of what was removed, at rest (m^3)
   int pieces = 1;                  // of the lattice, after it
   std::vector<std::string> loads;  // named loads that went with all their nodes
+  bool holds_all = false;          // of drill: nothing was removed, as nothing would be left
   SolveReport solve;               // balance after it; the last one when nothing was removed
 };
 
 // What hangs together, over springs.
 struct TissuePiece {
+  int number = 0;              // its own for as long as it lasts
   double volume = 0.0;         // at rest (m^3)
   bool fixed = false;          // a fixed node holds it
+  bool held = false;           // that, a patch, a touch of a tool, or a suture to a held piece does
   Vec3 center = Vec3::Zero();  // of its volume, deformed (m, tissue frame)
 };
 
-// Of a blade, from where it comes into the tissue to where it leaves it.
+// Of a blade or burr, from where it comes into the tissue to where it leaves it.
 enum class Stroke { kBegins, kGoesOn };
 
 // Corners of a triangle that cuts (m, tissue frame).
@@ -86,10 +91,15 @@ class Tissue {
   // Deformed vertices of the surface (m, tissue frame).
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const Box& bounds() const { return bounds_; }  // of the vertices
-  // Number of the piece that each node is of, the ghosts last, -1: removed; found when it is asked
-  // for, as are the pieces by their numbers.
-  std::vector<int> pieceOfNodes() const;
-  std::vector<TissuePiece> pieces() const;
+  // Number of the piece that each node is of, the ghosts last, -1: removed. Of a piece that comes
+  // apart the largest part keeps the number, the others get the next ones; undo and loadState bring
+  // numbers back, a reset begins anew.
+  const std::vector<int>& pieceOfNodes() const;
+  std::vector<TissuePiece> pieces() const;  // by their numbers, ascending
+  // The same with centers at rest: only what holds them is found each time.
+  std::vector<TissuePiece> restingPieces() const;
+  // Numbers of those that were taken out, as nothing held them any more (tissue.free_pieces).
+  const std::vector<int>& droppedPieces() const;
   // No tool touched it in the last solve.
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
@@ -182,6 +192,8 @@ class Tissue {
   // Takes what has its center in the space away, in whole cells and parts that cuts made of cells,
   // then as cut. Named loads lose the nodes that go. Throws InputError when nothing would be left.
   RemoveReport remove(const RemovedSpace& space);
+  // The same along a burr's way, without the refusal: all of a stroke is taken back as one removal.
+  RemoveReport drill(const CoveredSpace& space, Stroke stroke);
   // How many cuts, removals, tears and sutures there are to take back: all since the last reset, or
   // loaded state.
   int undoable() const;
@@ -192,11 +204,11 @@ class Tissue {
   // The same of a surface of triangles, such as a blade's edge sweeps. All of a stroke is taken
   // back as one cut.
   CutReport cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke = Stroke::kBegins);
-  // Severs what is stretched beyond tear_stretch and balances, over and over, until nothing is; for
-  // shapes that tools make. Shapes of the other calls but follow have torn already. LATE: the rest
-  // is left to the next call.
+  // Drops pieces that nothing holds any more, where free pieces drop; severs what is stretched
+  // beyond tear_stretch and balances, over and over, until nothing is. For shapes that tools make:
+  // those of the other calls but follow have torn already. LATE: the rest is left to the next call.
   SolveReport tear();
-  bool mayTear() const { return !tear_strains_.empty(); }
+  bool mayTear() const { return !tear_strains_.empty() || drops_free_; }
   int springsTorn() const { return springs_torn_; }  // since rest, or the state that was loaded
   // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut
   // leaves each end on its side; where the tissue of an end goes the thread goes.
@@ -231,7 +243,20 @@ class Tissue {
   SolveReport asItIs();
   // tissue_surgery.cpp
   class TopologyChange;
+  SavedState stateNow() const;
+  bool mayReach(const Box& bounds) const;
+  RemoveReport takeAway(const std::vector<std::uint8_t>& cells, Stroke stroke);
   std::vector<std::string> dropLostLoads();
+  // tissue_pieces.cpp
+  void takePieces(std::shared_ptr<const PieceNumbers> numbers);
+  void renumberPieces();
+  std::vector<char> heldPieces() const;
+  std::vector<int> freePieces() const;
+  std::vector<int> freedPieces();
+  void takeOut(const std::vector<int>& pieces);
+  const std::vector<TissuePiece>& piecesAtRest() const;
+  void dropFreed();
+  void dropLetGo();
   std::vector<LoadingPatch> namedLoads() const;
   SolveReport changeTopology(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
@@ -285,8 +310,14 @@ class Tissue {
   std::vector<double> tear_strains_;  // per spring (tearStrains)
   int springs_torn_ = 0;
   std::unique_ptr<Threads> threads_;
-  double rest_volume_ = 0.0;    // m^3
-  Vec3 weight_ = Vec3::Zero();  // N
+  std::shared_ptr<const PieceNumbers> piece_numbers_;
+  mutable std::vector<int> piece_of_nodes_;                   // by number
+  mutable std::shared_ptr<const CellSet> piece_of_nodes_of_;  // null: to be found
+  bool drops_free_ = false;
+  mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
+  std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
+  double rest_volume_ = 0.0;                         // m^3
+  Vec3 weight_ = Vec3::Zero();                       // N
   bool has_gravity_ = false;
   Vec3 gravity_ = Vec3::Zero();  // m/s^2
   std::vector<Vec3> vertices_;   // deformed, of the surface

@@ -12,6 +12,10 @@ struct ToolRole {
   bool has_jaws = false;  // its last two links; when they are close, they hold what is between them
   bool has_edge = false;  // it cuts where its edge goes, and touches nothing
   bool fits_hard_patches = true;  // a method that moves tissue in hard pieces only can follow it
+  bool drills = false;            // what its shapes cover goes, and it touches nothing
+
+  bool touches() const { return !has_edge && !drills; }
+  std::string deed() const { return has_edge ? "cuts" : drills ? "drills" : "touches"; }
 };
 
 const std::vector<ToolRole>& toolRoles();

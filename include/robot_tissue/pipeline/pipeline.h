@@ -118,6 +118,9 @@ class Pipeline {
   ForceBalance forceBalance() const;
   // Where the tool pushes or holds the tissue, in the shape as it is now.
   std::vector<ToolTouch> touchesOf(std::size_t tool) const;
+  // How far along a unit direction a line from the point leaves the tools' shapes for good (m, at
+  // most `farthest`): from there it is seen from outside.
+  double exitOf(const Vec3& point, const Vec3& direction, double farthest) const;
 
  private:
   struct Parts;  // the classes behind it, see doc/architecture.md
@@ -139,7 +142,7 @@ class Pipeline {
   void forgetTools();
   void beginReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
-  bool cutAlongWay();
+  bool partAlongWay();
   bool drive(const RobotPose& pose);
   void touch();
   void describeTools();

@@ -10,7 +10,7 @@
 namespace robot_tissue {
 
 struct StepRemark {
-  enum class Kind { kInside, kTornOff, kTooFast, kLost, kJawsMeet, kHoldsNothing };
+  enum class Kind { kInside, kTornOff, kTooFast, kLost, kJawsMeet, kHoldsNothing, kDrills };
   Kind kind = Kind::kInside;
   std::string text;  // a line that names the tools
 };

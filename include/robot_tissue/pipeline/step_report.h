@@ -47,6 +47,10 @@ struct StepReport {
   std::vector<std::size_t> torn_off;     // graspers that lost what they held
   int springs_cut = 0;                   // by blades
   double area_cut = 0.0;                 // new surface of these cuts (m^2)
+  double volume_removed = 0.0;           // by burrs, at rest (m^3)
+  std::vector<std::string> lost_loads;   // named loads of which they left nothing
+  std::vector<std::size_t>
+      would_take_all;  // burrs that removed nothing, as it was all that is left
   int springs_torn = 0;
   int substeps = 0;  // load steps that the way took
   double contact_ms = 0.0;

@@ -4,6 +4,8 @@
 #include <geometry_msgs/Point.h>
 #include <geometry_msgs/Vector3.h>
 
+#include <vector>
+
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -17,6 +19,13 @@ inline geometry_msgs::Point toPoint(const Vec3& vector) {
   point.y = vector.y();
   point.z = vector.z();
   return point;
+}
+
+inline std::vector<geometry_msgs::Point> toPoints(const std::vector<Vec3>& vectors) {
+  std::vector<geometry_msgs::Point> points;
+  points.reserve(vectors.size());
+  for (const Vec3& vector : vectors) points.push_back(toPoint(vector));
+  return points;
 }
 
 inline geometry_msgs::Vector3 toVector3(const Vec3& vector) {

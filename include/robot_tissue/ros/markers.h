@@ -11,13 +11,26 @@
 #include <vector>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "robot_tissue/ros/display_surface.h"
+#include "robot_tissue/ros/surface_colors.h"
 
 namespace robot_tissue {
 
+struct MarkerStyle {
+  double force_scale;  // m/N
+  ColorBy color;
+};
+
+// A spring on the surface, as it is drawn: along an edge of the surface or, -1, straight.
+struct Wire {
+  int spring = 0;
+  int edge = -1;
+};
+
 class MarkerBuilder {
  public:
-  // force_scale in m/N.
-  MarkerBuilder(std::string frame_id, double force_scale, std::vector<SupportConfig> supports);
+  MarkerBuilder(std::string frame_id, const MarkerStyle& style,
+                std::vector<SupportConfig> supports);
 
   // reached: stamp of the pose that the forces are of; the shape is as it is at `stamp`.
   visualization_msgs::MarkerArray build(const Pipeline& pipeline, const ros::Time& stamp,
@@ -27,16 +40,18 @@ class MarkerBuilder {
   visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
                                                const ros::Time& reached);
   void tellAll() { told_.clear(); }
-  void setForceScale(double force_scale) { force_scale_ = force_scale; }  // m/N
+  void setForceScale(double force_scale) { style_.force_scale = force_scale; }  // m/N
 
  private:
-  void findSurfaceSprings(const Tissue& tissue);
+  void findWires(const Tissue& tissue);
 
   std::string frame_id_;
-  double force_scale_;
+  MarkerStyle style_;
   std::vector<SupportConfig> supports_;
   std::uint64_t springs_revision_ = 0;  // of the surface that they are of
-  std::vector<int> surface_springs_;
+  std::vector<Wire> wires_;
+  DisplaySurface display_;
+  double scale_ = 0.0;                            // upper end of the scale of colors
   std::vector<visualization_msgs::Marker> told_;  // in the order of build(), as last told
 };
 

@@ -15,9 +15,9 @@
 #include <optional>
 
 #include "robot_tissue/pipeline/still_pose.h"
+#include "robot_tissue/ros/pose_pick.h"
 #include "robot_tissue/ros/tool_poses.h"
 #include "robot_tissue/ros/transform_feed.h"
-#include "robot_tissue/ros/update_pace.h"
 
 namespace robot_tissue {
 
@@ -69,18 +69,16 @@ class PoseWatch {
   void handOver();
 
   tf2_ros::Buffer& buffer_;
-  const ToolPoses& poses_;
   ros::CallbackQueueInterface& queue_;
   OnStill on_still_;
   OnPose on_pose_;
   std::mutex mutex_;  // of the members up to connection_
-  UpdatePace pace_;
+  PosePick pick_;
   bool started_ = false;
   Seen seen_;
   Counts counts_;
   ros::Time last_time_;
   int time_jumps_ = 0;
-  ros::Time last_stamp_;
   std::optional<StillPose> still_;
   std::optional<PoseLookUp> waiting_;  // for the spinner's thread
   boost::signals2::connection connection_;

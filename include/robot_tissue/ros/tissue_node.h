@@ -21,7 +21,7 @@
 #include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/ros/pose_watch.h"
 #include "robot_tissue/ros/surgery_services.h"
-#include "robot_tissue/ros/tissue_clock.h"
+#include "robot_tissue/ros/tissue_follower.h"
 #include "robot_tissue/ros/tissue_publisher.h"
 #include "robot_tissue/ros/tissue_services.h"
 #include "robot_tissue/ros/tool_poses.h"
@@ -49,12 +49,10 @@ class TissueNode {
   void update(PoseLookUp look_up);
   bool waitsAfterJump();
   void follow();
-  void setTimeOf(RobotPose& pose);
   bool robotIsKnown();
-  void settleFromRest();
   void report(const NodeStatus& status);
   // node_status.cpp
-  NodeStatus statusOf(const StepReport& report);
+  void remember(const std::vector<StepRemark>& remarks);
   void diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -66,12 +64,11 @@ class TissueNode {
   tf2_ros::Buffer buffer_;
   ToolPoses tool_poses_;
   TissuePublisher publisher_;
+  TissueFollower follower_;
   bool robot_is_known_ = false;
   ros::WallTime next_robot_look_up_;
   PoseLookUp last_look_up_;
-  TissueClock clock_;
   Ticks ticks_ = Ticks::kAtRate;
-  ros::Time jumped_at_;  // stamp of the first pose after a jump that is not followed yet
   NodeStatus status_;
   ros::WallTime grace_end_;  // until then it is no fault that no pose is there yet
   std::string warned_;       // status that was warned about last, until there is a good pose

@@ -15,17 +15,12 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/markers.h"
 #include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/ros/node_status.h"
 #include "robot_tissue/ros/shape_publisher.h"
 #include "robot_tissue/ros/update_pace.h"
 #include "robot_tissue/ros/wrench_publisher.h"
 
 namespace robot_tissue {
-
-// How the node is, in the words of TissueState.msg.
-struct NodeStatus {
-  std::string status = "OK";
-  std::string message;
-};
 
 class TissuePublisher {
  public:

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <ros/time.h>
-#include <tf2_ros/buffer.h>
+#include <tf2/buffer_core.h>
 
 #include <optional>
 #include <string>
@@ -28,9 +28,12 @@ struct PoseLookUp {
 // The first one is the tool's frame.
 std::vector<std::string> linkFrames(const ToolGeometry& tool);
 
+// Of all tools, one after the other, as RobotPose::links has them.
+std::vector<std::string> linkFrames(const std::vector<ToolGeometry>& tools);
+
 class ToolPoses {
  public:
-  ToolPoses(const tf2_ros::Buffer& buffer, std::string tissue_frame, double timeout_s);
+  ToolPoses(const tf2::BufferCore& buffer, std::string tissue_frame, double timeout_s);
 
   // In the order of RobotPose::links.
   void setLinks(const std::vector<std::string>& links) { links_ = links; }
@@ -46,7 +49,7 @@ class ToolPoses {
   Pose frame(const std::string& frame_id) const;
 
  private:
-  const tf2_ros::Buffer& buffer_;
+  const tf2::BufferCore& buffer_;
   std::string tissue_frame_;
   double timeout_s_;
   std::vector<std::string> links_;

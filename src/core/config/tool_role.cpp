@@ -5,8 +5,10 @@
 namespace robot_tissue {
 
 const std::vector<ToolRole>& toolRoles() {
-  static const std::vector<ToolRole> all = {
-      {"push", false, false, true}, {"blade", false, true, true}, {"grasper", true, false, false}};
+  static const std::vector<ToolRole> all = {{"push", false, false, true, false},
+                                            {"blade", false, true, true, false},
+                                            {"grasper", true, false, false, false},
+                                            {"burr", false, false, true, true}};
   return all;
 }
 

@@ -22,6 +22,7 @@ void requireSpace(const RemovedSpace& space) {
     }
     return;
   }
+  if (!std::holds_alternative<Sphere>(space)) return;
   const Sphere& sphere = std::get<Sphere>(space);
   if (!sphere.center.allFinite() || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0)) {
     throw InputError("sphere: not finite, or empty; allowed: a center and a radius above 0 m");

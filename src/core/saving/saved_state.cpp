@@ -8,6 +8,7 @@
 #include "lattice/connectivity.h"
 #include "saving/bytes.h"
 #include "saving/saved_loads.h"
+#include "saving/saved_pieces.h"
 #include "saving/saved_sutures.h"
 
 namespace robot_tissue {
@@ -16,11 +17,13 @@ namespace {
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint32_t kPlain = 1;
-// Bits of what version 2 has more.
+constexpr std::uint32_t kWithExtras = 2;
+// Bits of what later versions have more; the last one only from version 3 on.
 constexpr std::uint8_t kHasRemovals = 1;
 constexpr std::uint8_t kHasSutures = 2;
+constexpr std::uint8_t kHasPieceNumbers = 4;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -98,6 +101,30 @@ std::vector<std::uint8_t> takeBits(std::size_t count, ByteReader& in) {
     }
   }
   return flags;
+}
+
+std::uint8_t extrasOf(const SavedState& state) {
+  std::uint8_t extras = 0;
+  if (!state.lattice.taken.empty()) extras |= kHasRemovals;
+  if (!state.sutures.empty()) extras |= kHasSutures;
+  if (!state.pieces.areCounted()) extras |= kHasPieceNumbers;
+  return extras;
+}
+
+// The lowest version that holds these.
+std::uint32_t versionOf(std::uint8_t extras) {
+  if (extras == 0) return kPlain;
+  return (extras & kHasPieceNumbers) != 0 ? kVersion : kWithExtras;
+}
+
+std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
+  if (version == kPlain) return 0;
+  const std::uint8_t extras = in.u8();
+  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers;
+  if (extras > all || versionOf(extras) != version) {
+    throw InputError("is damaged: it has nothing of its version, or more");
+  }
+  return extras;
 }
 
 void putRemovals(const LatticeState& state, ByteWriter& out) {
@@ -233,9 +260,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   body.index(lattice.nodeCount());
   body.count(state.lattice.severed.size());
   putBits(state.lattice.severed, body);
-  std::uint8_t extras = 0;
-  if (!state.lattice.taken.empty()) extras |= kHasRemovals;
-  if (!state.sutures.empty()) extras |= kHasSutures;
+  const std::uint8_t extras = extrasOf(state);
   if (extras != 0) body.u8(extras);
   if ((extras & kHasRemovals) != 0) putRemovals(state.lattice, body);
   putGhosts(lattice, split, state.lattice, body);
@@ -244,7 +269,8 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   body.u8(state.in_balance ? 1 : 0);
   putReport(state.report, body);
   if ((extras & kHasSutures) != 0) putSutures(state.sutures, body);
-  return headerFor(body.bytes(), extras != 0 ? kVersion : kPlain, fingerprint) + body.bytes();
+  if ((extras & kHasPieceNumbers) != 0) putPieces(state.pieces, body);
+  return headerFor(body.bytes(), versionOf(extras), fingerprint) + body.bytes();
 }
 
 SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_view bytes,
@@ -259,10 +285,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   }
   state.severed = takeBits(springs, in);
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
-  const std::uint8_t extras = opened.version > kPlain ? in.u8() : 0;
-  if (opened.version > kPlain && (extras == 0 || extras > (kHasRemovals | kHasSutures))) {
-    throw InputError("is damaged: it has nothing of its version, or more");
-  }
+  const std::uint8_t extras = takeExtras(opened.version, in);
   if ((extras & kHasRemovals) != 0) takeRemovals(lattice, state, in);
   state.pieces = countPieces(lattice, state);
   state.cells = takeCells(lattice, split, state, in);
@@ -278,6 +301,9 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   saved.in_balance = in.u8() == 1 && opened.of_this_scene;
   saved.report = takeReport(saved.loads.size(), in);
   if ((extras & kHasSutures) != 0) saved.sutures = takeSutures(state.cells->nodeCount(), in);
+  saved.pieces = (extras & kHasPieceNumbers) != 0
+                     ? takePieces(state.pieces, lattice.nodeCount(), in)
+                     : PieceNumbers::counted(state.pieces);
   if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
   return saved;
 }

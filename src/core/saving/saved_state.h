@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lattice/piece_numbers.h"
 #include "loads/suture_thread.h"
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/lattice.h"
@@ -18,6 +19,7 @@ namespace robot_tissue {
 
 struct SavedState {
   LatticeState lattice;
+  PieceNumbers::Names pieces;
   std::vector<LoadingPatch> loads;  // the named ones
   std::vector<SutureThread> sutures;
   SolveReport report;       // status, residual, error estimate and answers of the loads

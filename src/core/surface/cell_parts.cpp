@@ -13,7 +13,7 @@ CellParts::CellParts(const Lattice& lattice, const LatticeState& state) : cells_
   replaceGhosts();
 }
 
-std::vector<NodeWeight> CellParts::withoutGhosts(const std::vector<NodeWeight>& carriers) const {
+std::vector<NodeWeight> CellParts::withoutGhosts(std::vector<NodeWeight> carriers) const {
   if (stand_ins_.empty()) return carriers;
   std::map<int, double> weights;
   for (const NodeWeight& carrier : carriers) {

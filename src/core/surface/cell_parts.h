@@ -24,7 +24,7 @@ class CellParts {
   // The part that has the eighth at the corner; null where it was removed.
   const Cell* owner(int place, int corner) const { return cells_->owner(place, corner); }
 
-  std::vector<NodeWeight> withoutGhosts(const std::vector<NodeWeight>& carriers) const;
+  std::vector<NodeWeight> withoutGhosts(std::vector<NodeWeight> carriers) const;
 
  private:
   bool hasAll(const Lattice& lattice, const LatticeState& state) const;

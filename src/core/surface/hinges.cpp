@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -53,16 +54,27 @@ class HingeSeparator {
   }
 
  private:
+  // Ascending; by their lower ends first, of which each has few.
   void findEdges() {
-    edges_.clear();
-    edges_.reserve(3 * surface_.triangles.size());
-    for (int triangle = 0; triangle < static_cast<int>(surface_.triangles.size()); ++triangle) {
-      for (int corner = 0; corner < 3; ++corner) {
-        const int from = vertexAt(triangle, corner), to = vertexAt(triangle, (corner + 1) % 3);
-        edges_.push_back({std::min(from, to), std::max(from, to), 3 * triangle + corner});
-      }
+    const int triangles = static_cast<int>(surface_.triangles.size());
+    std::vector<int> ends(surface_.rest.size() + 1, 0);
+    const auto edge_at = [this](EdgePlace place) -> Edge {
+      const int from = vertexAt(place / 3, place % 3), to = vertexAt(place / 3, (place + 1) % 3);
+      return {std::min(from, to), std::max(from, to), place};
+    };
+    for (EdgePlace place = 0; place < 3 * triangles; ++place) ++ends[at(edge_at(place).low + 1)];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    edges_.resize(at(3 * triangles));
+    for (EdgePlace place = 0; place < 3 * triangles; ++place) {
+      const Edge edge = edge_at(place);
+      edges_[at(ends[at(edge.low)]++)] = edge;
     }
-    std::sort(edges_.begin(), edges_.end());
+    auto first = edges_.begin();
+    for (std::size_t vertex = 0; vertex < surface_.rest.size(); ++vertex) {
+      const auto end = edges_.begin() + ends[vertex];
+      std::sort(first, end);
+      first = end;
+    }
   }
 
   bool hasHinges() const {

@@ -9,12 +9,12 @@ namespace {
 constexpr int kSideCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-bool holdTheSame(const std::vector<NodeWeight>& a, const std::vector<NodeWeight>& b) {
+}  // namespace
+
+bool holdTheSame(const Hold& a, const Hold& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const auto& one, const auto& other) { return one.node == other.node; });
 }
-
-}  // namespace
 
 std::array<HalfPoint, 4> cornersOfSide(const HalfPoint& lowest, int side, int length) {
   std::array<HalfPoint, 4> corners{};
@@ -64,19 +64,19 @@ Octant OctantGrid::beyond(const Octant& octant, int side) const {
   return octantAt(lowest);
 }
 
-std::vector<NodeWeight> OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
+Hold OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
   const Cell& part = *parts_.owner(octant.cell, octant.corner);
   const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
-  std::vector<NodeWeight> hold;
+  Hold hold;
   for (int corner = 0; corner < kCorners; ++corner) {
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
       const int from_low = point[at(axis)] - 2 * low[at(axis)];  // 0 to 2 half spacings
       weight *= 0.5 * ((corner >> axis & 1) != 0 ? from_low : 2 - from_low);
     }
-    if (weight > 0.0) hold.push_back({part.nodes[at(corner)], weight});
+    if (weight > 0.0) hold.add(part.nodes[at(corner)], weight);
   }
-  std::sort(hold.begin(), hold.end(),
+  std::sort(hold.carriers.begin(), hold.carriers.begin() + hold.count,
             [](const auto& one, const auto& other) { return one.node < other.node; });
   return hold;
 }

@@ -25,6 +25,17 @@ struct Octant {
   }
 };
 
+// What holds a point: the corners of a part of a cell that have a weight there.
+struct Hold {
+  std::array<NodeWeight, kCorners> carriers{};
+  int count = 0;
+
+  void add(int node, double weight) { carriers[at(count++)] = {node, weight}; }
+  const NodeWeight* begin() const { return carriers.data(); }
+  const NodeWeight* end() const { return carriers.data() + count; }
+};
+bool holdTheSame(const Hold& a, const Hold& b);  // the same nodes
+
 class OctantGrid {
  public:
   OctantGrid(const Lattice& lattice, const LatticeState& state);
@@ -41,10 +52,10 @@ class OctantGrid {
   Octant beyond(const Octant& octant, int side) const;
 
   // What holds the point, which is of the octant. Nodes ascending, ghosts for nodes that are lost.
-  std::vector<NodeWeight> holdOf(const Octant& octant, const HalfPoint& point) const;
+  Hold holdOf(const Octant& octant, const HalfPoint& point) const;
   // Without ghosts where the model has none.
-  std::vector<NodeWeight> carriersOf(const std::vector<NodeWeight>& hold) const {
-    return parts_.withoutGhosts(hold);
+  std::vector<NodeWeight> carriersOf(const Hold& hold) const {
+    return parts_.withoutGhosts({hold.begin(), hold.end()});
   }
   // Material is on both sides of the side, and the same nodes hold it there.
   bool isJoined(const Octant& octant, int side) const;

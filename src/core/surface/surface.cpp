@@ -151,25 +151,23 @@ class SurfaceBuilder {
 
   // Where the point hangs on the same nodes it is the same vertex.
   int vertex(const Octant& octant, const HalfPoint& point) {
-    const std::vector<NodeWeight> hold = octants_.holdOf(octant, point);
-    std::vector<int>& known = vertices_at_[point];
-    for (const int vertex : known) {
-      if (!holdsAlike(holds_[at(vertex)], hold)) continue;
+    const Hold hold = octants_.holdOf(octant, point);
+    const int next = static_cast<int>(surface_.rest.size());
+    const auto [known, is_new] = vertices_at_.emplace(point, next);
+    const int first_there = is_new ? -1 : known->second;
+    for (int vertex = first_there; vertex >= 0; vertex = next_there_[at(vertex)]) {
+      if (!holdTheSame(holds_[at(vertex)], hold)) continue;
       int& node = surface_.node[at(vertex)];
-      if (node != octants_.nodeOf(octant) && hold.size() > 1) node = -1;
+      if (node != octants_.nodeOf(octant) && hold.count > 1) node = -1;
       return vertex;
     }
-    known.push_back(static_cast<int>(surface_.rest.size()));
+    known->second = next;
+    next_there_.push_back(first_there);
     holds_.push_back(hold);
     surface_.rest.push_back(octants_.placeOf(point));
     surface_.carriers.push_back(octants_.carriersOf(hold));
-    surface_.node.push_back(hold.size() > 1 ? octants_.nodeOf(octant) : hold.front().node);
-    return known.back();
-  }
-
-  static bool holdsAlike(const std::vector<NodeWeight>& a, const std::vector<NodeWeight>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const auto& one, const auto& other) { return one.node == other.node; });
+    surface_.node.push_back(hold.count > 1 ? octants_.nodeOf(octant) : hold.begin()->node);
+    return next;
   }
 
   const Lattice& lattice_;
@@ -177,9 +175,10 @@ class SurfaceBuilder {
   TissueSurface surface_;
   std::vector<Octant> owners_;  // per triangle
   std::vector<WholeSide> whole_sides_;
-  std::vector<std::vector<NodeWeight>> holds_;  // per vertex
-  std::unordered_map<HalfPoint, std::vector<int>, HalfPointHash> vertices_at_;
-  std::unordered_set<HalfPoint, HalfPointHash> fine_points_;  // in the middle of springs
+  std::vector<Hold> holds_;                                        // per vertex
+  std::unordered_map<HalfPoint, int, HalfPointHash> vertices_at_;  // the last one made there
+  std::vector<int> next_there_;                                    // per vertex; -1: none
+  std::unordered_set<HalfPoint, HalfPointHash> fine_points_;       // in the middle of springs
 };
 
 }  // namespace

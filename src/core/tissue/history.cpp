@@ -15,6 +15,14 @@ std::uint64_t hashOfLoads(const std::vector<LoadingPatch>& loads) {
   return hashOf(out.bytes());
 }
 
+std::size_t bytesOf(const std::shared_ptr<const SavedState>& state) {
+  if (!state) return 0;
+  const LatticeState& lattice = state->lattice;
+  return lattice.displacement.size() * sizeof(Vec3) + lattice.severed.size() +
+         lattice.taken.size() + lattice.left.size() * sizeof(double) +
+         lattice.cells->all().size() * (sizeof(Cell) + kCorners * sizeof(CellSet::Meeting));
+}
+
 }  // namespace
 
 bool History::begins(Kind kind) {
@@ -33,10 +41,10 @@ void History::begin(Kind kind, Entry before, const std::vector<LoadingPatch>& na
   changes_.push_back(std::move(change));
   // The way back to the beginning is the one that matters most; of the others the last.
   std::size_t bytes = 0;
-  for (const Change& each : changes_) bytes += each.entry.state.size();
+  for (const Change& each : changes_) bytes += bytesOf(each.entry.state);
   for (std::size_t i = 1; i + 1 < changes_.size() && bytes > tuning::kMostHistoryBytes; ++i) {
-    bytes -= changes_[i].entry.state.size();
-    changes_[i].entry.state = std::string();
+    bytes -= bytesOf(changes_[i].entry.state);
+    changes_[i].entry.state.reset();
   }
 }
 
@@ -48,7 +56,7 @@ void History::end(const std::vector<LoadingPatch>& named_loads) {
 void History::clear() { changes_.clear(); }
 
 void History::forgetStates() {
-  for (Change& change : changes_) change.entry.state = std::string();
+  for (Change& change : changes_) change.entry.state.reset();
 }
 
 bool History::hasLoadsSince(std::size_t change,

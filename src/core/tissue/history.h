@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <memory>
 #include <vector>
 
+#include "lattice/piece_numbers.h"
 #include "loads/suture_thread.h"
 #include "robot_tissue/core/loading_patch.h"
+#include "saving/saved_state.h"
 
 namespace robot_tissue {
 
@@ -18,7 +20,8 @@ class History {
     std::vector<bool> severed;        // per spring
     std::vector<std::uint8_t> taken;  // as LatticeState's
     std::vector<SutureThread> sutures;
-    std::string state;  // as saved; empty: to find it anew is all that is left
+    std::shared_ptr<const PieceNumbers> pieces;
+    std::shared_ptr<const SavedState> state;  // null: to find it anew is all that is left
   };
 
   // Changes of these kinds that follow each other are one: a blade's stroke goes on, and tissue

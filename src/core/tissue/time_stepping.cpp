@@ -40,7 +40,7 @@ void Tissue::endTimeStep() {
 void Tissue::findFreePieces() {
   if (free_pieces_of_ == state_.cells) return;
   free_pieces_of_ = state_.cells;
-  const std::vector<int> pieces = pieceOfNodes();
+  const std::vector<int>& pieces = pieceOfNodes();
   std::vector<bool> held;
   free_pieces_.clear();
   for (std::size_t node = 0; node < pieces.size(); ++node) {

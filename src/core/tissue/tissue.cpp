@@ -8,7 +8,7 @@
 #include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "cutting/tear.h"
-#include "lattice/connectivity.h"
+#include "lattice/piece_numbers.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
 #include "tissue/history.h"
@@ -43,6 +43,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       method_(makeMethod(solver, lattice_, *model_)),
       history_(std::make_unique<History>()),
       threads_(std::make_unique<Threads>()),
+      drops_free_(tissue.free_pieces == FreePieces::kDrop),
       has_gravity_(!tissue.gravity.isZero()),
       gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
@@ -54,6 +55,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
   weight_ = model_->weight(state_);
+  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
 }
 
 Tissue::~Tissue() = default;
@@ -66,10 +68,6 @@ double Tissue::stepLength() const {
 Tissue::Displacements Tissue::displacements() const {
   if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
   return kept_;
-}
-
-std::vector<int> Tissue::pieceOfNodes() const {
-  return robot_tissue::pieceOfNodes(lattice_, state_);
 }
 
 SolveReport Tissue::settle() {
@@ -161,6 +159,7 @@ void Tissue::reset() {
     weight_ = model_->weight(state_);
     rebuildSurface();
   }
+  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
 }

@@ -12,6 +12,11 @@
 
 namespace robot_tissue {
 
+// Nodes round a mesh are up to a cell's diagonal off its surface.
+bool Tissue::mayReach(const Box& bounds) const {
+  return grownBy(tuning::kNodesBeyondSurface * lattice_.spacing(), bounds_).intersects(bounds);
+}
+
 // Severs the springs and balances what they leave.
 SolveReport Tissue::severAndBalance(const std::vector<int>& springs) {
   std::vector<int> disturbed;
@@ -20,6 +25,8 @@ SolveReport Tissue::severAndBalance(const std::vector<int>& springs) {
     disturbed.push_back(lattice_.springs()[at(spring)].b);
   }
   sever(lattice_, springs, state_, model_->splitCells());
+  renumberPieces();
+  dropFreed();
   return changeTopology(disturbed);
 }
 
@@ -28,9 +35,7 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   report.pieces = state_.pieces;
   report.solve = last_report_;
   const BladeSurface surface(swept, lattice_.spacing());
-  // Nodes round a mesh are up to a cell's diagonal off its surface.
-  const double margin = tuning::kNodesBeyondSurface * lattice_.spacing();
-  if (!grownBy(margin, bounds_).intersects(surface.bounds())) return report;
+  if (!mayReach(surface.bounds())) return report;
   const std::vector<Crossing> crossings = surface.crossings(lattice_, state_);
   if (crossings.empty()) return report;
   std::vector<int> springs;
@@ -42,15 +47,18 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   report.area = newSurface(lattice_, crossings);
   const TopologyChange change(
       *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
+  const int torn = springs_torn_;
   severAndBalance(springs);
   report.solve = tear();
+  report.springs_torn = springs_torn_ - torn;
   report.pieces = state_.pieces;
   return report;
 }
 
 // In time the shape gives way by and by: what goes next is seen after the next step.
 SolveReport Tissue::tear() {
-  if (!mayTear()) return last_report_;
+  dropLetGo();
+  if (tear_strains_.empty()) return last_report_;
   SolveStatus worst = last_report_.status;
   double wall_ms = last_report_.wall_ms;
   int iterations = last_report_.iterations;

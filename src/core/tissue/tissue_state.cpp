@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "lattice/piece_numbers.h"
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "saving/bytes.h"
@@ -74,17 +75,22 @@ bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   return true;
 }
 
-std::string Tissue::savedState() const {
+SavedState Tissue::stateNow() const {
   SavedState saved;
   saved.lattice = state_;
+  saved.pieces = piece_numbers_->names();
   saved.loads.assign(patches_.begin(),
                      patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
   saved.sutures = threads_->all();
   saved.report = last_report_;
   saved.report.patches.resize(named_patches_);  // without the tools
   saved.in_balance = isUntouched() && !isLate() && !isMoving();
+  return saved;
+}
+
+std::string Tissue::savedState() const {
   const SplitCells split = model_->splitCells();
-  return encodeState(lattice_, split, saved,
+  return encodeState(lattice_, split, stateNow(),
                      {fingerprintOf(lattice_, split), balance_fingerprint_});
 }
 
@@ -115,6 +121,7 @@ SolveReport Tissue::loadState(const SavedState& saved) {
   threads_->clear();
   rebuildSurface();
   threads_->take(saved.sutures);
+  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_, saved.pieces));
   last_report_ = saved.report;
   if (!saved.in_balance) return solve(freeNodes());
   deformSurface();

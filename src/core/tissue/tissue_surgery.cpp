@@ -1,6 +1,5 @@
 // Tissue: cuts, removals, pieces, and the way back.
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -52,27 +51,6 @@ void loseNodes(const LatticeState& state, LoadingPatch& patch) {
 
 }  // namespace
 
-std::vector<TissuePiece> Tissue::pieces() const {
-  const std::vector<int> piece_of = pieceOfNodes();
-  const double volume = std::pow(lattice_.spacing(), 3) / kCorners;
-  std::vector<TissuePiece> pieces(at(state_.pieces));
-  for (const Cell& cell : lattice_.cells()) {
-    const double eighth = volume * cell.share;
-    for (int corner = 0; corner < kCorners; ++corner) {
-      if (isTaken(state_, cell.place, corner)) continue;
-      const int node = cell.nodes[at(corner)];
-      TissuePiece& piece = pieces[at(piece_of[at(node)])];
-      piece.fixed = piece.fixed || lattice_.isFixed(node);
-      piece.volume += eighth;
-      const Vec3 middle = 0.75 * lattice_.restPosition(node) +
-                          0.25 * lattice_.restPosition(cell.nodes[at(kCorners - 1 - corner)]);
-      piece.center += eighth * (middle + state_.displacement[at(node)]);
-    }
-  }
-  for (TissuePiece& piece : pieces) piece.center /= piece.volume;
-  return pieces;
-}
-
 std::vector<LoadingPatch> Tissue::namedLoads() const {
   return {patches_.begin(), patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)};
 }
@@ -94,14 +72,29 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   report.solve = last_report_;
   if (crossing.empty()) return report;
   const TopologyChange change(*this, History::Kind::kByItself);
+  const int torn = springs_torn_;
   severAndBalance(crossing);
   report.solve = tear();
+  report.springs_torn = springs_torn_ - torn;
   report.pieces = state_.pieces;
   return report;
 }
 
 RemoveReport Tissue::remove(const RemovedSpace& space) {
-  const std::vector<std::uint8_t> cells = cellsWithin(lattice_, state_, space);
+  const RemoveReport report = takeAway(cellsWithin(lattice_, state_, space), Stroke::kBegins);
+  if (report.holds_all) {
+    throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
+  }
+  return report;
+}
+
+RemoveReport Tissue::drill(const CoveredSpace& space, Stroke stroke) {
+  const bool reaches = mayReach(space.bounds);
+  return takeAway(reaches ? cellsWithin(lattice_, state_, space) : std::vector<std::uint8_t>(),
+                  stroke);
+}
+
+RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& cells, Stroke stroke) {
   RemoveReport report;
   report.pieces = state_.pieces;
   report.solve = last_report_;
@@ -110,14 +103,16 @@ RemoveReport Tissue::remove(const RemovedSpace& space) {
       std::any_of(lattice_.cells().begin(), lattice_.cells().end(), [&](const Cell& cell) {
         return (takenOf(state_, cell.place) | cells[at(cell.place)]) < 0xff;
       });
-  if (!leaves_some) {
-    throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
-  }
-  const TopologyChange change(*this, History::Kind::kByItself);
+  report.holds_all = !leaves_some;
+  if (report.holds_all) return report;
+  const TopologyChange change(
+      *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
   removeCells(lattice_, cells, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
   report.volume = volumeOf(lattice_, cells);
+  renumberPieces();
   report.loads = dropLostLoads();
+  dropFreed();
   changeTopology(nodesAround(lattice_, cells, state_));
   report.solve = tear();
   report.pieces = state_.pieces;
@@ -159,9 +154,7 @@ SolveReport Tissue::undo(int count) {
   const History::Entry entry = history_->before(target);
   const bool same_loads = history_->hasLoadsSince(target, namedLoads());
   std::shared_ptr<const SavedState> saved;
-  if (!entry.state.empty() && isUntouched() && !isLate() && same_loads) {
-    saved = readState(entry.state);
-  }
+  if (isUntouched() && !isLate() && same_loads) saved = entry.state;
   if (saved && saved->in_balance) {
     History kept = *history_;
     kept.dropFrom(target);
@@ -175,6 +168,7 @@ SolveReport Tissue::undo(int count) {
   state_ = asBefore(lattice_, entry, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
   threads_->take(entry.sutures);
+  takePieces(entry.pieces);
   history_->dropFrom(target);
   if (takesNoTime()) return changeTopology({});
   threads_->loosen(state_.displacement);

@@ -19,7 +19,8 @@ class Tissue::TopologyChange {
                               {{state.severed.begin(), state.severed.end()},
                                state.taken,
                                tissue_.threads_->all(),
-                               tissue_.savedState()},
+                               tissue_.piece_numbers_,
+                               std::make_shared<const SavedState>(tissue_.stateNow())},
                               tissue_.namedLoads());
     }
   }

@@ -17,7 +17,7 @@ OpenPart::OpenPart(const Lattice& lattice, double tolerance)
 
 void OpenPart::forget() {
   layers_ = firstLayers();
-  loaded_.clear();
+  forgetLoads();
   missed_ = 0.0;
 }
 
@@ -35,7 +35,8 @@ void OpenPart::addSeed(const CellSet& cells, int node) {
 void OpenPart::findSeeds(const SolveContext& solve, const std::vector<int>& disturbed) {
   const CellSet& cells = *solve.shape.state.cells;
   seeds_ = {lattice_.size(), {-1, -1, -1}};
-  for (const int node : loaded_) addSeed(cells, node);
+  for (const int node : last_seeds_) addSeed(cells, node);
+  last_seeds_.clear();
   loaded_.clear();
   for (std::size_t index = 0; index < solve.shape.patches.size(); ++index) {
     const std::vector<int>& hard = solve.hold.hardOf(index);
@@ -44,7 +45,10 @@ void OpenPart::findSeeds(const SolveContext& solve, const std::vector<int>& dist
   }
   const std::vector<int>& touched = solve.hold.touched();
   loaded_.insert(loaded_.end(), touched.begin(), touched.end());
-  for (const int node : loaded_) addSeed(cells, node);
+  for (const int node : loaded_) {
+    addSeed(cells, node);
+    last_seeds_.push_back(cells.original(node));
+  }
   for (const int node : disturbed) addSeed(cells, node);
 }
 

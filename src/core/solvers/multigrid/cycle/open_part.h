@@ -15,7 +15,10 @@ class OpenPart {
   // Drops what earlier solves taught: the layers, what they missed, the nodes that were loaded.
   void forget();
   // Of these, the nodes: the cells are others, and so are nodes' numbers.
-  void forgetLoads() { loaded_.clear(); }
+  void forgetLoads() {
+    loaded_.clear();
+    last_seeds_.clear();
+  }
 
   // The seeds: nodes in patches and contacts, now and in the last solve, and disturbed ones.
   void findSeeds(const SolveContext& solve, const std::vector<int>& disturbed);
@@ -45,6 +48,8 @@ class OpenPart {
   double tolerance_;
   GridBox seeds_;
   double layers_;
+  // By the lattice's nodes: ghosts of the last solve may be gone after a cut or an undo.
+  std::vector<int> last_seeds_;
   std::vector<int> loaded_;
   double missed_ = 0.0;
 };

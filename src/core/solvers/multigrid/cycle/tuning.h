@@ -34,9 +34,10 @@ constexpr double kSlow = 0.3;
 // fewer conjugate gradients: quicker, but what slips slowly is left behind, and drags count too
 // much.
 constexpr double kSlowInContact = 0.7;
-// Cycles of a solve in contact that may stand alone: where more are needed, as where a tool squeezes
-// tissue flat, they get on slowly for long, and conjugate gradients are several times as fast. 6 and
-// 20 measured alike (a box through the floor: 4.3 s, 15 s without this bound). Up: likewise.
+// Cycles of a solve in contact that may stand alone: where more are needed, as where a tool
+// squeezes tissue flat, they get on slowly for long, and conjugate gradients are several times as
+// fast. 6 and 20 measured alike (a box through the floor: 4.3 s, 15 s without this bound). Up:
+// likewise.
 constexpr int kCyclesAlone = 20;
 // Of the slope at the start of a search: flat enough to end there (model.md). Up: shorter searches.
 constexpr double kFlatEnough = 0.3;

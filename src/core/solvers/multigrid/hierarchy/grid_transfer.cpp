@@ -30,8 +30,10 @@ int GridTransfer<Real>::coarseRow(int j, int k) const {
 
 template <typename Real>
 NodeShares GridTransfer<Real>::carriersOf(int fine_node) const {
-  const auto found = to_.carriers.find(fine_node);
-  if (found != to_.carriers.end()) return found->second;
+  const auto found = std::lower_bound(
+      to_.carried.begin(), to_.carried.end(), fine_node,
+      [](const Coarsening::Carried& carried, int node) { return carried.node < node; });
+  if (found != to_.carried.end() && found->node == fine_node) return found->carriers;
   std::array<int, 3> place = fine_.placeOf(fine_node);
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += 2 * at_[axis];
   return sharesAround(to_.grid, place);
@@ -56,14 +58,14 @@ void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& co
         restrictRow(line.data(), to + coarseRow(j, k), countAlongX());
       }
     }
-    for (const int node : to_.carried) {
+    for (const auto& [node, carriers] : to_.carried) {
       const Real quarter = Real(0.25) * fine[axis][at(node)];
       if (node < fine_.beside) {
         for (const NodeShare& share : sharesAround(to_.grid, fine_.placeOf(node))) {
           to[share.node] -= static_cast<Real>(share.weight) * quarter;
         }
       }
-      for (const NodeShare& share : to_.carriers.at(node)) {
+      for (const NodeShare& share : carriers) {
         to[share.node] += static_cast<Real>(share.weight) * quarter;
       }
     }
@@ -105,9 +107,9 @@ void GridTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& star
     for (int k = 0; k < fine_.size[2]; ++k) {
       prolongPlane(motion_, k, between_, fine[axis].data() + fine_.index(0, 0, k));
     }
-    for (const int node : to_.carried) {
+    for (const auto& [node, carriers] : to_.carried) {
       double mean = 0.0;
-      for (const NodeShare& share : to_.carriers.at(node)) {
+      for (const NodeShare& share : carriers) {
         mean += share.weight * static_cast<double>(motion_[at(share.node)]);
       }
       fine[axis][at(node)] = static_cast<Real>(mean);

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
 
 #include "robot_tissue/core/disjoint_sets.h"
 #include "solvers/multigrid/level/cell_kernel.h"
@@ -17,6 +21,8 @@ Place cornerOf(const Place& place, int corner) {
   return {place[0] + (corner & 1), place[1] + (corner >> 1 & 1), place[2] + (corner >> 2 & 1)};
 }
 
+// Whatever the object's size, the work beside what is cut, or at its outside, is a few steps a
+// cell: most cells are plain, their nodes the grid's own.
 class Coarsener {
  public:
   Coarsener(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries)
@@ -35,49 +41,65 @@ class Coarsener {
   }
 
  private:
+  // The coarse cells that have a fine node, at most one for each of its cells.
+  struct PiecesAt {
+    std::array<int, kCorners> all{};
+    int count = 0;
+
+    void add(int piece) {
+      const auto end = all.begin() + count;
+      if (std::find(all.begin(), end, piece) == end) all[at(count++)] = piece;
+    }
+  };
+
   // Fine cells by the coarse place they are in, then by connected pieces (over shared nodes).
   void gatherPieces() {
-    std::vector<std::pair<int, int>> by_place;
+    const Place& size = result_.grid.size;
+    std::vector<int> ends(at(size[0] * size[1] * size[2] + 1), 0), order(cells_.size());
+    const auto place_of = [&](const LevelCell& cell) {
+      return cell.place[0] / 2 + size[0] * (cell.place[1] / 2 + size[1] * (cell.place[2] / 2));
+    };
+    for (const LevelCell& cell : cells_) ++ends[at(place_of(cell) + 1)];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-      const Place& place = cells_[cell].place;
-      by_place.emplace_back(result_.grid.index(place[0] / 2, place[1] / 2, place[2] / 2),
-                            static_cast<int>(cell));
+      order[at(ends[at(place_of(cells_[cell]))]++)] = static_cast<int>(cell);
     }
-    std::sort(by_place.begin(), by_place.end());
     piece_of_.assign(cells_.size(), -1);
-    for (std::size_t first = 0; first < by_place.size();) {
-      std::size_t end = first;
-      while (end < by_place.size() && by_place[end].first == by_place[first].first) ++end;
-      std::vector<int> group;
-      for (std::size_t i = first; i < end; ++i) group.push_back(by_place[i].second);
-      splitGroup(by_place[first].first, group);
+    for (std::size_t first = 0, place = 0; first < order.size(); ++place) {
+      const std::size_t end = at(ends[place]);
+      if (end == first) continue;
+      splitGroup(order.data() + first, order.data() + end);
       first = end;
     }
   }
 
-  void splitGroup(int coarse_place, const std::vector<int>& group) {
-    DisjointSets sets(group.size());
-    for (std::size_t a = 0; a < group.size(); ++a) {
-      for (std::size_t b = a + 1; b < group.size(); ++b) {
+  void splitGroup(const int* first, const int* last) {
+    const auto count = static_cast<std::size_t>(last - first);
+    DisjointSets sets(count);
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = a + 1; b < count; ++b) {
         const int left = static_cast<int>(a), right = static_cast<int>(b);
-        if (sets.lowest(left) != sets.lowest(right) && haveCommonNode(group[a], group[b])) {
+        if (sets.lowest(left) != sets.lowest(right) && haveCommonNode(first[a], first[b])) {
           sets.join(left, right);
         }
       }
     }
-    for (std::size_t i = 0; i < group.size(); ++i) {
+    const std::size_t first_piece = result_.cells.size();
+    for (std::size_t i = 0; i < count; ++i) {
       const int root = sets.lowest(static_cast<int>(i));
-      int& piece = piece_of_[at(group[i])];
+      int& piece = piece_of_[at(first[i])];
       if (root == static_cast<int>(i)) {
         piece = static_cast<int>(result_.cells.size());
-        result_.cells.push_back({result_.grid.placeOf(coarse_place), {}, 0.0, 0.0});
+        const Place& place = cells_[at(first[i])].place;
+        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0.0, 0.0});
       } else {
-        piece = piece_of_[at(group[at(root)])];
+        piece = piece_of_[at(first[root])];
       }
       LevelCell& coarse = result_.cells[at(piece)];
-      coarse.shear += cells_[at(group[i])].shear / kCorners;
-      coarse.bulk += cells_[at(group[i])].bulk / kCorners;
+      coarse.shear += cells_[at(first[i])].shear / kCorners;
+      coarse.bulk += cells_[at(first[i])].bulk / kCorners;
     }
+    is_alone_.resize(result_.cells.size(), result_.cells.size() - first_piece == 1 ? 1 : 0);
   }
 
   bool haveCommonNode(int a, int b) const {
@@ -92,25 +114,31 @@ class Coarsener {
   void findNodes() {
     pieces_at_.assign(at(entries_), {});
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-      for (const int node : cells_[cell].nodes) {
-        std::vector<int>& pieces = pieces_at_[at(node)];
-        const int piece = piece_of_[cell];
-        if (std::find(pieces.begin(), pieces.end(), piece) == pieces.end()) pieces.push_back(piece);
-      }
+      for (const int node : cells_[cell].nodes) pieces_at_[at(node)].add(piece_of_[cell]);
     }
     DisjointSets corners(kCorners * result_.cells.size());
-    for (const std::vector<int>& pieces : pieces_at_) {
-      for (std::size_t other = 1; other < pieces.size(); ++other) {
-        for (std::size_t one = 0; one < other; ++one)
-          joinCorners(pieces[one], pieces[other], corners);
+    joined_.assign(result_.cells.size(), 0);
+    for (const PiecesAt& pieces : pieces_at_) {
+      for (int other = 1; other < pieces.count; ++other) {
+        for (int one = 0; one < other; ++one) {
+          joinPieces(pieces.all[at(one)], pieces.all[at(other)], corners);
+        }
       }
     }
     numberNodes(corners);
   }
 
-  void joinCorners(int a, int b, DisjointSets& corners) const {
+  // Those alone at their places are joined once, however many nodes they share.
+  void joinPieces(int a, int b, DisjointSets& corners) {
     const Place& from = result_.cells[at(a)].place;
     const Place& to = result_.cells[at(b)].place;
+    if (is_alone_[at(a)] != 0 && is_alone_[at(b)] != 0) {
+      const int toward =
+          to[0] - from[0] + 1 + 3 * (to[1] - from[1] + 1 + 3 * (to[2] - from[2] + 1));
+      const std::uint32_t bit = std::uint32_t{1} << toward;
+      if ((joined_[at(a)] & bit) != 0) return;
+      joined_[at(a)] |= bit;
+    }
     for (int corner = 0; corner < kCorners; ++corner) {
       const Place point = cornerOf(from, corner);
       int other = 0;
@@ -128,6 +156,7 @@ class Coarsener {
   void numberNodes(DisjointSets& corners) {
     std::vector<std::uint8_t> taken(at(result_.grid.beside), 0);
     std::vector<int> entry_of(kCorners * result_.cells.size(), -1);
+    places_.assign(at(result_.grid.beside), {});
     for (std::size_t piece = 0; piece < result_.cells.size(); ++piece) {
       LevelCell& cell = result_.cells[piece];
       for (int corner = 0; corner < kCorners; ++corner) {
@@ -137,7 +166,8 @@ class Coarsener {
           const int on_grid = result_.grid.index(point[0], point[1], point[2]);
           entry = taken[at(on_grid)] == 0 ? on_grid : result_.grid.beside + result_.nodes_beside++;
           taken[at(on_grid)] = 1;
-          places_[entry] = point;
+          if (entry != on_grid) places_.push_back({});
+          places_[at(entry)] = point;
         }
         cell.nodes[at(corner)] = entry;
       }
@@ -156,41 +186,50 @@ class Coarsener {
         fine_places_[at(node)] = cornerOf(cells_[cell].place, corner);
       }
     }
+    is_carried_.assign(at(entries_), 0);
     for (int node = 0; node < entries_; ++node) {
       if (cell_at[at(node)] < 0) continue;
       const LevelCell& coarse = result_.cells[at(piece_of_[at(cell_at[at(node)])])];
-      NodeShares shares = sharesAround(result_.grid, fine_places_[at(node)]);
-      bool usual = node < fine_.beside;
-      for (NodeShare& share : shares) {
-        const Place point = result_.grid.placeOf(share.node);
-        int corner = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-          if (point[at(axis)] > coarse.place[at(axis)]) corner |= 1 << axis;
-        }
-        usual = usual && coarse.nodes[at(corner)] == share.node;
-        share.node = coarse.nodes[at(corner)];
-      }
-      if (usual) continue;
-      result_.carried.push_back(node);
-      result_.carriers.emplace(node, std::move(shares));
+      if (node < fine_.beside && isPlain(coarse)) continue;
+      findCarriers(node, coarse);
     }
   }
 
+  // Its nodes are the grid's.
+  bool isPlain(const LevelCell& coarse) const {
+    const int beside = result_.grid.beside;
+    return std::all_of(coarse.nodes.begin(), coarse.nodes.end(),
+                       [beside](int node) { return node < beside; });
+  }
+
+  void findCarriers(int node, const LevelCell& coarse) {
+    NodeShares shares = sharesAround(result_.grid, fine_places_[at(node)]);
+    bool usual = node < fine_.beside;
+    for (NodeShare& share : shares) {
+      const Place point = result_.grid.placeOf(share.node);
+      int corner = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (point[at(axis)] > coarse.place[at(axis)]) corner |= 1 << axis;
+      }
+      usual = usual && coarse.nodes[at(corner)] == share.node;
+      share.node = coarse.nodes[at(corner)];
+    }
+    if (usual) return;
+    is_carried_[at(node)] = 1;
+    result_.carried.push_back({node, std::move(shares)});
+  }
+
   void findStarts() {
+    std::vector<std::uint8_t> is_usual(places_.size(), 0);
+    for (int node = 0; node < result_.grid.beside; ++node) is_usual[at(node)] = startsAtNode(node);
     std::unordered_map<int, NodeShares> around;
     std::vector<int> order;
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-      const LevelCell& coarse = result_.cells[at(piece_of_[cell])];
-      for (const int node : coarse.nodes) {
-        const Place& point = places_.at(node);
-        const Place twice = {2 * point[0], 2 * point[1], 2 * point[2]};
-        const int usual = isOnFineGrid(twice) ? fine_.index(twice[0], twice[1], twice[2]) : -1;
-        const bool is_usual = node < result_.grid.beside && usual >= 0 &&
-                              fine_places_[at(usual)] == twice && !pieces_at_[at(usual)].empty() &&
-                              result_.carriers.count(usual) == 0;
-        if (is_usual) continue;
+      for (const int node : result_.cells[at(piece_of_[cell])].nodes) {
+        if (is_usual[at(node)] != 0) continue;
         if (around.count(node) == 0) order.push_back(node);
-        addAround(cells_[cell], twice, around[node]);
+        const Place& point = places_[at(node)];
+        addAround(cells_[cell], {2 * point[0], 2 * point[1], 2 * point[2]}, around[node]);
       }
     }
     for (const int node : order) {
@@ -200,6 +239,15 @@ class Coarsener {
       for (NodeShare& share : fine) share.weight /= sum;
       if (!fine.empty()) result_.starts.push_back({node, fine});
     }
+  }
+
+  // Of the grid: where the fine node at its place is, which has it as a carrier.
+  bool startsAtNode(int node) const {
+    const Place& point = places_[at(node)];
+    const Place twice = {2 * point[0], 2 * point[1], 2 * point[2]};
+    if (!isOnFineGrid(twice)) return false;
+    const std::size_t fine = at(fine_.index(twice[0], twice[1], twice[2]));
+    return fine_places_[fine] == twice && pieces_at_[fine].count > 0 && is_carried_[fine] == 0;
   }
 
   bool isOnFineGrid(const Place& place) const {
@@ -231,10 +279,13 @@ class Coarsener {
   const std::vector<LevelCell>& cells_;
   int entries_;
   Coarsening result_;
-  std::vector<int> piece_of_;                // per fine cell: the coarse one
-  std::vector<std::vector<int>> pieces_at_;  // per fine node
-  std::vector<Place> fine_places_;           // per fine node
-  std::unordered_map<int, Place> places_;    // of coarse nodes
+  std::vector<int> piece_of_;             // per fine cell: the coarse one
+  std::vector<std::uint8_t> is_alone_;    // per coarse cell: no other is at its place
+  std::vector<std::uint32_t> joined_;     // per coarse cell: bits of neighbors
+  std::vector<PiecesAt> pieces_at_;       // per fine node
+  std::vector<Place> fine_places_;        // per fine node
+  std::vector<std::uint8_t> is_carried_;  // per fine node: by others than the grid's around it
+  std::vector<Place> places_;             // of coarse nodes
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <unordered_map>
 #include <vector>
 
 #include "robot_tissue/core/cells.h"
@@ -49,9 +48,13 @@ struct Coarsening {
   LevelGrid grid;
   int nodes_beside = 0;
   std::vector<LevelCell> cells;
-  // Fine nodes whose carriers in P are not the coarse grid points around them, but these.
-  std::unordered_map<int, NodeShares> carriers;
-  std::vector<int> carried;  // keys of `carriers`, ascending
+  // Fine nodes whose carriers in P are not the coarse grid points around them, but these;
+  // ascending.
+  struct Carried {
+    int node = 0;
+    NodeShares carriers;
+  };
+  std::vector<Carried> carried;
   // Coarse nodes that do not start where the fine grid point at their place is, but at the mean of
   // these fine nodes.
   struct Start {

@@ -1,0 +1,44 @@
+// Puts messages of /tf and /tf_static into a buffer. A transform stamped so far ahead that the
+// buffer would drop all present ones for it is left out, and warned about unless the clock soon
+// comes there, too; one that the buffer has no place for any more is, in silence.
+#pragma once
+
+#include <ros/time.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace robot_tissue {
+
+class TransformIntake {
+ public:
+  enum class Kind { kMoving, kStatic };
+
+  // time_went_back: asked before a message is put in; the buffer is empty then.
+  TransformIntake(tf2::BufferCore& buffer, std::function<bool()> time_went_back);
+
+  // Of /tf or /tf_static, at ros::Time::now().
+  void take(const tf2_msgs::TFMessage& message, Kind kind);
+
+ private:
+  struct Ahead {
+    std::string frame;
+    ros::Time stamp;
+    ros::WallTime seen;
+  };
+
+  bool hasPlace(const geometry_msgs::TransformStamped& transform);
+  void warnOfAhead();
+
+  tf2::BufferCore& buffer_;
+  std::function<bool()> time_went_back_;
+  std::map<std::string, ros::Time> newest_;  // stamps put in, by child frame
+  std::optional<Ahead> ahead_;               // left out and not warned about yet
+  ros::WallTime warned_;
+};
+
+}  // namespace robot_tissue

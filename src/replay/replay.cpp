@@ -1,0 +1,110 @@
+#include "replay.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <ostream>
+
+#include "bag_follower.h"
+#include "input_bag.h"
+#include "replay_options.h"
+#include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kLargestUrdf = 100000000;  // bytes
+
+NodeParameters parametersOf(const ReplayOptions& options) {
+  YAML::Node root = loadSceneText(options.scene);
+  SceneSource source;
+  source.name = options.scene;
+  source.folder = std::filesystem::absolute(options.scene).parent_path().string();
+  source.overrides.threads = options.threads;
+  if (options.rate && root.IsMap()) root["rate"] = *options.rate;
+  NodeParameters parameters = parseNodeParameters(root, source);
+  parameters.scene.solver.max_ms = 0.0;  // it would be of the wall's clock
+  if (parameters.scene.tools.empty()) {
+    throw InputError(onOneLine(options.scene) + ": tools: none; allowed: at least one");
+  }
+  return parameters;
+}
+
+std::optional<std::string> urdfOf(const ReplayOptions& options, const InputBag& in) {
+  if (!options.urdf) return in.robotDescription();
+  try {
+    return readRegularFile(*options.urdf, kLargestUrdf);
+  } catch (const InputError& error) {
+    throw InputError(onOneLine(*options.urdf) + ": " + error.what());
+  }
+}
+
+LoadedTools toolsFor(const NodeParameters& parameters, const std::optional<std::string>& urdf) {
+  const std::vector<ToolConfig>& configs = parameters.scene.tools;
+  if (urdf) return loadTools(*urdf, configs);
+  for (const ToolConfig& tool : configs) {
+    for (const ToolLink& link : tool.links) {
+      if (link.link.empty() || !link.shapes.empty()) continue;
+      throw InputError("tools: link '" + onOneLine(link.link) +
+                       "' has no shapes and there is no URDF; allowed: --urdf FILE, or shapes in "
+                       "the scene");
+    }
+  }
+  return toolsOf(configs);
+}
+
+void follow(const ReplayOptions& options, std::ostream& out, std::ostream& err,
+            const std::function<bool()>& is_stopped) {
+  ros::Time::init();  // it is told what time it is (BagFollower)
+  const NodeParameters parameters = parametersOf(options);
+  const InputBag in(options.in);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.in, options.out, ignored)) {
+    throw InputError(onOneLine(options.out) + ": is IN.bag itself; allowed: another file");
+  }
+  const LoadedTools loaded = toolsFor(parameters, urdfOf(options, in));
+  OutputBag bag(options.out);
+  BagFollower follower(parameters, loaded.tools, {options.surface, options.nodes}, bag);
+  for (const auto* lines :
+       {&parameters.scene.remarks, &loaded.warnings, &follower.toolWarnings()}) {
+    for (const std::string& line : *lines) err << "replay: " << line << '\n';
+  }
+  in.forTransforms([&](const tf2_msgs::TFMessage& message, TransformIntake::Kind kind,
+                       const ros::Time& received) {
+    if (is_stopped()) throw InputError("stopped by a signal; nothing is written");
+    follower.take(message, kind, received);
+  });
+  if (follower.posesFollowed() == 0) {
+    const std::string& why = follower.status().message;
+    throw InputError(onOneLine(options.in) + ": has no pose of the tools" +
+                     (why.empty() ? "" : " (" + onOneLine(why) + ")") +
+                     "; allowed: transforms of all tools' links to '" +
+                     parameters.scene.tissue.frame_id + "'");
+  }
+  bag.commit();
+  out << follower.posesFollowed() << " poses followed; state hash " << std::hex << std::setw(16)
+      << std::setfill('0') << follower.stateHash() << std::dec << '\n';
+}
+
+}  // namespace
+
+int replay(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& err,
+           const std::function<bool()>& is_stopped) {
+  try {
+    const ReplayOptions options = parseReplayOptions(arguments);
+    if (options.help) {
+      out << replayHelp();
+      return 0;
+    }
+    follow(options, out, err, is_stopped);
+  } catch (const std::exception& error) {
+    err << "replay: " << error.what() << '\n';
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,24 @@
+// The command line of `replay`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace robot_tissue {
+
+struct ReplayOptions {
+  std::string scene, in, out;
+  std::optional<std::string> urdf;     // --urdf FILE
+  std::optional<std::string> rate;     // --rate HZ, as typed
+  std::optional<std::string> threads;  // --threads N, as typed
+  bool surface = false;                // --surface
+  bool nodes = false;                  // --nodes
+  bool help = false;
+};
+
+// Throws InputError, one line.
+ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments);
+std::string replayHelp();
+
+}  // namespace robot_tissue

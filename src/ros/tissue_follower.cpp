@@ -1,0 +1,63 @@
+#include "robot_tissue/ros/tissue_follower.h"
+
+#include <ros/console.h>
+
+#include <vector>
+
+#include "robot_tissue/pipeline/step_remarks.h"
+#include "robot_tissue/scene/value_text.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+
+TissueFollower::TissueFollower(const NodeParameters& parameters, Pipeline& pipeline)
+    : parameters_(parameters),
+      pipeline_(pipeline),
+      clock_(1.0 / parameters.rate_hz, tuning::kLongestGap) {}
+
+void TissueFollower::settleFromRest() {
+  const Scene& scene = parameters_.scene;
+  if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline_.settle();
+}
+
+std::string TissueFollower::waitsAfterJump(const PoseLookUp& look_up) {
+  const auto jumped = pipeline_.tissue().isUntouched() ? std::vector<std::size_t>()
+                                                       : pipeline_.jumpsTo(look_up.pose);
+  const ros::Time now = look_up.stamp;
+  if (jumped.empty() || now < jumped_at_) jumped_at_ = ros::Time();
+  if (jumped.empty()) return "";
+  if (jumped_at_.isZero()) jumped_at_ = now;
+  if ((now - jumped_at_).toSec() >= parameters_.tf_timeout_s) return "";
+  return namesOf(jumped, pipeline_.tools()) +
+         " jumped, farther than is followed: the last good shape stays, until the pose has lasted "
+         "for " +
+         numberText(parameters_.tf_timeout_s) + " s (~tf_timeout)";
+}
+
+const StepReport& TissueFollower::follow(PoseLookUp& look_up) {
+  setTimeOf(look_up);
+  return pipeline_.step(look_up.pose);
+}
+
+void TissueFollower::timeWentBack() {
+  jumped_at_ = ros::Time();
+  RobotPose nowhere;
+  nowhere.stamp_s = clock_.now();
+  pipeline_.step(nowhere);
+}
+
+void TissueFollower::setTimeOf(PoseLookUp& look_up) {
+  look_up.pose.stamp_s = clock_.advance(look_up.stamp, pipeline_.tissue().isMoving());
+  if (clock_.leftOut() > 0.0) {
+    ROS_WARN_STREAM_THROTTLE(1.0, "no pose came for a while: for "
+                                      << clock_.leftOut()
+                                      << " s of it the tissue's time stood still");
+  }
+}
+
+NodeStatus statusWithoutPose(const PoseLookUp& look_up) {
+  const bool stale = look_up.status == PoseLookUp::Status::kStale;
+  return {stale ? "STALE" : "NO_TRANSFORM", look_up.message};
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,65 @@
+#include "robot_tissue/ros/transform_intake.h"
+
+#include <ros/console.h>
+#include <tf2/exceptions.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "robot_tissue/scene/value_text.h"
+
+namespace robot_tissue {
+namespace {
+
+const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
+const ros::WallDuration kWarnPeriod(10.0);
+
+}  // namespace
+
+TransformIntake::TransformIntake(tf2::BufferCore& buffer, std::function<bool()> time_went_back)
+    : buffer_(buffer), time_went_back_(std::move(time_went_back)) {}
+
+void TransformIntake::take(const tf2_msgs::TFMessage& message, Kind kind) {
+  if (time_went_back_()) newest_.clear();
+  warnOfAhead();
+  for (const geometry_msgs::TransformStamped& transform : message.transforms) {
+    if (kind == Kind::kMoving && !hasPlace(transform)) continue;
+    try {
+      buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
+    } catch (const tf2::TransformException& error) {
+      ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << onOneLine(error.what()));
+    }
+  }
+}
+
+// Whether the buffer can take the transform: it is no farther ahead of the clock, or behind the
+// newest of its frame, than the buffer is long. Before there is a clock, none.
+bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform) {
+  const ros::Time now = ros::Time::now(), stamp = transform.header.stamp;
+  if (now.isZero()) return false;
+  if (stamp - now > buffer_.getCacheLength()) {
+    if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
+    return false;
+  }
+  ros::Time& newest = newest_[transform.child_frame_id];
+  if (newest - stamp > buffer_.getCacheLength()) return false;
+  newest = std::max(newest, stamp);
+  return true;
+}
+
+void TransformIntake::warnOfAhead() {
+  if (!ahead_) return;
+  const ros::WallTime now = ros::WallTime::now();
+  const ros::Duration ahead = ahead_->stamp - ros::Time::now(), most = buffer_.getCacheLength();
+  if (ahead > most && now - ahead_->seen < kPatience) return;
+  if (ahead > most && now - warned_ > kWarnPeriod) {
+    warned_ = now;
+    ROS_WARN_STREAM("/tf: the transform of '"
+                    << shortText(ahead_->frame) << "' is " << numberText(ahead.toSec())
+                    << " s ahead of now and left out; allowed: at most " << numberText(most.toSec())
+                    << " s, that the buffer holds");
+  }
+  ahead_.reset();
+}
+
+}  // namespace robot_tissue
