@@ -25,6 +25,13 @@ struct Link {
   std::vector<CollisionShape> shapes;
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
+  std::size_t in_use = 0;                         // of the shapes, the first
+
+  PlacedLink placedAt(const Pose& tissue_T_link) const {
+    PlacedLink here = placed(shapes, tissue_T_link);
+    if (here.size() > in_use) here.resize(in_use);
+    return here;
+  }
 };
 
 Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geometry,
@@ -39,6 +46,7 @@ Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geomet
     link.gap_shapes.emplace_back(link.shapes.back());
     link.surface_points.push_back(surfacePoints(link.shapes.back()));
   }
+  link.in_use = link.shapes.size();
   return link;
 }
 
@@ -149,9 +157,18 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
 
 std::size_t ContactFinder::linkCount() const { return impl_->links.size(); }
 
+void ContactFinder::useShapes(std::size_t link, std::size_t count) {
+  std::size_t& in_use = impl_->links[link].in_use;
+  if (in_use == count) return;
+  in_use = std::min(count, impl_->links[link].shapes.size());
+  impl_->found = {};
+}
+
 double ContactFinder::reach(std::size_t link) const {
   double farthest = 0.0;
-  for (const CollisionShape& shape : impl_->links[link].shapes) {
+  const Link& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.in_use; ++i) {
+    const CollisionShape& shape = of.shapes[i];
     if (shape.isPlane()) continue;
     const Box& box = shape.bounds();
     const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min() + box.max()));
@@ -168,21 +185,22 @@ double ContactFinder::reach(std::size_t link) const {
 
 Vec3 ContactFinder::center(std::size_t link) const {
   Vec3 sum = Vec3::Zero();
-  const auto& shapes = impl_->links[link].shapes;
-  for (const CollisionShape& shape : shapes) sum += shape.poseInLink().translation();
-  return shapes.empty() ? sum : Vec3(sum / static_cast<double>(shapes.size()));
+  const Link& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.in_use; ++i) sum += of.shapes[i].poseInLink().translation();
+  return of.in_use == 0 ? sum : Vec3(sum / static_cast<double>(of.in_use));
 }
 
 double ContactFinder::thickness(std::size_t link) const {
   double thinnest = std::numeric_limits<double>::infinity();
-  for (const CollisionShape& shape : impl_->links[link].shapes) {
-    thinnest = std::min(thinnest, shape.thickness());
+  const Link& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.in_use; ++i) {
+    thinnest = std::min(thinnest, of.shapes[i].thickness());
   }
   return thinnest;
 }
 
 Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {
-  return boundsOf(placed(impl_->links[link].shapes, tissue_T_link));
+  return boundsOf(impl_->links[link].placedAt(tissue_T_link));
 }
 
 const std::vector<std::string>& ContactFinder::warnings() const { return impl_->warnings; }
@@ -190,7 +208,7 @@ const std::vector<std::string>& ContactFinder::warnings() const { return impl_->
 std::vector<PlacedLink> ContactFinder::Impl::placedAt(const RobotPose& pose) const {
   std::vector<PlacedLink> here;
   for (std::size_t i = 0; i < links.size(); ++i) {
-    here.push_back(placed(links[i].shapes, pose.links[i]));
+    here.push_back(links[i].placedAt(pose.links[i]));
   }
   return here;
 }
@@ -262,7 +280,7 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
 
 std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue_T_link,
                                             const Vec3& point, double reach) const {
-  return robot_tissue::wayOut(placed(impl_->links[link].shapes, tissue_T_link), point, reach);
+  return robot_tissue::wayOut(impl_->links[link].placedAt(tissue_T_link), point, reach);
 }
 
 // Sphere tracing (Hart 1996): at a depth d every way out to `clear` off the link is at least d +
@@ -292,7 +310,7 @@ std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& 
   std::vector<double> depths(links.size(), 0.0);
   const Box bounds = impl_->boundsOf(surface, vertices);
   for (std::size_t i = 0; i < links.size(); ++i) {
-    const PlacedLink here = placed(impl_->links[links[i]].shapes, pose.links[links[i]]);
+    const PlacedLink here = impl_->links[links[i]].placedAt(pose.links[links[i]]);
     if (!robot_tissue::boundsOf(here).intersects(bounds)) continue;
     if (!impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
     depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices);
@@ -304,8 +322,8 @@ double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& 
   requireLinks(pose, impl_->links.size());
   const Link& a = impl_->links[link];
   const Link& b = impl_->links[other];
-  const PlacedLink a_here = placed(a.shapes, pose.links[link]);
-  const PlacedLink b_here = placed(b.shapes, pose.links[other]);
+  const PlacedLink a_here = a.placedAt(pose.links[link]);
+  const PlacedLink b_here = b.placedAt(pose.links[other]);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < a_here.size(); ++i) {
     for (std::size_t j = 0; j < b_here.size(); ++j) {

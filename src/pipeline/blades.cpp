@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "stopwatch.h"
@@ -24,32 +25,75 @@ Vec3 nearestOf(const std::vector<Vec3>& edge, const Vec3& point) {
 
 }  // namespace
 
+void Blades::forget() {
+  states_.assign(world_.tools.size(), BladeState());
+  for (std::size_t tool = 0; tool < states_.size(); ++tool) setPhase(tool, EdgePhase::kOutside);
+}
+
+void Blades::restore(const std::vector<BladeState>& states) {
+  states_ = states;
+  for (std::size_t tool = 0; tool < states_.size(); ++tool) setPhase(tool, states_[tool].phase);
+}
+
 bool Blades::goTo(RobotPose& pose) {
   bool all = true;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!world_.tools[tool].role.has_edge) continue;
-    all = goTo(tool, pose) && all;
+    BladeState& state = states_[tool];
+    if (state.is_coming_back) comeBack(tool);
+    all = goTo(tool, pose) && !state.is_coming_back && all;
   }
   return all;
+}
+
+void Blades::partAhead(const RobotPose& pose) {
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!world_.mayEdgeTouch(tool) || world_.is_trial) continue;
+    const bool has_sides = !world_.tools[tool].links.front().shapes.empty();
+    const BladeState& state = states_[tool];
+    if (!has_sides || state.phase != EdgePhase::kInside || state.strides.stands.empty()) continue;
+    RobotPose there = pose;
+    goTo(tool, there);
+  }
 }
 
 bool Blades::goTo(std::size_t tool, RobotPose& pose) {
   BladeState& state = states_[tool];
   const std::size_t link = world_.tools.firstLink(tool);
   StrideActions actions;
-  actions.length = tuning::kBladeStride * world_.tissue.lattice().spacing();
-  actions.forget = [&] { comeIn(tool, state); };
-  actions.move = [&](const std::vector<Pose>& there) { moveTo(there.front(), state); };
-  actions.act = [&] { cutAlongPath(tool, state); };
+  actions.length = lookLength();
+  actions.forget = [&] { forgetWay(tool); };
+  actions.move = [&](const std::vector<Pose>& there) {
+    countDentWork(tool, state.stands());
+    moveTo(there.front(), state);
+  };
+  actions.act = [&] { look(tool); };
   return goInStrides(world_, tool, {link, link + 1}, actions, state.strides, pose);
 }
 
-void Blades::comeIn(std::size_t tool, BladeState& state) const {
-  const Strides strides = state.strides;
+void Blades::forgetWay(std::size_t tool) {
+  BladeState& state = states_[tool];
+  const BladeState before = state;
   state = BladeState();
-  state.strides = strides;
-  state.path = strides.stands;
+  state.strides = before.strides;
+  state.phase = before.phase;
+  state.path = before.strides.stands;
   state.point = nearestOf(world_.tools[tool].blade.edge, Vec3::Zero());
+}
+
+// m: an edge that presses is looked at some times in a stride.
+double Blades::lookLength() const {
+  return tuning::kBladeStride / tuning::kLooksInStride * world_.tissue.lattice().spacing();
+}
+
+void Blades::look(std::size_t tool) {
+  BladeState& state = states_[tool];
+  state.looks = (state.looks + 1) % tuning::kLooksInStride;
+  if (state.phase != EdgePhase::kInside) press(tool);
+  const bool cuts = state.phase == EdgePhase::kInside && state.looks == 0;
+  if (!cuts || state.is_coming_back) return;
+  cutAlongPath(tool, state);
+  if (state.debts.empty()) leave(tool);
 }
 
 // The edge pays on the way of its point.
@@ -72,10 +116,12 @@ void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
   const Stopwatch watch(world_.report.solve_ms);
   const Stroke stroke = state.debts.empty() ? Stroke::kBegins : Stroke::kGoesOn;
   const CutReport cut = world_.tissue.cutAlong(swept, stroke);
+  const double dent_work = std::exchange(state.dent_work, 0.0);
   if (cut.springs_cut == 0) return;
   const BladeConfig& blade = world_.tools[tool].blade;
   const double spacing = world_.tissue.lattice().spacing();
-  state.debts.push_back({blade.resistance * cut.area / spacing, spacing});
+  const double work = std::max(0.0, blade.resistance * cut.area - dent_work);
+  state.debts.push_back({work / spacing, spacing});
   state.point = nearestOf(blade.edge, state.stands().inverse() * cut.center);
   world_.sliding.commit(world_.pose, world_.tissue);
   world_.dead_end.reset();
@@ -110,8 +156,9 @@ void Blades::describe(std::size_t tool, ToolReport& report) const {
   if (!world_.tools[tool].role.has_edge || state.debts.empty()) return;
   double force = 0.0;
   for (const CutDebt& debt : state.debts) force += debt.force;
-  report.force_on_tool = -force * (state.stands().linear().transpose() * state.direction);
-  report.torque_on_tool = state.point.cross(report.force_on_tool);
+  const Vec3 of_cut = -force * (state.stands().linear().transpose() * state.direction);
+  report.force_on_tool += of_cut;
+  report.torque_on_tool += state.point.cross(of_cut);
   report.point = state.stands() * state.point;
   limitWrench(world_.tools[tool].max_force, report);
 }

@@ -214,7 +214,7 @@ Checkpoint LoadStepper::checkpoint() const {
   return all;
 }
 
-// Balance on the supports alone, when all tools have let go.
+// Balance where a tool, or all of them, let go.
 void LoadStepper::lieDown() {
   if (world_.tissue.isUntouched()) return;
   world_.sliding.ride(world_.pose, world_.tissue);

@@ -27,7 +27,7 @@ struct Pipeline::Parts {
   Grasping grasping{world};
   OverlapResolver overlap{world};
   LoadStepper load_step{world, touch_finder, contact_update, grasping};
-  Blades blades{world};
+  Blades blades{world, load_step};
   Burrs burrs{world};
   ToolMotion motion{world, ways, overlap, grasping, load_step};
 };

@@ -55,6 +55,15 @@ Pose between(const Pose& from, const Pose& to, double share) {
   return pose;
 }
 
+RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
+  RobotPose pose = to;
+  pose.stamp_s = from.stamp_s + share * (to.stamp_s - from.stamp_s);
+  for (std::size_t link = 0; link < to.links.size(); ++link) {
+    pose.links[link] = between(from.links[link], to.links[link], share);
+  }
+  return pose;
+}
+
 bool goInStrides(World& world, std::size_t tool, Links links, const StrideActions& actions,
                  Strides& strides, RobotPose& pose) {
   const auto first = pose.links.begin() + static_cast<std::ptrdiff_t>(links.first);

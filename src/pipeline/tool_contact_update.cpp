@@ -16,7 +16,7 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
   const double spacing = world_.tissue.lattice().spacing();
   std::vector<Surroundings> all;
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
-    if (ToolSet::isAway(world_.pose.links[link])) continue;
+    if (ToolSet::isAway(world_.pose.links[link]) || world_.isInWound(link)) continue;
     Surroundings here;
     here.box = grownBy(spacing, world_.finder.bounds(link, world_.pose.links[link]));
     here.longest = tuning::kLongestWay * spacing;
@@ -101,6 +101,7 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
   for (const Contact& contact :
        world_.finder.find(world_.pose, world_.tissue.surface(), vertices, 0.0).contacts) {
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
+    if (world_.isInWound(at(contact.link))) continue;
     if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;
     depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
   }

@@ -5,27 +5,10 @@
 #include <utility>
 
 #include "box_distance.h"
+#include "strides.h"
 #include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-RobotPose between(const RobotPose& from, const RobotPose& to, double share) {
-  RobotPose between = to;
-  between.stamp_s = from.stamp_s + share * (to.stamp_s - from.stamp_s);
-  for (std::size_t link = 0; link < to.links.size(); ++link) {
-    const Pose& start = from.links[link];
-    const Pose& end = to.links[link];
-    Pose& pose = between.links[link];
-    pose.linear() = Eigen::Quaterniond(start.linear())
-                        .slerp(share, Eigen::Quaterniond(end.linear()))
-                        .toRotationMatrix();
-    pose.translation() = start.translation() + share * (end.translation() - start.translation());
-  }
-  return between;
-}
-
-}  // namespace
 
 // Whether the shortest load step of this way is the one that no shape followed (World::dead_end):
 // it is not tried again.
@@ -205,6 +188,7 @@ bool ToolMotion::isHooked(std::size_t tool) const {
   if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
   std::vector<std::size_t> links;
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
+    if (world_.isInWound(link)) return false;
     const Box box = world_.finder.bounds(link, world_.last_pose->links[link]);
     if (distance(box, world_.tissue.lattice().bounds()) < world_.tissue.lattice().spacing()) {
       return false;

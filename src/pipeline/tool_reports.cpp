@@ -56,6 +56,7 @@ std::vector<double> deepestPoints(const World& world) {
   std::vector<std::size_t> near, tool_of;
   for (std::size_t tool = 0; tool < world.tools.size(); ++tool) {
     for (std::size_t link = world.tools.firstLink(tool); link < world.tools.endLink(tool); ++link) {
+      if (world.isInWound(link)) continue;  // it is meant to be where tissue was
       if (!world.finder.bounds(link, pose.links[link]).intersects(world.tissue.bounds())) continue;
       near.push_back(link);
       tool_of.push_back(tool);

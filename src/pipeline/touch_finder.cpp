@@ -1,6 +1,7 @@
 #include "touch_finder.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "stopwatch.h"
@@ -17,7 +18,7 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
     contact.normal = touch.spring.normal;
     contact.depth_m = 0.0;
     contact.point = pointOf(touch.spring, world_.tissue.state().displacement);
-    const bool near = turnOut(pose, contact);
+    const bool near = turn(pose, contact);
     tracked.push_back(near ? std::optional<Contact>(contact) : std::nullopt);
   }
   return tracked;
@@ -62,11 +63,49 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   return true;
 }
 
+// The lips of a wound are pushed aside by the blade in it, each to the side that it looks from,
+// from the middle of the blade on; ahead of its edge and behind its back it does not push. Where a
+// lip is, is known to half a spacing: that is no overlap.
+bool TouchFinder::turnAside(const RobotPose& pose, Contact& contact) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  const std::size_t link = at(contact.link);
+  const Pose& tissue_T_link = pose.links[link];
+  const World::Sides sides = world_.sidesOf(link);
+  const Vec3 across = tissue_T_link.linear() * sides.across;
+  const double side = across.dot(inwardsAt(contact));
+  if (std::abs(side) < tuning::kLipLooksAside) return false;
+  const Vec3 aside = side > 0.0 ? across : Vec3(-across);
+  const double beyond = (contact.point - tissue_T_link * sides.middle).dot(aside);
+  const Vec3 in_blade = contact.point - beyond * aside;
+  if (!world_.finder.wayOut(link, tissue_T_link, in_blade, 0.0)) return false;
+  const auto out =
+      world_.finder.wayOutAlong(link, tissue_T_link, in_blade, aside, tuning::kOffEdge * spacing,
+                                tuning::kReach * spacing, tuning::kReach * spacing);
+  if (!out || out->normal.dot(aside) < tuning::kLipLooksAside) return false;
+  contact.normal = out->normal;
+  contact.depth_m = out->depth_m - beyond * aside.dot(out->normal) - tuning::kPlaceOfLip * spacing;
+  return true;
+}
+
+bool TouchFinder::turn(const RobotPose& pose, Contact& contact) const {
+  return world_.isInWound(at(contact.link)) ? turnAside(pose, contact) : turnOut(pose, contact);
+}
+
 ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), displacement, vertices_);
-  return world_.finder.find(pose, world_.tissue.surface(), vertices_,
-                            tuning::kNearGap * world_.tissue.lattice().spacing());
+  const double spacing = world_.tissue.lattice().spacing();
+  const auto find = [&](double gap) {
+    return world_.finder.find(pose, world_.tissue.surface(), vertices_, gap * spacing);
+  };
+  if (!world_.anyInWound()) return find(tuning::kNearGap);
+  ContactSet contacts = find(tuning::kPlaceOfLip + tuning::kNearGap);
+  auto& all = contacts.contacts;
+  const auto is_far = [&](const Contact& contact) {
+    return !world_.isInWound(at(contact.link)) && contact.depth_m <= -tuning::kNearGap * spacing;
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), is_far), all.end());
+  return contacts;
 }
 
 // Contacts of points that give way, with the planes that turnOut finds.
@@ -80,6 +119,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   const Stopwatch watch(world_.report.contact_ms);
   depths_.assign(pose.links.size(), 0.0);
   for (const Contact& contact : all) {
+    if (world_.isInWound(at(contact.link))) continue;
     depths_[at(contact.link)] = std::max(depths_[at(contact.link)], contact.depth_m);
   }
   outwards_.assign(vertices_.size(), Vec3::Zero());
@@ -87,7 +127,12 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
     const Vec3 area = doubleArea(vertices_, corners);
     for (const int corner : corners) outwards_[at(corner)] += area;
   }
-  for (Contact& contact : contacts.contacts) turnOut(pose, contact);
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](Contact& contact) {
+                             const bool turned = turn(pose, contact);
+                             return !turned && world_.isInWound(at(contact.link));
+                           }),
+            all.end());
   return contacts;
 }
 

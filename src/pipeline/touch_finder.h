@@ -27,6 +27,8 @@ class TouchFinder {
  private:
   Vec3 inwardsAt(const Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;
+  bool turnAside(const RobotPose& pose, Contact& contact) const;
+  bool turn(const RobotPose& pose, Contact& contact) const;
 
   World& world_;
   std::vector<Vec3> vertices_;  // of the last contacts

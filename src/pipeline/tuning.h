@@ -99,6 +99,20 @@ constexpr double kCancelled = 1e-6;
 // Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,
 // but what gives way as it is cut is met where it was. Chosen: no spring is passed in one.
 constexpr double kBladeStride = 0.25;
+// Looks at what an edge presses, in a stride. More: it goes in nearer to its resistance, by more
+// solves. Chosen: a load step each.
+constexpr int kLooksInStride = 4;
+// Of the spacing (1): radius of the bar with which an edge touches before it cuts. Less: shorter
+// load steps; more: it touches that much too early. Chosen.
+constexpr double kEdgeRadius = 0.125;
+// Of the spacing (1): the deepest dent before an edge of its own that it has force for goes in; the
+// line that it presses would turn cells over. More: deeper, slower dents. Chosen.
+constexpr double kDeepestDent = 1.0;
+// Of the spacing (1): how far a lip of a wound may be from where the blade cut, as springs part in
+// their middles.
+constexpr double kPlaceOfLip = 0.5;
+// Cosine between a lip and the sides of the blade in the wound: below it, it looks ahead. Chosen.
+constexpr double kLipLooksAside = 0.5;
 // Of the thickness (1) of a burr: its longest stride, within that of a blade. More: cells that a
 // thin one passes slip between two strides. Chosen. And of the spacing (1): its shortest, so that
 // hairs need not drill for hours.

@@ -28,10 +28,15 @@ double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) cons
 std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotPose& goal) const {
   std::vector<std::size_t> far;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    const RobotPose alone = world_.tools.withTool(tool, goal, from);
-    if (stepsBetween(from, alone) > Pipeline::kMostLoadSteps && !passesBy(tool, from, goal)) {
-      far.push_back(tool);
+    double steps = 0.0;
+    for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool);
+         ++link) {
+      const double way = longestWay(from.links[link], goal.links[link], world_.reach(link));
+      // An edge that is too thin to be met in longer steps goes in.
+      const bool cuts = world_.tools[tool].role.has_edge;
+      steps = std::max(steps, way / (cuts ? world_.tissue.stepLength() : stepOf(link)));
     }
+    if (steps > Pipeline::kMostLoadSteps && !passesBy(tool, from, goal)) far.push_back(tool);
   }
   return far;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tuning.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -22,6 +24,7 @@ World::World(const TissueConfig& tissue_config, const SolverConfig& solver)
       tools({}, {}),
       finder({}),
       drills({}),
+      edges({}),
       sticking(tissue.lattice(), {}),
       sliding({}, {}) {}
 
@@ -30,8 +33,11 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   tools = ToolSet(geometry, supports);
   has_supports = !supports.empty();
   const std::vector<ToolGeometry> all = tools.withSupports();
-  finder = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.touches(); }));
+  finder =
+      ContactFinder(shapesOf(withEdges(all), [](const ToolRole& role) { return !role.drills; }));
   drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
+  edges = ContactFinder(edgesOf(all));
+  in_wound_.assign(tools.linkCount(), false);
   warnings = finder.warnings();
   warnings.insert(warnings.end(), drills.warnings().begin(), drills.warnings().end());
   sticking = StickingContacts(tissue.lattice(), tools.names());
@@ -50,6 +56,75 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   unfinished = false;
   report = StepReport();
   report.tools.resize(tools.size());
+}
+
+bool World::mayEdgeTouch(std::size_t tool) const {
+  const ToolGeometry& of = tools[tool];
+  return of.role.has_edge && of.patch != ToolConfig::Patch::kRigid && !tissue.hasTime();
+}
+
+void World::setEdgeTouches(std::size_t tool, bool touches) {
+  if (!mayEdgeTouch(tool)) return;
+  const std::size_t link = tools.firstLink(tool);
+  const std::size_t sides = tools[tool].links.front().shapes.size();
+  const std::size_t edge = tools[tool].blade.edge.size() - 1;
+  in_wound_[link] = !touches;
+  finder.useShapes(link, sides + (touches ? edge : 0));
+}
+
+bool World::isInWound(std::size_t link) const { return link < in_wound_.size() && in_wound_[link]; }
+
+bool World::anyInWound() const {
+  return std::any_of(in_wound_.begin(), in_wound_.end(), [](bool is_in) { return is_in; });
+}
+
+// A blade is flat: it goes from its edge to the middle of its shapes.
+World::Sides World::sidesOf(std::size_t link) const {
+  const std::vector<Vec3>& edge = edgeOn(link);
+  if (edge.empty() || !(finder.reach(link) > 0.0)) return {};
+  const Vec3 middle = 0.5 * (edge.front() + edge.back());
+  const Vec3 along = edge.back() - edge.front();
+  return {middle, along.cross(finder.center(link) - middle).normalized()};
+}
+
+// Round bars along its edge, as sharp as the lattice can tell.
+std::vector<ToolShape> World::barsAlong(const std::vector<Vec3>& edge) const {
+  const double radius = tuning::kEdgeRadius * tissue.lattice().spacing();
+  std::vector<ToolShape> bars;
+  for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
+    const Vec3 along = edge[i + 1] - edge[i];
+    ToolShape bar;
+    bar.type = ToolShape::Type::kCylinder;
+    bar.radius = bar.padding = 0.5 * radius;  // round ends, too
+    bar.length = along.norm();
+    bar.pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), along).toRotationMatrix();
+    bar.pose.translation() = edge[i] + 0.5 * along;
+    bars.push_back(bar);
+  }
+  return bars;
+}
+
+// Bars after the shapes of the first link. Where edges may not touch, sides do not, either.
+std::vector<ToolGeometry> World::withEdges(std::vector<ToolGeometry> all) const {
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (!all[tool].role.has_edge) continue;
+    if (!mayEdgeTouch(tool)) {
+      for (LinkGeometry& link : all[tool].links) link.shapes.clear();
+      continue;
+    }
+    std::vector<ToolShape>& shapes = all[tool].links.front().shapes;
+    const std::vector<ToolShape> bars = barsAlong(all[tool].blade.edge);
+    shapes.insert(shapes.end(), bars.begin(), bars.end());
+  }
+  return all;
+}
+
+std::vector<ToolGeometry> World::edgesOf(std::vector<ToolGeometry> all) const {
+  for (ToolGeometry& tool : all) {
+    for (LinkGeometry& link : tool.links) link.shapes.clear();
+    if (tool.role.has_edge) tool.links.front().shapes = barsAlong(tool.blade.edge);
+  }
+  return all;
 }
 
 double World::reach(std::size_t link) const {

@@ -32,10 +32,28 @@ struct World {
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
+  // A tool with an edge touches with it, or only with the shapes of its links, as while it is
+  // inside.
+  void setEdgeTouches(std::size_t tool, bool touches);
+  // Of a tool whose edge is inside, the first link: its shapes push the lips of the wound aside.
+  bool isInWound(std::size_t link) const;
+  bool anyInWound() const;
+  // Of such a tool's first link: a point between its sides (m), and across them, unit; link frame.
+  // Zero without sides.
+  struct Sides {
+    Vec3 middle = Vec3::Zero();
+    Vec3 across = Vec3::Zero();
+  };
+  Sides sidesOf(std::size_t link) const;
+  // Whether it may: a rigid patch has no place for what a line touches, and in time tissue would
+  // not have come back when what it dented is cut.
+  bool mayEdgeTouch(std::size_t tool) const;
+
   Tissue tissue;  // [LoadStepper]
   ToolSet tools;
   ContactFinder finder;               // of tools and supports that touch
   ContactFinder drills;               // of the shapes of tools that drill; links as in `finder`
+  ContactFinder edges;                // of the bars along edges alone; links likewise
   std::vector<std::string> warnings;  // of both
   // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
   StickingContacts sticking;
@@ -56,6 +74,13 @@ struct World {
   bool unfinished = false;  // the last load step had no time for all it would do [LoadStepper]
   Deadline deadline;        // of the call under way
   StepReport report;        // [LoadStepper, ToolMotion; times: whoever took them]
+
+ private:
+  std::vector<bool> in_wound_;  // per link; supports have none
+
+  std::vector<ToolShape> barsAlong(const std::vector<Vec3>& edge) const;
+  std::vector<ToolGeometry> withEdges(std::vector<ToolGeometry> all) const;
+  std::vector<ToolGeometry> edgesOf(std::vector<ToolGeometry> all) const;
 };
 
 // What the patch of a tool or support exerts on the tissue; zero when it has none.

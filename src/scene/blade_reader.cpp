@@ -21,8 +21,9 @@ bool isOfEdge(const Entry& entry, const ToolConfig& tool) {
 
 }  // namespace
 
-void readEdge(const Entry& entry, const LengthRanges& lengths, ToolConfig& tool, Remarks& remarks) {
+void readEdge(const Entry& entry, const TissueConfig& tissue, ToolConfig& tool, Remarks& remarks) {
   if (!isOfEdge(entry, tool)) return;
+  const LengthRanges lengths = lengthsOf(tissue);
   std::vector<Vec3>& edge = tool.blade.edge;
   for (const Entry& point : entry.list(2, "points", kMostPoints)) {
     edge.push_back(point.vec3(lengths.place));
@@ -34,9 +35,11 @@ void readEdge(const Entry& entry, const LengthRanges& lengths, ToolConfig& tool,
   }
   const bool has_shapes = std::any_of(tool.links.begin(), tool.links.end(),
                                       [](const ToolLink& link) { return !link.shapes.empty(); });
-  if (!has_shapes) return;
-  remarks.push_back(entry.line("the shapes of tool '" + tool.name + "' touch nothing, role " +
-                               tool.role.name + " only cuts"));
+  const bool is_rigid = tool.patch == ToolConfig::Patch::kRigid;
+  if (!has_shapes || !(is_rigid || tissue.time)) return;
+  remarks.push_back(entry.line("the shapes of tool '" + tool.name + "' touch nothing, with " +
+                               (is_rigid ? "patch rigid" : "tissue.time") + " a " + tool.role.name +
+                               " only cuts"));
 }
 
 void readResistance(const Entry& entry, ToolConfig& tool) {

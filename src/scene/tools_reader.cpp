@@ -126,7 +126,7 @@ const KeyTable<ToolReading> kToolKeys = {
     {"grasp", readGrasp},
     {"edge",
      [](const Entry& entry, ToolReading& reading) {
-       readEdge(entry, lengthsOf(reading.tissue), reading.tool, reading.remarks);
+       readEdge(entry, reading.tissue, reading.tool, reading.remarks);
      }},
     {"resistance",
      [](const Entry& entry, ToolReading& reading) { readResistance(entry, reading.tool); }},

@@ -39,11 +39,10 @@ TEST(BladeInAScene, CutsTheSameInAnyIncrements) {
 TEST(BladeInAScene, OfTheExampleCutsItsGroove) {
   const RunResult result = runScene(loadScene(ROBOT_TISSUE_SOURCE_DIR "/config/blade.yaml", {}));
   EXPECT_TRUE(result.allOk());
-  double hardest = 0.0;
-  for (const ToolRow& row : rowsOf(result, 0, "knife")) {
-    hardest = std::max(hardest, -row.force.x());
+  const std::vector<ToolRow> rows = rowsOf(result, 0, "knife");
+  for (std::size_t i = rows.size() / 3; i < 2 * rows.size() / 3; ++i) {
+    EXPECT_NEAR(-rows[i].force.x(), 200.0 * 0.0225, 0.05 * 200.0 * 0.0225);  // in its even way
   }
-  EXPECT_NEAR(hardest, 200.0 * 0.0225, 0.05 * 200.0 * 0.0225);
 }
 
 TEST(TearInAScene, IsToldInWords) {

@@ -36,6 +36,8 @@ class ContactFinder {
   ContactFinder& operator=(ContactFinder&&) noexcept;
 
   std::size_t linkCount() const;
+  // From now on only the first `count` shapes of the link are there, all at first.
+  void useShapes(std::size_t link, std::size_t count);
   // Farthest that a point of the link is from the link's origin (m); 0 without shapes, and for a
   // plane.
   double reach(std::size_t link) const;

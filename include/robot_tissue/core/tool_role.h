@@ -10,7 +10,7 @@ namespace robot_tissue {
 struct ToolRole {
   std::string name = "push";
   bool has_jaws = false;  // its last two links; when they are close, they hold what is between them
-  bool has_edge = false;  // it cuts where its edge goes, and touches nothing
+  bool has_edge = false;  // it cuts where its edge goes; its shapes are its sides
   bool fits_hard_patches = true;  // a method that moves tissue in hard pieces only can follow it
   bool drills = false;            // what its shapes cover goes, and it touches nothing
 

@@ -142,6 +142,8 @@ class Pipeline {
   void forgetTools();
   void beginReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
+  bool goInLegs(const RobotPose& pose);
+  void goTo(RobotPose pose);
   bool partAlongWay();
   bool drive(const RobotPose& pose);
   void touch();

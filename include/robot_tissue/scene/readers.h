@@ -90,7 +90,7 @@ ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings,
 
 // Keys edge and resistance of a tool, whose role and links are read: refused where the role has no
 // edge.
-void readEdge(const Entry& entry, const LengthRanges& lengths, ToolConfig& tool, Remarks& remarks);
+void readEdge(const Entry& entry, const TissueConfig& tissue, ToolConfig& tool, Remarks& remarks);
 void readResistance(const Entry& entry, ToolConfig& tool);
 
 std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue);
