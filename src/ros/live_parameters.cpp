@@ -49,7 +49,8 @@ struct Live {
   Range range;
   Found (*get)(const NodeParameters&);  // empty: the scene has none
   void (*set)(double, NodeParameters&);
-  const char* path;  // in the node's namespace; null: of each tool
+  const char* path;                               // in the node's namespace; null: of each tool
+  std::vector<std::string> (*words)() = nullptr;  // what it may be instead of a number
 };
 
 const std::vector<Live>& table() {
@@ -83,17 +84,32 @@ const std::vector<Live>& table() {
        [](const NodeParameters& parameters) { return Found(parameters.force_scale); },
        [](double value, NodeParameters& parameters) { parameters.force_scale = value; },
        "force_scale"},
+      {"color",
+       "what the surface's color tells",
+       {},
+       [](const NodeParameters& parameters) {
+         return Found(static_cast<double>(parameters.color));
+       },
+       [](double value, NodeParameters& parameters) {
+         parameters.color = static_cast<ColorBy>(static_cast<int>(value));
+       },
+       "color",
+       colorNames},
   };
   return all;
 }
 
-std::vector<ReconfigureServer::Number> numbersOf(const NodeParameters& parameters) {
-  std::vector<ReconfigureServer::Number> numbers;
+std::vector<std::string> wordsOf(const Live& live) {
+  return live.words == nullptr ? std::vector<std::string>() : live.words();
+}
+
+std::vector<ReconfigureServer::Parameter> presentOf(const NodeParameters& parameters) {
+  std::vector<ReconfigureServer::Parameter> present;
   for (const Live& live : table()) {
     const Found value = live.get(parameters);
-    if (value) numbers.push_back({live.name, live.description, live.range, *value});
+    if (value) present.push_back({live.name, live.description, live.range, *value, wordsOf(live)});
   }
-  return numbers;
+  return present;
 }
 
 // On the parameter server, so that it tells what is so and a node that is started again has it.
@@ -126,7 +142,7 @@ LiveParameters::LiveParameters(const ros::NodeHandle& private_node,
     : private_node_(private_node),
       parameters_(parameters),
       apply_(std::move(apply)),
-      server_(private_node_, numbersOf(parameters),
+      server_(private_node_, presentOf(parameters),
               [this](const ReconfigureServer::Values& values) { change(values); }) {}
 
 void LiveParameters::change(const ReconfigureServer::Values& values) {
@@ -139,12 +155,18 @@ void LiveParameters::change(const ReconfigureServer::Values& values) {
   for (const Live& live : table()) {
     const auto value = values.find(live.name);
     if (value == values.end()) continue;
+    const std::vector<std::string> words = wordsOf(live);
     if (live.path == nullptr) {
       keepFriction(parameters_, private_node_);
-    } else {
+    } else if (words.empty()) {
       private_node_.setParam(live.path, value->second);
+    } else {
+      private_node_.setParam(live.path, words.at(static_cast<std::size_t>(value->second)));
     }
-    ROS_INFO_STREAM(live.name << " is " << numberText(value->second));
+    ROS_INFO_STREAM(live.name << " is "
+                              << (words.empty()
+                                      ? numberText(value->second)
+                                      : words.at(static_cast<std::size_t>(value->second))));
   }
 }
 

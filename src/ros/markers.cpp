@@ -175,6 +175,11 @@ MarkerBuilder::MarkerBuilder(std::string frame_id, const MarkerStyle& style,
                              std::vector<SupportConfig> supports)
     : frame_id_(std::move(frame_id)), style_(style), supports_(std::move(supports)) {}
 
+void MarkerBuilder::setStyle(const MarkerStyle& style) {
+  if (style.color != style_.color) scale_ = 0.0;  // it has another unit
+  style_ = style;
+}
+
 MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
                                  const ros::Time& reached) {
   const Tissue& tissue = pipeline.tissue();

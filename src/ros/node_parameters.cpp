@@ -102,8 +102,8 @@ std::string readStateDir(const Entry& entry) {
 
 ColorBy readColor(const Entry& entry) {
   if (!entry.given()) return ColorBy::kNone;
-  const std::optional<ColorBy> color = colorByName(entry.word(colorNames()));
-  if (!color) entry.fail("must be one of " + colorNames());
+  const std::optional<ColorBy> color = colorByName(entry.word(joined(colorNames())));
+  if (!color) entry.fail("must be one of " + joined(colorNames()));
   return *color;
 }
 

@@ -16,14 +16,26 @@ namespace {
 const char* const kGroup = "Default";  // the protocol's name of the one group that there is
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();  // in no range
 
+// What clients offer a choice by: the protocol's form of it is a dictionary as Python writes it.
+std::string choiceOf(const ReconfigureServer::Parameter& parameter) {
+  std::string choices;
+  for (const std::string& word : parameter.words) {
+    choices += (choices.empty() ? "" : ", ") +
+               ("{'name': '" + word + "', 'type': 'str', 'value': '") + word +
+               "', 'description': '', 'srcline': 0, 'srcfile': '', " +
+               "'cconsttype': 'const char * const', 'ctype': 'std::string'}";
+  }
+  return "{'enum_description': '" + parameter.description + "', 'enum': [" + choices + "]}";
+}
+
 }  // namespace
 
-ReconfigureServer::ReconfigureServer(ros::NodeHandle& private_node, std::vector<Number> numbers,
-                                     Change change)
+ReconfigureServer::ReconfigureServer(ros::NodeHandle& private_node,
+                                     std::vector<Parameter> parameters, Change change)
     : node_name_(private_node.getNamespace()),
-      numbers_(std::move(numbers)),
+      parameters_(std::move(parameters)),
       change_(std::move(change)) {
-  for (const Number& number : numbers_) values_[number.name] = number.initial;
+  for (const Parameter& parameter : parameters_) values_[parameter.name] = parameter.initial;
   describe(private_node);
   updates_ = private_node.advertise<Config>("parameter_updates", 1, true);
   updates_.publish(present());
@@ -33,31 +45,40 @@ ReconfigureServer::ReconfigureServer(ros::NodeHandle& private_node, std::vector<
 void ReconfigureServer::describe(ros::NodeHandle& private_node) {
   dynamic_reconfigure::Group group;
   group.name = kGroup;
-  for (const Number& number : numbers_) {
+  for (const Parameter& parameter : parameters_) {
     dynamic_reconfigure::ParamDescription description;
-    description.name = number.name;
-    description.type = "double";
-    description.description = number.description;
+    description.name = parameter.name;
+    description.type = parameter.words.empty() ? "double" : "str";
+    description.description = parameter.description;
+    if (!parameter.words.empty()) description.edit_method = choiceOf(parameter);
     group.parameters.push_back(description);
   }
   dynamic_reconfigure::ConfigDescription all;
   all.groups.push_back(group);
-  all.min = config([](const Number& number) { return number.range.lowest; });
-  all.max = config([](const Number& number) { return number.range.highest; });
-  all.dflt = config([](const Number& number) { return number.initial; });
+  all.min = config([](const Parameter& of) { return of.words.empty() ? of.range.lowest : 0.0; });
+  all.max = config([](const Parameter& of) { return of.words.empty() ? of.range.highest : 0.0; });
+  all.dflt = config([](const Parameter& parameter) { return parameter.initial; });
   descriptions_ = private_node.advertise<dynamic_reconfigure::ConfigDescription>(
       "parameter_descriptions", 1, true);
   descriptions_.publish(all);
 }
 
 dynamic_reconfigure::Config ReconfigureServer::config(
-    const std::function<double(const Number&)>& value_of) const {
+    const std::function<double(const Parameter&)>& value_of) const {
   Config config;
-  for (const Number& number : numbers_) {
-    dynamic_reconfigure::DoubleParameter parameter;
-    parameter.name = number.name;
-    parameter.value = value_of(number);
-    config.doubles.push_back(parameter);
+  for (const Parameter& parameter : parameters_) {
+    const double value = value_of(parameter);
+    if (parameter.words.empty()) {
+      dynamic_reconfigure::DoubleParameter number;
+      number.name = parameter.name;
+      number.value = value;
+      config.doubles.push_back(number);
+    } else {
+      dynamic_reconfigure::StrParameter word;
+      word.name = parameter.name;
+      word.value = parameter.words.at(static_cast<std::size_t>(value));
+      config.strs.push_back(word);
+    }
   }
   dynamic_reconfigure::GroupState group;
   group.name = kGroup;
@@ -67,7 +88,7 @@ dynamic_reconfigure::Config ReconfigureServer::config(
 }
 
 dynamic_reconfigure::Config ReconfigureServer::present() const {
-  return config([this](const Number& number) { return values_.at(number.name); });
+  return config([this](const Parameter& parameter) { return values_.at(parameter.name); });
 }
 
 bool ReconfigureServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
@@ -107,14 +128,21 @@ ReconfigureServer::Values ReconfigureServer::changesIn(const Config& asked) cons
 void ReconfigureServer::take(const std::string& name, double value, const std::string& text,
                              Values& changes) const {
   const Entry entry(YAML::Node(text), name, "");
-  const auto number = std::find_if(numbers_.begin(), numbers_.end(),
-                                   [&](const Number& each) { return each.name == name; });
-  if (number == numbers_.end()) {
+  const auto parameter = std::find_if(parameters_.begin(), parameters_.end(),
+                                      [&](const Parameter& each) { return each.name == name; });
+  if (parameter == parameters_.end()) {
     std::vector<std::string> names;
-    for (const Number& each : numbers_) names.push_back(each.name);
+    for (const Parameter& each : parameters_) names.push_back(each.name);
     entry.fail("cannot be changed here, must be one of " + joined(names));
   }
-  if (!number->range.contains(value)) entry.fail("must be " + number->range.text());
+  if (parameter->words.empty()) {
+    if (!parameter->range.contains(value)) entry.fail("must be " + parameter->range.text());
+  } else {
+    const auto& words = parameter->words;
+    const auto word = std::find(words.begin(), words.end(), text);
+    if (word == words.end()) entry.fail("must be one of " + joined(words));
+    value = static_cast<double>(word - words.begin());
+  }
   if (!changes.emplace(name, value).second) entry.fail("must be given once");
 }
 

@@ -130,10 +130,9 @@ std::optional<ColorBy> colorByName(const std::string& name) {
   return {};
 }
 
-std::string colorNames() {
-  std::string names;
-  for (const ColorMeaning& each : kMeanings)
-    names += (names.empty() ? "" : ", ") + std::string(each.name);
+std::vector<std::string> colorNames() {
+  std::vector<std::string> names;
+  for (const ColorMeaning& each : kMeanings) names.emplace_back(each.name);
   return names;
 }
 

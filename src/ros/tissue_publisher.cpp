@@ -33,7 +33,7 @@ TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParame
 }
 
 void TissuePublisher::retune(const NodeParameters& parameters) {
-  marker_builder_.setForceScale(parameters.force_scale);
+  marker_builder_.setStyle({parameters.force_scale, parameters.color});
   marker_pace_ = UpdatePace(parameters.marker_rate_hz);
   shape_.setRate(parameters.marker_rate_hz);
   shapeChanged();

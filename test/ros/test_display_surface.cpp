@@ -143,7 +143,7 @@ TEST(SurfaceColors, AreNamedAndNothingElseIs) {
     EXPECT_EQ(colorByName(meaningOf(color).name), color);
   }
   EXPECT_FALSE(colorByName("temperature"));
-  EXPECT_EQ(colorNames(), "none, displacement, strain, pressure");
+  EXPECT_EQ(colorNames(), (std::vector<std::string>{"none", "displacement", "strain", "pressure"}));
 }
 
 TEST(SurfaceColors, HaveARoundScaleThatStaysWhileItIsInUse) {

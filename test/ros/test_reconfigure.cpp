@@ -168,8 +168,9 @@ TEST_F(Reconfigure, OneWrongValueLeavesAllAsItIs) {
   expectRefused(configOf({{"young_modulus", -1.0}, {"force_scale", 0.05}}), "young_modulus = -1",
                 "must be a number from 0.001 to 1e+13 in Pa");
   expectRefused(configOf({{"rate", std::nan("")}}), "rate = ", "must be a number from 0.01");
-  expectRefused(configOf({{"spacing", 0.01}, {"friction", 0.1}}), "spacing = 0.01",
-                "young_modulus, tolerance, max_ms, friction, rate, marker_rate, force_scale");
+  expectRefused(
+      configOf({{"spacing", 0.01}, {"friction", 0.1}}), "spacing = 0.01",
+      "young_modulus, tolerance, max_ms, friction, rate, marker_rate, force_scale, color");
   Config word;
   word.strs.resize(1);
   word.strs[0].name = "friction";
@@ -214,6 +215,43 @@ TEST_F(Reconfigure, ForceScaleIsTheLengthOfAnArrowOverItsForce) {
   EXPECT_TRUE(is_long(at_start_.at("force_scale")));
   set({{"force_scale", 0.04}});
   EXPECT_TRUE(is_long(0.04)) << arrowLength() << " m for " << newtons << " N";
+}
+
+TEST_F(Reconfigure, TheColorTellsSomethingElse) {
+  const auto color = [](const std::string& name) {
+    Config config;
+    config.strs.resize(1);
+    config.strs[0].name = "color";
+    config.strs[0].value = name;
+    return config;
+  };
+  const auto described = std::find_if(descriptions_->groups[0].parameters.begin(),
+                                      descriptions_->groups[0].parameters.end(),
+                                      [](const auto& each) { return each.name == "color"; });
+  ASSERT_NE(described, descriptions_->groups[0].parameters.end());
+  EXPECT_EQ(described->type, "str");
+  for (const char* name : {"'none'", "'displacement'", "'strain'", "'pressure'"}) {
+    EXPECT_NE(described->edit_method.find(name), std::string::npos) << name;
+  }
+  press(kDepth);
+  const auto has_legend = [this] { return !markers_["legend"].points.empty(); };
+  EXPECT_FALSE(has_legend());
+  send(color("displacement"));
+  EXPECT_TRUE(waitFor(has_legend));
+  std::string kept;
+  EXPECT_TRUE(node_.getParam("/tissue/color", kept));
+  EXPECT_EQ(kept, "displacement");
+  dynamic_reconfigure::Reconfigure call;
+  call.request.config = color("blue");
+  warnings_.clear();
+  EXPECT_TRUE(ros::service::call("/tissue/set_parameters", call));
+  EXPECT_EQ(call.response.config.strs.at(0).value, "displacement");
+  ASSERT_TRUE(waitFor([this] { return !warnings_.empty(); }));
+  EXPECT_NE(warnings_[0].find("must be one of none, displacement, strain, pressure"),
+            std::string::npos)
+      << warnings_[0];
+  send(color("none"));
+  EXPECT_TRUE(waitFor([&] { return !has_legend(); }));
 }
 
 TEST_F(Reconfigure, ToleranceHoldsFromTheNextSolveOn) {

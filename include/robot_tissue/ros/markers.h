@@ -40,7 +40,7 @@ class MarkerBuilder {
   visualization_msgs::MarkerArray buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
                                                const ros::Time& reached);
   void tellAll() { told_.clear(); }
-  void setForceScale(double force_scale) { style_.force_scale = force_scale; }  // m/N
+  void setStyle(const MarkerStyle& style);
 
  private:
   void findWires(const Tissue& tissue);

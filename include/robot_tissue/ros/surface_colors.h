@@ -21,7 +21,7 @@ struct ColorMeaning {
 };
 const ColorMeaning& meaningOf(ColorBy color);
 std::optional<ColorBy> colorByName(const std::string& name);
-std::string colorNames();  // all, for messages
+std::vector<std::string> colorNames();
 
 // One a vertex of the surface, in the unit of the legend; empty for kNone.
 //   displacement: length of the way from rest
