@@ -59,6 +59,8 @@ void drawForceLabels(const Drawn& drawn, visualization_msgs::Marker marker,
                      visualization_msgs::MarkerArray& array);
 void drawForceList(const Drawn& drawn, visualization_msgs::Marker marker,
                    visualization_msgs::MarkerArray& array);
+void drawEdges(const Drawn& drawn, visualization_msgs::Marker marker,
+               visualization_msgs::MarkerArray& array);
 void drawLegend(const Drawn& drawn, visualization_msgs::Marker marker,
                 visualization_msgs::MarkerArray& array);
 

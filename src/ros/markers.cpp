@@ -149,6 +149,7 @@ const Namespace kNamespaces[] = {
     {"contact_forces", Marker::ARROW, {0.20, 0.85, 0.35}, Stamp::kForces, drawForces},
     {"force_labels", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceLabels},
     {"force_list", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceList},
+    {"tool_edges", Marker::LINE_LIST, {1.0, 1.0, 1.0}, Stamp::kForces, drawEdges},
     {"legend", Marker::TEXT_VIEW_FACING, {0.95, 0.95, 0.95}, Stamp::kShape, drawLegend},
     {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Stamp::kShape, drawSupports},
 };

@@ -39,6 +39,8 @@ constexpr unsigned kWrenchQueue = 10;
 constexpr double kWireWidth = 0.0004;
 // m: of the threads of sutures. More: they are seen from farther. Chosen.
 constexpr double kThreadWidth = 0.0006;
+// m: of the lines along edges that cut.
+constexpr double kEdgeWidth = 0.0008;
 // m: of the lines along the edges of a wound.
 constexpr double kLipWidth = 0.0008;
 // Of the spacing (1): how high its arch stands over the skin. More: it hovers; less: a bulge

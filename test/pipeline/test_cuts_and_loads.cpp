@@ -40,6 +40,27 @@ TEST_P(PressedBlock, NamedLoadStandsBesideTheTool) {
   EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
 }
 
+// The nodes that a cut adds are gone when it is taken back, and so is what a tool had on them, also
+// where the tool stands there but pushes no more.
+TEST(CutUnderATool, TakenBackLeavesNothingOnNodesThatAreGone) {
+  for (const double left : {0.003, 0.00002, 0.0, -0.00002, -0.0002}) {
+    Pipeline pipeline(block(), methodOf("elastic"), {probe()});
+    walk(pipeline, -0.001, 0.003);
+    ASSERT_GT(pipeline.cut(uprightAt(0.0275)).springs_cut, 0);
+    walk(pipeline, 0.003, left);
+    pipeline.undo(1);
+    const Tissue& tissue = pipeline.tissue();
+    const int nodes = static_cast<int>(tissue.state().displacement.size());
+    EXPECT_EQ(nodes, tissue.lattice().nodeCount());
+    for (const LoadingPatch& patch : tissue.patches()) {
+      for (const int node : patch.nodes) EXPECT_LT(node, nodes) << left;
+      for (const ContactSpring& spring : patch.contacts) {
+        for (const NodeWeight& carrier : spring.carriers) EXPECT_LT(carrier.node, nodes) << left;
+      }
+    }
+  }
+}
+
 // A patch beside a standing tool goes down: the tissue comes away from the tool or into it.
 TEST(LoadUnderATool, IsMetByTheToolAtEachIncrement) {
   Pipeline pipeline(block(), methodOf("elastic"), {probe()});

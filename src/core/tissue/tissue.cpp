@@ -172,12 +172,10 @@ Vec3 Tissue::nodePosition(int node) const {
 
 // The surface is another one: touches are found anew where it is now.
 void Tissue::renewContacts() {
-  std::vector<LoadingPatch> of_tools;
   if (contact_update_ == nullptr) return;
-  if (contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved,
-                             ContactUpdate::Round::kNext)) {
-    putToolPatches(std::move(of_tools));
-  }
+  std::vector<LoadingPatch> of_tools;
+  contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved, ContactUpdate::Round::kNext);
+  putToolPatches(std::move(of_tools));  // none, too: those of before may be on ghosts that are gone
 }
 
 void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
@@ -196,6 +194,7 @@ SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   SolveReport report = solveAndBreak(disturbed_);
   if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
   if (!is_late_) disturbed_.clear();
+  for (int& node : disturbed_) node = state_.cells->original(node);  // ghosts may go meanwhile
   last_report_.volume_ratio = report.volume_ratio = volumeRatio();
   return report;
 }
