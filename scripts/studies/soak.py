@@ -127,7 +127,19 @@ class Client:
 
     def end(self):
         self.process.stdin.close()
-        self.process.wait()
+        try:
+            self.process.wait(timeout=2.0 * PERIOD)
+        except subprocess.TimeoutExpired:   # it waits for a reply of a node that is gone
+            self.process.kill()
+            self.process.wait()
+
+
+def is_alive(pid):
+    """One that died and that nobody has asked after is there, too, but as a zombie."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def memory_of(pid):
@@ -161,7 +173,7 @@ def measure(options, pid, arm, faults, clients):
     last, sent, busy = begin, arm.sent, sum(moved_node.processor_seconds(pid).values())
     while time.monotonic() - begin < 60.0 * options.minutes:
         time.sleep(max(0.0, begin + PERIOD * (len(rows) + 1) - time.monotonic()))
-        if not Path(f"/proc/{pid}").exists():
+        if not is_alive(pid):
             sys.exit(f"soak: the node died after {time.monotonic() - begin:.0f} s")
         words, faults.seen = faults.seen, set()
         now, busy_before, sent_before = time.monotonic(), busy, sent

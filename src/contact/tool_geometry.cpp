@@ -142,6 +142,7 @@ ToolGeometry toolOf(const ToolConfig& config, std::size_t index) {
   tool.max_force = config.max_force;
   tool.grasp = config.grasp;
   tool.blade = config.blade;
+  tool.scissors = config.scissors;
   return tool;
 }
 
@@ -167,8 +168,12 @@ urdf::LinkConstSharedPtr findLink(const ParsedUrdf& urdf, const ToolLink& config
                    "'; it has: " + listLinks(*urdf.model));
 }
 
+// What cuts by its edges does without.
+bool needsShapes(const ToolRole& role) { return !role.has_edge && !role.shears; }
+
 LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std::string& tool,
-                      const std::string& key, bool has_edge, std::vector<std::string>& warnings) {
+                      const std::string& key, bool needs_shapes,
+                      std::vector<std::string>& warnings) {
   const auto link = findLink(urdf, config, tool, key);
   if (!config.shapes.empty()) {
     warnOfUselessPadding(config, key, warnings);
@@ -177,7 +182,7 @@ LinkGeometry loadLink(const ParsedUrdf& urdf, const ToolLink& config, const std:
   refuseHalfReadLink(urdf.errors, config.link);
   requirePaddedCollisions(*link, config, key);
   LinkGeometry loaded = linkOf(config, collisionShapes(*link, config));
-  if (loaded.shapes.empty() && !has_edge) {
+  if (loaded.shapes.empty() && needs_shapes) {
     warnings.push_back("tool '" + tool + "': its link '" + config.link +
                        "' touches nothing, as it has no collision geometry in the URDF; give it "
                        "some under " +
@@ -207,7 +212,7 @@ LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>
         continue;
       }
       tool.links.push_back(
-          loadLink(urdf, link, tool.name, linkKey(i, j), tool.role.has_edge, loaded.warnings));
+          loadLink(urdf, link, tool.name, linkKey(i, j), needsShapes(tool.role), loaded.warnings));
     }
     loaded.tools.push_back(std::move(tool));
   }
@@ -225,7 +230,7 @@ LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
     }
     const bool bare = std::all_of(tool.links.begin(), tool.links.end(),
                                   [](const LinkGeometry& link) { return link.shapes.empty(); });
-    if (bare && !tool.role.has_edge) {
+    if (bare && needsShapes(tool.role)) {
       loaded.warnings.push_back("tool '" + tool.name +
                                 "' touches nothing: it has no shapes; give it some under " +
                                 linkKey(i, 0) + ".shapes");

@@ -1,9 +1,8 @@
 #include "mesh_formats.h"
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 
+#include "robot_tissue/core/compat.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -25,8 +24,7 @@ Number parsed(std::string_view word, const char* allowed) {
   std::string_view digits = word;
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   Number value{};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc() && end == digits.data() + digits.size()) return value;
+  if (compat::parsed(digits, value)) return value;
   throw InputError(quoted(word) + " stands where " + allowed + " should");
 }
 

@@ -6,6 +6,7 @@
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "stopwatch.h"
+#include "swept_surface.h"
 #include "tool_reports.h"
 #include "tuning.h"
 
@@ -111,7 +112,8 @@ void Blades::moveTo(const Pose& pose, BladeState& state) const {
 }
 
 void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
-  const std::vector<CutTriangle> swept = sweptBy(tool, state.path);
+  std::vector<CutTriangle> swept;
+  addSwept(world_.tools[tool].blade.edge, state.path, swept);
   state.path = {state.stands()};
   const Stopwatch watch(world_.report.solve_ms);
   const Stroke stroke = state.debts.empty() ? Stroke::kBegins : Stroke::kGoesOn;
@@ -123,32 +125,7 @@ void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
   const double work = std::max(0.0, blade.resistance * cut.area - dent_work);
   state.debts.push_back({work / spacing, spacing});
   state.point = nearestOf(blade.edge, state.stands().inverse() * cut.center);
-  world_.sliding.commit(world_.pose, world_.tissue);
-  world_.dead_end.reset();
-  world_.report.changed = true;
-  world_.report.springs_cut += cut.springs_cut;
-  world_.report.area_cut += cut.area;
-}
-
-// By the edge from pose to pose; arcs as chords of kLongestArc at most.
-std::vector<CutTriangle> Blades::sweptBy(std::size_t tool, const std::vector<Pose>& path) const {
-  const std::vector<Vec3>& edge = world_.tools[tool].blade.edge;
-  std::vector<CutTriangle> swept;
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    const Eigen::AngleAxisd turn(path[i].linear().transpose() * path[i + 1].linear());
-    const int chords = std::max(1, static_cast<int>(std::ceil(turn.angle() / tuning::kLongestArc)));
-    for (int chord = 0; chord < chords; ++chord) {
-      const Pose from = between(path[i], path[i + 1], static_cast<double>(chord) / chords);
-      const Pose to = between(path[i], path[i + 1], static_cast<double>(chord + 1) / chords);
-      for (std::size_t j = 0; j + 1 < edge.size(); ++j) {
-        const Vec3 a = from * edge[j], b = from * edge[j + 1], c = to * edge[j + 1],
-                   d = to * edge[j];
-        swept.push_back({a, b, c});
-        swept.push_back({a, c, d});
-      }
-    }
-  }
-  return swept;
+  noteCut(world_, cut);
 }
 
 void Blades::describe(std::size_t tool, ToolReport& report) const {

@@ -102,7 +102,6 @@ class Blades {
   Pressing pressingOf(std::size_t tool) const;
   void moveTo(const Pose& pose, BladeState& state) const;
   void cutAlongPath(std::size_t tool, BladeState& state);
-  std::vector<CutTriangle> sweptBy(std::size_t tool, const std::vector<Pose>& path) const;
 
   World& world_;
   LoadStepper& load_step_;

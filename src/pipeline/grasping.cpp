@@ -22,7 +22,7 @@ std::string inMeters(double length) {
 
 // Both stand somewhere and have shapes.
 bool Grasping::hasJaws(std::size_t tool, const RobotPose& pose) const {
-  if (!world_.tools[tool].role.has_jaws) return false;
+  if (!world_.tools[tool].role.holds) return false;
   const std::size_t jaw = world_.tools.firstJaw(tool);
   return world_.finder.reach(jaw) > 0.0 && world_.finder.reach(jaw + 1) > 0.0 &&
          !ToolSet::isAway(pose.links[jaw]);
@@ -86,7 +86,7 @@ std::optional<double> Grasping::gapAtTissue(std::size_t tool, const RobotPose& p
 
 bool Grasping::grasps(std::size_t tool) const {
   const auto& seats = world_.sticking.attachments()[tool];
-  return world_.tools[tool].role.has_jaws &&
+  return world_.tools[tool].role.holds &&
          std::any_of(seats.begin(), seats.end(), [](const auto& s) { return s.second.grasped; });
 }
 
@@ -287,18 +287,20 @@ void Grasping::forgetLetGo() {
   for (Jaws& jaws : jaws_) jaws.let_go = false;
 }
 
-std::vector<std::size_t> Grasping::tearOff() {
-  std::vector<std::size_t> torn_off;
+std::vector<std::size_t> Grasping::overpulled() const {
+  std::vector<std::size_t> tools;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     const double most = world_.tools[tool].grasp.max_force;
-    if (!world_.tools[tool].role.has_jaws || most <= 0.0) continue;
+    if (!world_.tools[tool].role.holds || most <= 0.0) continue;
     if (!world_.sticking.holds(static_cast<int>(tool))) continue;
-    if (answerOf(world_, tool).force.norm() <= most) continue;
-    world_.sticking.letGo(static_cast<int>(tool));
-    jaws_[tool].loss = Jaws::Loss::kTorn;
-    torn_off.push_back(tool);
+    if (answerOf(world_, tool).force.norm() > most) tools.push_back(tool);
   }
-  return torn_off;
+  return tools;
+}
+
+void Grasping::lose(std::size_t tool) {
+  world_.sticking.letGo(static_cast<int>(tool));
+  jaws_[tool].loss = Jaws::Loss::kTorn;
 }
 
 }  // namespace robot_tissue

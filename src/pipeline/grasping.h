@@ -46,8 +46,10 @@ class Grasping {
   bool letGo(std::size_t tool);
   // Of letting go since the last step.
   void forgetLetGo();
-  // Those that were pulled harder than they hold lose what they held; returns them.
-  std::vector<std::size_t> tearOff();
+  // Those that are pulled harder than they hold.
+  std::vector<std::size_t> overpulled() const;
+  // What it held slips out of its jaws.
+  void lose(std::size_t tool);
 
   bool grasps(std::size_t tool) const;
   bool hasJaws(std::size_t tool, const RobotPose& pose) const;

@@ -32,7 +32,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   world_.reached_s = pose.stamp_s;
   grasping_.closeJaws();
   world_.sliding.commit(pose, world_.tissue);
-  tearOff();
+  endOverpulled();
   tear();
   world_.dead_end.reset();
   return true;
@@ -222,14 +222,33 @@ void LoadStepper::lieDown() {
   world_.tissue.follow(patchesOfTools(world_), {}, beddingOf(world_));
 }
 
-// Graspers that are pulled harder than they hold.
-void LoadStepper::tearOff() {
-  const std::vector<std::size_t> torn_off = grasping_.tearOff();
-  if (torn_off.empty()) return;
-  for (const std::size_t tool : torn_off) addOnce(tool, world_.report.torn_off);
+// Graspers that are pulled harder than they hold lose the tissue, or take out what they hold of it.
+void LoadStepper::endOverpulled() {
+  bool any_lost = false;
+  for (const std::size_t tool : grasping_.overpulled()) {
+    if (takesOut(tool)) continue;
+    grasping_.lose(tool);
+    addOnce(tool, world_.report.torn_off);
+    any_lost = true;
+  }
+  if (!any_lost) return;
   world_.sticking.ride(world_.pose, world_.tissue);
   world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
   world_.sliding.commit(world_.pose, world_.tissue);
+}
+
+// False: it lets go, as what it holds is nowhere joined to the rest, too.
+bool LoadStepper::takesOut(std::size_t tool) {
+  if (!world_.tools[tool].grasp.tears_out) return false;
+  if (world_.is_trial) return true;
+  const int before = world_.tissue.springsTorn();
+  const Stopwatch watch(world_.report.solve_ms);
+  if (!world_.tissue.tearOut(world_.sticking.nodes(static_cast<int>(tool)))) return false;
+  world_.report.springs_torn += world_.tissue.springsTorn() - before;
+  world_.report.changed = true;
+  addOnce(tool, world_.report.torn_out);
+  world_.sliding.commit(world_.pose, world_.tissue);
+  return true;
 }
 
 void LoadStepper::tear() {

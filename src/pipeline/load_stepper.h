@@ -64,7 +64,8 @@ class LoadStepper {
   bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
   bool isUnsettled() const;
-  void tearOff();
+  void endOverpulled();
+  bool takesOut(std::size_t tool);
   Checkpoint toolsCheckpoint() const;  // without the shape
 
   World& world_;

@@ -5,10 +5,12 @@
 
 namespace robot_tissue {
 
-// What blades sweep and burrs cover to where the tools have come. False: there is a way left to go.
+// What blades and scissors sweep and burrs cover to where the tools have come. False: there is a
+// way left to go.
 bool Pipeline::partAlongWay() {
   const bool drilled = parts_->burrs.goTo(*world_.last_pose);
-  const bool arrived = parts_->blades.goTo(*world_.last_pose) && drilled;
+  const bool sheared = parts_->scissors.goTo(*world_.last_pose);
+  const bool arrived = parts_->blades.goTo(*world_.last_pose) && drilled && sheared;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (world_.tools[tool].role.touches()) continue;
     world_.pose = world_.tools.withTool(tool, *world_.last_pose, std::move(world_.pose));

@@ -26,6 +26,7 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   parts_->grasping.setTools(tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();
+  parts_->scissors.forget();
   gave_up_ = false;
   late_iterations_ = 0;
 }
@@ -93,7 +94,7 @@ void Pipeline::beginReport() {
   world_.report.too_fast = world_.report.lost = world_.report.late = false;
   world_.report.gave_up = gave_up_;
   for (auto* tools : {&world_.report.behind, &world_.report.jumped, &world_.report.were_inside,
-                      &world_.report.torn_off}) {
+                      &world_.report.torn_off, &world_.report.torn_out}) {
     tools->clear();
   }
   world_.report.contact_ms = world_.report.solve_ms = 0.0;
@@ -320,6 +321,7 @@ void Pipeline::forgetTools() {
   parts_->drive.setTools(world_.tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();
+  parts_->scissors.forget();
   parts_->motion.clearCheckpoints();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
@@ -340,9 +342,9 @@ void Pipeline::touch() {
 
 void Pipeline::grasp(std::size_t tool) {
   const std::string name = "tool '" + world_.tools.nameOf(tool) + "'";
-  if (!world_.tools[tool].role.has_jaws) {
+  if (!world_.tools[tool].role.holds) {
     throw InputError(name + ": its role is " + world_.tools[tool].role.name +
-                     "; allowed: a tool with the role " + toolRolesWith(&ToolRole::has_jaws));
+                     "; allowed: a tool with the role " + toolRolesWith(&ToolRole::holds));
   }
   if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
   if (!parts_->grasping.grasp(tool)) {

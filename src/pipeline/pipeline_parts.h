@@ -8,6 +8,7 @@
 #include "load_stepper.h"
 #include "overlap_resolver.h"
 #include "robot_tissue/pipeline/pipeline.h"
+#include "scissors.h"
 #include "tool_contact_update.h"
 #include "tool_motion.h"
 #include "touch_finder.h"
@@ -29,6 +30,7 @@ struct Pipeline::Parts {
   LoadStepper load_step{world, touch_finder, contact_update, grasping};
   Blades blades{world, load_step};
   Burrs burrs{world};
+  Scissors scissors{world};
   ToolMotion motion{world, ways, overlap, grasping, load_step};
 };
 

@@ -64,6 +64,11 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
                                            " lost the tissue: pulled harder than it holds "
                                            "(grasp.max_force)"});
   }
+  if (!report.torn_out.empty()) {
+    remarks.push_back({Kind::kTornOff, names(report.torn_out) +
+                                           " tore out the tissue that it holds: pulled harder than "
+                                           "that bears (grasp.max_force)"});
+  }
   if (!report.jumped.empty()) {
     remarks.push_back(
         {Kind::kTooFast,

@@ -9,6 +9,7 @@ struct Pipeline::Mark {
   ForceDrive drive;
   std::vector<BladeState> blades;
   std::vector<BurrState> burrs;
+  std::vector<ScissorsState> scissors;
   std::optional<RobotPose> last_pose;
   RobotPose asked;
   std::optional<DeadEnd> dead_end;
@@ -20,10 +21,11 @@ struct Pipeline::Mark {
 };
 
 void Pipeline::beginTrial() {
-  trial_from_ = std::make_shared<const Mark>(Mark{
-      parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
-      parts_->blades.states(), parts_->burrs.states(), world_.last_pose, world_.asked,
-      world_.dead_end, late_iterations_, gave_up_, world_.unfinished, touched_, world_.report});
+  trial_from_ = std::make_shared<const Mark>(
+      Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
+           parts_->blades.states(), parts_->burrs.states(), parts_->scissors.states(),
+           world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
+           world_.unfinished, touched_, world_.report});
   world_.tissue.beginAside();
   world_.is_trial = true;
 }
@@ -37,6 +39,7 @@ void Pipeline::undoTrial() {
   parts_->drive = mark.drive;
   parts_->blades.restore(mark.blades);
   parts_->burrs.restore(mark.burrs);
+  parts_->scissors.restore(mark.scissors);
   world_.is_trial = false;
   world_.last_pose = mark.last_pose;
   world_.asked = mark.asked;

@@ -113,6 +113,8 @@ constexpr double kDeepestDent = 1.0;
 constexpr double kPlaceOfLip = 0.5;
 // Cosine between a lip and the sides of the blade in the wound: below it, it looks ahead. Chosen.
 constexpr double kLipLooksAside = 0.5;
+// Of the spacing (1): edges of scissors so near to each other have met. Rounding.
+constexpr double kEdgesMeet = 1e-3;
 // Of the thickness (1) of a burr: its longest stride, within that of a blade. More: cells that a
 // thin one passes slip between two strides. Chosen. And of the spacing (1): its shortest, so that
 // hairs need not drill for hours.

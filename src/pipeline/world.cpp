@@ -33,8 +33,8 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   tools = ToolSet(geometry, supports);
   has_supports = !supports.empty();
   const std::vector<ToolGeometry> all = tools.withSupports();
-  finder =
-      ContactFinder(shapesOf(withEdges(all), [](const ToolRole& role) { return !role.drills; }));
+  finder = ContactFinder(
+      shapesOf(withEdges(all), [](const ToolRole& role) { return !role.drills && !role.shears; }));
   drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
   edges = ContactFinder(edgesOf(all));
   in_wound_.assign(tools.linkCount(), false);
@@ -143,7 +143,11 @@ Box World::bounds(std::size_t link, const Pose& tissue_T_link) const {
 const std::vector<Vec3>& World::edgeOn(std::size_t link) const {
   static const std::vector<Vec3> none;
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
-    if (tools.firstLink(tool) == link) return tools[tool].blade.edge;
+    if (tools.firstLink(tool) == link && tools[tool].role.has_edge) return tools[tool].blade.edge;
+    if (!tools[tool].role.shears || link < tools.firstJaw(tool) || link >= tools.endLink(tool)) {
+      continue;
+    }
+    return tools[tool].scissors.edges[link - tools.firstJaw(tool)];
   }
   return none;
 }

@@ -24,11 +24,11 @@ struct DeadEnd {
 struct World {
   World(const TissueConfig& tissue, const SolverConfig& solver);
 
-  // Of the link's shapes and, of a tool's first link, the tool's edge: the farthest point from the
+  // Of the link's shapes and its edge: the farthest point from the
   // link's origin, and a box around them in the tissue's frame (m).
   double reach(std::size_t link) const;
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;
-  const std::vector<Vec3>& edgeOn(std::size_t link) const;  // of a tool's first link; else empty
+  const std::vector<Vec3>& edgeOn(std::size_t link) const;  // of a blade or a jaw; else empty
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 

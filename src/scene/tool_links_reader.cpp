@@ -120,7 +120,8 @@ std::vector<NamedLink> readPlainLinks(const MapReader& tool, const Surroundings&
 
 // The tool's own link, which touches nothing without shapes, then the jaws.
 std::vector<NamedLink> readLinksWithJaws(const MapReader& tool, const ToolRole& role,
-                                         const Surroundings& surroundings, Remarks& remarks) {
+                                         const Surroundings& surroundings, SceneUser user,
+                                         Remarks& remarks) {
   if (tool["links"].given()) {
     tool["links"].fail("must be left out, role " + role.name + " has one link of its own and jaws");
   }
@@ -128,6 +129,10 @@ std::vector<NamedLink> readLinksWithJaws(const MapReader& tool, const ToolRole& 
   for (const char* key : {"padding", "collision_padding"}) {
     if (!tool[key].given() || !links.front().link.shapes.empty()) continue;
     tool[key].fail("the " + role.name + "'s own link has no shapes, must stand with the jaws");
+  }
+  if (user == SceneUser::kRunner && role.shears && !tool["jaws"].given()) {
+    links.resize(3, links.front());  // edges need no shapes
+    return links;
   }
   const std::vector<NamedLink> jaws = readLinkList(tool["jaws"], surroundings, remarks, 2, 2);
   links.insert(links.end(), jaws.begin(), jaws.end());
@@ -158,7 +163,7 @@ std::vector<std::string> toolLinkKeys() {
 ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings, SceneUser user,
                         const ToolRole& role, Remarks& remarks) {
   const std::vector<NamedLink> named =
-      role.has_jaws ? readLinksWithJaws(tool, role, surroundings, remarks)
+      role.has_jaws ? readLinksWithJaws(tool, role, surroundings, user, remarks)
                     : readPlainLinks(tool, surroundings, user, role, remarks);
   checkNames(named, user, role.has_jaws);
   ToolLinks links;

@@ -12,7 +12,7 @@ bool hasJaws(const ToolConfig& tool) { return tool.role.has_jaws; }
 // Whether the runner can use the tool: some link has a shape, of a tool with jaws both jaws have;
 // an edge needs none.
 bool hasShapes(const ToolConfig& tool) {
-  if (tool.role.has_edge) return true;
+  if (tool.role.has_edge || tool.role.shears) return true;
   const auto with_shapes = [](const ToolLink& link) { return !link.shapes.empty(); };
   if (!hasJaws(tool)) return std::any_of(tool.links.begin(), tool.links.end(), with_shapes);
   return std::all_of(tool.links.end() - 2, tool.links.end(), with_shapes);
@@ -152,9 +152,9 @@ GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools
                         const std::set<std::string>& standing) {
   const MapReader map(entry, namesOf(kGraspKeys));
   const ToolConfig& tool = readTool(map["tool"], tools);
-  if (!hasJaws(tool)) {
-    map["tool"].fail("must be one of the tools of role " + toolRolesWith(&ToolRole::has_jaws) +
-                     ": " + namesOf(tools, hasJaws));
+  if (!tool.role.holds) {
+    map["tool"].fail("must be one of the tools of role " + toolRolesWith(&ToolRole::holds) + ": " +
+                     namesOf(tools, [](const ToolConfig& other) { return other.role.holds; }));
   }
   requireStands(map["tool"], tool.name, standing);
   GraspStep step{tool.name};

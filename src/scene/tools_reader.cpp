@@ -56,14 +56,6 @@ struct GraspReading {
   GraspConfig grasp;
 };
 
-void readOpeningAxis(const Entry& entry, GraspReading& reading) {
-  if (!entry.given()) return;
-  reading.grasp.opening_axis =
-      readNonZero(entry, ranges::direction(), ranges::kLeastDirection).normalized();
-  if (reading.user != SceneUser::kNode) return;
-  reading.remarks.push_back(entry.line("ignored, the robot's joints move the jaws"));
-}
-
 const KeyTable<GraspReading> kGraspKeys = {
     {"close_gap",
      [](const Entry& entry, GraspReading& reading) {
@@ -80,7 +72,18 @@ const KeyTable<GraspReading> kGraspKeys = {
      [](const Entry& entry, GraspReading& reading) {
        reading.grasp.max_force = entry.numberOr(reading.grasp.max_force, ranges::forceLimit());
      }},
-    {"opening_axis", readOpeningAxis},
+    {"on_max_force",
+     [](const Entry& entry, GraspReading& reading) {
+       if (!entry.given()) return;
+       reading.grasp.tears_out = entry.choice({"release", "tear"}, {}) == "tear";
+       if (!reading.grasp.tears_out || reading.grasp.max_force > 0.0) return;
+       entry.fail("must stand with a max_force above 0");
+     }},
+    {"opening_axis",
+     [](const Entry& entry, GraspReading& reading) {
+       if (!entry.given()) return;
+       reading.grasp.opening_axis = readOpeningAxis(entry, reading.user, reading.remarks);
+     }},
 };
 
 struct ToolReading {
@@ -91,10 +94,9 @@ struct ToolReading {
 };
 
 void readGrasp(const Entry& entry, ToolReading& reading) {
-  if (!reading.tool.role.has_jaws) {
+  if (!reading.tool.role.holds) {
     if (!entry.given()) return;
-    entry.fail("must be left out, only role " + toolRolesWith(&ToolRole::has_jaws) +
-               " holds tissue");
+    entry.fail("must be left out, only role " + toolRolesWith(&ToolRole::holds) + " holds tissue");
   }
   const Entry given = entry.given() ? entry : entry.child(YAML::Node(YAML::NodeType::Map), "");
   const LengthRanges lengths = lengthsOf(reading.tissue);
@@ -130,6 +132,12 @@ const KeyTable<ToolReading> kToolKeys = {
      }},
     {"resistance",
      [](const Entry& entry, ToolReading& reading) { readResistance(entry, reading.tool); }},
+    {"edges", [](const Entry& entry,
+                 ToolReading& reading) { readEdges(entry, reading.tissue, reading.tool); }},
+    {"opening_axis",
+     [](const Entry& entry, ToolReading& reading) {
+       readOpeningOfScissors(entry, reading.user, reading.tool, reading.remarks);
+     }},
 };
 
 // A link of two tools: where both touch, each feels but a part of the force. With the same surface

@@ -136,6 +136,39 @@ TEST_P(Grasper, PulledTooHardItLosesTheTissue) {
   EXPECT_FALSE(pipeline.report().tools.front().grasps);
 }
 
+TEST_P(Grasper, PulledTooHardItTakesOutWhatItHolds) {
+  ToolGeometry tool = gripper(0.2);
+  tool.grasp.tears_out = true;
+  Pipeline pipeline(ridge(), solver(), {tool});
+  close(pipeline);
+  ASSERT_TRUE(pipeline.report().tools.front().grasps);
+  std::vector<std::size_t> torn_out;
+  double height = 0.0;
+  while (torn_out.empty() && height < 0.02) {
+    torn_out = pipeline.step(at(jaws(0.008, height += 0.0005))).torn_out;
+  }
+  ASSERT_EQ(torn_out.size(), 1U);
+  EXPECT_GT(pipeline.report().springs_torn, 0);
+  const Tissue& tissue = pipeline.tissue();
+  EXPECT_EQ(tissue.state().pieces, 2);
+  EXPECT_EQ(tissue.undoable(), 1);
+  // It stays in the jaws, without the rest of the tissue.
+  const std::vector<int> nodes = pipeline.report().tools.front().nodes;
+  ASSERT_FALSE(nodes.empty());
+  const double before = tissue.nodePosition(nodes.front()).z();
+  walk(pipeline, jaws(0.008, height), jaws(0.008, height + 0.01));
+  EXPECT_TRUE(pipeline.report().tools.front().grasps);
+  EXPECT_NEAR(tissue.nodePosition(nodes.front()).z(), before + 0.01, 1e-6);
+  EXPECT_LT(pipeline.report().tools.front().force_on_tool.norm(), 1e-3);
+  const std::vector<int> pieces = tissue.pieceOfNodes();
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    if (pieces[at(node)] == pieces[at(nodes.front())]) continue;
+    EXPECT_LT(tissue.state().displacement[at(node)].norm(), 1e-4);
+  }
+  pipeline.undo(1);
+  EXPECT_EQ(tissue.state().pieces, 1);
+}
+
 TEST_P(Grasper, CannotHoldWhatIsNotThere) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
   pipeline.step(at(jaws(0.014, 0.05)));

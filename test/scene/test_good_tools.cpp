@@ -28,6 +28,23 @@ TEST(GoodTools, ABladeHasItsEdgeAndNeedsNoShapes) {
   EXPECT_EQ(read.tissue.material.tear_length, 0.005);
 }
 
+TEST(GoodTools, ScissorsHaveTwoEdgesAndNeedNoShapes) {
+  const Scene read = parseText(
+      "tissue:\n  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}\n  spacing: 0.01\n"
+      "  material: {young_modulus: 1000}\n"
+      "tools:\n"
+      "  - name: shears\n    role: scissors\n    opening_axis: [0, 0, 2]\n"
+      "    edges: [[[0, 0, -0.001], [0.02, 0, 0.001]], [[0, 0, 0.001], [0.02, 0, -0.001]]]\n"
+      "steps: [{move: {tool: shears, from: {xyz: [0, 0, 1], opening: 0.02},"
+      " to: {xyz: [0, 0, 0], opening: 0.0}}}]\n",
+      SceneUser::kRunner);
+  const ToolConfig& shears = read.tools.at(0);
+  EXPECT_EQ(shears.links.size(), 3U);
+  EXPECT_EQ(shears.scissors.edges[0].back(), Vec3(0.02, 0.0, 0.001));
+  EXPECT_EQ(shears.scissors.edges[1].front(), Vec3(0.0, 0.0, 0.001));
+  EXPECT_EQ(shears.grasp.opening_axis, Vec3::UnitZ());
+}
+
 TEST(GoodTools, ALinkWithShapesHasEveryField) {
   const std::vector<ToolConfig> tools = parseText(kNodeScene, SceneUser::kNode).tools;
   ASSERT_EQ(tools.size(), 2U);

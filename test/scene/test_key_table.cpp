@@ -71,7 +71,10 @@ TEST(ToolRoles, EveryOneOfTheTableIsRead) {
       "[{shapes: [{type: sphere, radius: 0.003}]},"
       " {shapes: [{type: sphere, radius: 0.003}]}]";
   for (const ToolRole& role : toolRoles()) {
-    const std::string edge = role.has_edge ? "edge: [[0, 0, 0], [0, 0, 0.02]], " : "";
+    const std::string line = "[[0, 0, 0], [0, 0, 0.02]]";
+    const std::string edge = role.has_edge ? "edge: " + line + ", "
+                             : role.shears ? "edges: [" + line + ", " + line + "], "
+                                           : "";
     const std::string own =
         edge + (role.has_jaws ? "jaws: " + jaws : "shapes: [{type: sphere, radius: 0.003}]");
     const std::string text =

@@ -36,6 +36,21 @@ TEST(BladeInAScene, CutsTheSameInAnyIncrements) {
   }
 }
 
+// Edges that lie above each other meet all at once.
+TEST(ScissorsInAScene, CutWhereTheyClose) {
+  const RunResult result =
+      run(block() +
+          "tools: [{name: shears, role: scissors, opening_axis: [0, 0, 1],"
+          " edges: [[[0, 0, 0], [0.04, 0, 0]], [[0, 0, 0], [0.04, 0, 0]]]}]\n"
+          "steps:\n"
+          "  - move: {tool: shears, from: {xyz: [-0.01, 0.055, 0.05], opening: 0.06},"
+          " to: {xyz: [-0.01, 0.055, 0.05], opening: 0.0}, increments: 5}\n");
+  EXPECT_TRUE(result.allOk());
+  ASSERT_EQ(result.remarks.size(), 1U);
+  EXPECT_NE(result.remarks.front().find("tool 'shears' cut "), std::string::npos)
+      << result.remarks.front();
+}
+
 TEST(BladeInAScene, OfTheExampleCutsItsGroove) {
   const RunResult result = runScene(loadScene(ROBOT_TISSUE_SOURCE_DIR "/config/blade.yaml", {}));
   EXPECT_TRUE(result.allOk());

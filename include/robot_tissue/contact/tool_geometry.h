@@ -23,6 +23,7 @@ struct ToolGeometry {
   double max_force = 0.0;  // N, 0 = none
   GraspConfig grasp;
   BladeConfig blade;
+  ScissorsConfig scissors;
 };
 
 struct LoadedTools {

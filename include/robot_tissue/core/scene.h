@@ -163,7 +163,8 @@ struct ToolLink {
 struct GraspConfig {
   double close_gap = 0.0;             // m: jaws nearer than this hold what is between them
   double open_gap = 0.0;              // m: jaws farther than this let go; >= close_gap
-  double max_force = 0.0;             // N: a stronger pull tears the tissue off; 0 = never
+  double max_force = 0.0;             // N: a stronger pull ends the grasp; 0 = never
+  bool tears_out = false;             // then what is held comes out with it; else it lets go
   Vec3 opening_axis = Vec3::UnitY();  // runner: the jaws move apart along it, tool frame
 };
 
@@ -171,6 +172,12 @@ struct GraspConfig {
 struct BladeConfig {
   std::vector<Vec3> edge;   // a polyline of 2 points or more, in the tool's frame (m)
   double resistance = 0.0;  // of new surface (J/m^2)
+};
+
+// Scissors cut where the edges of their jaws have passed each other.
+struct ScissorsConfig {
+  std::array<std::vector<Vec3>, 2> edges;  // polylines, each in its jaw's frame (m), which pass
+                                           // each other at the same lengths from their first points
 };
 
 struct ToolConfig {
@@ -183,10 +190,11 @@ struct ToolConfig {
       links;  // the first one's frame is the tool's; the last two of a role with jaws: these
   ToolRole role;
   Patch patch = Patch::kConforming;
-  double friction = 0.3;   // Coulomb's, >= 0
-  double max_force = 0.0;  // N: a stronger wrench is told as this one, and flagged; 0 = none
-  GraspConfig grasp;       // roles with jaws
-  BladeConfig blade;       // roles with an edge
+  double friction = 0.3;    // Coulomb's, >= 0
+  double max_force = 0.0;   // N: a stronger wrench is told as this one, and flagged; 0 = none
+  GraspConfig grasp;        // roles with jaws
+  BladeConfig blade;        // roles with an edge
+  ScissorsConfig scissors;  // roles that shear; opening_axis of `grasp` is theirs, too
 };
 
 // What the tissue rests on: a box or a plane that never moves.

@@ -208,6 +208,9 @@ class Tissue {
   // beyond tear_stretch and balances, over and over, until nothing is. For shapes that tools make:
   // those of the other calls but follow have torn already. LATE: the rest is left to the next call.
   SolveReport tear();
+  // Severs the springs between these nodes and the others, torn in one change, and balances; false:
+  // there are none. For what a grasper holds.
+  bool tearOut(const std::vector<int>& nodes);
   bool mayTear() const { return !tear_strains_.empty() || drops_free_; }
   int springsTorn() const { return springs_torn_; }  // since rest, or the state that was loaded
   // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut

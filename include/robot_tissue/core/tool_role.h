@@ -9,13 +9,17 @@ namespace robot_tissue {
 
 struct ToolRole {
   std::string name = "push";
-  bool has_jaws = false;  // its last two links; when they are close, they hold what is between them
+  bool has_jaws = false;  // its last two links
+  bool holds = false;     // when its jaws are close, they hold what is between them
+  bool shears = false;    // it cuts where the edges of its jaws have passed, and touches nothing
   bool has_edge = false;  // it cuts where its edge goes; its shapes are its sides
   bool fits_hard_patches = true;  // a method that moves tissue in hard pieces only can follow it
   bool drills = false;            // what its shapes cover goes, and it touches nothing
 
-  bool touches() const { return !has_edge && !drills; }
-  std::string deed() const { return has_edge ? "cuts" : drills ? "drills" : "touches"; }
+  // Whether it does nothing but push, and hold.
+  bool touches() const { return !parts(); }
+  bool parts() const { return has_edge || shears || drills; }
+  std::string deed() const { return drills ? "drills" : parts() ? "cuts" : "touches"; }
 };
 
 const std::vector<ToolRole>& toolRoles();
@@ -24,7 +28,7 @@ const std::vector<std::string>& plannedToolRoles();
 // Throws InputError: no role of this name.
 const ToolRole& toolRole(const std::string& name);
 
-// Of the roles that have what is asked for, e.g. &ToolRole::has_jaws: "a, b".
+// Of the roles that have what is asked for, e.g. &ToolRole::holds: "a, b".
 std::string toolRolesWith(bool ToolRole::*trait);
 
 }  // namespace robot_tissue

@@ -45,6 +45,7 @@ struct StepReport {
   std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
   std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
   std::vector<std::size_t> torn_off;     // graspers that lost what they held
+  std::vector<std::size_t> torn_out;     // graspers that took out what they held
   int springs_cut = 0;                   // by blades
   double area_cut = 0.0;                 // new surface of these cuts (m^2)
   double volume_removed = 0.0;           // by burrs, at rest (m^3)

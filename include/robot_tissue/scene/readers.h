@@ -91,6 +91,10 @@ ToolLinks readToolLinks(const MapReader& tool, const Surroundings& surroundings,
 // Keys edge and resistance of a tool, whose role and links are read: refused where the role has no
 // edge.
 void readEdge(const Entry& entry, const TissueConfig& tissue, ToolConfig& tool, Remarks& remarks);
+void readEdges(const Entry& entry, const TissueConfig& tissue, ToolConfig& tool);
+void readOpeningOfScissors(const Entry& entry, SceneUser user, ToolConfig& tool, Remarks& remarks);
+// A direction, unit.
+Vec3 readOpeningAxis(const Entry& entry, SceneUser user, Remarks& remarks);
 void readResistance(const Entry& entry, ToolConfig& tool);
 
 std::vector<SupportConfig> readSupports(const Entry& entry, const TissueConfig& tissue);

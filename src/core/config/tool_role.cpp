@@ -4,11 +4,26 @@
 
 namespace robot_tissue {
 
+namespace {
+
+std::vector<ToolRole> table() {
+  ToolRole push, blade, grasper, burr, scissors;
+  blade.name = "blade";
+  blade.has_edge = true;
+  grasper.name = "grasper";
+  grasper.has_jaws = grasper.holds = true;
+  grasper.fits_hard_patches = false;
+  burr.name = "burr";
+  burr.drills = true;
+  scissors.name = "scissors";
+  scissors.has_jaws = scissors.shears = true;
+  return {push, blade, grasper, burr, scissors};
+}
+
+}  // namespace
+
 const std::vector<ToolRole>& toolRoles() {
-  static const std::vector<ToolRole> all = {{"push", false, false, true, false},
-                                            {"blade", false, true, true, false},
-                                            {"grasper", true, false, false, false},
-                                            {"burr", false, false, true, true}};
+  static const std::vector<ToolRole> all = table();
   return all;
 }
 

@@ -3,7 +3,9 @@
 // compiler or processor has no such thing, they are compiled once.
 #pragma once
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
+#include "robot_tissue/core/compat.h"
+
+#if ROBOT_TISSUE_HAS_TARGET_CLONES
 #define ROBOT_TISSUE_CLONES \
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 // Likewise of functions that know how long the vectors are: DEFINE(kind, bytes) defines them for

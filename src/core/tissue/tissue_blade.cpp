@@ -55,6 +55,23 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   return report;
 }
 
+bool Tissue::tearOut(const std::vector<int>& nodes) {
+  std::vector<std::uint8_t> goes(at(lattice_.nodeCount()), 0);
+  for (const int node : nodes) goes[at(state_.cells->original(node))] = 1;
+  std::vector<int> around;
+  for (std::size_t spring = 0; spring < lattice_.springs().size(); ++spring) {
+    const Spring& ends = lattice_.springs()[spring];
+    const bool parts = goes[at(ends.a)] != goes[at(ends.b)] && state_.severed[spring] == 0;
+    if (parts) around.push_back(static_cast<int>(spring));
+  }
+  if (around.empty()) return false;
+  const TopologyChange change(*this, History::Kind::kTear);
+  springs_torn_ += static_cast<int>(around.size());
+  severAndBalance(around);
+  tear();
+  return true;
+}
+
 // In time the shape gives way by and by: what goes next is seen after the next step.
 SolveReport Tissue::tear() {
   dropLetGo();
