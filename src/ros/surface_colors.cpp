@@ -79,17 +79,39 @@ std::vector<double> strains(const Tissue& tissue) {
   return values;
 }
 
+std::vector<ToolTouch> pressingTouches(const Pipeline& pipeline) {
+  std::vector<ToolTouch> pressing;
+  for (std::size_t tool = 0; tool < pipeline.tools().size() && pipeline.pose(); ++tool) {
+    for (const ToolTouch& touch : pipeline.touchesOf(tool)) {
+      if (touch.normal_force > 0.0) pressing.push_back(touch);
+    }
+  }
+  return pressing;
+}
+
+// Whose box reaches into the box around the touches: each of these is on one of them.
+std::vector<MeshTriangle> trianglesAround(const std::vector<ToolTouch>& touches,
+                                          const Tissue& tissue) {
+  Box around;
+  for (const ToolTouch& touch : touches) around.extend(touch.point);
+  const Box near = grownBy(tissue.lattice().spacing(), around);
+  std::vector<MeshTriangle> triangles;
+  for (const MeshTriangle& triangle : tissue.surface().triangles) {
+    Box box;
+    for (const int vertex : triangle) box.extend(tissue.vertices()[at(vertex)]);
+    if (box.intersects(near)) triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
 // Shares the force among the corners of the triangle that the point is on.
-void addForce(const Tissue& tissue, const Vec3& point, double force, std::vector<double>& forces) {
+void addForce(const Tissue& tissue, const std::vector<MeshTriangle>& triangles, const Vec3& point,
+              double force, std::vector<double>& forces) {
   double nearest = std::numeric_limits<double>::infinity();
   MeshTriangle found{};
   Vec3 shares = Vec3::Zero();
-  for (const MeshTriangle& triangle : tissue.surface().triangles) {
+  for (const MeshTriangle& triangle : triangles) {
     const Corners corners = cornersOf(tissue.vertices(), triangle);
-    // A triangle is no farther than its corner, and no nearer than that less its sides.
-    const double side =
-        std::max((corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm());
-    if ((corners[0] - point).norm() - side > nearest) continue;
     const Vec3 weights = nearestInTriangle(point, corners);
     const double distance = (pointOf(corners, weights) - point).norm();
     if (distance >= nearest) continue;
@@ -103,12 +125,13 @@ void addForce(const Tissue& tissue, const Vec3& point, double force, std::vector
 std::vector<double> pressures(const Pipeline& pipeline) {
   const Tissue& tissue = pipeline.tissue();
   std::vector<double> values(tissue.vertices().size(), 0.0);
-  std::vector<double> areas(values.size(), 0.0);
-  for (std::size_t tool = 0; tool < pipeline.tools().size() && pipeline.pose(); ++tool) {
-    for (const ToolTouch& touch : pipeline.touchesOf(tool)) {
-      if (touch.normal_force > 0.0) addForce(tissue, touch.point, touch.normal_force, values);
-    }
+  const std::vector<ToolTouch> touches = pressingTouches(pipeline);
+  if (touches.empty()) return values;
+  const std::vector<MeshTriangle> near = trianglesAround(touches, tissue);
+  for (const ToolTouch& touch : touches) {
+    addForce(tissue, near, touch.point, touch.normal_force, values);
   }
+  std::vector<double> areas(values.size(), 0.0);
   for (const MeshTriangle& triangle : tissue.surface().triangles) {
     const double share = doubleArea(tissue.vertices(), triangle).norm() / 6.0;
     for (const int vertex : triangle) areas[at(vertex)] += share;

@@ -194,7 +194,10 @@ class CutMeshBuilder {
   Hold holdOf(int point, const HalfIndex& octant) const {
     const Vec3& place = pieces_.vertex(point);
     int cell = cellOf(octant);
-    if (cell < 0) cell = cellAround(lattice_, place);
+    if (cell < 0 || !parts_.isOpen(cell)) {
+      const int around = cellAround(lattice_, place);  // whichever octant asks
+      if (cell < 0 || !parts_.isOpen(around)) cell = around;
+    }
     Hold hold;
     hold.carriers = carriersIn(lattice_, *parts_.owner(cell, cornerOf(cell, octant)), place);
     for (const NodeWeight& carrier : hold.carriers) hold.nodes.push_back(carrier.node);
