@@ -33,7 +33,8 @@ EdgePlace placeOf(const std::vector<Vec3>& edge, const Vec3& point) {
 void Blades::setPhase(std::size_t tool, EdgePhase phase) {
   const bool may_touch = world_.mayEdgeTouch(tool);
   states_[tool].phase = may_touch ? phase : EdgePhase::kInside;
-  world_.setEdgeTouches(tool, states_[tool].phase != EdgePhase::kInside);
+  const bool is_inside = states_[tool].phase == EdgePhase::kInside;
+  world_.setEdge(tool, is_inside ? World::Edge::kInside : World::Edge::kTouches);
 }
 
 // Of the bar along the edge (m).
@@ -61,23 +62,37 @@ void Blades::comeIn(const RobotPose& pose) {
   }
 }
 
-bool Blades::isNearTissue(std::size_t tool, const RobotPose& from, const RobotPose& pose) const {
+// Whether its edge may touch on its way, or is inside: a point of it is never farther than half of
+// its way from the nearer end.
+bool Blades::meetsTissue(std::size_t tool, const RobotPose& from, const RobotPose& pose) const {
   const std::size_t link = world_.tools.firstLink(tool);
   const double way = longestWay(from.links[link], pose.links[link], world_.reach(link));
-  Box around = world_.bounds(link, from.links[link]);
-  around.extend(world_.bounds(link, pose.links[link]));
-  const double margin = 0.5 * way + 2.0 * world_.tissue.lattice().spacing();
-  return grownBy(margin, around).intersects(world_.tissue.bounds());
+  const double margin = 0.5 * way + tuning::kEdgeRadius * world_.tissue.lattice().spacing();
+  const auto is_near = [&](const Pose& tissue_T_tool) {
+    const Box box = grownBy(margin, world_.edges.bounds(link, tissue_T_tool));
+    if (!box.intersects(world_.tissue.bounds())) return false;
+    if (states_[tool].phase == EdgePhase::kInside) return true;
+    RobotPose alone = world_.tools.complete({});
+    alone.links[link] = tissue_T_tool;
+    const ContactSet near =
+        world_.edges.find(alone, world_.tissue.surface(), world_.tissue.vertices(), margin);
+    return !near.contacts.empty();
+  };
+  return is_near(from.links[link]) || is_near(pose.links[link]);
 }
 
-std::vector<RobotPose> Blades::legs(const RobotPose& from, const RobotPose& pose) const {
+std::vector<RobotPose> Blades::legs(const RobotPose& from, const RobotPose& pose) {
   std::vector<double> ends;
   const double stride = tuning::kBladeStride * world_.tissue.lattice().spacing();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     const BladeState& state = states_[tool];
     if (!world_.mayEdgeTouch(tool) || state.strides.stands.empty()) continue;
     const std::size_t link = world_.tools.firstLink(tool);
-    if (ToolSet::isAway(pose.links[link]) || !isNearTissue(tool, from, pose)) continue;
+    const bool meets = !ToolSet::isAway(pose.links[link]) && meetsTissue(tool, from, pose);
+    if (state.phase == EdgePhase::kOutside) {
+      world_.setEdge(tool, meets ? World::Edge::kTouches : World::Edge::kFar);
+    }
+    if (!meets) continue;
     const double way = longestWay(state.stands(), pose.links[link], world_.reach(link));
     const double last = way - tuning::kStrideRounding * stride;
     const bool is_inside = state.phase == EdgePhase::kInside;

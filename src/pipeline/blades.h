@@ -60,9 +60,9 @@ class Blades {
   // Those that come anew to where tissue is are inside: they do not part what they appear in.
   void comeIn(const RobotPose& pose);
 
-  // The way of the tools to the pose in legs that end where strides of blades near the tissue do;
-  // the last one ends there.
-  std::vector<RobotPose> legs(const RobotPose& from, const RobotPose& pose) const;
+  // The way of the tools to the pose in legs that end where blades that may touch are looked at, or
+  // cut; the last one ends there. Edges that meet nothing on it do not touch.
+  std::vector<RobotPose> legs(const RobotPose& from, const RobotPose& pose);
 
   // They go to their place in the pose, from where they were last. A tool that comes from nowhere,
   // or jumped, cuts nothing on its way. False: there was no time for all of the way; the pose has
@@ -91,7 +91,7 @@ class Blades {
   void forgetWay(std::size_t tool);
   void setPhase(std::size_t tool, EdgePhase phase);
   double depthInTissue(std::size_t tool, const Pose& tissue_T_tool) const;
-  bool isNearTissue(std::size_t tool, const RobotPose& from, const RobotPose& pose) const;
+  bool meetsTissue(std::size_t tool, const RobotPose& from, const RobotPose& pose) const;
   double lookLength() const;
   void look(std::size_t tool);
   void leave(std::size_t tool);

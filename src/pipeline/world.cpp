@@ -63,13 +63,13 @@ bool World::mayEdgeTouch(std::size_t tool) const {
   return of.role.has_edge && of.patch != ToolConfig::Patch::kRigid && !tissue.hasTime();
 }
 
-void World::setEdgeTouches(std::size_t tool, bool touches) {
+void World::setEdge(std::size_t tool, Edge edge) {
   if (!mayEdgeTouch(tool)) return;
   const std::size_t link = tools.firstLink(tool);
   const std::size_t sides = tools[tool].links.front().shapes.size();
-  const std::size_t edge = tools[tool].blade.edge.size() - 1;
-  in_wound_[link] = !touches;
-  finder.useShapes(link, sides + (touches ? edge : 0));
+  const std::size_t bars = tools[tool].blade.edge.size() - 1;
+  in_wound_[link] = edge == Edge::kInside;
+  finder.useShapes(link, sides + (edge == Edge::kTouches ? bars : 0));
 }
 
 bool World::isInWound(std::size_t link) const { return link < in_wound_.size() && in_wound_[link]; }

@@ -32,9 +32,11 @@ struct World {
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
-  // A tool with an edge touches with it, or only with the shapes of its links, as while it is
-  // inside.
-  void setEdgeTouches(std::size_t tool, bool touches);
+  // kFar: there is nothing to touch, so it asks for no short load steps. kInside: in tissue, in a
+  // wound.
+  enum class Edge { kTouches, kFar, kInside };
+  // A tool with an edge touches with it, or only with the shapes of its links.
+  void setEdge(std::size_t tool, Edge edge);
   // Of a tool whose edge is inside, the first link: its shapes push the lips of the wound aside.
   bool isInWound(std::size_t link) const;
   bool anyInWound() const;
