@@ -41,7 +41,7 @@ void cut(ElasticBlock& block, const Corners& corners) {
 
 double filled(const CellSet& cells) {
   double share = 0.0;
-  for (const Cell& cell : cells.all()) share += cell.share;
+  for (const Cell& cell : cells.all()) share += cell.share();
   return share;
 }
 
@@ -115,7 +115,7 @@ TEST(Ghosts, PlaneThroughABlockGivesEachSideALayer) {
   EXPECT_EQ(block.state.cells->ghosts().size(), 2u * 4u * 3u);
   EXPECT_EQ(block.state.cells->all().size(), 24u + 6u);
   for (const Cell& cell : block.state.cells->all()) {
-    EXPECT_EQ(cell.share, cell.isPart() ? 0.5 : 1.0);
+    EXPECT_EQ(cell.share(), cell.isPart() ? 0.5 : 1.0);
   }
   const std::vector<int> piece = piecesOf(block);
   for (int node = 0; node < block.state.cells->nodeCount(); ++node) {
@@ -167,8 +167,8 @@ TEST(Ghosts, SliverOfOneCornerIsFree) {
   cut(block, {{0.03, -0.012, -0.012}, {-0.012, 0.03, -0.012}, {-0.012, -0.012, 0.03}});
   ASSERT_EQ(block.state.springs_cut, 3);
   EXPECT_EQ(block.state.cells->ghosts().size(), 7u + 1u);
-  EXPECT_EQ(block.state.cells->owner(0, 0)->share, 0.125);
-  EXPECT_EQ(block.state.cells->owner(0, 7)->share, 0.875);
+  EXPECT_EQ(block.state.cells->owner(0, 0)->share(), 0.125);
+  EXPECT_EQ(block.state.cells->owner(0, 7)->share(), 0.875);
   expectSound(block, 8.0);
 }
 

@@ -10,8 +10,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "robot_tissue/core/cell_fill.h"
 #include "robot_tissue/core/grid_box.h"
 #include "robot_tissue/core/types.h"
 
@@ -26,10 +28,11 @@ struct Cell {
   std::array<int, kCorners> nodes{};
   int place = 0;            // which of the lattice's cells it is, or is a part of
   std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
-  double share = 1.0;       // of that cell's volume h^3 that it holds, in (0, 1]
+  std::shared_ptr<const CellFill> fill;  // what of that cell's volume h^3 it holds; null: all
 
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
+  double share() const { return fill == nullptr ? 1.0 : fill->share; }  // of h^3, in (0, 1]
 };
 
 // What becomes of cells that a cut has split: they go as a whole, or stay as parts with ghosts.

@@ -109,7 +109,7 @@ class Lattice {
 
   Lattice(const TissueConfig& config, const FilledGrid& tissue);
   void placeNodes(const std::vector<double>& filled);
-  void placeCells(const std::vector<double>& filled);
+  void placeCells(const FilledGrid& tissue);
   void placeSprings();
   void fix(const std::vector<Box>& boxes);
 

@@ -210,7 +210,7 @@ double newSurface(const Lattice& lattice, const std::vector<Crossing>& crossings
         index[at((spring.axis + 1) % 3)] -= u;
         index[at((spring.axis + 2) % 3)] -= v;
         const int cell = lattice.cellAt(index);
-        if (cell >= 0) filled += lattice.cells()[at(cell)].share;
+        if (cell >= 0) filled += lattice.cells()[at(cell)].share();
       }
     }
     surface += each.cosine * filled / 4.0 * lattice.spacing() * lattice.spacing();

@@ -95,8 +95,8 @@ void weighNodes(const Lattice& lattice, LatticeState& state) {
   for (const Cell& cell : lattice.cells()) {
     for (int corner = 0; corner < kCorners; ++corner) {
       const std::size_t node = at(cell.nodes[at(corner)]);
-      all[node] += cell.share;
-      if (!isTaken(state, cell.place, corner)) there[node] += cell.share;
+      all[node] += cell.share();
+      if (!isTaken(state, cell.place, corner)) there[node] += cell.share();
     }
   }
   for (std::size_t node = 0; node < all.size(); ++node) there[node] /= all[node];
@@ -180,7 +180,7 @@ double volumeOf(const Lattice& lattice, const std::vector<std::uint8_t>& cells) 
   const double eighth = std::pow(lattice.spacing(), 3) / kCorners;
   double volume = 0.0;
   for (const Cell& cell : lattice.cells()) {
-    volume += eighth * cell.share * countOf(cells[at(cell.place)]);
+    volume += eighth * cell.share() * countOf(cells[at(cell.place)]);
   }
   return volume;
 }

@@ -20,6 +20,12 @@ int lowestOwn(const Cell& cell) {
   return corner;
 }
 
+// The eighths at its own corners. Where in them a mesh is that fills the cell in part is not looked
+// at: its share is spread over them.
+std::shared_ptr<const CellFill> fillOfPart(const Cell& cell, std::uint8_t own) {
+  return std::make_shared<const CellFill>(fillOf(octantIntegrals(own).scaledBy(cell.share())));
+}
+
 // Gives the parts' lost corners their nodes. A lost corner has the number (nodes of the lattice) +
 // 8 * cell + corner until then, so that a set that holds a node of the lattice becomes that node.
 class GhostMaker {
@@ -166,7 +172,7 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
       for (int corner = part; corner < kCorners; ++corner) {
         if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
       }
-      parted.share *= static_cast<double>(std::count(parts.begin(), parts.end(), part)) / kCorners;
+      parted.fill = fillOfPart(cell, parted.own);
       left.push_back(parted);
     }
   }

@@ -29,15 +29,25 @@ Grid gridOf(const Box& shape, double spacing) {
 FilledGrid filledGrid(const TissueConfig& config) {
   if (config.mesh == nullptr) {
     const Grid grid = gridOf(config.shape, config.spacing);
-    return {grid, std::vector<double>(at(grid.cellCount()), 1.0)};
+    return {grid, std::vector<double>(at(grid.cellCount()), 1.0), {}};
   }
   const Grid whole = gridAround(*config.mesh, config.spacing);
   MeshCells cells = sliced(*config.mesh, whole);
+  std::vector<std::pair<int, CellFill>> partial;
+  auto known = cells.partial.begin();
   for (std::size_t cell = 0; cell < cells.filled.size(); ++cell) {
+    FillIntegrals fill = integralsOf(CellFill()).scaledBy(cells.filled[cell]);
+    if (known != cells.partial.end() && known->first == static_cast<int>(cell)) {
+      fill = (known++)->second;
+    }
     double& filled = cells.filled[cell];
-    filled = cells.occupied[cell] != 0 ? std::max(filled, kLeastShare) : 0.0;
+    if (cells.occupied[cell] == 0) filled = 0.0;
+    if (cells.occupied[cell] == 0 || filled == 1.0) continue;
+    if (filled < kLeastShare) fill += integralsOf(CellFill()).scaledBy(kLeastShare - filled);
+    filled = fill.volume = std::max(filled, kLeastShare);
+    partial.emplace_back(static_cast<int>(cell), fillOf(fill));
   }
-  return {Grid(whole, std::move(cells.occupied)), std::move(cells.filled)};
+  return {Grid(whole, std::move(cells.occupied)), std::move(cells.filled), std::move(partial)};
 }
 
 }  // namespace robot_tissue

@@ -36,7 +36,7 @@ Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config
 
 Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
   placeNodes(tissue.filled);
-  placeCells(tissue.filled);
+  placeCells(tissue);
   placeSprings();
   weigh(config);
   fix(config.fixed);
@@ -60,13 +60,16 @@ void Lattice::placeNodes(const std::vector<double>& filled) {
   }
 }
 
-void Lattice::placeCells(const std::vector<double>& filled) {
+void Lattice::placeCells(const FilledGrid& tissue) {
   std::vector<Cell> cells;
+  auto partial = tissue.partial.begin();
   for (int number = 0; number < grid_.cellCount(); ++number) {
-    if (filled[at(number)] <= 0.0) continue;
+    if (tissue.filled[at(number)] <= 0.0) continue;
     Cell cell;
     cell.place = static_cast<int>(cells.size());
-    cell.share = filled[at(number)];
+    if (partial != tissue.partial.end() && partial->first == number) {
+      cell.fill = std::make_shared<const CellFill>((partial++)->second);
+    }
     const auto points = grid_.cornersOf(number);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       cell.nodes[corner] = node_at_[at(points[corner])];
@@ -106,10 +109,10 @@ void Lattice::weigh(const TissueConfig& config) {
     const Material& material = materialAt(config, cellCenter(cell));
     for (int corner = 0; corner < kCorners; ++corner) {
       const int node = cell.nodes[at(corner)];
-      mass_[at(node)] += cell.share * material.density * corner_volume;
+      mass_[at(node)] += cell.share() * material.density * corner_volume;
       for (int axis = 0; axis < 3; ++axis) {
         if (corner >> axis & 1) continue;
-        stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share);
+        stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share());
       }
     }
   }

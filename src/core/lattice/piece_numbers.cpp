@@ -18,7 +18,7 @@ std::vector<std::int64_t> sizesOf(const Lattice& lattice, const LatticeState& st
                                   const std::vector<int>& part_of_node) {
   std::vector<std::int64_t> sizes(at(state.pieces), 0);
   for (const Cell& cell : lattice.cells()) {
-    const std::int64_t eighth = std::llround(kShareSteps * cell.share);
+    const std::int64_t eighth = std::llround(kShareSteps * cell.share());
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(state, cell.place, corner)) continue;
       sizes[at(part_of_node[at(cell.nodes[at(corner)])])] += eighth;

@@ -27,15 +27,15 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
 // A cell that is filled in part answers in part.
 Moduli ElasticModel::cellModuli(const Cell& cell) const {
   const Moduli& full = substanceOf(cell).moduli;
-  return {cell.share * full.shear, cell.share * full.bulk};
+  return {cell.share() * full.shear, cell.share() * full.bulk};
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
-  return cell.share * substanceOf(cell).corner_weight;
+  return cell.share() * substanceOf(cell).corner_weight;
 }
 
 double ElasticModel::cornerMass(const Cell& cell) const {
-  return cell.share * substanceOf(cell).corner_mass;
+  return cell.share() * substanceOf(cell).corner_mass;
 }
 
 std::vector<double> ElasticModel::nodeMasses(const CellSet& cells) const {

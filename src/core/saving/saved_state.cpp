@@ -248,7 +248,7 @@ std::uint64_t fingerprintOf(const Lattice& lattice, SplitCells split) {
   for (const int points : lattice.size()) out.index(points);
   for (const Cell& cell : lattice.cells()) {
     for (const int index : lattice.gridIndex(cell.nodes.front())) out.index(index);
-    out.u32(static_cast<std::uint32_t>(std::lround(kShareSteps * cell.share)));
+    out.u32(static_cast<std::uint32_t>(std::lround(kShareSteps * cell.share())));
   }
   for (int node = 0; node < lattice.nodeCount(); ++node) out.u8(lattice.isFixed(node) ? 1 : 0);
   return hashOf(out.bytes());

@@ -38,7 +38,7 @@ int nearestCell(const Lattice& lattice, const Vec3& point) {
         const Vec3 place = inCell(lattice, cell, point);
         const double distance = (place - clamped(place)).norm();
         const bool as_near = nearest >= 0 && std::abs(distance - shortest) <= kNoWeight;
-        if (as_near ? cell.share > lattice.cells()[at(nearest)].share : distance < shortest) {
+        if (as_near ? cell.share() > lattice.cells()[at(nearest)].share() : distance < shortest) {
           nearest = index;
           shortest = distance;
         }

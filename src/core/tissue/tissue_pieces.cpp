@@ -49,7 +49,7 @@ const std::vector<TissuePiece>& Tissue::piecesAtRest() const {
   pieces_at_rest_.resize(at(piece_numbers_->names().next));
   const double volume = std::pow(lattice_.spacing(), 3) / kCorners;
   for (const Cell& cell : lattice_.cells()) {
-    const double eighth = volume * cell.share;
+    const double eighth = volume * cell.share();
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(state_, cell.place, corner)) continue;
       const int node = cell.nodes[at(corner)];
@@ -88,7 +88,7 @@ std::vector<TissuePiece> Tissue::pieces() const {
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(state_, cell.place, corner)) continue;
       const int node = cell.nodes[at(corner)];
-      moved[at(piece_of[at(node)])] += volume * cell.share * state_.displacement[at(node)];
+      moved[at(piece_of[at(node)])] += volume * cell.share() * state_.displacement[at(node)];
     }
   }
   std::vector<TissuePiece> pieces = restingPieces();

@@ -47,7 +47,7 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
     const Moduli moduli = model.cellModuli(cell);
     mean_.shear += moduli.shear / count;
     mean_.bulk += moduli.bulk / count;
-    softness += cell.share / moduli.shear / count;
+    softness += cell.share() / moduli.shear / count;
   }
   soft_shear_ = 1.0 / softness;
 }
