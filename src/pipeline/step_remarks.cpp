@@ -13,6 +13,12 @@ std::string namesOf(const std::vector<std::size_t>& numbers,
   return names;
 }
 
+std::string remarkOnLaw(const Tissue& tissue) {
+  if (tissue.cellsBeyondLaw() == 0) return "";
+  return "cells are strained so far that law fung would overflow: there it goes on as a polynomial "
+         "(doc/model.md); give less stiffening or strain";
+}
+
 namespace {
 
 using Kind = StepRemark::Kind;
@@ -83,6 +89,8 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
     remarks.push_back({Kind::kLost, "no shape follows " + names(report.behind) +
                                         ", as between tools that meet: the last good one stays"});
   }
+  const std::string of_law = remarkOnLaw(pipeline.tissue());
+  if (!of_law.empty()) remarks.push_back({Kind::kBeyondLaw, of_law});
   addOfJaws(pipeline, remarks);
   addOfBurrs(pipeline, remarks);
   return remarks;

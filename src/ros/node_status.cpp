@@ -15,6 +15,7 @@ using diagnostic_msgs::DiagnosticStatus;
 
 // The word of TissueState.msg for a remark. Jaws that meet, or hold nothing, are no fault by
 // themselves: jaws that close where no tissue is do both. A burr that stops has done all it could.
+// A law that goes on otherwise has its own equilibrium.
 std::string wordOf(StepRemark::Kind kind) {
   switch (kind) {
     case StepRemark::Kind::kInside:
@@ -25,6 +26,7 @@ std::string wordOf(StepRemark::Kind kind) {
       return "TOO_FAST";
     case StepRemark::Kind::kLost:
       return "UNCONVERGED";
+    case StepRemark::Kind::kBeyondLaw:
     case StepRemark::Kind::kJawsMeet:
     case StepRemark::Kind::kHoldsNothing:
     case StepRemark::Kind::kDrills:

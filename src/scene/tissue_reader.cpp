@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "material_reader.h"
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/memory.h"
@@ -75,82 +76,6 @@ double readSpacing(const Entry& entry, const Box& shape) {
   return spacing;
 }
 
-struct MaterialReading {
-  const std::string& model;
-  Remarks& remarks;
-  Material& material;  // what is not given stays
-};
-
-void readPoissonRatio(const Entry& entry, MaterialReading& reading) {
-  Material& material = reading.material;
-  material.poisson_ratio = entry.numberOr(material.poisson_ratio, ranges::poissonRatio());
-  if (entry.given() && !traitsOfModel(reading.model).has_poisson_ratio) {
-    reading.remarks.push_back(
-        entry.line("ignored, model " + reading.model + " has no Poisson's ratio"));
-  }
-}
-
-double readTearStretch(const Entry& entry) {
-  const double stretch = entry.number(ranges::tearStretch());
-  if (stretch == 0.0 || stretch >= ranges::kLeastTearStretch) return stretch;
-  entry.fail("must be 0, for never, or " + numberText(ranges::kLeastTearStretch) + " at least");
-}
-
-const KeyTable<MaterialReading> kMaterialKeys = {
-    {"young_modulus",
-     [](const Entry& entry, MaterialReading& reading) {
-       double& modulus = reading.material.young_modulus;
-       modulus = entry.numberOr(modulus, ranges::youngModulus());
-     }},
-    {"poisson_ratio", readPoissonRatio},
-    {"density",
-     [](const Entry& entry, MaterialReading& reading) {
-       double& density = reading.material.density;
-       density = entry.numberOr(density, ranges::density());
-     }},
-    {"tear_stretch",
-     [](const Entry& entry, MaterialReading& reading) {
-       if (entry.given()) reading.material.tear_stretch = readTearStretch(entry);
-     }},
-    {"tear_length",
-     [](const Entry& entry, MaterialReading& reading) {
-       if (entry.given()) reading.material.tear_length = entry.number(ranges::spacing());
-     }},
-    {"spring_stiffness",
-     [](const Entry& entry, MaterialReading& reading) {
-       if (!entry.given()) return;
-       reading.material.spring_stiffness = entry.number(ranges::springStiffness());
-     }},
-};
-
-Material readMaterial(const Entry& entry, const std::string& model, Remarks& remarks) {
-  const MapReader map(entry, namesOf(kMaterialKeys));
-  const Entry stiffness = map["spring_stiffness"];
-  if (stiffness.given() && !traitsOfModel(model).has_spring_stiffness) {
-    stiffness.fail("must be left out, only model " +
-                   modelsWith(&ModelTraits::has_spring_stiffness) +
-                   " has it; give young_modulus in Pa");
-  }
-  if (stiffness.given() && map["young_modulus"].given()) {
-    stiffness.fail("must not stand beside young_modulus, give one of the two");
-  }
-  Material material;
-  MaterialReading reading{model, remarks, material};
-  readKeys(map, kMaterialKeys, reading);
-  if (!stiffness.given())
-    material.young_modulus = map["young_modulus"].number(ranges::youngModulus());
-  return material;
-}
-
-void requireContrast(const MapReader& region, const Material& around, const Material& material) {
-  const double contrast = material.spring_stiffness
-                              ? *material.spring_stiffness / *around.spring_stiffness
-                              : material.young_modulus / around.young_modulus;
-  if (std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast) return;
-  region[material.spring_stiffness ? "spring_stiffness" : "young_modulus"].fail(
-      "must be within a factor of " + numberText(ranges::kMostContrast) + " of tissue.material's");
-}
-
 // Where the nodes stand, or with an offset of half a spacing the cells' centers.
 std::string nodesText(const Grid& grid, double offset) {
   const Vec3 inset = Vec3::Constant(offset * grid.spacing());
@@ -175,29 +100,17 @@ const KeyTable<Region> kRegionKeys = {
 
 Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& grid,
                   Remarks& remarks) {
-  const MapReader map(entry, namesOfAll(kRegionKeys, kMaterialKeys));
+  std::vector<std::string> keys = namesOf(kRegionKeys);
+  const std::vector<std::string> of_material = materialKeys();
+  keys.insert(keys.end(), of_material.begin(), of_material.end());
+  const MapReader map(entry, keys);
   Region region;
   readKeys(map, kRegionKeys, region);
   region.box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
   if (!grid.holdsCell(region.box)) {
     entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
   }
-  const bool by_spring = tissue.material.spring_stiffness.has_value();
-  const Entry foreign = map[by_spring ? "young_modulus" : "spring_stiffness"];
-  if (foreign.given()) {
-    foreign.fail(std::string("must be given as ") +
-                 (by_spring ? "spring_stiffness (N/m)" : "young_modulus (Pa)") +
-                 ", as in tissue.material");
-  }
-  if (std::none_of(kMaterialKeys.begin(), kMaterialKeys.end(),
-                   [&map](const auto& key) { return map[key.name].given(); })) {
-    entry.fail("must change the material by at least one of " + joined(namesOf(kMaterialKeys)));
-  }
-  region.material = tissue.material;
-  MaterialReading reading{tissue.model, remarks, region.material};
-  readKeys(map, kMaterialKeys, reading);
-  region.own_modulus = map["young_modulus"].given();
-  requireContrast(map, tissue.material, region.material);
+  readRegionMaterial(map, tissue, remarks, region);
   return region;
 }
 
@@ -222,7 +135,7 @@ void readMaterial(const Entry& entry, TissueReading& reading) {
   TissueConfig& tissue = reading.tissue;
   tissue.material = readMaterial(entry, tissue.model, reading.remarks);
   if (!tissue.mesh || !tissue.material.spring_stiffness) return;
-  reading.remarks.push_back(MapReader(entry, namesOf(kMaterialKeys))["spring_stiffness"].line(
+  reading.remarks.push_back(MapReader(entry, materialKeys())["spring_stiffness"].line(
       "every spring has it, also those of cells that the mesh fills only in part"));
 }
 

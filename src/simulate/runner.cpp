@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "robot_tissue/pipeline/step_remarks.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -148,6 +150,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   }
   if (partsTissue(scene_)) keepPieces(increment);
   keepSutures(increment);
+  const std::string of_law = remarkOnLaw(pipeline_.tissue());
+  if (!of_law.empty()) remark(of_law);
   const double update_ms = report.wall_ms + std::exchange(contact_ms_, 0.0);
   result_.increments.push_back({step_, increment, report, update_ms, time_});
   if (on_row_) on_row_(result_.increments.back(), increments);

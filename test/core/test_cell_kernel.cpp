@@ -17,12 +17,12 @@ constexpr double kOfTheOther = 1e-14;  // rounding of a cell alone, which is tol
 
 // A block of full cells, two of them left out, one of them with corners beside the grid.
 struct Cells {
-  Cells() : grid(kPoints) {
+  explicit Cells(double stiffening = 0.0) : grid(kPoints) {
     for (int k = 0; k + 1 < kPoints[2]; ++k) {
       for (int j = 0; j + 1 < kPoints[1]; ++j) {
         for (int i = 0; i + 1 < kPoints[0]; ++i) {
           if (i == 3 && j == 2 && k < 2) continue;
-          LevelCell cell{{i, j, k}, {}, kShear, kBulk};
+          LevelCell cell{{i, j, k}, {}, kShear, kBulk, stiffening};
           for (int corner = 0; corner < kCorners; ++corner) {
             cell.nodes[at(corner)] =
                 grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
@@ -76,8 +76,8 @@ class CellKernel : public testing::Test {
     return field;
   }
 
-  void expectForcesOfEachCell(double far, double tolerance) {
-    const Cells given;
+  void expectForcesOfEachCell(double far, double tolerance, double stiffening = 0.0) {
+    const Cells given(stiffening);
     CellOperator<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
     const Field<Real> moved = shaken(cells, far);
     Around<Real> around(cells);
@@ -93,7 +93,7 @@ class CellKernel : public testing::Test {
           corners[c][axis] = static_cast<double>(moved[at(axis)][node]);
         }
       }
-      const ElasticCell alone({kShear, kBulk}, 1.0, corners);
+      const ElasticCell alone({kShear, kBulk, stiffening}, 1.0, corners);
       for (int c = 0; c < kCorners; ++c) {
         forces[at(cell.nodes[at(c)])] -= alone.gradient(c);
         blocks[at(cell.nodes[at(c)])] += alone.block(c);
@@ -127,6 +127,15 @@ TYPED_TEST(CellKernel, ForcesAreThoseOfEachCell) {
 // Corners squeezed and cells turned inside out: the barrier, and a(J) below its last place.
 TYPED_TEST(CellKernel, ForcesAreThoseOfEachCellThatIsCrushed) {
   this->expectForcesOfEachCell(0.6, kRounding<TypeParam>);
+}
+
+// Stiffening, below and beyond its greatest exponent.
+TYPED_TEST(CellKernel, ForcesAreThoseOfEachCellThatStiffens) {
+  for (const double stiffening : {0.5, 10.0, 100.0}) {
+    for (const double far : {1e-4, 0.05, 0.2, 0.6}) {
+      this->expectForcesOfEachCell(far, kRounding<TypeParam>, stiffening);
+    }
+  }
 }
 
 // What is off rest by a millionth is known as well as what is off by a tenth.

@@ -11,6 +11,7 @@ struct ModelTraits {
   bool has_poisson_ratio = true;
   bool has_spring_stiffness = false;  // as another way to give its stiffness
   bool hard_patches_only = false;     // its methods move patches in one piece, and nothing slides
+  bool has_law = true;                // of strain, else springs are linear
 };
 
 struct MethodTraits {

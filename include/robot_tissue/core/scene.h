@@ -20,9 +20,13 @@ namespace robot_tissue {
 
 // Stiffness is either a modulus or, with model six_spring only, the constant of one spring.
 struct Material {
-  double young_modulus = 0.0;              // Pa; unused when spring_stiffness is set
-  double poisson_ratio = 0.45;             // 0.25 .. 0.49; model six_spring has none
-  double density = 1000.0;                 // kg/m^3
+  enum class Law { kNeoHookean, kFung };
+
+  double young_modulus = 0.0;   // Pa, at small strain; unused with spring_stiffness
+  double poisson_ratio = 0.45;  // 0.25 .. 0.49; model six_spring has none
+  double density = 1000.0;      // kg/m^3
+  Law law = Law::kNeoHookean;
+  double stiffening = 0.0;  // with kFung b of mu/(2b) (exp(b (I1bar - 3)) - 1); 0 is neo-Hookean
   std::optional<double> spring_stiffness;  // N/m
   double tear_stretch = 0.0;  // > 1: of the rest length, a longer spring severs; 0: none does
   double tear_length = 0.0;   // m: the spacing that tear_stretch is of, to be scaled to others so

@@ -115,6 +115,8 @@ class Tissue {
 
   // Cells of the model that turned inside out are a wrong shape.
   bool resistsInversion() const;
+  // Cells so strained that the law `fung` goes on as a polynomial there (doc/model.md).
+  int cellsBeyondLaw() const;
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
   // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.

@@ -1,5 +1,5 @@
-// What a step of the pipeline has to say of its tools, in words: for the node's state and the
-// runner's remarks.
+// What a step of the pipeline has to say of its tools and the tissue, in words: for the node's
+// state and the runner's remarks.
 #pragma once
 
 #include <string>
@@ -10,13 +10,25 @@
 namespace robot_tissue {
 
 struct StepRemark {
-  enum class Kind { kInside, kTornOff, kTooFast, kLost, kJawsMeet, kHoldsNothing, kDrills };
+  enum class Kind {
+    kInside,
+    kTornOff,
+    kTooFast,
+    kLost,
+    kBeyondLaw,
+    kJawsMeet,
+    kHoldsNothing,
+    kDrills
+  };
   Kind kind = Kind::kInside;
   std::string text;  // a line that names the tools
 };
 
 // Of the last step, in the order of the kinds; none when there is nothing to say.
 std::vector<StepRemark> remarksOn(const Pipeline& pipeline);
+
+// Where the law `fung` would overflow; empty: nowhere.
+std::string remarkOnLaw(const Tissue& tissue);
 
 // "'probe'", "'probe' and 'hook'", "'a', 'b' and 'c'": these of the tools; "a tool" without any.
 std::string namesOf(const std::vector<std::size_t>& numbers,

@@ -18,6 +18,7 @@ inline Range direction() { return {-1e6, 1e6, ""}; }
 inline Range youngModulus() { return {1e-3, 1e13, "Pa"}; }
 inline Range springStiffness() { return {1e-6, 1e12, "N/m"}; }
 inline Range poissonRatio() { return {0.25, 0.49, ""}; }
+inline Range stiffening() { return {0.0, 1e3, ""}; }  // 0: neo-Hookean
 inline Range density() { return {1e-3, 1e6, "kg/m^3"}; }
 inline Range gravity() { return {-1e4, 1e4, "m/s^2"}; }
 inline Range friction() { return {0.0, 1e3, ""}; }

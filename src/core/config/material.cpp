@@ -20,7 +20,8 @@ const Material& materialAt(const TissueConfig& config, const Vec3& point) {
 }
 
 Moduli moduliOf(const Material& material) {
-  return {shearModulus(material), bulkModulus(material)};
+  const bool stiffens = material.law == Material::Law::kFung;
+  return {shearModulus(material), bulkModulus(material), stiffens ? material.stiffening : 0.0};
 }
 
 double poissonRatio(const Moduli& moduli) {

@@ -12,8 +12,9 @@ const Material& materialAt(const TissueConfig& config, const Vec3& point);
 
 // Of an isotropic material.
 struct Moduli {
-  double shear = 0.0;  // Pa
-  double bulk = 0.0;   // Pa
+  double shear = 0.0;       // Pa, at small strain
+  double bulk = 0.0;        // Pa
+  double stiffening = 0.0;  // b of Material::stiffening
 };
 
 Moduli moduliOf(const Material& material);

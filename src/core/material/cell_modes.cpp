@@ -46,6 +46,8 @@ void CellModes::add(const Moduli& moduli, const std::array<int, kCorners>& nodes
   }
   shear_[cell] = moduli.shear;
   bulk_[cell] = moduli.bulk;
+  exponent_[cell] = moduli.stiffening;
+  stiffens_ = stiffens_ || moduli.stiffening > 0.0;
   for (int axis = 0; axis < 3; ++axis) side_[axis][cell] = (corner >> axis & 1) != 0 ? 1.0 : -1.0;
 }
 
@@ -55,7 +57,7 @@ void CellModes::solve() {
       for (int axis = 0; axis < 3; ++axis) mode[axis][cell] = 0.0;
     }
     for (int axis = 0; axis < 3; ++axis) side_[axis][cell] = 1.0;
-    shear_[cell] = bulk_[cell] = 0.0;
+    shear_[cell] = bulk_[cell] = exponent_[cell] = 0.0;
   }
   transform();
   const double scale = 0.25 / spacing_;
@@ -73,6 +75,7 @@ void CellModes::solve() {
     volume_[cell] = 1.0;
   }
   stiffen();
+  if (stiffens_) stiffenByStrain();
   look();
 }
 
@@ -142,6 +145,24 @@ void CellModes::stiffen() {
   }
 }
 
+// As ElasticCell::findLaw, with w(J) = n / mu.
+void CellModes::stiffenByStrain() {
+  for (int cell = 0; cell < kMost; ++cell) {
+    const double root = inverseCubeRoot(volume_[cell]);
+    const double w = root * root, inverse = root * root * root;
+    const double by_volume = -2.0 / 3.0 * w * inverse * invariant_[cell];
+    const elastic_law::Stiffening g =
+        elastic_law::stiffeningAt(exponent_[cell], w * invariant_[cell] - 3.0);
+    const double steep = shear_[cell] * g.curvature, press = bulk_[cell] * (volume_[cell] - 1.0);
+    a_[cell] *= g.slope;
+    slope_[cell] = g.slope * slope_[cell] + steep * w * by_volume;
+    pressure_[cell] = g.slope * (pressure_[cell] - press) + press;
+    curvature_[cell] = g.slope * (curvature_[cell] - bulk_[cell]) +
+                       0.5 * steep * by_volume * by_volume + bulk_[cell];
+    steepness_[cell] = 2.0 * steep * w * w;
+  }
+}
+
 // The edge at a corner along an axis is the mean edge plus the modes that change sign along it.
 bool CellModes::hasSqueezedCorner(int cell) const {
   const auto mode = [&](int s) -> Vec3 {
@@ -187,7 +208,8 @@ Vec3 CellModes::gradient() const {
   return gradient;
 }
 
-// d2E/dx2 = h/16 [16/3 a + a' (l c^T + c l^T) + p' c c^T]; ' is the derivative by J.
+// d2E/dx2 = h/16 [16/3 a + a' (l c^T + c l^T) + p' c c^T + s l l^T]; ' is the derivative by J, s
+// the steepness.
 Eigen::Matrix3d CellModes::block() const {
   Lanes half[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -201,6 +223,9 @@ Eigen::Matrix3d CellModes::block() const {
       Lanes part;
       for (int cell = 0; cell < kMost; ++cell) {
         part[cell] = half[i][cell] * c_[j][cell] + c_[i][cell] * half[j][cell];
+      }
+      for (int cell = 0; stiffens_ && cell < kMost; ++cell) {
+        part[cell] += steepness_[cell] * l_[i][cell] * l_[j][cell];
       }
       block(i, j) = block(j, i) = spacing_ / 16.0 * sumOf(part);
     }

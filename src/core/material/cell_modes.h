@@ -54,6 +54,7 @@ class CellModes {
   void transform();
   void measure();
   void stiffen();
+  void stiffenByStrain();
   void look();
   bool hasSqueezedCorner(int cell) const;
 
@@ -62,12 +63,15 @@ class CellModes {
   Lanes mode_[kCorners][3];  // x_k, then M_s / 4h
   Lanes cofactor_[3][3];     // of F by columns M_a / 4h, then by axes
   Lanes shear_, bulk_;       // Pa
+  Lanes exponent_;           // Moduli::stiffening
+  bool stiffens_ = false;    // it is not 0 in one
   Lanes side_[3];            // at rest M_a / 4h is this along a
   Lanes hand_;               // product of the sides: the sign of det M_a at rest
   Lanes slight_;             // bound of |G - 1|^2 / 2 of all corners, see kSlight
   Lanes invariant_;          // I1
   Lanes volume_;             // J
-  Lanes a_, slope_;          // a(J) and its derivative (Pa)
+  Lanes a_, slope_;          // a and its derivative by J (Pa); see ElasticCell
+  Lanes steepness_;          // four times the second derivative of the energy's density by I1 (Pa)
   Lanes pressure_;           // derivative of the energy's density by J (Pa)
   Lanes curvature_;          // derivative of pressure_ by J (Pa)
   Lanes l_[3], c_[3];        // (1/2) dI1/dx and dJ/dx, times 4h, where the cell is seen from

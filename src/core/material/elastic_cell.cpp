@@ -58,8 +58,7 @@ ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& di
     }
     invariant_slope_[at(corner)] = share * pull;
   }
-  stiffening_ = stiffening();
-  volume_term_ = volumeTerm();
+  findLaw();
   findSqueezedCorners();
 }
 
@@ -95,7 +94,8 @@ void ElasticCell::findSqueezedCorners() {
   }
 }
 
-ElasticCell::Curve ElasticCell::stiffening() const {
+// mu J^(-2/3).
+ElasticCell::Curve ElasticCell::neoHookean() const {
   const double from = std::max(mean_.value, elastic_law::kFlattest);
   Curve curve;
   curve.value = moduli_.shear * std::pow(from, -2.0 / 3.0);
@@ -107,14 +107,29 @@ ElasticCell::Curve ElasticCell::stiffening() const {
   return curve;
 }
 
-ElasticCell::Curve ElasticCell::volumeTerm() const {
-  const Curve& a = stiffening_;
+// With n(J) the neo-Hookean a and x = n I1 / mu - 3: a = g' n; derivatives by J are g' times those
+// of n, and g'' times products of x's slopes.
+void ElasticCell::findLaw() {
+  const Curve n = neoHookean();
   const double change = mean_.value - 1.0;
-  Curve curve;
-  curve.value = 0.5 * (a.value * invariant_ - 3.0 * moduli_.shear + moduli_.bulk * change * change);
-  curve.slope = 0.5 * a.slope * invariant_ + moduli_.bulk * change;
-  curve.curvature = 0.5 * a.curvature * invariant_ + moduli_.bulk;
-  return curve;
+  a_ = n.value;
+  cross_slope_ = n.slope;
+  volume_term_.value =
+      0.5 * (n.value * invariant_ - 3.0 * moduli_.shear + moduli_.bulk * change * change);
+  volume_term_.slope = 0.5 * n.slope * invariant_ + moduli_.bulk * change;
+  volume_term_.curvature = 0.5 * n.curvature * invariant_ + moduli_.bulk;
+  if (!(moduli_.stiffening > 0.0)) return;
+  const double x = n.value / moduli_.shear * invariant_ - 3.0;
+  const elastic_law::Stiffening g = elastic_law::stiffeningAt(moduli_.stiffening, x);
+  const double by_volume = n.slope * invariant_;
+  a_ = g.slope * n.value;
+  cross_slope_ = g.slope * n.slope + g.curvature / moduli_.shear * n.value * by_volume;
+  steepness_ = 2.0 * g.curvature / moduli_.shear * n.value * n.value;
+  volume_term_.value = 0.5 * (moduli_.shear * g.value + moduli_.bulk * change * change);
+  volume_term_.slope = 0.5 * g.slope * by_volume + moduli_.bulk * change;
+  volume_term_.curvature = 0.5 * (g.slope * n.curvature * invariant_ +
+                                  g.curvature / moduli_.shear * by_volume * by_volume) +
+                           moduli_.bulk;
 }
 
 ElasticCell::Curve ElasticCell::barrier(const Determinant& edges) const {
@@ -136,7 +151,7 @@ double ElasticCell::energy() const {
 
 Vec3 ElasticCell::gradient(int corner) const {
   const std::size_t c = at(corner);
-  Vec3 density = stiffening_.value * invariant_slope_[c] + volume_term_.slope * mean_.slope[c];
+  Vec3 density = a_ * invariant_slope_[c] + volume_term_.slope * mean_.slope[c];
   for (int i = 0; i < squeezed_count_; ++i) {
     density += barrier(squeezed_[at(i)]).slope * squeezed_[at(i)].slope[c];
   }
@@ -145,17 +160,22 @@ Vec3 ElasticCell::gradient(int corner) const {
 
 Eigen::Matrix3d ElasticCell::block(int corner) const {
   const std::size_t c = at(corner);
-  const Curve& a = stiffening_;
   const Vec3& l = invariant_slope_[c];
   const Vec3& j = mean_.slope[c];
-  Eigen::Matrix3d density = a.slope * (l * j.transpose() + j * l.transpose());
+  Eigen::Matrix3d density = cross_slope_ * (l * j.transpose() + j * l.transpose());
   density += volume_term_.curvature * j * j.transpose();
-  density.diagonal().array() += a.value / (3.0 * spacing_ * spacing_);
+  density.diagonal().array() += a_ / (3.0 * spacing_ * spacing_);
+  if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   for (int i = 0; i < squeezed_count_; ++i) {
     const Vec3& slope = squeezed_[at(i)].slope[c];
     density += barrier(squeezed_[at(i)]).curvature * slope * slope.transpose();
   }
   return volume_ * density;
+}
+
+double shapeStrain(double spacing, const ElasticCell::Corners& displacement) {
+  const Moduli unit{1.0, 0.0, 0.0};
+  return 2.0 * ElasticCell(unit, spacing, displacement).shapeEnergyDensity();
 }
 
 CellHessian ElasticCell::hessian() const {
@@ -173,12 +193,12 @@ CellHessian ElasticCell::hessian() const {
       }
     }
   };
-  const Curve& a = stiffening_;
   add(volume_term_, mean_);
   const Eigen::Map<const Column> l(invariant_slope_.front().data());
   const Eigen::Map<const Column> j(mean_.slope.front().data());
-  density += a.slope * (l * j.transpose() + j * l.transpose());
-  const double share = a.value / (12.0 * spacing_ * spacing_);
+  density += cross_slope_ * (l * j.transpose() + j * l.transpose());
+  if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
+  const double share = a_ / (12.0 * spacing_ * spacing_);
   for (int corner = 0; corner < kCorners; ++corner) {
     density.block<3, 3>(3 * corner, 3 * corner).diagonal().array() += 4.0 * share;
     for (const int other : acrossDiagonals(corner)) {

@@ -3,6 +3,8 @@
 //
 //   E = h^3 [a(J) I1 / 2 - 3 mu / 2 + K / 2 (J - 1)^2] + barrier,   a(J) = mu J^(-2/3)
 //
+// With the law `fung` h^3 [mu / 2 g(a(J) I1 / mu - 3) + K / 2 (J - 1)^2] (elastic_law.h).
+//
 // I1 is the mean of tr F^T F over the trilinear cell, J the determinant of the mean deformation
 // gradient. The barrier rises where the edges at a corner span less than 0.3 of their rest volume.
 #pragma once
@@ -25,8 +27,9 @@ class ElasticCell {
   // Displacements of the corners from rest (m).
   ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement);
 
-  double energy() const;                    // J, zero at rest
-  Vec3 gradient(int corner) const;          // of the energy (N)
+  double energy() const;                                            // J, zero at rest
+  double shapeEnergyDensity() const { return volume_term_.value; }  // Pa, without the barrier
+  Vec3 gradient(int corner) const;                                  // of the energy (N)
   Eigen::Matrix3d block(int corner) const;  // second derivative in one corner alone (N/m)
   CellHessian hessian() const;
 
@@ -47,8 +50,8 @@ class ElasticCell {
 
   Determinant determinantOf(const Corners& weight) const;
   void findSqueezedCorners();
-  Curve stiffening() const;
-  Curve volumeTerm() const;
+  Curve neoHookean() const;
+  void findLaw();
   Curve barrier(const Determinant& edges) const;  // Pa
 
   Moduli moduli_;
@@ -60,8 +63,15 @@ class ElasticCell {
   int squeezed_count_ = 0;
   double invariant_ = 3.0;   // I1
   Corners invariant_slope_;  // (1/2) dI1/dx (1/m)
-  Curve stiffening_;         // a(J), Pa
-  Curve volume_term_;        // E / h^3 without the barrier, as a function of J at constant I1, Pa
+  // E / h^3 without the barrier is a function of J and I1, all Pa: a is twice its derivative by I1,
+  // cross_slope_ that of a by J, steepness_ four times the second derivative by I1.
+  double a_ = 0.0;
+  double cross_slope_ = 0.0;
+  double steepness_ = 0.0;
+  Curve volume_term_;  // as a function of J at constant I1
 };
+
+// x of elastic_law.h, J^(-2/3) I1 - 3, of a cell.
+double shapeStrain(double spacing, const ElasticCell::Corners& displacement);
 
 }  // namespace robot_tissue

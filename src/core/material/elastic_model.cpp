@@ -5,8 +5,21 @@
 
 #include "config/material.h"
 #include "material/cell_modes.h"
+#include "material/elastic_law.h"
 
 namespace robot_tissue {
+
+namespace {
+
+ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
+  ElasticCell::Corners displacement;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
+  }
+  return displacement;
+}
+
+}  // namespace
 
 ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
     : lattice_(lattice), moves_in_time_(config.time.has_value()) {
@@ -27,7 +40,7 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
 // A cell that is filled in part answers in part.
 Moduli ElasticModel::cellModuli(const Cell& cell) const {
   const Moduli& full = substanceOf(cell).moduli;
-  return {cell.share() * full.shear, cell.share() * full.bulk};
+  return {cell.share() * full.shear, cell.share() * full.bulk, full.stiffening};
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
@@ -46,10 +59,25 @@ std::vector<double> ElasticModel::nodeMasses(const CellSet& cells) const {
   return masses;
 }
 
+int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
+  const bool stiffens =
+      std::any_of(substances_.begin(), substances_.end(),
+                  [](const Substance& substance) { return substance.moduli.stiffening > 0.0; });
+  if (!stiffens) return 0;
+  const auto is_beyond = [&](const Cell& cell) {
+    const double b = substanceOf(cell).moduli.stiffening;
+    return b > 0.0 &&
+           b * shapeStrain(lattice_.spacing(), cornersOf(state, cell)) > elastic_law::kMostExponent;
+  };
+  const std::vector<Cell>& cells = state.cells->all();
+  return static_cast<int>(std::count_if(cells.begin(), cells.end(), is_beyond));
+}
+
 Moduli ElasticModel::stepModuli(const Cell& cell) const {
   const Moduli moduli = cellModuli(cell);
   if (inertia_ == nullptr) return moduli;
-  return {inertia_->elastic_scale * moduli.shear, inertia_->elastic_scale * moduli.bulk};
+  return {inertia_->elastic_scale * moduli.shear, inertia_->elastic_scale * moduli.bulk,
+          moduli.stiffening};
 }
 
 double ElasticModel::cornerInertia(const Cell& cell) const {
@@ -72,11 +100,7 @@ Vec3 ElasticModel::inertialForce(int node) const {
 }
 
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
-  ElasticCell::Corners displacement;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
-  }
-  return {stepModuli(cell), lattice_.spacing(), displacement};
+  return {stepModuli(cell), lattice_.spacing(), cornersOf(state, cell)};
 }
 
 Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
@@ -166,11 +190,7 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
 std::vector<Vec3> ElasticModel::cellForces(const LatticeState& state) const {
   std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
   for (const Cell& cell : state.cells->all()) {
-    ElasticCell::Corners displacement;
-    for (int corner = 0; corner < kCorners; ++corner) {
-      displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
-    }
-    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), displacement);
+    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell));
     for (int corner = 0; corner < kCorners; ++corner) {
       forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
     }

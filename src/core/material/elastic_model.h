@@ -34,6 +34,7 @@ class ElasticModel : public EnergyModel {
   CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
   double inertialForceNorm(const LatticeState& state) const override;
+  int cellsBeyondLaw(const LatticeState& state) const override;
   void setInertia(const InertialTerm* inertia) override { inertia_ = inertia; }
 
   // Second derivative of the energy in this node alone (N/m).

@@ -35,6 +35,9 @@ class TissueModel {
   // where it meets four full ones. Zero where the model has none.
   virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }
 
+  // Cells so strained that the law goes on otherwise there than it is told to (elastic_law.h).
+  virtual int cellsBeyondLaw(const LatticeState&) const { return 0; }
+
   // Energy and forces are those of a time step from now on; null: of the shape alone. The term must
   // live so long.
   virtual void setInertia(const InertialTerm*) {}

@@ -117,8 +117,8 @@ struct MethodEntry {
 
 const std::vector<ModelEntry>& models() {
   static const std::vector<ModelEntry> all = {
-      {"elastic", makeElastic, {true, false, false}},
-      {"six_spring", makeSixSpring, {false, true, true}},
+      {"elastic", makeElastic, {true, false, false, true}},
+      {"six_spring", makeSixSpring, {false, true, true, false}},
   };
   return all;
 }

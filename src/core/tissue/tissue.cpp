@@ -166,6 +166,8 @@ void Tissue::reset() {
 
 bool Tissue::resistsInversion() const { return model_->resistsInversion(); }
 
+int Tissue::cellsBeyondLaw() const { return model_->cellsBeyondLaw(state_); }
+
 Vec3 Tissue::nodePosition(int node) const {
   return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
 }

@@ -22,6 +22,7 @@ void add(const Material& material, ByteWriter& out) {
   out.f64(material.poisson_ratio);
   out.f64(material.density);
   out.f64(material.spring_stiffness.value_or(-1.0));
+  if (material.law == Material::Law::kFung) out.f64(material.stiffening);
 }
 
 void add(const Region& region, ByteWriter& out) {

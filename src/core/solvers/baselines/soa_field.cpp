@@ -32,6 +32,7 @@ SoaField::SoaField(const Lattice& lattice, const ElasticModel& model)
   for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
     modulus_ = std::max({modulus_, moduli.shear, moduli.bulk});
+    stiffens_ = stiffens_ || moduli.stiffening > 0.0;
   }
   force_unit_ = modulus_ * lattice.spacing() * lattice.spacing() / 4.0;
 }
@@ -61,12 +62,13 @@ void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_h
 void SoaField::allocate() {
   constexpr int kPage = static_cast<int>(kAlignment / sizeof(float));
   const int pitch = (size_ + kPage - 1) / kPage * kPage + kApart * kLanes;
-  const std::size_t bytes = sizeof(float) * at(pitch) * at(kArrays);
+  const std::size_t floats = at(pitch) * at(kArrays + (stiffens_ ? 1 : 0));
+  const std::size_t bytes = sizeof(float) * floats;
   buffer_.reset(static_cast<float*>(
       std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment)));
   if (buffer_ == nullptr) throw std::bad_alloc();
   float* next = buffer_.get();
-  std::fill(next, next + at(pitch) * at(kArrays), 0.0F);
+  std::fill(next, next + floats, 0.0F);
   const auto take_array = [&](float*& array) {
     array = next;
     next += pitch;
@@ -78,6 +80,7 @@ void SoaField::allocate() {
   for (Arrays& arrays : spare_) {
     for (float*& array : arrays) take_array(array);
   }
+  if (stiffens_) take_array(stiffening_);
 }
 
 void SoaField::layOut(const ConstrainedState& shape) {
@@ -213,6 +216,7 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
     const Moduli moduli = model_.cellModuli(cell);
     shear_[slot] = static_cast<float>(moduli.shear / modulus_);
     bulk_[slot] = static_cast<float>(moduli.bulk / modulus_);
+    if (stiffens_) stiffening_[slot] = static_cast<float>(moduli.stiffening);
     has_cell[at(slot)] = 1;
     const Vec3 weight = model_.cornerWeight(cell);
     for (const int node : cell.nodes) scratch_[at(node)] += weight;
@@ -289,6 +293,7 @@ SoaArrays SoaField::lanes(const Arrays& free) const {
   }
   lanes.shear = shear_;
   lanes.bulk = bulk_;
+  lanes.stiffening = stiffening_;
   return lanes;
 }
 

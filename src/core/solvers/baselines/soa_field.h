@@ -99,6 +99,8 @@ class SoaField {
   std::array<Arrays, kSpares> spare_{};
   float* shear_ = nullptr;
   float* bulk_ = nullptr;
+  float* stiffening_ = nullptr;  // null: 0 in all
+  bool stiffens_ = false;
   float* compliance_ = nullptr;
   float* tightest_ = nullptr;
   std::vector<int> lane_cells_;

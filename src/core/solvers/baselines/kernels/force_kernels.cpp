@@ -7,6 +7,7 @@ namespace robot_tissue {
 namespace {
 
 // As CellModes sees a cell from its lowest corner: side_ and hand_ are -1.
+template <bool kStiffens>
 ROBOT_TISSUE_INLINE void pullCorners(const SoaArrays& lanes, const ColoredLayout::Around& above,
                                      int block, Lane pull[3][kCorners]) {
   const float* const x = lanes.moved[0] + block;
@@ -18,6 +19,8 @@ ROBOT_TISSUE_INLINE void pullCorners(const SoaArrays& lanes, const ColoredLayout
   for (int corner = 0; corner < kCorners; ++corner) k[corner] = above.corner[corner];
   for (int i = 0; i < kLanes; ++i) {
     Modes mx = cellModes(x, k, i), my = cellModes(y, k, i), mz = cellModes(z, k, i);
+    Strain strain{};
+    if constexpr (kStiffens) strain = strainOf(mx, my, mz, above.side);
     mx.x -= 1.0F;
     my.y -= 1.0F;
     mz.z -= 1.0F;
@@ -30,7 +33,14 @@ ROBOT_TISSUE_INLINE void pullCorners(const SoaArrays& lanes, const ColoredLayout
     const float zx = my.x * mz.y - mz.x * my.y, zy = mz.x * mx.y - mx.x * mz.y;
     const float zz = mx.x * my.y - my.x * mx.y;
     const float volume = -(mx.x * xx + my.x * xy + mz.x * xz);
-    const Stiffening s = stiffeningOf(shears[i], volume);
+    Stiffening s = stiffeningOf(shears[i], volume);
+    if constexpr (kStiffens) {
+      const float w = stiffeningOf(1.0F, volume).a;
+      const float by =
+          strainStiffeningOf(lanes.stiffening[block + i], shapeStrainOf(strain, w)).slope;
+      s.a *= by;
+      s.slope *= by;
+    }
     const float p = -(0.5F * s.slope * invariant + bulks[i] * (volume - 1.0F));
     spread(gradientModes(mx, s.a, p * xx, p * yx, p * zx), pull[0], i);
     spread(gradientModes(my, s.a, p * xy, p * yy, p * zy), pull[1], i);
@@ -102,7 +112,11 @@ ROBOT_TISSUE_CLONES
 void addForcesOfBlock(const SoaArrays& lanes, const ColoredLayout::Around& above, int block,
                       bool squeezed, float* const force[3]) {
   Lane pull[3][kCorners];
-  pullCorners(lanes, above, block, pull);
+  if (lanes.stiffening == nullptr) {
+    pullCorners<false>(lanes, above, block, pull);
+  } else {
+    pullCorners<true>(lanes, above, block, pull);
+  }
   if (squeezed) {
     for (int corner = 0; corner < kCorners; ++corner) {
       addBarrierPull(lanes, above, block, corner, pull);

@@ -16,8 +16,9 @@ struct SoaArrays {
   float* moved[3];     // displacement
   const float* shear;  // of the cell whose lowest corner is at the slot; 0 = none
   const float* bulk;
-  const float* load[3];  // constant force
-  const float* free[3];  // 1 where the component moves, 0 where it is held
+  const float* stiffening;  // likewise, of the law `fung`; null: neo-Hookean
+  const float* load[3];     // constant force
+  const float* free[3];     // 1 where the component moves, 0 where it is held
 };
 
 // Symmetric, of springs from a node to where it is held: xx, yy, zz, xy, xz, yz.

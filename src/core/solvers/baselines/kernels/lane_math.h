@@ -71,9 +71,75 @@ ROBOT_TISSUE_INLINE Stiffening stiffeningOf(float shear, float volume) {
   return {a + beyond * (slope + 0.5F * beyond * curvature), slope + beyond * curvature, curvature};
 }
 
+// exp(x) - 1, 0 <= x <= 80: with n the whole number next to x / ln 2 and r = x - n ln 2, from
+// Taylor's polynomial in r. Adding 1.5 * 2^23 rounds to n and leaves it in the lowest bits.
+ROBOT_TISSUE_INLINE float growthOf(float x) {
+  constexpr float kRounder = 12582912.0F;
+  const float rounded = x * 1.442695041F + kRounder;
+  const float n = rounded - kRounder;
+  const float r = (x - n * 0.693145751953125F) - n * 1.42860677e-6F;
+  float rest = 1.0F / 7.0F;
+  rest = (1.0F + r * rest) / 6.0F;
+  rest = (1.0F + r * rest) / 5.0F;
+  rest = (1.0F + r * rest) / 4.0F;
+  rest = (1.0F + r * rest) / 3.0F;
+  rest = (1.0F + r * rest) / 2.0F;
+  rest = r * (1.0F + r * rest);
+  std::int32_t bits;
+  std::memcpy(&bits, &rounded, sizeof bits);
+  bits = static_cast<std::int32_t>((static_cast<std::uint32_t>(bits) << 23U) + 0x3f800000U);
+  float power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power * rest + (power - 1.0F);
+}
+
+// The law `fung` (elastic_law.h): x, and g, g' and g'' there.
+struct StrainStiffening {
+  float value, slope, curvature;
+};
+
+ROBOT_TISSUE_INLINE StrainStiffening strainStiffeningOf(float b, float x) {
+  constexpr float kMost = static_cast<float>(elastic_law::kMostExponent);
+  const float whole = x > 0.0F ? b * x : 0.0F;
+  const float exponent = whole < kMost ? whole : kMost;
+  const float beyond = whole - exponent;
+  const float growth = growthOf(exponent), slope = 1.0F + growth;
+  const float value = (growth + slope * beyond * (1.0F + 0.5F * beyond)) / (b > 0.0F ? b : 1.0F);
+  const bool straight = !(x > 0.0F && b > 0.0F);
+  return {straight ? x : value, slope * (1.0F + beyond), straight ? 0.0F : b * slope};
+}
+
 ROBOT_TISSUE_INLINE float invariantOf(const Modes& x, const Modes& y, const Modes& z) {
   return x.x * x.x + x.y * x.y + x.z * x.z + y.x * y.x + y.y * y.y + y.z * y.z + z.x * z.x +
          z.y * z.y + z.z * z.z + bendingOf(x) + bendingOf(y) + bendingOf(z);
+}
+
+// J - 1 and I1 - 3 from the displacement's modes, so that small ones are not rounded off; `side`
+// as in ColoredLayout::Around.
+struct Strain {
+  float growth, excess;
+};
+
+ROBOT_TISSUE_INLINE Strain strainOf(const Modes& mx, const Modes& my, const Modes& mz,
+                                    const float side[3]) {
+  const float xx = side[0] * mx.x, yx = side[0] * my.x, zx = side[0] * mz.x;
+  const float xy = side[1] * mx.y, yy = side[1] * my.y, zy = side[1] * mz.y;
+  const float xz = side[2] * mx.z, yz = side[2] * my.z, zz = side[2] * mz.z;
+  const float trace = xx + yy + zz;
+  const float minors = xx * yy - xy * yx + yy * zz - yz * zy + xx * zz - xz * zx;
+  const float cube = xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx);
+  return {trace + minors + cube, 2.0F * trace + invariantOf(mx, my, mz)};
+}
+
+// x of elastic_law.h, w I1 - 3 with w = J^(-2/3): w (I1 - 3 - 3 (J^(2/3) - 1)).
+ROBOT_TISSUE_INLINE float shapeStrainOf(const Strain& strain, float w) {
+  const float volume = 1.0F + strain.growth;
+  const float from = volume > kFlattest ? volume : kFlattest;
+  const float root = inverseCubeRoot(from);
+  const float r = from * root;
+  const float lean =
+      root * root * (strain.excess - 3.0F * strain.growth * (1.0F + volume) / (r * r + r + 1.0F));
+  return volume > kFlattest ? lean : w * (3.0F + strain.excess) - 3.0F;
 }
 
 struct Vector {

@@ -160,6 +160,42 @@ ROBOT_TISSUE_INLINE void addBarrier(const SoaArrays& lanes, const ColoredLayout:
   }
 }
 
+// From the neo-Hookean law, which `stiffen` leaves, to `fung`: as ElasticCell::findLaw. What g''
+// adds to the block, mu/2 g'' n n^T with n = 2 w l + w' I1 c the slope of x, is among the extras.
+ROBOT_TISSUE_INLINE void stiffenByStrain(const SoaArrays& lanes,
+                                         const ColoredLayout::Around& around, int block, int cell,
+                                         NodeCells& cells, NodeExtras& extras) {
+  const float* const x = lanes.moved[0] + block;
+  const float* const y = lanes.moved[1] + block;
+  const float* const z = lanes.moved[2] + block;
+  const float* const shear = lanes.shear + block + around.cell;
+  const float* const bulk = lanes.bulk + block + around.cell;
+  const float* const stiffening = lanes.stiffening + block + around.cell;
+  int k[kCorners];
+  for (int corner = 0; corner < kCorners; ++corner) k[corner] = around.corner[corner];
+  for (int i = 0; i < kLanes; ++i) {
+    const Strain strain =
+        strainOf(cellModes(x, k, i), cellModes(y, k, i), cellModes(z, k, i), around.side);
+    const Stiffening w = stiffeningOf(1.0F, 1.0F + strain.growth);
+    const StrainStiffening g = strainStiffeningOf(stiffening[i], shapeStrainOf(strain, w.a));
+    const float invariant = 3.0F + strain.excess, by_volume = w.slope * invariant;
+    cells.a[cell][i] *= g.slope;
+    cells.slope[cell][i] *= g.slope;
+    cells.pressure[cell][i] = 0.5F * g.slope * shear[i] * by_volume + bulk[i] * strain.growth;
+    cells.half[cell][i] = 0.25F * g.slope * shear[i] * w.curvature * invariant + 0.5F * bulk[i];
+    const float steep = 0.5F * shear[i] * g.curvature;
+    const float nx = 2.0F * w.a * cells.l[cell][0][i] + by_volume * cells.c[cell][0][i];
+    const float ny = 2.0F * w.a * cells.l[cell][1][i] + by_volume * cells.c[cell][1][i];
+    const float nz = 2.0F * w.a * cells.l[cell][2][i] + by_volume * cells.c[cell][2][i];
+    extras.block[0][i] += steep * nx * nx;
+    extras.block[1][i] += steep * ny * ny;
+    extras.block[2][i] += steep * nz * nz;
+    extras.block[3][i] += steep * nx * ny;
+    extras.block[4][i] += steep * nx * nz;
+    extras.block[5][i] += steep * ny * nz;
+  }
+}
+
 ROBOT_TISSUE_INLINE NodeSums add(NodeSums sums, const NodeCells& cells, int cell, int i) {
   const float lx = cells.l[cell][0][i], ly = cells.l[cell][1][i], lz = cells.l[cell][2][i];
   const float jx = cells.c[cell][0][i], jy = cells.c[cell][1][i], jz = cells.c[cell][2][i];
@@ -220,6 +256,10 @@ ROBOT_TISSUE_INLINE void lookAround(const SoaArrays& lanes,
   }
   for (int cell = 0; cell < kCorners; ++cell) measure(lanes, around[at(cell)], block, cell, cells);
   for (int cell = 0; cell < kCorners; ++cell) stiffen(lanes, around[at(cell)], block, cell, cells);
+  if (lanes.stiffening == nullptr) return;
+  for (int cell = 0; cell < kCorners; ++cell) {
+    stiffenByStrain(lanes, around[at(cell)], block, cell, cells, extras);
+  }
 }
 
 ROBOT_TISSUE_INLINE NodeSums sumsOf(const SoaArrays& lanes, const NodeExtras& extras,

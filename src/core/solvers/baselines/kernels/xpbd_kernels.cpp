@@ -19,6 +19,7 @@ struct CellConstraints {
   Lane volume_pull[3][kCorners];
 };
 
+template <bool kStiffens>
 ROBOT_TISSUE_INLINE void measure(const SoaArrays& lanes, const ColoredLayout::Around& above,
                                  int block, CellConstraints& cells) {
   const float* const x = lanes.moved[0] + block;
@@ -42,13 +43,20 @@ ROBOT_TISSUE_INLINE void measure(const SoaArrays& lanes, const ColoredLayout::Ar
     my.y -= 1.0F;
     mz.z -= 1.0F;
     const float volume = 1.0F + growth, invariant = 3.0F + excess;
-    const Stiffening s = stiffeningOf(shears[i], volume);
+    Stiffening s = stiffeningOf(shears[i], volume);
     const float from = volume > kFlattest ? volume : kFlattest;
     const float root = inverseCubeRoot(from);
     const float r = from * root;  // J^(2/3)
     const float lean =
         shears[i] * root * root * (excess - 3.0F * growth * (2.0F + growth) / (r * r + r + 1.0F));
-    const float energy = volume > kFlattest ? lean : s.a * invariant - 3.0F * shears[i];
+    float energy = volume > kFlattest ? lean : s.a * invariant - 3.0F * shears[i];
+    if constexpr (kStiffens) {
+      const float strain = shapeStrainOf({growth, excess}, stiffeningOf(1.0F, volume).a);
+      const StrainStiffening g = strainStiffeningOf(lanes.stiffening[block + i], strain);
+      energy = shears[i] * g.value;
+      s.a *= g.slope;
+      s.slope *= g.slope;
+    }
     cells.energy[i] = energy > 0.0F ? energy : 0.0F;
     const float firm = std::sqrt(bulks[i]);
     cells.volume[i] = firm * growth;
@@ -98,7 +106,11 @@ void projectBlock(const SoaArrays& lanes, const float* const mobility[3],
                   const ColoredLayout::Around& above, int block, bool squeezed) {
   CellConstraints cells;
   Answers answers;
-  measure(lanes, above, block, cells);
+  if (lanes.stiffening == nullptr) {
+    measure<false>(lanes, above, block, cells);
+  } else {
+    measure<true>(lanes, above, block, cells);
+  }
   if (squeezed) {
     for (int corner = 0; corner < kCorners; ++corner) {
       addBarrierPull(lanes, above, block, corner, cells.shape_pull);

@@ -205,6 +205,7 @@ std::vector<LevelCell> CompositeGrid<Real>::finestCells(const ElasticModel& mode
     const Moduli moduli = model.cellModuli(cell);
     level_cell.shear = moduli.shear / modulus_;
     level_cell.bulk = moduli.bulk / modulus_;
+    level_cell.stiffening = moduli.stiffening;
     for (int corner = 0; corner < kCorners; ++corner) {
       level_cell.nodes[at(corner)] = entryOf(cell.nodes[at(corner)]);
     }

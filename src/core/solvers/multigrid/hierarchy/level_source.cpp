@@ -25,13 +25,14 @@ std::array<int, 3> cellsOf(const LevelSource& source) {
 }
 
 void lessen(LevelSource& source) {
-  for (std::vector<double>* moduli : {&source.shear, &source.bulk}) {
+  for (std::vector<double>* moduli : {&source.shear, &source.bulk, &source.stiffening}) {
     for (const double modulus : *moduli) {
       if (modulus != moduli->front()) return;
     }
   }
   source.shear = {source.shear.front()};
   source.bulk = {source.bulk.front()};
+  source.stiffening = {source.stiffening.front()};
 }
 
 // Cells with the mean of the moduli of eight each; those beyond the block's end count as 0.
@@ -42,8 +43,9 @@ LevelSource coarser(LevelSource& fine) {
   const std::size_t count = at(cells[0] * cells[1] * cells[2]);
   coarse.shear.resize(count);
   coarse.bulk.resize(count);
+  coarse.stiffening.resize(count);
   forAll(cells, [&](int i, int j, int k) {
-    double shear = 0.0, bulk = 0.0;
+    double shear = 0.0, bulk = 0.0, stiffening = 0.0;
     bool differ = false;
     const std::size_t first = fine.cellAt(2 * i, 2 * j, 2 * k);
     for (int part = 0; part < kCorners; ++part) {
@@ -52,11 +54,14 @@ LevelSource coarser(LevelSource& fine) {
       const std::size_t cell = fine.cellAt(x, y, z);
       shear += fine.shear[cell];
       bulk += fine.bulk[cell];
-      differ =
-          differ || fine.shear[cell] != fine.shear[first] || fine.bulk[cell] != fine.bulk[first];
+      stiffening += fine.shear[cell] * fine.stiffening[cell];
+      differ = differ || fine.shear[cell] != fine.shear[first] ||
+               fine.bulk[cell] != fine.bulk[first] ||
+               fine.stiffening[cell] != fine.stiffening[first];
     }
     coarse.shear[coarse.cellAt(i, j, k)] = shear / kCorners;
     coarse.bulk[coarse.cellAt(i, j, k)] = bulk / kCorners;
+    coarse.stiffening[coarse.cellAt(i, j, k)] = stiffening > 0.0 ? stiffening / shear : 0.0;
     if (differ) {
       fine.rough = joined(fine.rough, {{2 * i, 2 * j, 2 * k}, {2 * i + 2, 2 * j + 2, 2 * k + 2}});
     }
@@ -122,6 +127,7 @@ std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGr
     const std::size_t here = cellAt(points.low[0] + i, points.low[1] + j, points.low[2] + k);
     cell.shear = shear[here];
     cell.bulk = bulk[here];
+    cell.stiffening = stiffening[here];
     for (int corner = 0; corner < kCorners; ++corner) {
       cell.nodes[at(corner)] =
           grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
@@ -141,6 +147,7 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
     const Moduli moduli = model.cellModuli(cell);
     sources.front().shear.push_back(moduli.shear / modulus);
     sources.front().bulk.push_back(moduli.bulk / modulus);
+    sources.front().stiffening.push_back(moduli.stiffening);
   }
   lessen(sources.front());
   Held held;

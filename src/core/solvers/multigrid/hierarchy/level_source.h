@@ -16,6 +16,7 @@ struct LevelSource {
   // Per cell, x fastest (E0); one value where all are alike.
   std::vector<double> shear;
   std::vector<double> bulk;
+  std::vector<double> stiffening;  // of the law `fung`; means are weighted with the shear modulus
   // A box around what the next coarser level does not resolve: coarse cells whose eight cells
   // differ in modulus, and fixed nodes of which not all carriers in P are fixed, or the other way
   // round. Empty: low above high.

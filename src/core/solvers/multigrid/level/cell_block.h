@@ -18,6 +18,7 @@ struct Block {
 
   L mode[kCorners][3];
   L shear, bulk;
+  L exponent;           // of the law `fung`, where it is solved for
   L cofactor[3][3];     // of F, less 1, by axes
   L invariant, volume;  // I1 - 3, J - 1
   L slight;             // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
@@ -94,6 +95,64 @@ struct Block {
       stiffness = a * Real(1.0 / 3.0) + (Real(0.5) * curvature * (invariant + Real(3.0)) + bulk) *
                                             steepest * Real(1.0 / 16.0);
     }
+  }
+
+  // From the neo-Hookean law, which `stiffen` leaves, to `fung` (elastic_law.h): a and the shape's
+  // part of the pressure and of the stiffness take the factor g'. What g'' adds to the cell's
+  // second derivative is mu/2 g'' n n^T, n the slope of x in its corners; half its only eigenvalue
+  // mu/2 g'' |n|^2 is added to the stiffness of each corner.
+  template <bool kWithStiffness>
+  ROBOT_TISSUE_INLINE void stiffenByStrain() {
+    const L j = volume + Real(1.0);
+    const L from = greater(j, all<V>(Real(elastic_law::kFlattest)));
+    const L beyond = j - from;
+    const L root = inverseCubeRoot<V>(from);
+    const L inverse = root * root * root;
+    const L lean_w = root * root, lean_slope = Real(-2.0 / 3.0) * lean_w * inverse;
+    const L curvature = Real(-5.0 / 3.0) * lean_slope * inverse;
+    const L w = lean_w + beyond * (lean_slope + Real(0.5) * beyond * curvature);
+    // x = w I1 - 3, of differences from rest: w (I1 - 3) - 3 w (J^(2/3) - 1).
+    const L r = from * root;
+    const L near_rest =
+        lean_w * (invariant - Real(3.0) * volume * (Real(2.0) + volume) / (r * r + r + Real(1.0)));
+    const L x = beyond < Real(0.0) ? w * (invariant + Real(3.0)) - Real(3.0) : near_rest;
+    const L whole = exponent * greater(x, L{});
+    const L most = all<V>(Real(elastic_law::kMostExponent));
+    const L within = whole < most ? whole : most;
+    const L growth = exponential<V>(within);
+    const L slope = growth * (Real(1.0) + (whole - within));
+    const L press = bulk * volume;
+    if constexpr (kWithStiffness) {
+      const L curved = x > Real(0.0) ? exponent * growth : L{};
+      const L steepest =
+          bulk * Real(1.0 / 16.0) * greater(greater(square(0), square(1)), square(2));
+      stiffness =
+          slope * (stiffness - steepest) + steepest +
+          shear * curved * Real(1.0 / 8.0) * slopeSquared(w, lean_slope + beyond * curvature);
+    }
+    a *= slope;
+    pressure = slope * (pressure - press) + press;
+  }
+
+  // Of x in the modes: twice |n|^2, as dx/dx_k is a quarter of the sum of +- dx/dm_s.
+  ROBOT_TISSUE_INLINE L slopeSquared(const L& w, const L& w_slope) const {
+    const L by_volume = w_slope * (invariant + Real(3.0)), twice = Real(2.0) * w;
+    L sum = L{};
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+#pragma GCC unroll 3
+      for (int along = 0; along < 3; ++along) {
+        const Real rest = Real(along == axis ? 1.0 : 0.0);
+        const L slope =
+            twice * (rest - mode[1 << along][axis]) + by_volume * (cofactor[along][axis] + rest);
+        sum += slope * slope;
+      }
+      const L bent = mode[3][axis] * mode[3][axis] + mode[5][axis] * mode[5][axis] +
+                     mode[6][axis] * mode[6][axis];
+      sum += twice * twice *
+             (bent * Real(4.0 / 9.0) + mode[7][axis] * mode[7][axis] * Real(1.0 / 9.0));
+    }
+    return sum;
   }
 
   ROBOT_TISSUE_INLINE L square(int along) const {
@@ -235,11 +294,12 @@ struct Block {
   }
 
   // From the corners' displacements to the energy's gradients in them.
-  template <bool kWithStiffness>
+  template <bool kWithStiffness, bool kStiffens>
   ROBOT_TISSUE_INLINE void solve() {
     transform();
     measure();
     stiffen<kWithStiffness>();
+    if constexpr (kStiffens) stiffenByStrain<kWithStiffness>();
     // |G - 1|^2 of a corner's edges G below which det G > kSqueezed, as then no singular value is
     // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
     // its two parts.

@@ -24,7 +24,7 @@ ROBOT_TISSUE_INLINE typename V::Lanes onesOf(unsigned bits) {
 
 // A node's sum takes its cells in ascending order, however long the vectors are: corners go from
 // the highest down.
-template <typename V, bool kWithStiffness>
+template <typename V, bool kWithStiffness, bool kStiffens>
 ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const CellBlock& of,
                                   int lane) {
   constexpr unsigned kAll = (1U << V::kSize) - 1U;
@@ -39,13 +39,14 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
   }
   block.shear = load<V>(grid.shear + first);
   block.bulk = load<V>(grid.bulk + first);
+  if constexpr (kStiffens) block.exponent = load<V>(grid.stiffening + first);
   if (cells != kAll) {
     block.shear *= onesOf<V>(cells);
     block.bulk *= onesOf<V>(cells);
   }
   block.has_parts = standing != 0;
   if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
-  block.template solve<kWithStiffness>();
+  block.template solve<kWithStiffness, kStiffens>();
   for (int corner = kCorners - 1; corner >= 0; --corner) {
     const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
     const bool low = corner < kCorners / 2;
@@ -58,17 +59,27 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
   }
 }
 
-template <typename V>
-ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<typename V::Real>& grid,
-                                      const CellBlock* blocks, int count) {
+template <typename V, bool kStiffens>
+ROBOT_TISSUE_INLINE void addBlocksOf(const CellGrid<typename V::Real>& grid,
+                                     const CellBlock* blocks, int count) {
   for (int block = 0; block < count; ++block) {
     for (int lane = 0; lane < kLanes; lane += V::kSize) {
       if (grid.lower_stiffness != nullptr) {
-        addBlock<V, true>(grid, blocks[block], lane);
+        addBlock<V, true, kStiffens>(grid, blocks[block], lane);
       } else {
-        addBlock<V, false>(grid, blocks[block], lane);
+        addBlock<V, false, kStiffens>(grid, blocks[block], lane);
       }
     }
+  }
+}
+
+template <typename V>
+ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<typename V::Real>& grid,
+                                      const CellBlock* blocks, int count) {
+  if (grid.stiffening == nullptr) {
+    addBlocksOf<V, false>(grid, blocks, count);
+  } else {
+    addBlocksOf<V, true>(grid, blocks, count);
   }
 }
 
@@ -76,11 +87,12 @@ template <typename V>
 ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
                                        const LooseCell<typename V::Real>* cells, int count) {
   Block<V> block;
-  block.shear = block.bulk = typename V::Lanes{};
+  block.shear = block.bulk = block.exponent = typename V::Lanes{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = typename V::Lanes{};
   for (int cell = 0; cell < count; ++cell) {
     block.shear[cell] = cells[cell].shear;
     block.bulk[cell] = cells[cell].bulk;
+    block.exponent[cell] = cells[cell].stiffening;
     for (int corner = 0; corner < kCorners; ++corner) {
       for (int axis = 0; axis < 3; ++axis) {
         block.mode[corner][axis][cell] = grid.displacement[at(axis)][cells[cell].nodes[at(corner)]];
@@ -89,7 +101,11 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   }
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
-  block.template solve<true>();
+  if (grid.stiffening == nullptr) {
+    block.template solve<true, false>();
+  } else {
+    block.template solve<true, true>();
+  }
   for (int cell = 0; cell < count; ++cell) {
     for (int corner = 0; corner < kCorners; ++corner) {
       const int sum = cells[cell].sums[at(corner)];

@@ -36,9 +36,10 @@ struct CellGrid {
   std::array<const Real*, 3> displacement;
   const Real* shear;  // per cell, 0 where there is none
   const Real* bulk;
-  int row;           // from a node to the next along y
-  int plane;         // and along z
-  bool loose_stand;  // loose cells are coarse, as CellBlock::standing
+  const Real* stiffening;  // of the law `fung` (material/elastic_law.h); null: neo-Hookean
+  int row;                 // from a node to the next along y
+  int plane;               // and along z
+  bool loose_stand;        // loose cells are coarse, as CellBlock::standing
   // Where a plane of cells adds its forces, from node `origin` on: those on the cells' lower four
   // corners, and those on the upper ones, which are in the next plane of nodes.
   int origin;
@@ -59,6 +60,7 @@ struct LooseCell {
   std::array<int, kCorners> sums{};  // where the sums on them are
   Real shear = 0;
   Real bulk = 0;
+  Real stiffening = 0;
 };
 
 // Adds the forces of the cells to `lower`.

@@ -20,6 +20,9 @@ CellOperator<Real>::CellOperator(const LevelGrid& grid, int beside,
 
 template <typename Real>
 void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
+  const bool stiffens = std::any_of(cells.begin(), cells.end(),
+                                    [](const LevelCell& cell) { return cell.stiffening > 0.0; });
+  if (stiffens) stiffening_.assign(at(count_), Real(0));
   for (const LevelCell& cell : cells) {
     const int lowest = grid_.index(cell.place[0], cell.place[1], cell.place[2]);
     bool regular = true;
@@ -33,11 +36,17 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
       regular = regular && node == lowest + grid_.index(offset[0], offset[1], offset[2]);
     }
     const Real shear = static_cast<Real>(cell.shear), bulk = static_cast<Real>(cell.bulk);
+    const Real stiffening = static_cast<Real>(cell.stiffening);
     if (regular) {
+      if (shear > Real(0) && stiffens) {  // the mean by stiffness
+        Real& mean = stiffening_[at(lowest)];
+        const Real before = shear_[at(lowest)];
+        mean = (before * mean + shear * stiffening) / (before + shear);
+      }
       shear_[at(lowest)] += shear;
       bulk_[at(lowest)] += bulk;
     } else {
-      loose_.push_back({cell.nodes, {}, shear, bulk});
+      loose_.push_back({cell.nodes, {}, shear, bulk, stiffening});
       loose_nodes_.insert(loose_nodes_.end(), cell.nodes.begin(), cell.nodes.end());
     }
   }
@@ -136,6 +145,7 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   }
   cells.shear = shear_.data();
   cells.bulk = bulk_.data();
+  if (!stiffening_.empty()) cells.stiffening = stiffening_.data();
   cells.row = grid_.row;
   cells.plane = grid_.plane;
   cells.loose_stand = !part_.covered.isEmpty();

@@ -87,6 +87,7 @@ class CellOperator {
   LevelGrid grid_;
   int count_ = 0;
   std::vector<Real> shear_, bulk_;
+  std::vector<Real> stiffening_;  // empty: 0 in all
   std::vector<LooseCell<Real>> loose_;
   std::vector<int> loose_nodes_;                 // of loose cells
   std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness

@@ -91,13 +91,19 @@ class Coarsener {
       if (root == static_cast<int>(i)) {
         piece = static_cast<int>(result_.cells.size());
         const Place& place = cells_[at(first[i])].place;
-        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0.0, 0.0});
+        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0.0, 0.0, 0.0});
       } else {
         piece = piece_of_[at(first[root])];
       }
       LevelCell& coarse = result_.cells[at(piece)];
-      coarse.shear += cells_[at(first[i])].shear / kCorners;
-      coarse.bulk += cells_[at(first[i])].bulk / kCorners;
+      const LevelCell& fine = cells_[at(first[i])];
+      coarse.shear += fine.shear / kCorners;
+      coarse.bulk += fine.bulk / kCorners;
+      coarse.stiffening += fine.shear * fine.stiffening / kCorners;
+    }
+    for (std::size_t piece = first_piece; piece < result_.cells.size(); ++piece) {
+      LevelCell& coarse = result_.cells[piece];
+      if (coarse.stiffening > 0.0) coarse.stiffening /= coarse.shear;  // the mean by stiffness
     }
     is_alone_.resize(result_.cells.size(), result_.cells.size() - first_piece == 1 ? 1 : 0);
   }

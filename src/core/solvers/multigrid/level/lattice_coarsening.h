@@ -18,6 +18,7 @@ struct LevelCell {
   std::array<int, kCorners> nodes{};
   double shear = 0.0;
   double bulk = 0.0;
+  double stiffening = 0.0;  // of the law `fung` (material/elastic_law.h)
 };
 
 // Entries of a level's fields: the grid's points, x fastest; planes are padded, so that the lanes

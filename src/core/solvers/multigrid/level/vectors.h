@@ -25,6 +25,9 @@ struct Vector<float, kBytes> {
   static constexpr std::int32_t kCubeRoot = 0x54a21d2a;  // bits of 1, times 4/3; tuned
   static constexpr int kHalvings = 12;
   static constexpr int kRefinements = 3;
+  static constexpr int kDigits = 23;  // of the mantissa
+  static constexpr float kLn2High = 0.693145751953125F, kLn2Low = 1.42860677e-6F;
+  static constexpr int kExponentialTerms = 7;
 };
 
 template <int kBytes>
@@ -36,6 +39,9 @@ struct Vector<double, kBytes> {
   static constexpr std::int64_t kCubeRoot = 0x553f0a3d70a3d70a;
   static constexpr int kHalvings = 20;
   static constexpr int kRefinements = 4;
+  static constexpr int kDigits = 52;
+  static constexpr double kLn2High = 0.693147180369123816490, kLn2Low = 1.90821492927058770002e-10;
+  static constexpr int kExponentialTerms = 13;
 };
 
 template <typename V>
@@ -86,6 +92,26 @@ ROBOT_TISSUE_INLINE typename V::Lanes inverseCubeRoot(const typename V::Lanes& x
     root *= Real(4.0 / 3.0) - third * root * root * root;
   }
   return root;
+}
+
+// exp(x), 0 <= x <= 80: with n the whole number next to x / ln 2 and r = x - n ln 2, 2^n times
+// Taylor's polynomial in r. Adding 1.5 * 2^digits rounds to n and leaves it in the lowest bits.
+template <typename V>
+ROBOT_TISSUE_INLINE typename V::Lanes exponential(const typename V::Lanes& x) {
+  using Real = typename V::Real;
+  using Bits = typename V::Bits;
+  constexpr Real kRounder = Real(3LL << (V::kDigits - 1));
+  const typename V::Lanes rounded = x * Real(1.44269504088896340736) + kRounder;
+  const typename V::Lanes n = rounded - kRounder;
+  const typename V::Lanes r = (x - n * V::kLn2High) - n * V::kLn2Low;
+  typename V::Lanes sum = all<V>(Real(1));
+#pragma GCC unroll 13
+  for (int term = V::kExponentialTerms; term > 0; --term) {
+    sum = Real(1) + r * sum * (Real(1) / Real(term));
+  }
+  const Bits power =
+      (__builtin_bit_cast(Bits, rounded) << V::kDigits) + __builtin_bit_cast(Bits, all<V>(Real(1)));
+  return sum * __builtin_bit_cast(typename V::Lanes, power);
 }
 
 }  // namespace robot_tissue::vectors
