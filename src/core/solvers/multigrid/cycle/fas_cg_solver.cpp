@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "solvers/multigrid/cycle/patch_answers.h"
 #include "solvers/multigrid/cycle/tuning.h"
@@ -10,11 +11,6 @@ namespace robot_tissue {
 namespace {
 
 namespace tuning = cycle_tuning;
-
-// Threads count as tissue: they hold on, and need no rounds.
-bool isTouched(const LoadingPatch& patch) {
-  return !patch.contacts.empty() && !patch.contacts[0].is_thread;
-}
 
 }  // namespace
 
@@ -63,7 +59,7 @@ template <typename Real>
 SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints& hold,
                                    const std::vector<int>& disturbed, const Budget& budget) {
   SolveContext solve{shape, hold, budget};
-  solve.in_contact = std::any_of(shape.patches.begin(), shape.patches.end(), isTouched);
+  solve.in_contact = isInContact(shape);
   const bool in_time = model_.inertia() != nullptr;
   solve.has_changed = solve.in_contact || !disturbed.empty() || in_time;
   findLevels(shape.state);
@@ -73,7 +69,7 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   if (part_.isEmpty()) return report;
   for (int round = 0; round < tuning::kMostTurns; ++round) {
     report.status = balance(solve);
-    if (!shape_.levels().isFinite()) return giveUp(solve);
+    if (!shape_.levels().isFinite() || isForDouble(solve, report.status)) return giveUp(solve);
     writeShape(solve);
     if (!settlePatches(solve) || report.status != SolveStatus::kOk) break;
   }
@@ -82,6 +78,14 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   report.error_estimate = std::isfinite(error) ? std::hypot(error, part_.missed()) : 1.0;
   answer(solve, report);
   return report;
+}
+
+// Where tissue is about to buckle, a motion has hardly any stiffness: what rounding leaves of the
+// forces, over that stiffness, is more than the tolerance. In contact a solve ends unconverged for
+// other reasons, too, and its load step is tried in shorter ones.
+template <typename Real>
+bool FasCgSolver<Real>::isForDouble(const SolveContext& solve, SolveStatus status) {
+  return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged && !solve.in_contact;
 }
 
 // As it was when the solve began.
@@ -197,10 +201,16 @@ void FasCgSolver<Real>::answer(const SolveContext& solve, SolveReport& report) {
   report.layers = part_.layersIn(grid.free());
 }
 
+Precision precisionFor(const ElasticModel& model, const LayeredOptions& options) {
+  const bool suffices = options.tolerance >= tuning::kSinglePrecision && !model.movesInTime();
+  return suffices ? Precision::kSingle : Precision::kDouble;
+}
+
 std::unique_ptr<MultigridSolver> makeMultigridSolver(const Lattice& lattice,
                                                      const ElasticModel& model,
-                                                     const LayeredOptions& options) {
-  if (options.tolerance >= tuning::kSinglePrecision && !model.movesInTime()) {
+                                                     const LayeredOptions& options,
+                                                     Precision precision) {
+  if (precision == Precision::kSingle) {
     return std::make_unique<FasCgSolver<float>>(lattice, model, options);
   }
   return std::make_unique<FasCgSolver<double>>(lattice, model, options);

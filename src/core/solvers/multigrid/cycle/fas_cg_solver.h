@@ -45,6 +45,7 @@ class FasCgSolver : public MultigridSolver {
   void writeShape(SolveContext& solve) const;
   bool settlePatches(SolveContext& solve);
   SolveReport giveUp(const SolveContext& solve);
+  static bool isForDouble(const SolveContext& solve, SolveStatus status);
   void answer(const SolveContext& solve, SolveReport& report);
 
   const Lattice& lattice_;

@@ -3,14 +3,36 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/multigrid/cycle/solve_context.h"
+
 namespace robot_tissue {
 
 LayeredMethod::LayeredMethod(const Lattice& lattice, const ElasticModel& model,
                              const LayeredOptions& options)
     : lattice_(lattice),
+      model_(model),
       options_(options),
       hold_(lattice, model),
-      solver_(makeMultigridSolver(lattice, model, options)) {}
+      precision_(precisionFor(model, options)) {
+  makeSolver(precision_);
+}
+
+void LayeredMethod::makeSolver(Precision precision) {
+  precision_ = precision;
+  solver_ = makeMultigridSolver(lattice_, model_, options_, precision);
+}
+
+void LayeredMethod::forget() {
+  const Precision usual = precisionFor(model_, options_);
+  if (precision_ == usual) return solver_->forget();
+  makeSolver(usual);
+}
+
+// Single precision left it as it was (MultigridSolver::run).
+bool LayeredMethod::isForDouble(const SolveReport& report, const ConstrainedState& shape) const {
+  return precision_ == Precision::kSingle && report.status == SolveStatus::kUnconverged &&
+         !isInContact(shape);
+}
 
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
 
@@ -29,6 +51,13 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   hold_.bind(shape);
   hold_.place(shape);
   SolveReport report = solver_->run(shape, hold_, disturbed, budget);
+  if (isForDouble(report, shape)) {
+    const int in_single = report.iterations;
+    makeSolver(Precision::kDouble);
+    hold_.bind(shape);
+    report = solver_->run(shape, hold_, disturbed, budget);
+    report.iterations += in_single;
+  }
   state = std::move(shape.state);
   patches = std::move(shape.patches);
   report.wall_ms = budget.elapsedMs();

@@ -22,7 +22,7 @@ class LayeredMethod : public SolverMethod {
                     LatticeState& state) override;
   void beginStep(const LatticeState&) override { solver_->beginStep(); }
   void limitWays(std::vector<double> longest) override;
-  void forget() override { solver_->forget(); }
+  void forget() override;
   bool remembers() const override { return true; }
   const GridBox* visited() const override { return solver_->visited(); }
   Vec3 forceLeft() override { return solver_->forceLeft(); }
@@ -35,9 +35,14 @@ class LayeredMethod : public SolverMethod {
   }
 
  private:
+  void makeSolver(Precision precision);
+  bool isForDouble(const SolveReport& report, const ConstrainedState& shape) const;
+
   const Lattice& lattice_;
+  const ElasticModel& model_;
   LayeredOptions options_;
   DofConstraints hold_;
+  Precision precision_;
   std::unique_ptr<MultigridSolver> solver_;
 };
 

@@ -35,7 +35,8 @@ class MultigridSolver {
   virtual ~MultigridSolver() = default;
 
   // Moves the shape to where it balances; `hold` is bound to it. Fills status, iterations,
-  // error_estimate, residual, active_nodes and the patches' answers.
+  // error_estimate, residual, active_nodes and the patches' answers. In single precision a shape
+  // without contacts that did not converge stays as it was: it is to be solved for in double.
   // `disturbed`: nodes whose balance something else has disturbed.
   virtual SolveReport run(ConstrainedState& shape, const DofConstraints& hold,
                           const std::vector<int>& disturbed, const Budget& budget) = 0;
@@ -52,9 +53,13 @@ class MultigridSolver {
   virtual std::vector<Vec3> cellForces(const LatticeState& shape) = 0;  // likewise
 };
 
-// In double precision where single does not reach the tolerance.
+enum class Precision { kSingle, kDouble };
+
+// Double where single does not reach the tolerance, wherever the tissue goes.
+Precision precisionFor(const ElasticModel& model, const LayeredOptions& options);
 std::unique_ptr<MultigridSolver> makeMultigridSolver(const Lattice& lattice,
                                                      const ElasticModel& model,
-                                                     const LayeredOptions& options);
+                                                     const LayeredOptions& options,
+                                                     Precision precision);
 
 }  // namespace robot_tissue

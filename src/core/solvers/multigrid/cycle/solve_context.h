@@ -1,6 +1,8 @@
 // One solve: what it is given, and what it has cost so far.
 #pragma once
 
+#include <algorithm>
+
 #include "loads/constrained_state.h"
 #include "loads/dof_constraints.h"
 #include "solvers/multigrid/cycle/budget.h"
@@ -18,5 +20,12 @@ struct SolveContext {
   bool warm_started = false;  // moved along the last step, before the first cycle
   int cycles = 0;
 };
+
+// Whether a tool or support touches. Threads count as tissue: they hold on, and need no rounds.
+inline bool isInContact(const ConstrainedState& shape) {
+  return std::any_of(shape.patches.begin(), shape.patches.end(), [](const LoadingPatch& patch) {
+    return !patch.contacts.empty() && !patch.contacts[0].is_thread;
+  });
+}
 
 }  // namespace robot_tissue
