@@ -1,6 +1,7 @@
 """What play.launch shows: its tools, their interactive marker, the corners of a cut, notes."""
 
 import math
+from collections import namedtuple
 
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from std_msgs.msg import ColorRGBA
@@ -10,10 +11,11 @@ FRAME = "tissue"
 FARTHEST = 1.0  # m, of a marker from the tissue's origin
 # m, of each tool's frame while another one is at work.
 RACK = {"sphere": (-0.02, 0.17, 0.03), "probe": (0.03, 0.17, 0.02), "forceps": (0.08, 0.17, 0.02),
-        "knife": (0.13, 0.19, 0.02)}
+        "knife": (0.13, 0.19, 0.02), "scissors": (0.18, 0.17, 0.02)}
 # m, in each tool's frame: middle of the ball that the mouse takes.
 GRIP = {"sphere": (0.0, 0.0, 0.0), "probe": (0.0, 0.0, 0.065), "forceps": (0.0, 0.0, 0.06),
-        "knife": (0.0, -0.025, 0.05)}
+        "knife": (0.0, -0.025, 0.05), "scissors": (0.0, 0.0, 0.06)}
+JAW_THICKNESS, HINGE = 0.004, 0.035  # m, as in play_tools.urdf: of the forceps; above the scissors' tip
 RED = (0.85, 0.15, 0.15, 1)
 
 
@@ -39,6 +41,24 @@ def checked_pose(feedback):
         raise PoseError("orientation of %s: length %g; allowed: a unit quaternion"
                         % (feedback.marker_name, length))
     return Pose(place, Quaternion(*(each / length for each in (turn.x, turn.y, turn.z, turn.w))))
+
+
+def jaw_beside(side, gap):
+    """Of the forceps: gap in m."""
+    return pose_at((0.0, side * 0.5 * (gap + JAW_THICKNESS), 0.0))
+
+
+def jaw_around_hinge(side, angle):
+    """Of the scissors, around x: half the angle between the edges (rad); below 0 they have passed each other."""
+    pose = pose_at((0.0, 0.0, HINGE))
+    pose.orientation = Quaternion(math.sin(0.5 * side * angle), 0.0, 0.0, math.cos(0.5 * angle))
+    return pose
+
+
+# Of a tool with jaws: its links and their sides of the tool's y axis, what `pose` opens them to, per second.
+Jaws = namedtuple("Jaws", "links open closed speed pose")
+JAWS = {"forceps": Jaws({"left_jaw": 1.0, "right_jaw": -1.0}, 0.016, 0.003, 0.02, jaw_beside),
+        "scissors": Jaws({"left_blade": 1.0, "right_blade": -1.0}, 0.35, -0.1, 1.0, jaw_around_hinge)}
 
 
 def shape_marker(kind, size, color):

@@ -67,7 +67,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
                            const Held& held) {
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
-    carry(touch.contact.place, tissue, held, touch.spring);
+    touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
   }
   for (const Contact& contact : contacts.contacts) {
     if (!friction_[at(contact.tool)]) continue;
@@ -148,7 +148,8 @@ double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& ti
   const double slack = stiffness > 0.0 ? tuning::kSlackOfForce * tuning::kContactStiffness *
                                              pressed_[at(touch.contact.tool)] / stiffness
                                        : 0.0;
-  return std::min(std::max(slack, tuning::kLeastSlack * spacing), tuning::kMostSlack * spacing);
+  return std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
+                  tuning::kMostSlack * spacing);
 }
 
 // Takes a contact that the search found: as a new touch or, on a triangle whose deepest point has
@@ -289,7 +290,7 @@ void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const T
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
   touch.contact = contact;
-  carry(touch.contact.place, tissue, held, touch.spring);
+  touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
   touch.spring.normal = contact.normal;
   touch.spring.plane_point = planePointOf(contact, tissue);
   touch.since_normal = pose.links[at(touch.contact.link)].linear().transpose() * contact.normal;

@@ -10,7 +10,8 @@ namespace robot_tissue {
 double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
   double stiffness = 0.0;
   for (const NodeWeight& carrier : spring.carriers) {
-    stiffness = std::max(stiffness, tissue.nodeStiffness(carrier.node));
+    stiffness =
+        std::max(stiffness, tissue.nodeStiffness(carrier.node) * tissue.stiffening(carrier.node));
   }
   return tuning::kMostForce * stiffness * tissue.lattice().spacing();
 }
@@ -27,8 +28,8 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
   return std::cos(most) * from + std::sin(most) * across.normalized();
 }
 
-void carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
-           ContactSpring& spring) {
+double carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+             ContactSpring& spring) {
   const auto& surface = tissue.surface();
   SurfacePoint point = place;
   point.barycentric =
@@ -39,12 +40,15 @@ void carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<st
     spring.rest += point.barycentric[corner] * surface.rest[at(vertex)];
   }
   spring.carriers = carriersAt(surface, point);
-  double compliance = 0.0;  // m/N
+  double compliance = 0.0, at_rest = 0.0;  // m/N: in this step, and for slow motions
   for (const auto& [node, weight] : spring.carriers) {
     const double stiffness = tissue.nodeStiffness(node);
-    if (stiffness > 0.0 && held[at(node)] == 0) compliance += weight * weight / stiffness;
+    if (!(stiffness > 0.0) || held[at(node)] != 0) continue;
+    at_rest += weight * weight / stiffness;
+    compliance += weight * weight / (stiffness * tissue.stiffening(node));
   }
   spring.stiffness = compliance > 0.0 ? tuning::kContactStiffness / compliance : 0.0;
+  return compliance > 0.0 ? at_rest / compliance : 1.0;
 }
 
 }  // namespace robot_tissue

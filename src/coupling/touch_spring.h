@@ -22,8 +22,9 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most);
 
 // The spring's carriers, and its stiffness k: kContactStiffness times that of the tissue at the
 // point, 1 / sum of weight^2 / node stiffness over the carriers that give way. `held`: per node,
-// not 0 = it does not.
-void carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
-           ContactSpring& spring);
+// not 0 = it does not. Returns how much stiffer the tissue is there in the time step under way
+// (Tissue::stiffening).
+double carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+             ContactSpring& spring);
 
 }  // namespace robot_tissue

@@ -44,7 +44,10 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
   const double spacing = world_.tissue.lattice().spacing();
   for (int round = 1;; ++round) {
     world_.sticking.ride(pose, world_.tissue);
-    if (round == 1) meet(pose);
+    if (round == 1) {
+      expectTimeStep(pose.stamp_s - good.pose.stamp_s);
+      meet(pose);
+    }
     pushRigid(pose);  // robot pose -> contacts -> loading patches
     std::vector<LoadingPatch> patches = patchesOfTools(world_);
     const std::vector<LoadingPatch>& before = world_.tissue.patches();
@@ -53,7 +56,8 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
     if (round == 1) {
       good.shape = world_.tissue.shape();
-      beginTimeStep(pose.stamp_s - good.pose.stamp_s);
+      beginTimeStep(pose.stamp_s - good.pose.stamp_s,
+                    patches.empty() ? Touched::kByNone : Touched::kByTools);
     }
     follow(std::move(patches));  // loading patches -> solve
     if (!world_.tools.anyRigid()) return settlesFrom(good, otherwise);
@@ -61,14 +65,19 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
     if (round == tuning::kRigidRounds) return deepest <= tuning::kThrough * spacing;
-    world_.unfinished = world_.deadline.isOver();
+    world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
     if (world_.unfinished) return true;
   }
 }
 
+void LoadStepper::expectTimeStep(double duration) {
+  if (!world_.tissue.hasTime() || !(duration > 0.0)) return;
+  world_.tissue.expectTimeStep(duration, Touched::kByTools);
+}
+
 // Without a duration the tools are elsewhere at once, as where they come in anew.
-void LoadStepper::beginTimeStep(double duration) {
-  if (world_.tissue.hasTime() && duration > 0.0) world_.tissue.beginTimeStep(duration);
+void LoadStepper::beginTimeStep(double duration, Touched touched) {
+  if (world_.tissue.hasTime() && duration > 0.0) world_.tissue.beginTimeStep(duration, touched);
 }
 
 // Solves on, kMoreSolves times at most, while the solve has not settled (isUnsettled). False: the
@@ -78,7 +87,7 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
     const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
     if (isLost(good) || (!converged && otherwise == IfUnconverged::kRefuse)) return false;
     if (more == tuning::kMoreSolves || !isUnsettled()) return true;
-    world_.unfinished = world_.deadline.isOver();
+    world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
   }

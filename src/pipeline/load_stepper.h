@@ -51,7 +51,8 @@ class LoadStepper {
   double throughAt(std::size_t link) const;
 
  private:
-  void beginTimeStep(double duration);
+  void expectTimeStep(double duration);
+  void beginTimeStep(double duration, Touched touched);
   void meet(const RobotPose& pose);
   void pushRigid(const RobotPose& pose);
   double deepestInRigid(const RobotPose& pose);

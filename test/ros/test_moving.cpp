@@ -5,6 +5,8 @@
 namespace robot_tissue {
 namespace {
 
+const ros::WallDuration kSilence(0.3);
+
 class MovingTissue : public NodeTest {
  protected:
   void SetUp() override {
@@ -17,14 +19,29 @@ TEST(TissueClock, GoesOnByTheStampsAndStandsStillInASilence) {
   TissueClock clock(0.005, 0.1);
   const ros::Time start(1000.0);
   const auto at = [&](double seconds) { return start + ros::Duration(seconds); };
-  EXPECT_EQ(clock.advance(at(0.0), true), 0.0);
-  EXPECT_NEAR(clock.advance(at(0.02), true), 0.02, 1e-9);
-  EXPECT_NEAR(clock.advance(at(0.32), true), 0.12, 1e-9);
+  const auto advance = [&](double seconds, bool moves) {
+    return clock.advance(at(seconds), moves, clock.now());
+  };
+  EXPECT_EQ(advance(0.0, true), 0.0);
+  EXPECT_NEAR(advance(0.02, true), 0.02, 1e-9);
+  EXPECT_NEAR(advance(0.32, true), 0.12, 1e-9);
   EXPECT_NEAR(clock.leftOut(), 0.2, 1e-9);
-  EXPECT_NEAR(clock.advance(at(10.0), false), 0.14, 1e-9);  // at rest: a usual gap
+  EXPECT_NEAR(advance(10.0, false), 0.14, 1e-9);  // at rest: a usual gap
   EXPECT_EQ(clock.leftOut(), 0.0);
-  EXPECT_NEAR(clock.advance(at(5.0), true), 0.14, 1e-9);  // time jumped back
-  EXPECT_NEAR(clock.advance(at(5.01), true), 0.15, 1e-9);
+  EXPECT_NEAR(advance(5.0, true), 0.14, 1e-9);  // time jumped back
+  EXPECT_NEAR(advance(5.01, true), 0.15, 1e-9);
+}
+
+TEST(TissueClock, WaitsForATissueThatIsBehind) {
+  TissueClock clock(0.005, 0.1);
+  const ros::Time start(1000.0);
+  for (int pose = 0; pose < 100; ++pose) {
+    const double now = clock.advance(start + ros::Duration(0.01 * pose), true, 0.0);
+    EXPECT_LE(now, 0.1 + 1e-9);
+  }
+  EXPECT_NEAR(clock.now(), 0.1, 1e-9);
+  EXPECT_NEAR(clock.leftOut(), 0.01, 1e-6);
+  EXPECT_NEAR(clock.advance(start + ros::Duration(1.0), true, 0.1), 0.11, 1e-6);
 }
 
 TEST_F(MovingTissue, RestsBesideAToolThatIsAway) {
@@ -33,6 +50,21 @@ TEST_F(MovingTissue, RestsBesideAToolThatIsAway) {
   EXPECT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
   EXPECT_EQ(wrench_->wrench.force.z, 0.0);
+}
+
+// A robot that presses, falls silent, goes on and lets go. Poses come when they come.
+TEST_F(MovingTissue, IsPressedThroughASilenceAndLetGo) {
+  ASSERT_TRUE(waitFor([this] { return state_ && state_->status == "OK" && wrench_; }));
+  const double pressed = std::abs(press(0.004).wrench.force.z);
+  EXPECT_GT(pressed, 0.4);
+  publishes_transform_ = false;
+  const ros::WallTime silent = ros::WallTime::now();
+  waitFor([&] { return ros::WallTime::now() - silent > kSilence; });
+  publishes_transform_ = true;
+  EXPECT_NEAR(std::abs(follow().wrench.force.z), pressed, 0.02 * pressed);
+  EXPECT_NEAR(kTop - lowestOfTop(), 0.004, 0.001);
+  EXPECT_EQ(press(-0.05).wrench.force.z, 0.0);
+  EXPECT_TRUE(waitForMarkers([this] { return std::abs(lowestOfTop() - kTop) < 1e-5; }));
 }
 
 }  // namespace

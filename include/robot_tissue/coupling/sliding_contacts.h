@@ -36,6 +36,7 @@ class SlidingContacts {
     ContactSpring spring;                // as the next solve will have it
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
     Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
+    double stiffening = 1.0;             // of the tissue, in the time step under way
     bool found = false;                  // in the last update
   };
 

@@ -37,20 +37,41 @@ void TimeIntegrator::wake(const LatticeState& state) {
   motion_ = std::make_shared<const NodeMotion>(std::move(motion));
 }
 
-const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& state,
-                                          std::vector<double> masses,
-                                          const CellForces& cell_forces) {
-  if (!motion_ || motion_->velocity.size() != state.displacement.size()) wake(state);
+double TimeIntegrator::rateFactor() const {
+  if (scheme_ == Scheme::kBackwardEuler) return 1.0;
+  return !motion_ || motion_->begins ? 2.0 : 1.5;
+}
+
+void TimeIntegrator::expect(double duration, Scheme scheme, const LatticeState& state,
+                            std::vector<double> masses) {
+  if (motion_ && motion_->velocity.size() != state.displacement.size()) wake(state);
   duration_ = duration;
+  scheme_ = scheme;
   masses_ = std::move(masses);
+  stiffness_ = {1.0 + damping_time_ * rateFactor() / duration,
+                massFactor() / (duration * duration)};
+}
+
+std::vector<Vec3> TimeIntegrator::rateFrom() const {
+  std::vector<Vec3> from = before_;
+  if (scheme_ == Scheme::kBackwardEuler) return from;
+  const double h = duration_;
+  for (std::size_t node = 0; node < from.size(); ++node) {
+    const Vec3 &v = motion_->velocity[node], &a = motion_->acceleration[node];
+    from[node] += motion_->begins ? Vec3(0.5 * h * v) : Vec3(h / 3.0 * v - h * h / 6.0 * a);
+  }
+  return from;
+}
+
+const InertialTerm& TimeIntegrator::begin(const LatticeState& state,
+                                          const CellForces& cell_forces) {
+  if (!motion_) wake(state);
   before_ = state.displacement;
   const std::size_t nodes = before_.size();
   const std::vector<Vec3>& v = motion_->velocity;
-  const std::vector<Vec3>& a = motion_->acceleration;
-  const double h = duration;
-  const double rate = motion_->begins ? 2.0 / h : 1.5 / h;  // of df/dt, in f(u') - f(...)
-  term_.elastic_scale = 1.0 + damping_time_ * rate;
-  term_.per_mass = 2.0 / (h * h);
+  const double h = duration_;
+  term_.elastic_scale = stiffness_.elastic_scale;
+  term_.per_mass = stiffness_.per_mass;
   term_.free_motion.resize(nodes);
   term_.force.resize(nodes);
   double way = 0.0, displacement = 0.0;
@@ -67,14 +88,10 @@ const InertialTerm& TimeIntegrator::begin(double duration, const LatticeState& s
       term_.elastic_scale;  // so that forces are as exact
   if (damping_time_ == 0.0) return term_;
   LatticeState there = state;
-  for (std::size_t node = 0; node < nodes; ++node) {
-    there.displacement[node] =
-        motion_->begins ? Vec3(before_[node] + 0.5 * h * v[node])
-                        : Vec3(before_[node] + h / 3.0 * v[node] - h * h / 6.0 * a[node]);
-  }
+  there.displacement = rateFrom();
   const std::vector<Vec3> forces = cell_forces(there);
   for (std::size_t node = 0; node < nodes; ++node) {
-    term_.force[node] -= damping_time_ * rate * forces[node];
+    term_.force[node] -= (term_.elastic_scale - 1.0) * forces[node];
   }
   return term_;
 }
@@ -88,7 +105,11 @@ Vec3 TimeIntegrator::drift(const std::vector<int>& nodes, const LatticeState& st
     mass += masses_[at(node)];
   }
   if (mass == 0.0) return Vec3::Zero();
-  return moment / mass - 0.5 * duration_ * duration_ * gravity;
+  return moment / mass - duration_ * duration_ / massFactor() * gravity;
+}
+
+Vec3 TimeIntegrator::lead(const Vec3& gravity) const {
+  return (1.0 / massFactor() - 0.5) * duration_ * duration_ * gravity;
 }
 
 void TimeIntegrator::end(const LatticeState& state) {
@@ -97,7 +118,10 @@ void TimeIntegrator::end(const LatticeState& state) {
   for (std::size_t node = 0; node < before_.size(); ++node) {
     const Vec3 by_forces = state.displacement[node] - term_.free_motion[node];
     Vec3 &v = motion.velocity[node], &a = motion.acceleration[node];
-    if (motion.begins) {
+    if (scheme_ == Scheme::kBackwardEuler) {
+      a = by_forces / (h * h);
+      v += h * a;
+    } else if (motion.begins) {
       a = 2.0 / (h * h) * by_forces;
       v += h * a;
     } else {
@@ -125,18 +149,20 @@ bool TimeIntegrator::comesNowhere(const LatticeState& state) {
   return has_mark && std::sqrt(farthest) < allowed;
 }
 
-// The local error of a step is h^2 |a' - a| / 3 (tuning.h); it is held against what moves: the way
-// of the step, and the displacement.
+// The local error of a step is h^2 |a' - a| / 3, or h^2 |a'| / 2 of Euler's (tuning.h); it is held
+// against what moves: the way of the step, and the displacement.
 void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
   const double h = duration_;
+  const bool is_first_order = scheme_ == Scheme::kBackwardEuler;
+  const bool is_known = is_first_order || !motion_->begins;  // what its error is
   double way = 0.0, displacement = 0.0, error = 0.0, farthest = 0.0;
   for (std::size_t node = 0; node < before_.size(); ++node) {
     const Vec3 moved = state.displacement[node] - before_[node];
     way += moved.squaredNorm();
     displacement += state.displacement[node].squaredNorm();
-    const Vec3 before =
-        motion_->begins ? Vec3(motion.acceleration[node]) : motion_->acceleration[node];
-    error += (motion.acceleration[node] - before).squaredNorm();
+    Vec3 change = motion.acceleration[node];
+    if (!is_first_order) change -= motion_->acceleration[node];
+    if (is_known) error += change.squaredNorm();
     farthest = std::max({farthest, moved.squaredNorm(), (h * motion.velocity[node]).squaredNorm(),
                          (h * h * motion.acceleration[node]).squaredNorm()});
   }
@@ -145,11 +171,13 @@ void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
       tuning::kLeastMotion * spacing_ * std::sqrt(static_cast<double>(before_.size()));
   const double scale =
       std::max({std::sqrt(way), tuning::kShareOfDisplacement * std::sqrt(displacement), least});
-  error_ratio_ = tuning::kErrorOfStep * h * h * std::sqrt(error) / (tolerance_ * scale);
-  const double growth = std::cbrt(tuning::kSafety / std::max(error_ratio_, 1e-9));
+  const double share = is_first_order ? tuning::kErrorOfEulersStep : tuning::kErrorOfStep;
+  error_ratio_ = share * h * h * std::sqrt(error) / (tolerance_ * scale);
+  const double growth =
+      std::pow(tuning::kSafety / std::max(error_ratio_, 1e-9), is_first_order ? 0.5 : 1.0 / 3.0);
   motion.next_duration =
-      motion.begins ? h : h * std::clamp(growth, tuning::kMostShrink, tuning::kMostGrowthOfStep);
-  motion.begins = false;
+      is_known ? h * std::clamp(growth, tuning::kMostShrink, tuning::kMostGrowthOfStep) : h;
+  motion.begins = is_first_order;
   motion_ = std::make_shared<const NodeMotion>(std::move(motion));
 }
 

@@ -1,14 +1,25 @@
-// How the tissue moves in time (doc/time.md): the generalized-alpha method without dissipation of
-// its own at low frequencies and with all of it at high ones (Chung and Hulbert 1993; rho = 0,
-// alpha_f = 0), which is the backward differentiation formula of second order in one-step form.
-// With h the length of a step, u, v, a displacement, velocity and acceleration of the nodes:
+// How the tissue moves in time (doc/time.md). With h the length of a step, u, v, a displacement,
+// velocity and acceleration of the nodes, f the cells' forces, a step is one of
 //
-//   (2 m / h^2) (u' - u - h v) = f(u') + damping_time df/dt + m g + contacts
+// the generalized-alpha method without dissipation of its own at low frequencies and with all of it
+// at high ones (Chung and Hulbert 1993; rho = 0, alpha_f = 0), which is the backward
+// differentiation formula of second order in one-step form:
+//
+//   (2 m / h^2) (u' - u - h v) = f(u') + damping_time df/dt + m g
 //   a' = (u' - u - h v) / h^2 + a / 2,   v' = v - h a / 2 + 3 h a' / 2
 //
-// so that u' makes an energy least (material/inertial_term.h); f, the cells' forces, have the rate
-// (f(u') - f(u + h v / 3 - h^2 a / 6)) 3 / (2 h). The first step after a rest, or after a load came
-// or went at once, takes a' = 2 (u' - u - h v) / h^2, v' = v + h a'.
+// f has the rate (f(u') - f(u + h v / 3 - h^2 a / 6)) 3 / (2 h). The first step after a rest, or
+// after a load came or went at once, takes a' = 2 (u' - u - h v) / h^2, v' = v + h a';
+//
+// Euler's backward method where tools or supports touch. A touch that comes or goes changes
+// velocities at once; a formula of second order goes on with what was before, so that what is
+// pushed runs ahead of its tool and meets it again. This one cannot: where E is convex, the energy
+// never grows, whatever the lengths of the steps are.
+//
+//   (m / h^2) (u' - u - h v) = f(u') + damping_time (f(u') - f(u)) / h + m g + contacts
+//   v' = (u' - u) / h
+//
+// Both make an energy least (material/inertial_term.h).
 #pragma once
 
 #include <functional>
@@ -30,7 +41,7 @@ struct NodeMotion {
 
 class TimeIntegrator {
  public:
-  // masses: kg, per node; of a shape that is at rest.
+  // Of a shape that is at rest.
   TimeIntegrator(double damping_time, double spacing, double tolerance)
       : damping_time_(damping_time), spacing_(spacing), tolerance_(tolerance) {}
 
@@ -44,18 +55,32 @@ class TimeIntegrator {
   // Something changed at once: the nodes have the velocities that they have, and new forces.
   void wake(const LatticeState& state);
 
+  // How stiff nodes are in a step of that length (s) from the shape on.
+  struct Stiffness {
+    double elastic_scale = 1.0;  // of the cells' stiffness
+    double per_mass = 0.0;       // 1/s^2
+  };
+  enum class Scheme { kGeneralizedAlpha, kBackwardEuler };
+  // masses: kg, per node.
+  void expect(double duration, Scheme scheme, const LatticeState& state,
+              std::vector<double> masses);
+  // Of the step expected last; of a node's mass alone (N/m).
+  const Stiffness& stiffness() const { return stiffness_; }
+  double inertia(int node) const { return stiffness_.per_mass * masses_[at(node)]; }
+
   // Forces of the cells in a shape (N), asked for where there is damping.
   using CellForces = std::function<std::vector<Vec3>(const LatticeState&)>;
-  // The term of a step of that length (s) from the shape on.
-  const InertialTerm& begin(double duration, const LatticeState& state, std::vector<double> masses,
-                            const CellForces& cell_forces);
+  // The term of the step that is expected, from the shape on.
+  const InertialTerm& begin(const LatticeState& state, const CellForces& cell_forces);
   // Where the step leads with the acceleration that there is: a first guess.
   Vec3 predicted(std::size_t node) const {
     return term_.free_motion[node] + 0.5 * duration_ * duration_ * motion_->acceleration[node];
   }
   // Of what nothing holds or touches, only gravity moves the center of mass (g: m/s^2): how far it
-  // is off that in the shape at the step's end (m), as a solve that is not exact leaves it.
+  // is off where the step would take it (m), as a solve that is not exact leaves it; and how much
+  // farther the step takes it than it falls.
   Vec3 drift(const std::vector<int>& nodes, const LatticeState& state, const Vec3& gravity) const;
+  Vec3 lead(const Vec3& gravity) const;
   // The step ended in that shape; where nothing moves any more, the nodes are at rest.
   void end(const LatticeState& state);
   // Estimated error of the last step over the one allowed.
@@ -64,12 +89,19 @@ class TimeIntegrator {
   double longestStep() const;  // from here on (s)
 
  private:
+  // Of the step, with h its length: per_mass h^2, and the factor of df/dt in f(u') - f(...), times
+  // h.
+  double massFactor() const { return scheme_ == Scheme::kBackwardEuler ? 1.0 : 2.0; }
+  double rateFactor() const;
+  std::vector<Vec3> rateFrom() const;  // displacements where the rate of f is taken from
   bool comesNowhere(const LatticeState& state);
   void judge(const LatticeState& state, NodeMotion& motion);
 
   double damping_time_, spacing_, tolerance_;
   Motion motion_;
-  double duration_ = 0.0;  // of the step under way (s)
+  double duration_ = 0.0;                      // of the step under way, or expected (s)
+  Scheme scheme_ = Scheme::kGeneralizedAlpha;  // likewise
+  Stiffness stiffness_;                        // likewise
   std::vector<Vec3> before_;
   std::vector<double> masses_;
   InertialTerm term_;

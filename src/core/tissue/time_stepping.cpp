@@ -19,7 +19,17 @@ double Tissue::longestTimeStep() const { return time_->longestStep(); }
 // Whether loads that go and cuts leave the shape as it is, to be moved by time.
 bool Tissue::takesNoTime() const { return time_ && !in_time_step_; }
 
-void Tissue::beginTimeStep(double duration) {
+void Tissue::expectTimeStep(double duration, Touched touched) {
+  using Scheme = TimeIntegrator::Scheme;
+  const auto& model = dynamic_cast<const ElasticModel&>(*model_);
+  expects_time_step_ = true;
+  time_->expect(duration,
+                touched == Touched::kByTools ? Scheme::kBackwardEuler : Scheme::kGeneralizedAlpha,
+                state_, model.nodeMasses(*state_.cells));
+}
+
+void Tissue::beginTimeStep(double duration, Touched touched) {
+  expectTimeStep(duration, touched);
   const auto& model = dynamic_cast<const ElasticModel&>(*model_);
   in_time_ = in_time_step_ = true;
   model_->setInertia(nullptr);
@@ -27,14 +37,20 @@ void Tissue::beginTimeStep(double duration) {
     std::vector<Vec3> forces = method_->cellForces(shape);
     return forces.empty() ? model.cellForces(shape) : forces;
   };
-  model_->setInertia(&time_->begin(duration, state_, model.nodeMasses(*state_.cells), cell_forces));
+  model_->setInertia(&time_->begin(state_, cell_forces));
 }
 
 void Tissue::endTimeStep() {
+  expects_time_step_ = false;
   if (!in_time_step_) return;
   in_time_step_ = false;
-  keepMomentum();
+  const std::vector<std::size_t> falling = fallingPieces();
+  for (const std::size_t piece : falling) {
+    shift(free_pieces_[piece], -time_->drift(free_pieces_[piece], state_, gravity_));
+  }
   time_->end(state_);
+  if (!time_->moves()) return;
+  for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(gravity_));
 }
 
 void Tissue::findFreePieces() {
@@ -56,8 +72,9 @@ void Tissue::findFreePieces() {
   }
 }
 
-// Where nothing holds or touches a piece its center of mass goes as gravity says, to rounding.
-void Tissue::keepMomentum() {
+// Of free_pieces_, those that nothing holds or touches: their centers of mass go as gravity says,
+// to rounding.
+std::vector<std::size_t> Tissue::fallingPieces() {
   findFreePieces();
   std::vector<int> touched = threads_->nodes();
   for (const LoadingPatch& patch : patches_) {
@@ -70,22 +87,26 @@ void Tissue::keepMomentum() {
   const auto is_touched = [&](int node) {
     return std::binary_search(touched.begin(), touched.end(), node);
   };
-  bool moved = false;
-  for (const std::vector<int>& piece : free_pieces_) {
-    if (piece.empty() || std::any_of(piece.begin(), piece.end(), is_touched)) continue;
-    const Vec3 drift = time_->drift(piece, state_, gravity_);
-    if (drift.isZero(0.0)) continue;
-    for (const int node : piece) state_.displacement[at(node)] -= drift;
-    moved = true;
+  std::vector<std::size_t> falling;
+  for (std::size_t piece = 0; piece < free_pieces_.size(); ++piece) {
+    const std::vector<int>& nodes = free_pieces_[piece];
+    if (!nodes.empty() && std::none_of(nodes.begin(), nodes.end(), is_touched)) {
+      falling.push_back(piece);
+    }
   }
-  if (!moved) return;
+  return falling;
+}
+
+void Tissue::shift(const std::vector<int>& nodes, const Vec3& way) {
+  if (way.isZero(0.0)) return;
+  for (const int node : nodes) state_.displacement[at(node)] += way;
   kept_.reset();
   deformSurface();
 }
 
 void Tissue::stopTime() {
   if (!time_) return;
-  in_time_ = in_time_step_ = false;
+  in_time_ = in_time_step_ = expects_time_step_ = false;
   time_->rest();
   model_->setInertia(nullptr);
 }

@@ -111,7 +111,7 @@ Tissue::Shape Tissue::shape() const {
 void Tissue::restore(const Shape& shape) {
   if (time_) time_->take(shape.motion);
   in_time_ = shape.in_time;
-  in_time_step_ = false;
+  in_time_step_ = expects_time_step_ = false;
   kept_.reset();
   state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
   restRemoved(state_);
@@ -210,8 +210,8 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
-    const bool late = deadline_ && deadline_->isOver();
-    const bool hurried = deadline_ && report.status == SolveStatus::kLate;
+    const bool late = isBounded() && deadline_->isOver();
+    const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
@@ -271,8 +271,13 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   return true;
 }
 
+// Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
+// square of the step, be accelerations: it is solved to its end.
+bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
+
 // Time for the next solve (ms); 0: no bound.
 double Tissue::mostMs() const {
+  if (in_time_step_) return 0.0;
   if (!deadline_) return max_ms_;
   const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());
   if (!std::isfinite(left)) return max_ms_;

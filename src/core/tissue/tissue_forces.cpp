@@ -3,6 +3,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/threads.h"
+#include "tissue/time_integrator.h"
 
 namespace robot_tissue {
 namespace {
@@ -43,5 +44,11 @@ Vec3 Tissue::forceOfFixedNodes() const {
 }
 
 double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+
+double Tissue::stiffening(int node) const {
+  const double stiffness = expects_time_step_ ? nodeStiffness(node) : 0.0;
+  if (!(stiffness > 0.0)) return 1.0;
+  return time_->stiffness().elastic_scale + time_->inertia(node) / stiffness;
+}
 
 }  // namespace robot_tissue

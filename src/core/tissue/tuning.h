@@ -75,6 +75,9 @@ constexpr double kTrembling = 0.05;
 // Of the step's error, over h^2 |a' - a| (1): 1/2 - 1/6, as u' takes h^2 / 2 times the acceleration
 // at its end (Zienkiewicz and Xie 1991, with beta = 1/2).
 constexpr double kErrorOfStep = 1.0 / 3.0;
+// The same of a step of Euler's backward method, over h^2 |a'| (1): u' takes h^2 times the
+// acceleration at its end, and h^2 / 2 times the mean one is right.
+constexpr double kErrorOfEulersStep = 0.5;
 // What a step's error is held against, besides the way of the step: a share of the displacement
 // (1), and spacings (1) for each node. More: longer steps where the tissue turns back. Chosen.
 constexpr double kShareOfDisplacement = 1.0;

@@ -1,0 +1,194 @@
+// Tools and supports beside tissue that moves in time.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kCoarse = 0.01;  // m, spacing
+constexpr double kRate = 200.0;   // poses a second
+constexpr double kGravity = 9.81;
+
+TissueConfig inTime(TissueConfig tissue, double damping_time) {
+  tissue.time = TimeConfig{damping_time};
+  return tissue;
+}
+
+struct Case {
+  double damping_time;  // s
+  double friction;
+};
+
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+  return "Damping" + std::to_string(static_cast<int>(1e3 * info.param.damping_time)) + "Friction" +
+         std::to_string(static_cast<int>(10.0 * info.param.friction));
+}
+
+// A robot whose poses come at uneven times.
+class UnevenPoses : public testing::TestWithParam<Case> {
+ protected:
+  static constexpr double kDepth = 0.004;  // m
+
+  // For some seconds, from one depth to another; the last pose is the whole way.
+  void move(double from, double to, double seconds) {
+    const double start = stamp_;
+    while (stamp_ < start + seconds) {
+      stamp_ += (0.6 + 0.8 * share_(random_)) / kRate;
+      step(from + std::min(1.0, (stamp_ - start) / seconds) * (to - from));
+    }
+  }
+  void step(double depth) {
+    RobotPose pose = pressed(depth);
+    pose.stamp_s = stamp_;
+    const double before = force();
+    pipeline_.step(pose);
+    ASSERT_EQ(pipeline_.tissue().lastReport().status, SolveStatus::kOk) << stamp_;
+    greatest_change_ = std::max(greatest_change_, std::abs(force() - before));
+    greatest_ = std::max(greatest_, force());
+  }
+  double force() const { return pipeline_.report().tools.front().force_on_tool.norm(); }
+  // What friction holds back hangs on the way there, so forces at rest differ.
+  void expectHeld(double force_at_rest) {
+    EXPECT_NEAR(force(), force_at_rest, 0.06 * force_at_rest) << stamp_;
+  }
+  static double forceWithoutTime() {
+    Pipeline still(block("elastic", kCoarse), methodOf("elastic"),
+                   {withFriction(GetParam().friction, probe())});
+    walk(still, -0.001, kDepth);
+    return still.report().tools.front().force_on_tool.norm();
+  }
+
+  Pipeline pipeline_{inTime(block("elastic", kCoarse), GetParam().damping_time),
+                     methodOf("elastic"),
+                     {withFriction(GetParam().friction, probe())}};
+  std::mt19937 random_{1};
+  std::uniform_real_distribution<double> share_{0.0, 1.0};
+  double stamp_ = 0.0;            // s
+  double greatest_change_ = 0.0;  // of the force, from pose to pose (N)
+  double greatest_ = 0.0;         // N
+};
+
+TEST_P(UnevenPoses, AToolThatPressesIsHeldThroughASilenceAndLetGo) {
+  const double at_rest = forceWithoutTime();
+  move(-0.001, kDepth, 0.5);
+  move(kDepth, kDepth, 0.4);
+  expectHeld(at_rest);
+  greatest_change_ = 0.0;
+  move(kDepth, kDepth, 0.3);  // it does not tremble
+  EXPECT_LT(greatest_change_, 0.01 * at_rest);
+  stamp_ += 0.1;  // as long as a clock lets time go by in a silence
+  step(kDepth);
+  expectHeld(at_rest);
+  move(kDepth, kDepth, 0.3);
+  expectHeld(at_rest);
+  move(kDepth, -0.03, 0.05);
+  EXPECT_EQ(force(), 0.0);
+  move(-0.03, -0.03, 1.5);
+  EXPECT_EQ(force(), 0.0);
+  EXPECT_FALSE(pipeline_.tissue().isMoving());
+  EXPECT_LT(greatestDisplacement(pipeline_.tissue()), 1e-5);
+}
+
+// What presses harder than it will at rest is inertia and viscosity: no more than they ask for.
+TEST_P(UnevenPoses, AToolThatPressesEvenlyPressesEvenly) {
+  const double at_rest = forceWithoutTime();
+  move(-0.001, kDepth, 0.5);
+  EXPECT_LT(greatest_, 1.35 * at_rest);
+  EXPECT_LT(greatest_change_, 0.25 * at_rest);
+}
+
+// A bound on the time of an update that is over at once: each update makes one time step, whole.
+TEST_P(UnevenPoses, ThatAreLateComeToTheSameRest) {
+  pipeline_.setBudget(1e-9);
+  move(-0.001, kDepth, 0.3);
+  for (int i = 0; i < 300 && (i == 0 || pipeline_.tissue().isMoving()); ++i) {
+    stamp_ += 1.0 / kRate;
+    step(kDepth);
+  }
+  EXPECT_FALSE(pipeline_.tissue().isMoving());
+  EXPECT_TRUE(pipeline_.hasArrived());
+  expectHeld(forceWithoutTime());
+  move(kDepth, -0.03, 0.05);
+  for (int i = 0; i < 600 && (i == 0 || pipeline_.tissue().isMoving()); ++i) {
+    stamp_ += 1.0 / kRate;
+    step(-0.03);
+  }
+  EXPECT_EQ(force(), 0.0);
+  EXPECT_FALSE(pipeline_.tissue().isMoving());
+  EXPECT_LT(greatestDisplacement(pipeline_.tissue()), 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tissues, UnevenPoses,
+                         testing::Values(Case{0.05, 0.3}, Case{0.05, 0.0}, Case{0.01, 0.3},
+                                         Case{0.002, 0.3}),
+                         nameOf);
+
+// A block that hangs on its top above a table; what is cut off falls onto it.
+class CutAboveATable : public testing::Test {
+ protected:
+  static constexpr double kFall = 0.005;       // m
+  static constexpr double kCutHeight = 0.025;  // m
+  static constexpr double kStep = 0.005;       // s
+
+  static TissueConfig hanging() {
+    TissueConfig tissue = inTime(block("elastic", kCoarse), 0.02);
+    tissue.gravity = Vec3(0.0, 0.0, -kGravity);
+    tissue.fixed = {{Vec3(-1.0, -1.0, kTop - 1e-6), Vec3(1.0, 1.0, kTop + 1e-6)}};
+    return tissue;
+  }
+  static SupportConfig table() {
+    SupportConfig table{"table", planeOf(true), 0.3};
+    table.shape.pose.translation().z() = -kFall;
+    return table;
+  }
+  void SetUp() override {
+    pipeline_.settle();
+    ASSERT_EQ(pipeline_
+                  .cut({Vec3(-1.0, -1.0, kCutHeight), Vec3(1.0, -1.0, kCutHeight),
+                        Vec3(1.0, 1.0, kCutHeight), Vec3(-1.0, 1.0, kCutHeight)})
+                  .pieces,
+              2);
+  }
+  double lowest() const {
+    double lowest = kTop;
+    for (const Vec3& vertex : pipeline_.tissue().vertices()) lowest = std::min(lowest, vertex.z());
+    return lowest;
+  }
+  // Height of the cut piece's middle, as far as a corner of it tells.
+  double height() const { return pipeline_.tissue().nodePosition(0).z(); }
+
+  Pipeline pipeline_{hanging(), methodOf("elastic"), {}, {table()}};
+};
+
+TEST_F(CutAboveATable, TheFreePieceLandsAndRestsForNothing) {
+  const double start = height();
+  double after_landing = -kFall;
+  bool has_landed = false;
+  int steps = 0;
+  for (; steps < 1000 && (steps == 0 || pipeline_.tissue().isMoving()); ++steps) {
+    ASSERT_EQ(pipeline_.wait(kStep).status, SolveStatus::kOk) << steps;
+    ASSERT_GT(lowest(), -kFall - 0.05 * kCoarse) << steps;
+    has_landed = has_landed || pipeline_.forceBalance().supports.z() > 0.0;
+    if (has_landed) after_landing = std::max(after_landing, height());
+  }
+  ASSERT_FALSE(pipeline_.tissue().isMoving());
+  EXPECT_TRUE(has_landed);
+  EXPECT_LT(after_landing, start - 0.5 * kFall);  // it bounces back by less than half
+  EXPECT_NEAR(lowest(), -kFall, 0.01 * kCoarse);
+  const double weight = kGravity * 1000.0 * kWidth * kWidth * 0.02;  // parted in springs' middles
+  EXPECT_NEAR(pipeline_.forceBalance().supports.z(), weight, 0.3 * weight);
+  const ForceBalance balance = pipeline_.forceBalance();
+  EXPECT_LT(balance.unbalanced().norm(), 0.02 * weight);
+  const std::vector<Vec3> at_rest = pipeline_.tissue().state().displacement;
+  for (int i = 0; i < 200; ++i) {
+    pipeline_.wait(kStep);
+    ASSERT_EQ(pipeline_.report().substeps, 0);
+  }
+  EXPECT_EQ(pipeline_.tissue().state().displacement, at_rest);
+}
+
+}  // namespace
+}  // namespace robot_tissue
