@@ -83,8 +83,8 @@ robot_tissue_room(solvers/baselines/kernels
 robot_tissue_room(solvers/baselines
   USES base simd material loads solvers solvers/baselines/kernels
   FILES explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
-    relaxation_method.h soa_field.cpp soa_field.h tuning.h vbd_method.cpp vbd_method.h
-    xpbd_method.cpp xpbd_method.h)
+    relaxation_method.h relaxation_waves.cpp soa_field.cpp soa_field.h soa_sweeps.cpp tuning.h
+    vbd_method.cpp vbd_method.h xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue
   USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines

@@ -20,15 +20,6 @@ void requireFit(const Entry& entry, const std::string& method, const std::string
              " does not fit this model");
 }
 
-void requireSolvesInTime(const Entry& entry, const std::string& method) {
-  if (traitsOf(method).solves_in_time) return;
-  std::vector<std::string> fit;
-  for (const std::string& name : methodNames()) {
-    if (traitsOf(name).solves_in_time) fit.push_back(name);
-  }
-  entry.fail("with tissue.time must be " + joined(fit) + ": " + method + " has no time steps");
-}
-
 struct SolverReading {
   const TissueConfig& tissue;
   const SolverOverrides& overrides;
@@ -41,7 +32,6 @@ void readMethod(const Entry& entry, SolverReading& reading) {
   if (!method.given()) return;
   reading.solver.method = method.choice(methodNames(), {});
   requireFit(method, reading.solver.method, reading.tissue.model);
-  if (reading.tissue.time) requireSolvesInTime(method, reading.solver.method);
 }
 
 void readTolerance(const Entry& entry, SolverReading& reading) {

@@ -15,11 +15,10 @@ struct ModelTraits {
 };
 
 struct MethodTraits {
-  bool uses_tolerance = true;   // else it solves exactly
-  bool uses_threads = false;    // else one
-  bool turns_patches = true;    // that a force moves
-  bool solves_in_time = false;  // time steps
-  double factor_bytes = 0.0;    // of memory for n nodes, over n^(4/3): of a sparse factor
+  bool uses_tolerance = true;  // else it solves exactly
+  bool uses_threads = false;   // else one
+  bool turns_patches = true;   // that a force moves
+  double factor_bytes = 0.0;   // of memory for n nodes, over n^(4/3): of a sparse factor
 };
 
 const std::vector<std::string>& modelNames();

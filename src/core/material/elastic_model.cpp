@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "config/material.h"
 #include "material/cell_modes.h"
@@ -189,12 +190,9 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
 
 std::vector<Vec3> ElasticModel::cellForces(const LatticeState& state) const {
   std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
-  for (const Cell& cell : state.cells->all()) {
-    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell));
-    for (int corner = 0; corner < kCorners; ++corner) {
-      forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
-    }
-  }
+  std::vector<int> all(state.cells->all().size());
+  std::iota(all.begin(), all.end(), 0);
+  addElasticForces(state, all, forces);
   return forces;
 }
 
@@ -250,6 +248,17 @@ void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& 
       for (int corner = 0; corner < kCorners; ++corner) {
         forces[at(cell.nodes[at(corner)])] -= squeezed.gradient(corner);
       }
+    }
+  }
+}
+
+void ElasticModel::addElasticForces(const LatticeState& state, const std::vector<int>& cells,
+                                    std::vector<Vec3>& forces) const {
+  for (const int index : cells) {
+    const Cell& cell = state.cells->all()[at(index)];
+    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
     }
   }
 }

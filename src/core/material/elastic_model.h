@@ -31,6 +31,9 @@ class ElasticModel : public EnergyModel {
   NodeBalance nodeBalance(const LatticeState& state, int node) const override;
   void addForces(const LatticeState& state, const std::vector<int>& cells,
                  std::vector<Vec3>& forces) const override;
+  // The same without gravity and time step.
+  void addElasticForces(const LatticeState& state, const std::vector<int>& cells,
+                        std::vector<Vec3>& forces) const;
   CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
   double inertialForceNorm(const LatticeState& state) const override;

@@ -34,6 +34,10 @@ class SolverMethod {
   // method has a faster way than the model; empty: it has none.
   virtual std::vector<Vec3> cellForces(const LatticeState&) { return {}; }
 
+  // Of the nodes at the end of the last time step (m/s), where the method goes through it in steps
+  // of its own; null: they follow from the shape.
+  virtual const std::vector<Vec3>* velocities() const { return nullptr; }
+
   // Drops what it has learned from earlier solves: the next answer depends on its arguments alone.
   virtual void forget() {}
   // Whether there is anything to be dropped.

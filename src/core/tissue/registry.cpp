@@ -128,9 +128,9 @@ const std::vector<ModelEntry>& models() {
 // reach the ghosts that cuts give the cells.
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> all = {
-      {"layered", makeLayered, {"elastic"}, {true, true, true, true, 0.0}},
-      {"newton", makeNewton, {"elastic"}, {false, false, true, true, tuning::kFactorBytes}},
-      {"paper", makePaper, {"six_spring"}, {true, false, false, false, 0.0}},
+      {"layered", makeLayered, {"elastic"}, {true, true, true, 0.0}},
+      {"newton", makeNewton, {"elastic"}, {false, false, true, tuning::kFactorBytes}},
+      {"paper", makePaper, {"six_spring"}, {true, false, false, 0.0}},
       {"vbd", makeVbd, {"elastic"}, {}},
       {"xpbd", makeXpbd, {"elastic"}, {}},
       {"explicit", makeExplicit, {"elastic"}, {}},

@@ -72,6 +72,9 @@ const InertialTerm& TimeIntegrator::begin(const LatticeState& state,
   const double h = duration_;
   term_.elastic_scale = stiffness_.elastic_scale;
   term_.per_mass = stiffness_.per_mass;
+  term_.duration = h;
+  term_.damping_time = damping_time_;
+  term_.velocity = v;
   term_.free_motion.resize(nodes);
   term_.force.resize(nodes);
   double way = 0.0, displacement = 0.0;
@@ -112,9 +115,16 @@ Vec3 TimeIntegrator::lead(const Vec3& gravity) const {
   return (1.0 / massFactor() - 0.5) * duration_ * duration_ * gravity;
 }
 
-void TimeIntegrator::end(const LatticeState& state) {
+void TimeIntegrator::end(const LatticeState& state, const std::vector<Vec3>* velocities) {
   NodeMotion motion = *motion_;
   const double h = duration_;
+  if (velocities != nullptr && velocities->size() == before_.size()) {
+    for (std::size_t node = 0; node < before_.size(); ++node) {
+      motion.acceleration[node] = ((*velocities)[node] - motion.velocity[node]) / h;
+    }
+    motion.velocity = *velocities;
+    return judge(state, motion);
+  }
   for (std::size_t node = 0; node < before_.size(); ++node) {
     const Vec3 by_forces = state.displacement[node] - term_.free_motion[node];
     Vec3 &v = motion.velocity[node], &a = motion.acceleration[node];

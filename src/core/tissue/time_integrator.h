@@ -81,8 +81,9 @@ class TimeIntegrator {
   // farther the step takes it than it falls.
   Vec3 drift(const std::vector<int>& nodes, const LatticeState& state, const Vec3& gravity) const;
   Vec3 lead(const Vec3& gravity) const;
-  // The step ended in that shape; where nothing moves any more, the nodes are at rest.
-  void end(const LatticeState& state);
+  // The step ended in that shape, and with these velocities (m/s) where the method has found them
+  // itself; where nothing moves any more, the nodes are at rest.
+  void end(const LatticeState& state, const std::vector<Vec3>* velocities);
   // Estimated error of the last step over the one allowed.
   double errorRatio() const { return error_ratio_; }
 

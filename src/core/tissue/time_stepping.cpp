@@ -48,7 +48,7 @@ void Tissue::endTimeStep() {
   for (const std::size_t piece : falling) {
     shift(free_pieces_[piece], -time_->drift(free_pieces_[piece], state_, gravity_));
   }
-  time_->end(state_);
+  time_->end(state_, method_->velocities());
   if (!time_->moves()) return;
   for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(gravity_));
 }

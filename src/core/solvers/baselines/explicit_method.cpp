@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/baselines/soa_field.h"
 #include "solvers/baselines/tuning.h"
@@ -16,15 +17,14 @@ constexpr int kSoftness = 4;                              // the first of three
 
 ExplicitMethod::ExplicitMethod(const Lattice& lattice, const ElasticModel& model,
                                const RelaxationOptions& options)
-    : RelaxationMethod(lattice, model, options) {}
+    : RelaxationMethod(lattice, model, options, TimeSteps::kGoneThrough) {}
 
 void ExplicitMethod::forget() {
   RelaxationMethod::forget();
   cells_.reset();
 }
 
-void ExplicitMethod::begin(int care) {
-  patch_steps_.assign(shape_.patches.size(), {});
+void ExplicitMethod::measureContacts() {
   contact_stiffness_.assign(shape_.state.displacement.size(), 0.0);
   for (const LoadingPatch& patch : shape_.patches) {
     for (const ContactSpring& spring : patch.contacts) {
@@ -34,6 +34,11 @@ void ExplicitMethod::begin(int care) {
       }
     }
   }
+}
+
+void ExplicitMethod::begin(int care) {
+  patch_steps_.assign(shape_.patches.size(), {});
+  measureContacts();
   weigh();
   if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
   cells_ = shape_.state.cells;
@@ -157,6 +162,137 @@ double ExplicitMethod::takePower() {
     for (int slot = 0; slot < size; ++slot) motions[slot] *= probe / greatest;
   }
   return std::sqrt(after / before);
+}
+
+// Per node: N, m, m/s, kg.
+struct ExplicitMethod::Passage {
+  const InertialTerm& term;
+  std::vector<double> masses;
+  std::vector<Vec3> before,
+      end;  // of the time step; what is held goes evenly from one to the other
+  std::vector<Vec3> force, elastic_before;
+  double step = 0.0;  // s
+
+  bool isDamped() const { return term.damping_time > 0.0; }
+};
+
+SolveStatus ExplicitMethod::goThrough(int& steps) {
+  Passage passage{*model_.inertia(), model_.nodeMasses(*shape_.state.cells), {}, {}, {}, {}};
+  const double duration = passage.term.duration;
+  std::vector<Vec3>& place = shape_.state.displacement;
+  passage.end = place;
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    place[node] = passage.term.free_motion[node] - duration * passage.term.velocity[node];
+  }
+  passage.before = place;
+  field_->takeAll(shape_.state);
+  field_->findSqueezed();
+  measureContacts();
+  weigh();
+  if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
+  cells_ = shape_.state.cells;
+  held_ = hold_.dirichletMask();
+  const double longest = longestStableStep(passage.masses, passage.term.damping_time);
+  const double count = std::max(1.0, std::ceil(duration / longest));
+  SolveStatus status = SolveStatus::kUnconverged;
+  if (count <= options_.max_iterations) {
+    steps = static_cast<int>(count);
+    passage.step = duration / count;
+    status = pass(passage, steps);
+  }
+  if (status != SolveStatus::kUnconverged) return status;
+  velocity_.assign(place.size(), Vec3::Zero());
+  place = passage.before;
+  field_->takeAll(shape_.state);
+  return status;
+}
+
+SolveStatus ExplicitMethod::pass(Passage& passage, int steps) {
+  std::vector<Vec3>& place = shape_.state.displacement;
+  velocity_ = passage.term.velocity;
+  if (passage.isDamped()) {  // forces a step ago
+    for (std::size_t node = 0; node < place.size(); ++node) {
+      place[node] -= passage.step * velocity_[node];
+    }
+    field_->takeAll(shape_.state);
+    findForcesOn(passage);
+    place = passage.before;
+    field_->takeAll(shape_.state);
+  }
+  findForcesOn(passage);
+  accelerate(passage, 0.5 * passage.step);
+  for (int step = 1; step <= steps; ++step) {
+    const double share = static_cast<double>(step) / steps;
+    for (std::size_t node = 0; node < place.size(); ++node) {
+      const int index = static_cast<int>(node);
+      const Vec3 held = passage.before[node] + share * (passage.end[node] - passage.before[node]);
+      const Vec3 free = place[node] + passage.step * velocity_[node];
+      if (hold_.carriers()[node] >= 0) continue;  // moved with its patch
+      place[node] = held + hold_.freePart(index, free - held);
+    }
+    field_->takeAll(shape_.state);
+    if (step % tuning::kWeighings == 0) field_->findSqueezed();
+    findForcesOn(passage);
+    accelerate(passage, step < steps ? passage.step : 0.5 * passage.step);
+    if (isLate() && step < steps) return SolveStatus::kLate;
+  }
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    if (!place[node].allFinite()) return SolveStatus::kUnconverged;
+    const int index = static_cast<int>(node);
+    const Vec3 held = (place[node] - passage.before[node]) / passage.term.duration;
+    velocity_[node] = held + hold_.freePart(index, velocity_[node] - held);
+  }
+  return SolveStatus::kOk;
+}
+
+// Stress is elastic and damping_time times its rate, as the last step had it. Patches by force have
+// no mass: they go to where their forces balance while the nodes around them stand.
+void ExplicitMethod::findForcesOn(Passage& passage) {
+  RelaxationMethod::findForces();
+  for (std::size_t index = 0; index < shape_.patches.size(); ++index) {
+    if (byForce(shape_.patches[index])) movePatchBy(index, patchAnswer(index));
+  }
+  const std::vector<Vec3>& place = shape_.state.displacement;
+  passage.force.resize(place.size());
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    passage.force[node] = field_->forceOn(static_cast<int>(node));
+  }
+  if (!passage.isDamped()) return;
+  std::vector<Vec3> of_contacts(place.size(), Vec3::Zero());
+  for (const LoadingPatch& patch : shape_.patches) addContactForces(patch, place, of_contacts);
+  const bool first = passage.elastic_before.empty();
+  passage.elastic_before.resize(place.size());
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    const Vec3 elastic = passage.force[node] - of_contacts[node];
+    const Vec3 rate = (elastic - passage.elastic_before[node]) / passage.step;
+    if (!first) passage.force[node] += passage.term.damping_time * rate;
+    passage.elastic_before[node] = elastic;
+  }
+}
+
+void ExplicitMethod::accelerate(Passage& passage, double step) {
+  for (std::size_t node = 0; node < velocity_.size(); ++node) {
+    if (passage.masses[node] <= 0.0) continue;
+    const Vec3 force = hold_.freePart(static_cast<int>(node), passage.force[node]);
+    velocity_[node] += step / passage.masses[node] * force;
+  }
+}
+
+// Of no frequency that nodes' stiffness over their masses, and the greatest eigenvalue of stiffness
+// over masses that are the nodes' stiffness, allow (s).
+double ExplicitMethod::longestStableStep(const std::vector<double>& masses,
+                                         double damping_time) const {
+  double greatest = 0.0;
+  for (std::size_t node = 0; node < masses.size(); ++node) {
+    const int slot = field_->slotOf(static_cast<int>(node));
+    const double softness = static_cast<double>(field_->spare(kSoftness)[0][slot]);
+    if (softness <= 0.0 || masses[node] <= 0.0) continue;
+    greatest = std::max(greatest, field_->stiffnessUnit() / softness / masses[node]);
+  }
+  const double frequency = std::sqrt(fastest_ * greatest);
+  if (!(frequency > 0.0)) return std::numeric_limits<double>::infinity();
+  const double damping = 0.5 * damping_time * frequency;
+  return tuning::kOfStable * 2.0 / frequency * (std::sqrt(1.0 + damping * damping) - damping);
 }
 
 // Of an error in the slowest wave a step leaves (1 - s) / (1 + s), s its frequency a step where the

@@ -2,6 +2,11 @@
 // transient analysis; Papadrakakis 1981): explicit time steps without physical mass or time. Each
 // node has the mass that puts it at the limit of stability, and the damping is critical for the
 // frequency that the motion shows (Rayleigh's quotient), so that it dies out at the best rate.
+//
+// A time step is gone through with physical masses by central differences in Verlet's form, in as
+// many steps as stability asks for: with w the greatest frequency, of a step h
+//
+//   h <= 2 / w ((1 + s^2)^(1/2) - s),   s = damping_time w / 2 (Belytschko, Liu and Moran 2000)
 #pragma once
 
 #include "solvers/baselines/relaxation_method.h"
@@ -15,12 +20,25 @@ class ExplicitMethod : public RelaxationMethod {
 
   void forget() override;
 
+  const std::vector<Vec3>* velocities() const override {
+    return velocity_.empty() ? nullptr : &velocity_;
+  }
+
  private:
   void begin(int care) override;
+  SolveStatus goThrough(int& steps) override;
   void iterate() override;
   int stride() const override { return 8; }
   double shrinkage() const override;
 
+  // One time step on its way.
+  struct Passage;
+  SolveStatus pass(Passage& passage, int steps);
+  void accelerate(Passage& passage, double step);
+  void findForcesOn(Passage& passage);
+  double longestStableStep(const std::vector<double>& masses, double damping_time) const;
+
+  void measureContacts();
   void weigh();
   void findFastest();
   double takePower();
@@ -31,6 +49,7 @@ class ExplicitMethod : public RelaxationMethod {
   int steps_ = 0;         // since begin()
   std::vector<Motion::OfPatch> patch_steps_;
   std::vector<double> contact_stiffness_;  // per node, all contacts closed (N/m)
+  std::vector<Vec3> velocity_;             // at the end of the last time step (m/s)
   std::vector<std::uint8_t> held_;         // what fastest_ was found for
   std::shared_ptr<const CellSet> cells_;
 };

@@ -14,8 +14,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kPi = 3.14159265358979;
-constexpr int kMark = 0, kBest = 1, kLooked = 6, kLookedForce = 7;  // spare arrays of the field
+constexpr int kMark = 0, kBest = 1;  // spare arrays of the field; 6 and 7: relaxation_waves.cpp
 
 }  // namespace
 
@@ -35,12 +34,16 @@ struct RelaxationMethod::Course {
 };
 
 RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& model,
-                                   const RelaxationOptions& options)
+                                   const RelaxationOptions& options, TimeSteps time_steps)
     : lattice_(lattice),
       model_(model),
       options_(options),
       hold_(lattice, model),
-      field_(std::make_unique<SoaField>(lattice, model)) {
+      field_(std::make_unique<SoaField>(lattice, model,
+                                        time_steps == TimeSteps::kSolved
+                                            ? SoaField::Inertia::kOfTimeSteps
+                                            : SoaField::Inertia::kNone)),
+      time_steps_(time_steps) {
   const double count = static_cast<double>(lattice.cells().size());
   double softness = 0.0;
   for (const Cell& cell : lattice.cells()) {
@@ -48,6 +51,7 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
     mean_.shear += moduli.shear / count;
     mean_.bulk += moduli.bulk / count;
     softness += cell.share() / moduli.shear / count;
+    mean_density_ += kCorners * model.cornerMass(cell) / (count * std::pow(lattice.spacing(), 3));
   }
   soft_shear_ = 1.0 / softness;
 }
@@ -70,10 +74,14 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
   measurePatches();
   if (depth_of_ != shape_.state.cells) findDepth();
   depth_of_ = shape_.state.cells;
-  report.status = run(course);
+  findWave();
+  const bool goes_through = model_.inertia() != nullptr && time_steps_ == TimeSteps::kGoneThrough;
+  report.status = goes_through ? goThrough(course.iterations) : run(course);
+  if (goes_through) course.error = 0.0;
   if (course.iterations > 0) field_->give(shape_.state);
   findForces();
   left_ = shape_.state.displacement;
+  if (model_.inertia() != nullptr) left_.clear();  // at rest it has another balance
   left_length_ = correctionNorm();
   left_error_ = course.error;
   describe(course, report);
@@ -86,8 +94,8 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
 SolveStatus RelaxationMethod::run(Course& course) {
   findForces();
   keep(course);
-  const bool as_left =
-      shape_.state.displacement == left_ && course.least <= tuning::kSame * left_length_;
+  const bool as_left = model_.inertia() == nullptr && shape_.state.displacement == left_ &&
+                       course.least <= tuning::kSame * left_length_;
   if (as_left) course.error = left_error_;
   if (isRounding(course.least)) course.error = std::min(relative(course.least), options_.tolerance);
   if (course.error <= options_.tolerance) return SolveStatus::kOk;
@@ -160,54 +168,6 @@ double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
   return last * std::max(seen, tuning::kShareOfEnd * in_the_end / (1.0 - in_the_end));
 }
 
-// Depth: cells from what holds the tissue (fixed nodes; without any, hard nodes of the first patch
-// that has some) to what is farthest from it, breadth first. It tells how slow the slowest wave is.
-void RelaxationMethod::findDepth() {
-  const CellSet& cells = *shape_.state.cells;
-  std::vector<int> layer, next;
-  std::vector<std::uint8_t> seen(at(cells.nodeCount()), 0);
-  for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(lattice_, cells, node)) layer.push_back(node);
-  }
-  for (std::size_t patch = 0; layer.empty() && patch < shape_.patches.size(); ++patch) {
-    layer = hold_.hardOf(patch);
-  }
-  for (const int node : layer) seen[at(node)] = 1;
-  for (depth_ = 0.0; !layer.empty(); layer.swap(next)) {
-    next.clear();
-    for (const int node : layer) {
-      for (auto met = cells.first(node); met != cells.last(node); ++met) {
-        for (const int other : cells.all()[at(met->cell)].nodes) {
-          if (seen[at(other)] != 0) continue;
-          seen[at(other)] = 1;
-          next.push_back(other);
-        }
-      }
-    }
-    if (!next.empty()) depth_ += 1.0;
-  }
-  depth_ = std::max(depth_, 1.0);
-  // Eigenvalue of a shear wave with a quarter of its length in the depth, over a node's stiffness:
-  // mu h (pi / 2 depth)^2 / (h (17/6 mu + K/2)), as ElasticModel::nodeStiffness is inside the
-  // tissue. Where moduli differ: the harmonic mean of mu above, as soft cells move most; plain
-  // means below.
-  const double wave = soft_shear_ * std::pow(0.5 * kPi / depth_, 2);
-  shear_wave_ = wave / (17.0 / 6.0 * mean_.shear + 0.5 * mean_.bulk);
-}
-
-// Rayleigh's quotient of the way d since forces were looked at before, d.(change of force) / d.D d
-// with D the nodes' stiffness: the eigenvalue of the wave that the shape still moves in.
-void RelaxationMethod::lookAtWave(WaveLook look) {
-  QuotientSums sums;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    addQuotient(field_->size(), field_->moved()[axis], field_->force()[axis], field_->compliance(),
-                field_->free()[axis], field_->spare(kLooked)[axis],
-                field_->spare(kLookedForce)[axis], sums);
-  }
-  if (look == WaveLook::kFirst || !(sums.work > 0.0 && sums.mass > 0.0)) return;
-  seen_wave_ = std::min(seen_wave_, std::max(sums.work / sums.mass, tuning::kLeastWave));
-}
-
 void RelaxationMethod::findForces() {
   field_->giveWatched(shape_.state);
   field_->findForces(shape_.state);
@@ -250,6 +210,7 @@ double RelaxationMethod::relative(double length) const {
 }
 
 double RelaxationMethod::movedLength() const {
+  if (model_.inertia() != nullptr) return std::max(wayByForces(), model_.inertia()->least_way);
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     squared += squaredProduct(field_->moved()[axis], field_->free()[axis], field_->free()[axis],

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -29,8 +30,11 @@ struct RelaxationOptions {
 
 class RelaxationMethod : public SolverMethod {
  public:
+  // How a time step is solved: as the least energy of its end, or in shorter steps of its own.
+  enum class TimeSteps { kSolved, kGoneThrough };
+
   RelaxationMethod(const Lattice& lattice, const ElasticModel& model,
-                   const RelaxationOptions& options);
+                   const RelaxationOptions& options, TimeSteps time_steps = TimeSteps::kSolved);
   ~RelaxationMethod() override;
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
@@ -58,12 +62,17 @@ class RelaxationMethod : public SolverMethod {
   // Share of an error that an iteration leaves in the end.
   virtual double shrinkage() const = 0;
 
-  // Cells from what holds the tissue to what is farthest from it.
-  double depth() const { return depth_; }
+  // kGoneThrough: from the shape at the step's start to that at its end; how many steps were made.
+  virtual SolveStatus goThrough(int& /*steps*/) { return SolveStatus::kUnconverged; }
+  bool isLate() const { return options_.max_ms > 0.0 && elapsedMs() > options_.max_ms; }
+
+  // Cells from what holds the tissue to what is farthest from it; in a time step, as far as it
+  // is felt within it.
+  double depth() const { return depth_ * std::sqrt(shear_wave_ / wave_); }
   double poissonRatio() const { return robot_tissue::poissonRatio(mean_); }
   // Stiffness against the slowest motion, over that of nodes alone: of a shear wave of four times
   // the depth, or what the solve has shown, if that is less.
-  double slowestWave() const { return std::min(shear_wave_, seen_wave_); }
+  double slowestWave() const { return std::min(wave_, seen_wave_); }
 
   // Of the free nodes' displacement, L2 (m).
   double movedLength() const;
@@ -90,6 +99,8 @@ class RelaxationMethod : public SolverMethod {
   bool look(Course& course);
   double lengthToGo(const std::vector<double>& ways) const;
   void findDepth();
+  void findWave();
+  double wayByForces() const;
   void lookAtWave(WaveLook look);
   double wayFromMark();
   double correctionNorm() const;
@@ -108,6 +119,9 @@ class RelaxationMethod : public SolverMethod {
   double soft_shear_ = 0.0;  // harmonic mean (Pa)
   double depth_ = 1.0;
   double shear_wave_ = 1.0;
+  double wave_ = 1.0;          // with the inertia of a time step
+  double mean_density_ = 0.0;  // kg/m^3
+  TimeSteps time_steps_;
   double seen_wave_ = 1.0;
   std::shared_ptr<const CellSet> depth_of_;
   double left_length_ = 0.0;  // its correctionNorm (m)

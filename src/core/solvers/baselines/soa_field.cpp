@@ -4,16 +4,9 @@
 #include <new>
 #include <utility>
 
-#include "material/elastic_law.h"
-#include "solvers/baselines/tuning.h"
-
 namespace robot_tissue {
 namespace {
 
-constexpr float kSqueezed = static_cast<float>(elastic_law::kSqueezed);
-// Of the colors: of all orders one of those whose over-relaxed sweeps converge fastest (over waves
-// in an endless lattice at rest; doc/baselines.md).
-constexpr int kOrder[kColors] = {0, 1, 7, 2, 5, 3, 6, 4};
 constexpr int kArrays = 3 * (5 + SoaField::kSpares) + 4;
 constexpr std::size_t kAlignment = 4096;
 // Blocks between arrays beyond whole pages: what stands in the same place of several arrays must
@@ -27,14 +20,25 @@ bool isLane(const CellSet& cells, const Cell& cell) {
 
 }  // namespace
 
-SoaField::SoaField(const Lattice& lattice, const ElasticModel& model)
-    : lattice_(lattice), model_(model), grid_(lattice), unit_(4.0 * lattice.spacing()) {
+SoaField::SoaField(const Lattice& lattice, const ElasticModel& model, Inertia inertia)
+    : lattice_(lattice),
+      model_(model),
+      grid_(lattice),
+      unit_(4.0 * lattice.spacing()),
+      takes_inertia_(inertia) {
   for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
-    modulus_ = std::max({modulus_, moduli.shear, moduli.bulk});
+    rest_modulus_ = std::max({rest_modulus_, moduli.shear, moduli.bulk});
     stiffens_ = stiffens_ || moduli.stiffening > 0.0;
   }
-  force_unit_ = modulus_ * lattice.spacing() * lattice.spacing() / 4.0;
+  takeInertia();
+}
+
+// Moduli are stored over the greatest: what a time step scales all of them by is in the units.
+void SoaField::takeInertia() {
+  inertia_ = takes_inertia_ == Inertia::kOfTimeSteps ? model_.inertia() : nullptr;
+  modulus_ = rest_modulus_ * (inertia_ == nullptr ? 1.0 : inertia_->elastic_scale);
+  force_unit_ = modulus_ * lattice_.spacing() * lattice_.spacing() / 4.0;
 }
 
 void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_hold) {
@@ -45,8 +49,13 @@ void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_h
     loads.push_back(-1);
   }
   const bool same_cells = cells_ == shape.state.cells;
-  const bool same = same_cells && held_ == patch_hold.dirichletMask() && loads_ == loads;
+  const bool was_in_time = inertia_ != nullptr;
+  takeInertia();
+  const bool in_time = inertia_ != nullptr;
+  const bool same = same_cells && held_ == patch_hold.dirichletMask() && loads_ == loads &&
+                    !in_time && !was_in_time;
   if (!same_cells) layOut(shape);
+  if (!same_cells || in_time || was_in_time) findCompliance(shape);
   if (!same) hold(shape, patch_hold);
   held_ = patch_hold.dirichletMask();
   loads_ = std::move(loads);
@@ -62,7 +71,8 @@ void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_h
 void SoaField::allocate() {
   constexpr int kPage = static_cast<int>(kAlignment / sizeof(float));
   const int pitch = (size_ + kPage - 1) / kPage * kPage + kApart * kLanes;
-  const std::size_t floats = at(pitch) * at(kArrays + (stiffens_ ? 1 : 0));
+  const int more = (stiffens_ ? 1 : 0) + (model_.movesInTime() ? 3 : 0);
+  const std::size_t floats = at(pitch) * at(kArrays + more);
   const std::size_t bytes = sizeof(float) * floats;
   buffer_.reset(static_cast<float*>(
       std::aligned_alloc(kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment)));
@@ -77,8 +87,8 @@ void SoaField::allocate() {
     for (float*& array : *arrays) take_array(array);
   }
   for (float** array : {&shear_, &bulk_, &compliance_, &tightest_}) take_array(*array);
-  for (Arrays& arrays : spare_) {
-    for (float*& array : arrays) take_array(array);
+  for (int spare = 0; spare < kSpares + (model_.movesInTime() ? 1 : 0); ++spare) {
+    for (float*& array : spare_[at(spare)]) take_array(array);
   }
   if (stiffens_) take_array(stiffening_);
 }
@@ -91,10 +101,6 @@ void SoaField::layOut(const ConstrainedState& shape) {
   for (int node = 0; node < cells_->nodeCount(); ++node) {
     slots_.push_back(cells_->isGhost(node) ? grid_.ghostSlot(node - cells_->latticeNodeCount())
                                            : grid_.slotAt(lattice_.gridIndex(node)));
-    const double stiffness = model_.nodeStiffness(shape.state, node).mean();
-    if (stiffness > 0.0) {
-      compliance_[slots_.back()] = static_cast<float>(stiffnessUnit() / stiffness);
-    }
   }
   lane_cells_.clear();
   odd_cells_.clear();
@@ -110,6 +116,19 @@ void SoaField::layOut(const ConstrainedState& shape) {
   springs_of_block_.assign(at(size_ / kLanes), -1);
 }
 
+void SoaField::findCompliance(const ConstrainedState& shape) {
+  const std::vector<double> masses =
+      inertia_ == nullptr ? std::vector<double>() : model_.nodeMasses(*cells_);
+  for (std::size_t node = 0; node < slots_.size(); ++node) {
+    double stiffness = model_.nodeStiffness(shape.state, static_cast<int>(node)).mean();
+    if (inertia_ != nullptr) {
+      stiffness = inertia_->elastic_scale * stiffness + inertia_->per_mass * masses[node];
+    }
+    if (stiffness <= 0.0) continue;
+    compliance_[slots_[node]] = static_cast<float>(stiffnessUnit() / stiffness);
+  }
+}
+
 void SoaField::hold(const ConstrainedState& shape, const DofConstraints& patch_hold) {
   movable_.clear();
   for (std::size_t node = 0; node < slots_.size(); ++node) {
@@ -123,14 +142,17 @@ void SoaField::hold(const ConstrainedState& shape, const DofConstraints& patch_h
   }
   std::fill(springs_of_block_.begin(), springs_of_block_.end(), -1);
   springs_.clear();
+  const auto have_springs = [&](int node) {
+    int& place = springs_of_block_[at(slotOf(node) / kLanes)];
+    if (place >= 0) return;
+    place = static_cast<int>(springs_.size());
+    springs_.emplace_back();
+  };
   for (const LoadingPatch& patch : shape.patches) {
-    for (const RimSpring& spring : patch.rim) {
-      int& place = springs_of_block_[at(slotOf(spring.node) / kLanes)];
-      if (place >= 0) continue;
-      place = static_cast<int>(springs_.size());
-      springs_.emplace_back();
-    }
+    for (const RimSpring& spring : patch.rim) have_springs(spring.node);
   }
+  if (inertia_ == nullptr) return;
+  for (const int node : all_) have_springs(node);
 }
 
 void SoaField::take(const LatticeState& state, const std::vector<int>& nodes) {
@@ -152,10 +174,19 @@ void SoaField::give(const std::vector<int>& nodes, LatticeState& state) const {
   }
 }
 
-// A rim spring's force K (anchor - u) is a constant force K anchor and a spring K to rest.
+// A rim spring's force K (anchor - u) is a constant force K anchor and a spring K to rest. So is
+// inertia: its spring is that of the node's mass.
 void SoaField::takeRims(const ConstrainedState& shape) {
   const double stiffness_unit = stiffnessUnit();
   for (SoaSprings& springs : springs_) springs = SoaSprings();
+  for (std::size_t node = 0; inertia_ != nullptr && node < slots_.size(); ++node) {
+    const int slot = slots_[node];
+    SoaSprings& springs = springs_[at(springs_of_block_[at(slot / kLanes)])];
+    const double stiffness = inertia_->per_mass * lane_masses_[node];
+    for (int axis = 0; axis < 3; ++axis) {
+      springs.of[axis][slot % kLanes] += static_cast<float>(stiffness / stiffness_unit);
+    }
+  }
   for (const LoadingPatch& patch : shape.patches) {
     for (const RimSpring& spring : patch.rim) {
       const Vec3 weight = weight_[at(spring.node)];
@@ -182,44 +213,26 @@ void SoaField::takeRims(const ConstrainedState& shape) {
   }
 }
 
-bool SoaField::findSqueezed() {
-  const SoaArrays arrays = lanes(free_);
-  bool unexpected = false;
-  std::fill(squeezed_nodes_.begin(), squeezed_nodes_.end(), 0);
-  for (int color = 0; color < kColors; ++color) {
-    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
-    for (const int block : cell_blocks_[at(color)]) {
-      squeezeOfBlock(arrays, above, block, tightest_);
-      const auto tightest = std::min_element(tightest_ + block, tightest_ + block + kLanes);
-      std::uint8_t& squeezed = squeezed_cells_[at(block / kLanes)];
-      unexpected = unexpected || (squeezed == 0 && *tightest < kSqueezed);
-      squeezed = *tightest < tuning::kSoonSqueezed ? 1 : 0;
-      if (squeezed == 0) continue;
-      for (const int corner : above.corner) {
-        squeezed_nodes_[at((block + corner) / kLanes)] = 1;
-        squeezed_nodes_[at((block + corner + kLanes - 1) / kLanes)] = 1;
-      }
-    }
-  }
-  return unexpected;
-}
-
 // Sorts cells and nodes into those that the vector kernels do and the odd ones, which are done one
 // by one: parts of cut cells, and nodes in contact or in cells that the kernels do not do.
 void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patch_hold) {
   std::vector<std::uint8_t> has_cell(at(size_), 0), has_node(at(size_), 0);
   std::vector<std::uint8_t> odd(slots_.size(), 0);
   std::fill(scratch_.begin(), scratch_.end(), Vec3::Zero());
+  if (inertia_ != nullptr) scratch_ = inertia_->force;
+  lane_masses_.assign(inertia_ == nullptr ? 0 : slots_.size(), 0.0);
   for (const int index : lane_cells_) {
     const Cell& cell = cells_->all()[at(index)];
     const int slot = slotOf(cell.nodes[0]);
     const Moduli moduli = model_.cellModuli(cell);
-    shear_[slot] = static_cast<float>(moduli.shear / modulus_);
-    bulk_[slot] = static_cast<float>(moduli.bulk / modulus_);
+    shear_[slot] = static_cast<float>(moduli.shear / rest_modulus_);
+    bulk_[slot] = static_cast<float>(moduli.bulk / rest_modulus_);
     if (stiffens_) stiffening_[slot] = static_cast<float>(moduli.stiffening);
     has_cell[at(slot)] = 1;
     const Vec3 weight = model_.cornerWeight(cell);
     for (const int node : cell.nodes) scratch_[at(node)] += weight;
+    if (inertia_ == nullptr) continue;
+    for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell);
   }
   for (const int index : odd_cells_) {
     for (const int node : cells_->all()[at(index)].nodes) odd[at(node)] = 1;
@@ -245,6 +258,13 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
   }
   takeRims(shape);
   watch(shape, patch_hold);
+  if (inertia_ == nullptr) return;
+  for (std::size_t node = 0; node < slots_.size(); ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double moved = inertia_->free_motion[node][static_cast<Eigen::Index>(axis)];
+      spare_[kFreeMotion][axis][slots_[node]] = static_cast<float>(moved / unit_);
+    }
+  }
 }
 
 std::vector<int> SoaField::blocksWith(const std::vector<std::uint8_t>& slots, int color) const {
@@ -281,93 +301,6 @@ void SoaField::watch(const ConstrainedState& shape, const DofConstraints& patch_
   watched_.clear();
   for (std::size_t node = 0; node < watched.size(); ++node) {
     if (watched[node] != 0) watched_.push_back(static_cast<int>(node));
-  }
-}
-
-SoaArrays SoaField::lanes(const Arrays& free) const {
-  SoaArrays lanes{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lanes.moved[axis] = moved_[axis];
-    lanes.load[axis] = load_[axis];
-    lanes.free[axis] = free[axis];
-  }
-  lanes.shear = shear_;
-  lanes.bulk = bulk_;
-  lanes.stiffening = stiffening_;
-  return lanes;
-}
-
-void SoaField::relax(float relaxation, float most) {
-  const SoaArrays arrays = lanes(lane_free_);
-  for (const int color : kOrder) {
-    for (const int block : node_blocks_[at(color)]) {
-      const int springs = springs_of_block_[at(block / kLanes)];
-      relaxBlock(arrays, grid_.around(color), block, springs < 0 ? nullptr : &springs_[at(springs)],
-                 squeezed_nodes_[at(block / kLanes)] != 0, relaxation, most);
-    }
-  }
-}
-
-void SoaField::findSoftness(float* softness) const {
-  const SoaArrays arrays = lanes(lane_free_);
-  for (int color = 0; color < kColors; ++color) {
-    for (const int block : node_blocks_[at(color)]) {
-      const int springs = springs_of_block_[at(block / kLanes)];
-      softnessOfBlock(arrays, grid_.around(color), block,
-                      springs < 0 ? nullptr : &springs_[at(springs)],
-                      squeezed_nodes_[at(block / kLanes)] != 0, softness);
-    }
-  }
-}
-
-void SoaField::project(const Arrays& mobility) {
-  const SoaArrays arrays = lanes(free_);
-  for (int color = 0; color < kColors; ++color) {
-    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
-    for (const int block : cell_blocks_[at(color)]) {
-      projectBlock(arrays, mobility.data(), above, block, squeezed_cells_[at(block / kLanes)] != 0);
-    }
-  }
-}
-
-void SoaField::findForces(const LatticeState& state) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::copy(load_[axis], load_[axis] + size_, force_[axis]);
-  }
-  for (std::size_t block = 0; block < springs_of_block_.size(); ++block) {
-    const int springs = springs_of_block_[block];
-    if (springs < 0) continue;
-    addSpringForces(lanes(free_), springs_[at(springs)], static_cast<int>(block) * kLanes,
-                    force_.data());
-  }
-  const SoaArrays arrays = lanes(free_);
-  for (int color = 0; color < kColors; ++color) {
-    const ColoredLayout::Around& above = grid_.around(color)[kCorners - 1];
-    for (const int block : cell_blocks_[at(color)]) {
-      addForcesOfBlock(arrays, above, block, squeezed_cells_[at(block / kLanes)] != 0,
-                       force_.data());
-    }
-  }
-  if (odd_cells_.empty()) return;
-  for (const int node : watched_) scratch_[at(node)].setZero();
-  model_.addForces(state, odd_cells_, scratch_);
-  for (const int node : watched_) {
-    for (int axis = 0; axis < 3; ++axis) {
-      force_[at(axis)][slotOf(node)] += static_cast<float>(scratch_[at(node)][axis] / force_unit_);
-    }
-  }
-}
-
-Vec3 SoaField::forceOn(int node) const {
-  const int slot = slotOf(node);
-  return force_unit_ * Vec3(static_cast<double>(force_[0][slot]),
-                            static_cast<double>(force_[1][slot]),
-                            static_cast<double>(force_[2][slot]));
-}
-
-void SoaField::addForce(int node, const Vec3& force) {
-  for (int axis = 0; axis < 3; ++axis) {
-    force_[at(axis)][slotOf(node)] += static_cast<float>(force[axis] / force_unit_);
   }
 }
 

@@ -20,7 +20,11 @@ class SoaField {
   // One array an axis; in each a number a slot (ColoredLayout).
   using Arrays = std::array<float*, 3>;
 
-  SoaField(const Lattice& lattice, const ElasticModel& model);
+  // kNone: in a time step, too, the energy is that of the shape alone.
+  enum class Inertia { kOfTimeSteps, kNone };
+
+  SoaField(const Lattice& lattice, const ElasticModel& model,
+           Inertia inertia = Inertia::kOfTimeSteps);
 
   // Takes a shape, and what is held in it, as hold.bind left it.
   void bind(const ConstrainedState& shape, const DofConstraints& hold);
@@ -28,6 +32,7 @@ class SoaField {
   // moved.
   void take(const LatticeState& state, const std::vector<int>& nodes);
   void takeRims(const ConstrainedState& shape);
+  void takeAll(const LatticeState& state) { take(state, all_); }
   // Writes the displacements of all nodes that may move to the state; giveWatched: of those alone
   // that odd cells, odd nodes and patches by force depend on.
   void give(LatticeState& state) const { give(movable_, state); }
@@ -45,8 +50,8 @@ class SoaField {
   // One over a bound of the stiffness of each node alone that is not odd, in this shape.
   void findSoftness(float* softness) const;
 
-  // A step of XPBD for the cells that are not odd, color after color.
-  void project(const Arrays& mobility);
+  // A step of XPBD for the cells that are not odd, color after color; damping may be null.
+  void project(const Arrays& mobility, const SoaDamping* damping);
 
   // Forces on all nodes, without contacts; the state must have been given the watched nodes.
   void findForces(const LatticeState& state);
@@ -67,6 +72,7 @@ class SoaField {
   void giveAll(int node, LatticeState& state) const;
   // Further arrays, zero after bind() has met other cells.
   static constexpr int kSpares = 8;
+  static constexpr int kFreeMotion = kSpares;  // one more in time: InertialTerm::free_motion
   const Arrays& spare(int index) const { return spare_[at(index)]; }
 
  private:
@@ -76,6 +82,8 @@ class SoaField {
   void layOut(const ConstrainedState& shape);
   void allocate();
   void hold(const ConstrainedState& shape, const DofConstraints& hold);
+  void findCompliance(const ConstrainedState& shape);
+  void takeInertia();
   void sortOut(const ConstrainedState& shape, const DofConstraints& hold);
   void watch(const ConstrainedState& shape, const DofConstraints& hold);
   void give(const std::vector<int>& nodes, LatticeState& state) const;
@@ -86,7 +94,10 @@ class SoaField {
   const ElasticModel& model_;
   ColoredLayout grid_;
   double unit_;
-  double modulus_ = 0.0;  // Pa, the greatest
+  Inertia takes_inertia_;
+  const InertialTerm* inertia_ = nullptr;  // of the time step; null: none
+  double rest_modulus_ = 0.0;              // Pa, the greatest
+  double modulus_ = 0.0;                   // with what a time step adds
   double force_unit_ = 0.0;
   std::shared_ptr<const CellSet> cells_;
   std::vector<int> slots_;          // per node
@@ -96,7 +107,7 @@ class SoaField {
   int size_ = 0;
   std::unique_ptr<float, FreeBuffer> buffer_;
   Arrays moved_{}, load_{}, free_{}, lane_free_{}, force_{};
-  std::array<Arrays, kSpares> spare_{};
+  std::array<Arrays, kSpares + 1> spare_{};
   float* shear_ = nullptr;
   float* bulk_ = nullptr;
   float* stiffening_ = nullptr;  // null: 0 in all
@@ -109,7 +120,8 @@ class SoaField {
   std::array<std::vector<int>, kColors> cell_blocks_, node_blocks_;
   std::vector<SoaSprings> springs_;
   std::vector<int> springs_of_block_;  // -1 = none
-  std::vector<Vec3> weight_;           // per node, of its lane cells (N)
+  std::vector<Vec3> weight_;           // per node: of its lane cells, and InertialTerm::force (N)
+  std::vector<double> lane_masses_;    // per node, in a time step: of its lane cells (kg)
   std::vector<Vec3> scratch_;          // forces (N)
 };
 

@@ -75,6 +75,9 @@ constexpr double kFirstStretch = 8.0;
 // until rounding stops it. Chosen.
 constexpr double kMostStretch = 0.3;
 constexpr double kLeastStretch = 1e-4;
+// In a time step, over the tolerance (1): of the small steps. More: fewer, softer and with more
+// damping of their own. Chosen.
+constexpr double kStretchInTime = 0.5;
 // From one to the next (1). More: smaller changes, better estimates, more of them. Chosen.
 constexpr double kShorter = 0.25;
 // Of the way since the last change (1): what may be left to go before the next. More: changes
@@ -97,6 +100,9 @@ constexpr double kPowerProbe = 1e-2;
 // Over what they find (1), which is a little less than the greatest. Less: longer steps, which may
 // blow up. Chosen.
 constexpr double kMargin = 1.15;
+// Of the longest stable step of a motion in time (1), as stiffness grows with strain. More: fewer
+// steps, which may blow up. Chosen.
+constexpr double kOfStable = 0.9;
 // Over the eigenvalue when the motion went astray (1). More: surer, slower. Chosen.
 constexpr double kCare = 1.5;
 

@@ -19,15 +19,20 @@ constexpr int kBefore = 2, kMobility = 3, kShortened = 4;
 
 XpbdMethod::XpbdMethod(const Lattice& lattice, const ElasticModel& model,
                        const RelaxationOptions& options)
-    : RelaxationMethod(lattice, model, options) {}
+    : RelaxationMethod(lattice, model, options, TimeSteps::kGoneThrough) {}
 
-void XpbdMethod::begin(int care) {
-  refinements_ = 0;
+void XpbdMethod::weigh() {
   weight_.assign(shape_.state.displacement.size(), Vec3::Zero());
   for (const Cell& cell : shape_.state.cells->all()) {
     const Vec3 weight = model_.cornerWeight(cell);
     for (const int node : cell.nodes) weight_[at(node)] += weight;
   }
+}
+
+void XpbdMethod::begin(int care) {
+  refinements_ = 0;
+  damping_ = 0.0;
+  weigh();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* now = field_->moved()[axis];
     std::copy(now, now + field_->size(), field_->spare(kBefore)[axis]);
@@ -58,7 +63,7 @@ void XpbdMethod::takeStep(double stretch) {
 void XpbdMethod::iterate() {
   coast();
   pushPatches();
-  field_->project(field_->spare(kMobility));
+  field_->project(field_->spare(kMobility), nullptr);
   projectOddCells();
   projectRims();
   projectContacts();
@@ -87,7 +92,7 @@ void XpbdMethod::pushPatches() {
 }
 
 // A constraint C = sqrt(2 E) of compliance 1 (XPBD, equation 18): dx = m f / (1 + sum of m f^2 / 2
-// E), f = -dE/dx the force on a node and m its mobility.
+// E), f = -dE/dx the force on a node and m its mobility; damped as projectBlock.
 void XpbdMethod::projectOddCells() {
   for (const int index : field_->oddCells()) {
     const Cell& cell = shape_.state.cells->all()[at(index)];
@@ -96,12 +101,15 @@ void XpbdMethod::projectOddCells() {
     const double energy = shaped.energy();
     if (!(energy > 0.0)) continue;
     std::array<Vec3, kCorners> forces;
-    double answer = 0.0;
+    double answer = 0.0, rate = 0.0;
     for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cell.nodes[at(corner)];
       forces[at(corner)] = -shaped.gradient(corner);
-      answer += mobilityOf(cell.nodes[at(corner)]).dot(forces[at(corner)].cwiseAbs2());
+      answer += mobilityOf(node).dot(forces[at(corner)].cwiseAbs2());
+      if (damping_ > 0.0) rate += damping_ * forces[at(corner)].dot(wayOf(node));
     }
-    const double share = 1.0 / (1.0 + answer / (2.0 * energy));
+    answer *= 1.0 + damping_;
+    const double share = (1.0 - rate / (2.0 * energy)) / (1.0 + answer / (2.0 * energy));
     for (int corner = 0; corner < kCorners; ++corner) {
       push(cell.nodes[at(corner)], forces[at(corner)], share);
     }
@@ -142,6 +150,122 @@ void XpbdMethod::projectContacts() {
       }
     }
   }
+}
+
+// Since the small step's start (m).
+Vec3 XpbdMethod::wayOf(int node) const {
+  Vec3 way;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int slot = field_->slotOf(node);
+    way[axis] = static_cast<double>(field_->moved()[at(axis)][slot] -
+                                    field_->spare(kShortened)[at(axis)][slot]);
+  }
+  return field_->unit() * way;
+}
+
+// Of the shortest time that a node takes to answer alone, (m / k)^(1/2): the root of what the
+// tolerance lets the small steps end off (s).
+double XpbdMethod::smallStep(const std::vector<double>& masses) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t node = 0; node < masses.size(); ++node) {
+    const double stiffness = model_.nodeStiffness(shape_.state, static_cast<int>(node)).mean();
+    if (stiffness > 0.0 && masses[node] > 0.0) least = std::min(least, masses[node] / stiffness);
+  }
+  const double stretch =
+      std::min(tuning::kStretchInTime * options_.tolerance, tuning::kMostStretch);
+  return std::sqrt(stretch * least);
+}
+
+// Places and velocities are kept in double precision: what a small step adds to a far place is less
+// than single precision tells.
+SolveStatus XpbdMethod::goThrough(int& steps) {
+  const InertialTerm& term = *model_.inertia();
+  const std::vector<double> masses = model_.nodeMasses(*shape_.state.cells);
+  std::vector<Vec3>& place = shape_.state.displacement;
+  const std::vector<Vec3> end = place;
+  for (std::size_t node = 0; node < place.size(); ++node) {
+    place[node] = term.free_motion[node] - term.duration * term.velocity[node];
+  }
+  const std::vector<Vec3> before = place;
+  velocity_ = term.velocity;
+  weigh();
+  const double count = std::max(1.0, std::ceil(term.duration / smallStep(masses)));
+  if (count <= options_.max_iterations) {
+    steps = static_cast<int>(count);
+    for (int step = 1; step <= steps; ++step) {
+      for (std::size_t node = 0; node < place.size(); ++node) {  // what is held goes evenly
+        const Vec3 held = before[node] + (step / count) * (end[node] - before[node]);
+        if (hold_.carriers()[node] >= 0) continue;
+        place[node] = held + hold_.freePart(static_cast<int>(node), place[node] - held);
+      }
+      makeSmallStep(term.duration / count, masses, term.damping_time);
+      if (isLate() && step < steps) return SolveStatus::kLate;
+    }
+    for (std::size_t node = 0; node < place.size(); ++node) {
+      const Vec3 held = (place[node] - before[node]) / term.duration;
+      velocity_[node] = held + hold_.freePart(static_cast<int>(node), velocity_[node] - held);
+    }
+    if (std::all_of(place.begin(), place.end(), [](const Vec3& p) { return p.allFinite(); })) {
+      return SolveStatus::kOk;
+    }
+  }
+  velocity_.assign(place.size(), Vec3::Zero());
+  place = before;
+  field_->takeAll(shape_.state);
+  return SolveStatus::kUnconverged;
+}
+
+void XpbdMethod::makeSmallStep(double step, const std::vector<double>& masses,
+                               double damping_time) {
+  predict(step, masses);
+  damping_ = damping_time / step;
+  const SoaField::Arrays& start = field_->spare(kShortened);
+  const SoaDamping damping{static_cast<float>(damping_), {start[0], start[1], start[2]}};
+  pushPatches();
+  field_->project(field_->spare(kMobility), damping_ > 0.0 ? &damping : nullptr);
+  const std::vector<Vec3> predicted = shape_.state.displacement;  // what follows rounds it
+  projectOddCells();
+  projectRims();
+  projectContacts();
+  for (std::size_t node = 0; node < predicted.size(); ++node) {
+    const int index = static_cast<int>(node), slot = field_->slotOf(index);
+    if (hold_.carriers()[node] >= 0) continue;
+    Vec3 pushed;
+    for (int axis = 0; axis < 3; ++axis) {
+      pushed[axis] = static_cast<double>(field_->moved()[at(axis)][slot] -
+                                         field_->spare(kBefore)[at(axis)][slot]);
+    }
+    pushed = hold_.freePart(index, field_->unit() * pushed);
+    shape_.state.displacement[node] = predicted[node] + pushed;
+    velocity_[node] += pushed / step;
+  }
+}
+
+void XpbdMethod::keepPlaces(int spare) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* now = field_->moved()[axis];
+    std::copy(now, now + field_->size(), field_->spare(spare)[axis]);
+  }
+}
+
+// Where inertia and gravity alone lead.
+void XpbdMethod::predict(double step, const std::vector<double>& masses) {
+  field_->takeAll(shape_.state);
+  keepPlaces(kShortened);
+  for (std::size_t node = 0; node < masses.size(); ++node) {
+    if (masses[node] <= 0.0) continue;
+    const int index = static_cast<int>(node), slot = field_->slotOf(index);
+    velocity_[node] += step / masses[node] * hold_.freePart(index, weight_[node]);
+    shape_.state.displacement[node] += step * hold_.freePart(index, velocity_[node]);
+    const double mobility = field_->stiffnessUnit() * step * step / masses[node];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      field_->spare(kMobility)[axis][slot] =
+          static_cast<float>(mobility) * field_->free()[axis][slot];
+    }
+  }
+  field_->takeAll(shape_.state);
+  field_->findSqueezed();
+  keepPlaces(kBefore);
 }
 
 // Square of the time step over mass, per axis (m/N); 0 where it is held.

@@ -43,9 +43,15 @@ void addForcesOfBlock(const SoaArrays& lanes, const ColoredLayout::Around& above
 
 // One step of XPBD for a block of cells, all of one color: each moves its corners by two
 // constraints of compliance 1, sqrt(2 x energy against a change of shape) and sqrt(K)(J - 1).
-// `mobility`: of a node's components, square of the time step over mass (1 / stiffness).
+// `mobility`: of a node's components, square of the time step over mass (1 / stiffness). `damping`
+// may be null.
+struct SoaDamping {
+  float share;             // damping time over the time step
+  const float* before[3];  // displacement at the step's start
+};
 void projectBlock(const SoaArrays& lanes, const float* const mobility[3],
-                  const ColoredLayout::Around& above, int block, bool squeezed);
+                  const ColoredLayout::Around& above, int block, bool squeezed,
+                  const SoaDamping* damping);
 
 // Adds the forces of springs on the nodes of a block.
 void addSpringForces(const SoaArrays& lanes, const SoaSprings& springs, int block,

@@ -79,6 +79,7 @@ ROBOT_TISSUE_INLINE void measure(const SoaArrays& lanes, const ColoredLayout::Ar
 // How far the corners give way to each constraint, and to both.
 struct Answers {
   Lane shape = {}, both = {}, volume = {};
+  Lane shape_rate = {}, volume_rate = {};  // what damping adds to the constraints
 };
 
 ROBOT_TISSUE_INLINE void addAnswers(const float* const mobility[3], int block,
@@ -99,11 +100,36 @@ ROBOT_TISSUE_INLINE void addAnswers(const float* const mobility[3], int block,
   }
 }
 
+// XPBD, equation 26: with the share y of the damping time over the step, y g (x - before) joins the
+// constraint, and the answers count (1 + y) times.
+ROBOT_TISSUE_INLINE void damp(const SoaArrays& lanes, const SoaDamping& damping, int block,
+                              const ColoredLayout::Around& above, const CellConstraints& cells,
+                              Answers& answers) {
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* const moved = lanes.moved[axis] + block + above.corner[corner];
+      const float* const before = damping.before[axis] + block + above.corner[corner];
+      ROBOT_TISSUE_ROLLED
+      for (int i = 0; i < kLanes; ++i) {
+        const float way = damping.share * (moved[i] - before[i]);
+        answers.shape_rate[i] += cells.shape_pull[axis][corner][i] * way;
+        answers.volume_rate[i] += cells.volume_pull[axis][corner][i] * way;
+      }
+    }
+  }
+  for (int i = 0; i < kLanes; ++i) {
+    answers.shape[i] *= 1.0F + damping.share;
+    answers.both[i] *= 1.0F + damping.share;
+    answers.volume[i] *= 1.0F + damping.share;
+  }
+}
+
 }  // namespace
 
 ROBOT_TISSUE_CLONES
 void projectBlock(const SoaArrays& lanes, const float* const mobility[3],
-                  const ColoredLayout::Around& above, int block, bool squeezed) {
+                  const ColoredLayout::Around& above, int block, bool squeezed,
+                  const SoaDamping* damping) {
   CellConstraints cells;
   Answers answers;
   if (lanes.stiffening == nullptr) {
@@ -118,10 +144,13 @@ void projectBlock(const SoaArrays& lanes, const float* const mobility[3],
     }
   }
   addAnswers(mobility, block, above, cells, answers);
+  if (damping != nullptr) damp(lanes, *damping, block, above, cells, answers);
   Lane by_shape, by_volume;
   for (int i = 0; i < kLanes; ++i) {
-    const float shape = std::sqrt(cells.energy[i]), volume = cells.volume[i];
-    const float over = cells.energy[i] > kLeastEnergy ? 1.0F / shape : 0.0F;
+    const float root = std::sqrt(cells.energy[i]);
+    const float over = cells.energy[i] > kLeastEnergy ? 1.0F / root : 0.0F;
+    const float shape = root + over * answers.shape_rate[i];
+    const float volume = cells.volume[i] + answers.volume_rate[i];
     const float a = answers.shape[i] * over * over + 1.0F, b = answers.both[i] * over;
     const float c = answers.volume[i] + 1.0F;
     const float by = -1.0F / (a * c - b * b);
