@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
-STUDIES = ["rooms", "grasp", "liver", "paper", "motion", "swing", "time_stability", "stiffening", "economy",
+STUDIES = ["rooms", "grasp", "liver", "walls", "paper", "motion", "swing", "time_stability", "stiffening", "economy",
            "fidelity", "growth", "threads", "stages", "speed", "node", "still_node", "shape_topics",
            "screens", "soak", "contact_search", "contact", "accuracy", "stability", "speed_accuracy"]
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "robot_tissue/mesh/mesh_file.h"
@@ -14,9 +15,13 @@ namespace {
 
 constexpr double kLargestOrgan = 10.0;    // m: whatever is larger was drawn in another unit. Chosen
 constexpr double kSmallestOrgan = 0.002;  // m. Chosen
-constexpr double kFewestCells = 2.0;      // across a wall that bends. Chosen
-constexpr double kThinShare = 0.05;       // of the surface: less are edges that run out. Chosen
-constexpr std::size_t kMostRays = 300;    // through a mesh
+// Of a wall's stiffness in bending (1). One that lies along no plane of the grid bends by squares
+// of the coordinates, which trilinear cells do not have: it is stiffer by kOblique sin(2 a)^4
+// (h / t)^2, a its angle, t its thickness. The number is that of thin_walls (doc/accuracy.md).
+constexpr double kOblique = 1.1;
+constexpr double kTooStiff = 0.1;       // more is told. Chosen
+constexpr double kThinShare = 0.05;     // of the surface: less are edges that run out. Chosen
+constexpr std::size_t kMostRays = 300;  // through a mesh
 
 std::string percentText(double share) { return numberText(std::round(100.0 * share)) + " %"; }
 
@@ -75,25 +80,66 @@ double thicknessAt(const TriangleMesh& mesh, std::size_t triangle) {
   return nearest;
 }
 
+// sin(2 a)^2 where the wall's normal lies in a plane of the grid.
+double obliqueness(const Vec3& normal) {
+  const Vec3 squares = normal.cwiseAbs2();
+  return 4.0 * (squares[0] * squares[1] + squares[1] * squares[2] + squares[0] * squares[2]);
+}
+
 struct Walls {
-  double thinnest = std::numeric_limits<double>::infinity();  // m, of those that are thin
+  double thinnest = std::numeric_limits<double>::infinity();  // m, under a spacing
   double thin_share = 0.0;                                    // of the area looked at
+  double stiff_share = 0.0;  // of walls that are too stiff as they are oblique
+  double too_stiff = 0.0;    // the most of them (1)
+  double stiffest = 0.0;     // m, thickness there
+  double spacing = std::numeric_limits<double>::infinity();  // m, at which none would be
 };
 
-Walls wallsOf(const TriangleMesh& mesh, double thin) {
-  const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kMostRays);
-  Walls walls;
-  double all = 0.0, thin_area = 0.0;
-  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += stride) {
-    const double area = doubleArea(mesh.vertices, mesh.triangles[triangle]).norm();
-    const double thickness = thicknessAt(mesh, triangle);
-    all += area;
-    if (thickness >= thin) continue;
-    thin_area += area;
+void lookAt(double thickness, const Vec3& normal, double area, double spacing, Walls& walls) {
+  if (thickness < spacing * (1.0 + 1e-9)) {
+    walls.thin_share += area;
     walls.thinnest = std::min(walls.thinnest, thickness);
   }
-  if (all > 0.0) walls.thin_share = thin_area / all;
+  const double oblique = obliqueness(normal);
+  const double too_stiff = kOblique * std::pow(oblique * spacing / thickness, 2);
+  if (!(too_stiff > kTooStiff)) return;
+  walls.stiff_share += area;
+  walls.spacing = std::min(walls.spacing, std::sqrt(kTooStiff / kOblique) * thickness / oblique);
+  if (too_stiff <= walls.too_stiff) return;
+  walls.too_stiff = too_stiff;
+  walls.stiffest = thickness;
+}
+
+Walls wallsOf(const TriangleMesh& mesh, double spacing) {
+  const std::size_t stride = std::max<std::size_t>(1, mesh.triangles.size() / kMostRays);
+  Walls walls;
+  double all = 0.0;
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += stride) {
+    const Vec3 twice = doubleArea(mesh.vertices, mesh.triangles[triangle]);
+    all += twice.norm();
+    lookAt(thicknessAt(mesh, triangle), twice.normalized(), twice.norm(), spacing, walls);
+  }
+  for (double* share : {&walls.thin_share, &walls.stiff_share}) *share /= all > 0.0 ? all : 1.0;
   return walls;
+}
+
+Finding thinWalls(const Walls& walls) {
+  return {Finding::Level::kWarning,
+          "tissue.spacing: " + percentText(walls.thin_share) +
+              " of the walls are no thicker than a spacing, the thinnest " +
+              numberText(1e3 * walls.thinnest) +
+              " mm: where they lie along the grid they may bend too softly, by Poisson's ratio",
+          "tissue.spacing: " + numberText(0.5 * walls.thinnest) + " or less"};
+}
+
+Finding obliqueWalls(const Walls& walls) {
+  return {Finding::Level::kWarning,
+          "tissue.spacing: " + percentText(walls.stiff_share) +
+              " of the walls are oblique to the grid and thin for it, one of " +
+              numberText(1e3 * walls.stiffest) + " mm bends " + percentText(walls.too_stiff) +
+              " too stiffly",
+          "a mesh turned so that its walls lie along the axes, or tissue.spacing: " +
+              numberText(walls.spacing) + " or less"};
 }
 
 }  // namespace
@@ -117,20 +163,16 @@ Findings checkUnits(const YAML::Node& scene, const std::string& folder) {
 }
 
 Findings checkWalls(const TissueConfig& tissue) {
-  const double thin = kFewestCells * tissue.spacing;
   Walls walls;
   if (tissue.mesh) {
-    walls = wallsOf(*tissue.mesh, thin * (1.0 - 1e-9));
+    walls = wallsOf(*tissue.mesh, tissue.spacing);
   } else {
-    const double thickness = tissue.shape.sizes().minCoeff();
-    if (thickness < thin * (1.0 - 1e-9)) walls = {thickness, 1.0};
+    lookAt(tissue.shape.sizes().minCoeff(), Vec3::UnitX(), 1.0, tissue.spacing, walls);
   }
-  if (walls.thin_share < kThinShare) return {};
-  return {{Finding::Level::kWarning,
-           "tissue.spacing: " + percentText(walls.thin_share) +
-               " of the walls are thinner than two spacings, the thinnest " +
-               numberText(1e3 * walls.thinnest) + " mm: they bend too stiffly",
-           "tissue.spacing: " + numberText(walls.thinnest / kFewestCells) + " or less"}};
+  Findings findings;
+  if (walls.thin_share >= kThinShare) findings.push_back(thinWalls(walls));
+  if (walls.stiff_share >= kThinShare) findings.push_back(obliqueWalls(walls));
+  return findings;
 }
 
 Findings checkForNode(const Scene& scene) {

@@ -19,7 +19,7 @@ robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h filled_grid.h lattice.h lattice_state.h
   FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
-    piece_numbers.h)
+    piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
   USES base config lattice
   FILES blade_surface.cpp blade_surface.h cut.cpp cut.h removal.cpp removal.h split_cells.cpp
@@ -33,7 +33,7 @@ robot_tissue_room(surface
 robot_tissue_room(material
   USES base config lattice
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
-    elastic_model.cpp elastic_model.h energy_model.h inertial_term.h six_spring_model.cpp
+    elastic_model.cpp elastic_model.h energy_model.h fill_law.cpp fill_law.h inertial_term.h six_spring_model.cpp
     six_spring_model.h tissue_model.h)
 robot_tissue_room(loads
   USES base config lattice material

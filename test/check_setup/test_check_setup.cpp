@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -44,11 +45,14 @@ class CheckSetup : public ::testing::Test {
   }
 
   // A box of these measures as a mesh.
-  void writeMesh(const std::string& name, double x, double y, double z) const {
+  // A box, turned about y.
+  void writeMesh(const std::string& name, double x, double y, double z, double angle = 0.0) const {
     std::ostringstream text;
     for (const int corner : {0, 1, 2, 3, 4, 5, 6, 7}) {
-      text << "v " << x * (corner & 1) << ' ' << y * ((corner >> 1) & 1) << ' '
-           << z * ((corner >> 2) & 1) << '\n';
+      const double along = x * (corner & 1), up = z * ((corner >> 2) & 1);
+      text << "v " << std::cos(angle) * along + std::sin(angle) * up << ' '
+           << y * ((corner >> 1) & 1) << ' ' << std::cos(angle) * up - std::sin(angle) * along
+           << '\n';
     }
     text << "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\n"
             "f 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
@@ -95,19 +99,32 @@ TEST_F(CheckSetup, MeshOfAThousandMetersLooksLikeMillimeters) {
 }
 
 TEST_F(CheckSetup, ThinWallsAreMeasured) {
-  writeMesh("sheet.obj", 0.06, 0.06, 0.008);
+  writeMesh("sheet.obj", 0.06, 0.06, 0.004);
   const std::string rest =
       "\n  material: {young_modulus: 10000.0}\n"
       "  fixed: [{min: [-1, -1, -1], max: [1, 1, 5.0e-4]}]\n";
   const std::string shape = "{type: mesh, resource: sheet.obj}";
   EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
-  EXPECT_TRUE(says("thinner than two spacings, the thinnest 8 mm")) << out_;
-  EXPECT_TRUE(says("remedy: tissue.spacing: 0.004 or less")) << out_;
-  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.004" + rest), kFine) << out_ << err_;
+  EXPECT_TRUE(says("no thicker than a spacing, the thinnest 4 mm")) << out_;
+  EXPECT_TRUE(says("remedy: tissue.spacing: 0.002 or less")) << out_;
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.002" + rest), kFine) << out_ << err_;
   EXPECT_EQ(check(kHead + "{type: box, min: [0, 0, 0], max: [0.05, 0.05, 0.005]}" +
                   "\n  spacing: 0.005" + kRest),
             kHasWarnings);
   EXPECT_TRUE(says("thinnest 5 mm")) << out_;
+}
+
+// 1.1 (5 / 10)^2 at 45 degrees; 10 % at sqrt(0.1 / 1.1) times the thickness.
+TEST_F(CheckSetup, ObliqueWallsAreMeasured) {
+  writeMesh("sheet.obj", 0.06, 0.06, 0.01, 0.25 * M_PI);
+  const std::string shape = "{type: mesh, resource: sheet.obj}",
+                    rest =
+                        "\n  material: {young_modulus: 10000.0}\n"
+                        "  fixed: [{min: [-1, -1, -1], max: [1, 1, -0.03]}]\n";
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
+  EXPECT_TRUE(says("one of 10 mm bends 28 % too stiffly")) << out_;
+  EXPECT_TRUE(says("tissue.spacing: 0.00301511")) << out_;
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.003" + rest), kFine) << out_ << err_;
 }
 
 TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {

@@ -15,14 +15,17 @@ constexpr std::array<int, 3> kPoints = {9, 6, 5};
 constexpr double kShear = 1.0, kBulk = 5.0 / 3.0;
 constexpr double kOfTheOther = 1e-14;  // rounding of a cell alone, which is told from its places
 
-// A block of full cells, two of them left out, one of them with corners beside the grid.
+// A block of cells, two of them left out, one of them with corners beside the grid. Every third is
+// filled in part, if asked for.
 struct Cells {
-  explicit Cells(double stiffening = 0.0) : grid(kPoints) {
+  explicit Cells(double stiffening = 0.0, bool some_in_part = false) : grid(kPoints) {
     for (int k = 0; k + 1 < kPoints[2]; ++k) {
       for (int j = 0; j + 1 < kPoints[1]; ++j) {
         for (int i = 0; i + 1 < kPoints[0]; ++i) {
           if (i == 3 && j == 2 && k < 2) continue;
-          LevelCell cell{{i, j, k}, {}, kShear, kBulk, stiffening};
+          LevelCell cell{{i, j, k}, {}, kShear, kBulk, stiffening, {}};
+          fills.emplace_back();
+          if (some_in_part && all.size() % 3 == 0) fill(cell);
           for (int corner = 0; corner < kCorners; ++corner) {
             cell.nodes[at(corner)] =
                 grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
@@ -36,8 +39,18 @@ struct Cells {
     }
   }
 
+  // With octants that differ from cell to cell.
+  void fill(LevelCell& cell) {
+    const auto corners = static_cast<std::uint8_t>(1 + all.size() * 37 % 254);
+    fills.back() = std::make_shared<const CellFill>(fillOf(octantIntegrals(corners)));
+    cell.shear *= fills.back()->share;
+    cell.bulk *= fills.back()->share;
+    cell.fill = levelFill(*fills.back(), kShear);
+  }
+
   LevelGrid grid;
   std::vector<LevelCell> all;
+  std::vector<std::shared_ptr<const CellFill>> fills;  // null: full
 };
 
 // What goes in and out with the displacement: all nodes free, no load.
@@ -76,8 +89,9 @@ class CellKernel : public testing::Test {
     return field;
   }
 
-  void expectForcesOfEachCell(double far, double tolerance, double stiffening = 0.0) {
-    const Cells given(stiffening);
+  void expectForcesOfEachCell(double far, double tolerance, double stiffening = 0.0,
+                              bool some_in_part = false) {
+    const Cells given(stiffening, some_in_part);
     CellOperator<Real> cells(given.grid, 4, given.all, {given.grid.whole(), {{1}, {0}}});
     const Field<Real> moved = shaken(cells, far);
     Around<Real> around(cells);
@@ -85,7 +99,8 @@ class CellKernel : public testing::Test {
     std::vector<Vec3> forces(at(cells.count()), Vec3::Zero());
     std::vector<Eigen::Matrix3d> blocks(at(cells.count()), Eigen::Matrix3d::Zero());
     double greatest = 0.0;
-    for (const LevelCell& cell : given.all) {
+    for (std::size_t index = 0; index < given.all.size(); ++index) {
+      const LevelCell& cell = given.all[index];
       ElasticCell::Corners corners;
       for (std::size_t c = 0; c < corners.size(); ++c) {
         const std::size_t node = at(cell.nodes[c]);
@@ -93,7 +108,8 @@ class CellKernel : public testing::Test {
           corners[c][axis] = static_cast<double>(moved[at(axis)][node]);
         }
       }
-      const ElasticCell alone({kShear, kBulk, stiffening}, 1.0, corners);
+      const ElasticCell alone({cell.shear, cell.bulk, stiffening}, 1.0, corners,
+                              given.fills[index].get());
       for (int c = 0; c < kCorners; ++c) {
         forces[at(cell.nodes[at(c)])] -= alone.gradient(c);
         blocks[at(cell.nodes[at(c)])] += alone.block(c);
@@ -121,6 +137,12 @@ constexpr double kRounding = sizeof(Real) == sizeof(float) ? 1e-5 : 1e-13;
 TYPED_TEST(CellKernel, ForcesAreThoseOfEachCell) {
   for (const double far : {1e-4, 0.05, 0.2}) {
     this->expectForcesOfEachCell(far, kRounding<TypeParam>);
+  }
+}
+
+TYPED_TEST(CellKernel, ForcesAreThoseOfEachCellAlsoFilledInPart) {
+  for (const double far : {1e-4, 0.05, 0.2, 0.6}) {
+    this->expectForcesOfEachCell(far, kRounding<TypeParam>, 0.0, true);
   }
 }
 

@@ -35,7 +35,7 @@ TEST(Sutures, CarryTheLoadOfABarThatIsCutInTwo) {
   cut.cut(planeAt(kCutAt));
   cut.load(pull);
   EXPECT_EQ(cut.state().pieces, 2);
-  EXPECT_LT(std::abs(pullOf(cut)), 1e-4 * pullOf(whole));
+  EXPECT_LT(std::abs(pullOf(cut)), 2e-4 * pullOf(whole));  // the method's tolerance
   sutured.cut(planeAt(kCutAt));
   for (const SutureConfig& stitch : stitches()) sutured.suture(stitch);
   for (const Vec3& moved : sutured.state().displacement) ASSERT_LT(moved.norm(), 1e-12);

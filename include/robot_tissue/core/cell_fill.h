@@ -18,6 +18,7 @@ struct CellFill {
   Vec3 centroid = Vec3::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity() / 12.0;  // p_ab = mean of x_a x_b
   double triple = 0.0;                                            // mean of x_0 x_1 x_2
+  Vec3 spread = Vec3::Constant(1.0 / 12.0);  // eigenvalues of the covariance, ascending
 
   Eigen::Matrix3d covariance() const;
   // Mean of the corner's trilinear shape function over the fill, which is its part of the cell's

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lattice/slivers.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
@@ -47,6 +48,7 @@ class GhostMaker {
     for (std::size_t index = 0; index < cells_.size(); ++index) {
       if (cells_[index].isPart()) number(index);
     }
+    stiffenSlivers(cells_, lattice_.nodeCount() + static_cast<int>(ghosts_.size()));
     return std::make_shared<const CellSet>(std::move(cells_), lattice_.nodeCount(),
                                            std::move(ghosts_));
   }

@@ -1,5 +1,7 @@
 #include "robot_tissue/core/cell_fill.h"
 
+#include <Eigen/Eigenvalues>
+
 namespace robot_tissue {
 
 Eigen::Matrix3d CellFill::covariance() const { return products - centroid * centroid.transpose(); }
@@ -40,8 +42,11 @@ FillIntegrals integralsOf(const CellFill& fill) {
 
 CellFill fillOf(const FillIntegrals& integrals) {
   const double inverse = 1.0 / integrals.volume;
-  return {integrals.volume, inverse * integrals.first, inverse * integrals.second,
-          inverse * integrals.triple};
+  CellFill fill = {integrals.volume, inverse * integrals.first, inverse * integrals.second,
+                   inverse * integrals.triple};
+  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+  fill.spread = Solver(fill.covariance(), Eigen::EigenvaluesOnly).eigenvalues();
+  return fill;
 }
 
 FillIntegrals octantIntegrals(std::uint8_t corners) {

@@ -1,6 +1,7 @@
 #include "robot_tissue/core/cells.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
@@ -46,7 +47,31 @@ bool isFixed(const Lattice& lattice, const CellSet& cells, int node) {
 
 namespace {
 
+// Mean over the fill of the gradient of the corner's shape function, the product over the axes of
+// (1/2 + s_a x_a) with s_a = 1 at the high end, else -1 (1/h).
+Vec3 meanSlope(const CellFill& fill, int corner) {
+  Vec3 side, slope;
+  for (int axis = 0; axis < 3; ++axis) side[axis] = (corner >> axis & 1) != 0 ? 1.0 : -1.0;
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    slope[a] = side[a] * (0.25 + 0.5 * (side[b] * fill.centroid[b] + side[c] * fill.centroid[c]) +
+                          side[b] * side[c] * fill.products(b, c));
+  }
+  return slope;
+}
+
+// Where the material is.
+bool isInvertedInPart(const Cell& cell, const LatticeState& state, double spacing) {
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+  for (int corner = 0; corner < kCorners; ++corner) {
+    gradient += state.displacement[at(cell.nodes[at(corner)])] *
+                meanSlope(*cell.fill, corner).transpose() / spacing;
+  }
+  return gradient.determinant() <= 0.0;
+}
+
 bool isInverted(const Cell& cell, const LatticeState& state, double share) {
+  if (cell.fill != nullptr) return isInvertedInPart(cell, state, 0.25 / share);
   const auto moved = [&](std::size_t corner) -> const Vec3& {
     return state.displacement[at(cell.nodes[corner])];
   };

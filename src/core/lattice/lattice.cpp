@@ -5,6 +5,7 @@
 
 #include "config/material.h"
 #include "lattice/connectivity.h"
+#include "lattice/slivers.h"
 
 namespace robot_tissue {
 namespace {
@@ -77,6 +78,7 @@ void Lattice::placeCells(const FilledGrid& tissue) {
     cells.push_back(cell);
   }
   cells.shrink_to_fit();
+  stiffenSlivers(cells, nodeCount());
   cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
 }
 
@@ -104,12 +106,14 @@ void Lattice::placeSprings() {
 void Lattice::weigh(const TissueConfig& config) {
   mass_.assign(index_of_.size(), 0.0);
   std::vector<SpringStiffness> stiffness(lower_ends_.size());
-  const double corner_volume = std::pow(spacing(), 3) / kCorners;
+  const double volume = std::pow(spacing(), 3), corner_volume = volume / kCorners;
   for (const Cell& cell : cells()) {
     const Material& material = materialAt(config, cellCenter(cell));
     for (int corner = 0; corner < kCorners; ++corner) {
       const int node = cell.nodes[at(corner)];
-      mass_[at(node)] += cell.share() * material.density * corner_volume;
+      mass_[at(node)] += cell.fill == nullptr ? material.density * corner_volume
+                                              : cell.share() * material.density * volume *
+                                                    cell.fill->cornerShare(corner);
       for (int axis = 0; axis < 3; ++axis) {
         if (corner >> axis & 1) continue;
         stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share());

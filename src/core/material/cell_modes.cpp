@@ -38,8 +38,9 @@ inline double sumOf(const double* x) {
 }  // namespace
 
 void CellModes::add(const Moduli& moduli, const std::array<int, kCorners>& nodes, int corner,
-                    const std::vector<Vec3>& displacement) {
+                    const std::vector<Vec3>& displacement, bool is_full) {
   const int cell = count_++;
+  full_[cell] = is_full;
   for (int k = 0; k < kCorners; ++k) {
     const Vec3& moved = displacement[at(nodes[at(corner ^ k)])];
     for (int axis = 0; axis < 3; ++axis) mode_[k][axis][cell] = moved[axis];
@@ -57,6 +58,7 @@ void CellModes::solve() {
       for (int axis = 0; axis < 3; ++axis) mode[axis][cell] = 0.0;
     }
     for (int axis = 0; axis < 3; ++axis) side_[axis][cell] = 1.0;
+    full_[cell] = true;
     shear_[cell] = bulk_[cell] = exponent_[cell] = 0.0;
   }
   transform();
@@ -68,7 +70,7 @@ void CellModes::solve() {
   }
   measure();
   for (int cell = 0; cell < kMost; ++cell) {
-    lean_[cell] = volume_[cell] >= elastic_law::kFlattest &&
+    lean_[cell] = full_[cell] && volume_[cell] >= elastic_law::kFlattest &&
                   (slight_[cell] < kSlight || !hasSqueezedCorner(cell));
     if (lean_[cell]) continue;
     shear_[cell] = bulk_[cell] = 0.0;

@@ -26,14 +26,15 @@ class CellModes {
 
   explicit CellModes(double spacing) : spacing_(spacing) {}
 
+  // A cell that is not full has other means than these modes tell: they do not suffice.
   void add(const Moduli& moduli, const std::array<int, kCorners>& nodes, int corner,
-           const std::vector<Vec3>& displacement);
+           const std::vector<Vec3>& displacement, bool is_full);
   int count() const { return count_; }
   // When all cells are added.
   void solve();
 
   // Whether the modes suffice for the cell. False where the barrier may rise or the cell is pressed
-  // flat (J < kFlattest): there ask ElasticCell.
+  // flat (J < kFlattest), and where it is not full: there ask ElasticCell.
   bool suffices(int cell) const { return lean_[cell]; }
 
   // Of the energy in the corner that all cells are seen from, a node's. Cells that the modes do not
@@ -75,6 +76,7 @@ class CellModes {
   Lanes pressure_;           // derivative of the energy's density by J (Pa)
   Lanes curvature_;          // derivative of pressure_ by J (Pa)
   Lanes l_[3], c_[3];        // (1/2) dI1/dx and dJ/dx, times 4h, where the cell is seen from
+  bool full_[kMost];
   bool lean_[kMost];
 };
 

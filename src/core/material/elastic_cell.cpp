@@ -40,26 +40,60 @@ std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
 
 }  // namespace
 
-ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement)
+ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
+                         const CellFill* fill)
     : moduli_(moduli), spacing_(spacing), volume_(spacing * spacing * spacing) {
   for (int corner = 0; corner < kCorners; ++corner) {
     const Vec3 rest(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
     position_[at(corner)] = spacing * rest + displacement[at(corner)];
   }
-  mean_ = determinantOf(meanWeights(spacing));
-  const double share = 1.0 / (12.0 * spacing * spacing);
+  if (fill == nullptr) {
+    measureFull();
+  } else {
+    measureFill(*fill);
+  }
+  findLaw();
+  findSqueezedCorners();
+}
+
+void ElasticCell::measureFull() {
+  mean_ = determinantOf(meanWeights(spacing_));
+  const double share = 1.0 / (12.0 * spacing_ * spacing_);
+  invariant_pairs_.setZero();
   invariant_ = 0.0;
   for (int corner = 0; corner < kCorners; ++corner) {
     Vec3 pull = Vec3::Zero();
     for (const int other : acrossDiagonals(corner)) {
       const Vec3 diagonal = position_[at(corner)] - position_[at(other)];
       pull += diagonal;
+      invariant_pairs_(corner, other) = -1.0;
       invariant_ += 0.5 * share * diagonal.squaredNorm();  // each diagonal is met at both ends
     }
     invariant_slope_[at(corner)] = share * pull;
+    invariant_pairs_(corner, corner) = 4.0;
   }
-  findLaw();
-  findSqueezedCorners();
+}
+
+void ElasticCell::measureFill(const CellFill& fill) {
+  const FillLaw law = fillLaw(fill);
+  const std::array<CornerSlopes, kCorners> slopes = cornerSlopes(law);
+  Corners weights;
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    weights[corner] = slopes[corner].strain / spacing_;
+  }
+  mean_ = determinantOf(weights);
+  invariant_ = 0.0;
+  for (int i = 0; i < kCorners; ++i) {
+    Vec3& slope = invariant_slope_[at(i)];
+    slope.setZero();
+    for (int j = 0; j < kCorners; ++j) {
+      const double pair = invariantBetween(law, slopes[at(i)], slopes[at(j)]);
+      invariant_pairs_(i, j) = 12.0 * pair;
+      // The sum over j of a pair is zero: positions relative to the corner keep digits.
+      slope += pair * (position_[at(j)] - position_[at(i)]) / (spacing_ * spacing_);
+    }
+    invariant_ += slope.dot(position_[at(i)] - position_[0]);
+  }
 }
 
 ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight) const {
@@ -164,7 +198,8 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
   const Vec3& j = mean_.slope[c];
   Eigen::Matrix3d density = cross_slope_ * (l * j.transpose() + j * l.transpose());
   density += volume_term_.curvature * j * j.transpose();
-  density.diagonal().array() += a_ / (3.0 * spacing_ * spacing_);
+  density.diagonal().array() +=
+      a_ / (12.0 * spacing_ * spacing_) * invariant_pairs_(corner, corner);
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   for (int i = 0; i < squeezed_count_; ++i) {
     const Vec3& slope = squeezed_[at(i)].slope[c];
@@ -173,9 +208,9 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
   return volume_ * density;
 }
 
-double shapeStrain(double spacing, const ElasticCell::Corners& displacement) {
+double shapeStrain(double spacing, const ElasticCell::Corners& displacement, const CellFill* fill) {
   const Moduli unit{1.0, 0.0, 0.0};
-  return 2.0 * ElasticCell(unit, spacing, displacement).shapeEnergyDensity();
+  return 2.0 * ElasticCell(unit, spacing, displacement, fill).shapeEnergyDensity();
 }
 
 CellHessian ElasticCell::hessian() const {
@@ -199,10 +234,10 @@ CellHessian ElasticCell::hessian() const {
   density += cross_slope_ * (l * j.transpose() + j * l.transpose());
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   const double share = a_ / (12.0 * spacing_ * spacing_);
-  for (int corner = 0; corner < kCorners; ++corner) {
-    density.block<3, 3>(3 * corner, 3 * corner).diagonal().array() += 4.0 * share;
-    for (const int other : acrossDiagonals(corner)) {
-      density.block<3, 3>(3 * corner, 3 * other).diagonal().array() -= share;
+  for (int one = 0; one < kCorners; ++one) {
+    for (int other = 0; other < kCorners; ++other) {
+      density.block<3, 3>(3 * one, 3 * other).diagonal().array() +=
+          share * invariant_pairs_(one, other);
     }
   }
   for (int i = 0; i < squeezed_count_; ++i) add(barrier(squeezed_[at(i)]), squeezed_[at(i)]);

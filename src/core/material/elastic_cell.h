@@ -7,6 +7,7 @@
 //
 // I1 is the mean of tr F^T F over the trilinear cell, J the determinant of the mean deformation
 // gradient. The barrier rises where the edges at a corner span less than 0.3 of their rest volume.
+// Of a cell that is filled in part the means are those over the fill (material/fill_law.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 
 #include "config/material.h"
 #include "material/energy_model.h"
+#include "material/fill_law.h"
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/types.h"
 
@@ -24,8 +26,10 @@ class ElasticCell {
   // One vector a corner, in the order of cellCorners.
   using Corners = std::array<Vec3, kCorners>;
 
-  // Displacements of the corners from rest (m).
-  ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement);
+  // Displacements of the corners from rest (m). The moduli count for all of h^3; `fill`, null for a
+  // full cell, tells where the material is.
+  ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
+              const CellFill* fill = nullptr);
 
   double energy() const;                                            // J, zero at rest
   double shapeEnergyDensity() const { return volume_term_.value; }  // Pa, without the barrier
@@ -48,6 +52,10 @@ class ElasticCell {
     double curvature = 0.0;
   };
 
+  using Pairs = Eigen::Matrix<double, kCorners, kCorners>;
+
+  void measureFull();
+  void measureFill(const CellFill& fill);
   Determinant determinantOf(const Corners& weight) const;
   void findSqueezedCorners();
   Curve neoHookean() const;
@@ -63,6 +71,7 @@ class ElasticCell {
   int squeezed_count_ = 0;
   double invariant_ = 3.0;   // I1
   Corners invariant_slope_;  // (1/2) dI1/dx (1/m)
+  Pairs invariant_pairs_;    // (1/2) d2I1/dx_i dx_j, times the unit matrix (1/12h^2)
   // E / h^3 without the barrier is a function of J and I1, all Pa: a is twice its derivative by I1,
   // cross_slope_ that of a by J, steepness_ four times the second derivative by I1.
   double a_ = 0.0;
@@ -72,6 +81,7 @@ class ElasticCell {
 };
 
 // x of elastic_law.h, J^(-2/3) I1 - 3, of a cell.
-double shapeStrain(double spacing, const ElasticCell::Corners& displacement);
+double shapeStrain(double spacing, const ElasticCell::Corners& displacement,
+                   const CellFill* fill = nullptr);
 
 }  // namespace robot_tissue

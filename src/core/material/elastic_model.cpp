@@ -9,8 +9,12 @@
 #include "material/elastic_law.h"
 
 namespace robot_tissue {
-
 namespace {
+
+// Of a full cell's eighth (1).
+double eighthsAt(const Cell& cell, int corner) {
+  return cell.fill == nullptr ? 1.0 : kCorners * cell.share() * cell.fill->cornerShare(corner);
+}
 
 ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
   ElasticCell::Corners displacement;
@@ -44,18 +48,20 @@ Moduli ElasticModel::cellModuli(const Cell& cell) const {
   return {cell.share() * full.shear, cell.share() * full.bulk, full.stiffening};
 }
 
-Vec3 ElasticModel::cornerWeight(const Cell& cell) const {
-  return cell.share() * substanceOf(cell).corner_weight;
+Vec3 ElasticModel::cornerWeight(const Cell& cell, int corner) const {
+  return eighthsAt(cell, corner) * substanceOf(cell).corner_weight;
 }
 
-double ElasticModel::cornerMass(const Cell& cell) const {
-  return cell.share() * substanceOf(cell).corner_mass;
+double ElasticModel::cornerMass(const Cell& cell, int corner) const {
+  return eighthsAt(cell, corner) * substanceOf(cell).corner_mass;
 }
 
 std::vector<double> ElasticModel::nodeMasses(const CellSet& cells) const {
   std::vector<double> masses(at(cells.nodeCount()), 0.0);
   for (const Cell& cell : cells.all()) {
-    for (const int node : cell.nodes) masses[at(node)] += cornerMass(cell);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      masses[at(cell.nodes[at(corner)])] += cornerMass(cell, corner);
+    }
   }
   return masses;
 }
@@ -67,8 +73,8 @@ int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
   if (!stiffens) return 0;
   const auto is_beyond = [&](const Cell& cell) {
     const double b = substanceOf(cell).moduli.stiffening;
-    return b > 0.0 &&
-           b * shapeStrain(lattice_.spacing(), cornersOf(state, cell)) > elastic_law::kMostExponent;
+    return b > 0.0 && b * shapeStrain(lattice_.spacing(), cornersOf(state, cell), cell.fill.get()) >
+                          elastic_law::kMostExponent;
   };
   const std::vector<Cell>& cells = state.cells->all();
   return static_cast<int>(std::count_if(cells.begin(), cells.end(), is_beyond));
@@ -81,8 +87,14 @@ Moduli ElasticModel::stepModuli(const Cell& cell) const {
           moduli.stiffening};
 }
 
-double ElasticModel::cornerInertia(const Cell& cell) const {
-  return inertia_ == nullptr ? 0.0 : inertia_->per_mass * cornerMass(cell);
+double ElasticModel::cornerInertia(const Cell& cell, int corner) const {
+  return inertia_ == nullptr ? 0.0 : inertia_->per_mass * cornerMass(cell, corner);
+}
+
+void ElasticModel::addInertia(const Cell& cell, CellHessian& hessian) const {
+  for (int corner = 0; corner < kCorners; ++corner) {
+    hessian.diagonal().segment<3>(3 * corner).array() += cornerInertia(cell, corner);
+  }
 }
 
 double ElasticModel::inertialForceNorm(const LatticeState& state) const {
@@ -101,7 +113,7 @@ Vec3 ElasticModel::inertialForce(int node) const {
 }
 
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
-  return {stepModuli(cell), lattice_.spacing(), cornersOf(state, cell)};
+  return {stepModuli(cell), lattice_.spacing(), cornersOf(state, cell), cell.fill.get()};
 }
 
 Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
@@ -109,26 +121,37 @@ Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
   Vec3 force = inertialForce(node);
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Cell& cell = cells.all()[at(met->cell)];
-    force += cornerWeight(cell) - shaped(state, cell).gradient(met->corner) -
-             cornerInertia(cell) * state.displacement[at(node)];
+    const int corner = static_cast<int>(met->corner);
+    force += cornerWeight(cell, corner) - shaped(state, cell).gradient(corner) -
+             cornerInertia(cell, corner) * state.displacement[at(node)];
   }
   return force;
 }
 
 Vec3 ElasticModel::weight(const LatticeState& state) const {
   Vec3 weight = Vec3::Zero();
-  for (const Cell& cell : state.cells->all()) weight += kCorners * cornerWeight(cell);
+  for (const Cell& cell : state.cells->all()) {
+    weight += kCorners * cell.share() * substanceOf(cell).corner_weight;
+  }
   return weight;
 }
 
-// The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis.
+// The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis; in a
+// cell filled in part the greatest of the three.
 Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   double stiffness = 0.0;
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Moduli moduli = cellModuli(cells.all()[at(met->cell)]);
     const double third = moduli.shear / 3.0;
-    stiffness += lattice_.spacing() * (third + (moduli.bulk + third) / 16.0);
+    double invariant = 1.0 / 3.0, widest = 1.0 / 16.0;
+    if (cells.all()[at(met->cell)].fill != nullptr) {
+      const FillLaw law = fillLaw(*cells.all()[at(met->cell)].fill);
+      const CornerSlopes slopes = cornerSlopes(law)[met->corner];
+      invariant = invariantBetween(law, slopes, slopes);
+      widest = slopes.strain.cwiseAbs2().maxCoeff();
+    }
+    stiffness += lattice_.spacing() * (moduli.shear * invariant + (moduli.bulk + third) * widest);
   }
   return Vec3::Constant(stiffness);
 }
@@ -137,9 +160,11 @@ Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   Moduli sum;
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Moduli cell = cellModuli(cells.all()[at(met->cell)]);
-    sum.shear += cell.shear / 4.0;
-    sum.bulk += cell.bulk / 4.0;
+    const Cell& cell = cells.all()[at(met->cell)];
+    const Moduli& full = substanceOf(cell).moduli;
+    const double eighths = eighthsAt(cell, static_cast<int>(met->corner));
+    sum.shear += eighths * full.shear / 4.0;
+    sum.bulk += eighths * full.bulk / 4.0;
   }
   return sum;
 }
@@ -150,7 +175,7 @@ Eigen::Matrix3d ElasticModel::nodeBlock(const LatticeState& state, int node) con
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Cell& cell = cells.all()[at(met->cell)];
     block += shaped(state, cell).block(met->corner);
-    block.diagonal().array() += cornerInertia(cell);
+    block.diagonal().array() += cornerInertia(cell, static_cast<int>(met->corner));
   }
   return block;
 }
@@ -159,13 +184,11 @@ double ElasticModel::energy(const LatticeState& state) const {
   double energy = 0.0;
   for (const Cell& cell : state.cells->all()) {
     energy += shaped(state, cell).energy();
-    Vec3 moved = Vec3::Zero();
-    double squared = 0.0;
-    for (const int node : cell.nodes) {
-      moved += state.displacement[at(node)];
-      squared += state.displacement[at(node)].squaredNorm();
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Vec3& moved = state.displacement[at(cell.nodes[at(corner)])];
+      energy += 0.5 * cornerInertia(cell, corner) * moved.squaredNorm() -
+                cornerWeight(cell, corner).dot(moved);
     }
-    energy += 0.5 * cornerInertia(cell) * squared - cornerWeight(cell).dot(moved);
   }
   if (inertia_ == nullptr) return energy;
   for (std::size_t node = 0; node < inertia_->force.size(); ++node) {
@@ -181,8 +204,8 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
     const ElasticCell shape = shaped(state, cell);
     for (int corner = 0; corner < kCorners; ++corner) {
       const std::size_t node = at(cell.nodes[at(corner)]);
-      forces[node] += cornerWeight(cell) - shape.gradient(corner) -
-                      cornerInertia(cell) * state.displacement[node];
+      forces[node] += cornerWeight(cell, corner) - shape.gradient(corner) -
+                      cornerInertia(cell, corner) * state.displacement[node];
     }
   }
   return forces;
@@ -205,9 +228,11 @@ NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const
     CellModes modes(lattice_.spacing());
     for (auto met = first; met != end; ++met) {
       const Cell& cell = cells.all()[at(met->cell)];
-      balance.force += cornerWeight(cell) - cornerInertia(cell) * state.displacement[at(node)];
-      balance.block.diagonal().array() += cornerInertia(cell);
-      modes.add(stepModuli(cell), cell.nodes, met->corner, state.displacement);
+      const int corner = static_cast<int>(met->corner);
+      const double inertia = cornerInertia(cell, corner);
+      balance.force += cornerWeight(cell, corner) - inertia * state.displacement[at(node)];
+      balance.block.diagonal().array() += inertia;
+      modes.add(stepModuli(cell), cell.nodes, corner, state.displacement, cell.fill == nullptr);
     }
     modes.solve();
     balance.force -= modes.gradient();
@@ -230,18 +255,17 @@ void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& 
     CellModes modes(lattice_.spacing());
     for (std::size_t i = first; i < end; ++i) {
       const Cell& cell = state.cells->all()[at(cells[i])];
-      modes.add(stepModuli(cell), cell.nodes, 0, state.displacement);
+      modes.add(stepModuli(cell), cell.nodes, 0, state.displacement, cell.fill == nullptr);
     }
     modes.solve();
     modes.findGradients();
     for (std::size_t i = first; i < end; ++i) {
       const Cell& cell = state.cells->all()[at(cells[i])];
-      const Vec3 weight = cornerWeight(cell);
-      const double inertia = cornerInertia(cell);
       const int lane = static_cast<int>(i - first);
       for (int corner = 0; corner < kCorners; ++corner) {
         const std::size_t node = at(cell.nodes[at(corner)]);
-        forces[node] += weight - modes.gradient(lane, corner) - inertia * state.displacement[node];
+        forces[node] += cornerWeight(cell, corner) - modes.gradient(lane, corner) -
+                        cornerInertia(cell, corner) * state.displacement[node];
       }
       if (modes.suffices(lane)) continue;
       const ElasticCell squeezed = shaped(state, cell);
@@ -256,7 +280,8 @@ void ElasticModel::addElasticForces(const LatticeState& state, const std::vector
                                     std::vector<Vec3>& forces) const {
   for (const int index : cells) {
     const Cell& cell = state.cells->all()[at(index)];
-    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell));
+    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell),
+                            cell.fill.get());
     for (int corner = 0; corner < kCorners; ++corner) {
       forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
     }
@@ -266,14 +291,14 @@ void ElasticModel::addElasticForces(const LatticeState& state, const std::vector
 CellHessian ElasticModel::cellHessian(const LatticeState& state, int cell) const {
   const Cell& one = state.cells->all()[at(cell)];
   CellHessian hessian = shaped(state, one).hessian();
-  hessian.diagonal().array() += cornerInertia(one);
+  addInertia(one, hessian);
   return hessian;
 }
 
 void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& visit) const {
   for (const Cell& cell : state.cells->all()) {
     CellHessian hessian = shaped(state, cell).hessian();
-    hessian.diagonal().array() += cornerInertia(cell);
+    addInertia(cell, hessian);
     visit(cell.nodes, hessian);
   }
 }

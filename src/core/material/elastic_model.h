@@ -45,8 +45,9 @@ class ElasticModel : public EnergyModel {
 
   ElasticCell shaped(const LatticeState& state, const Cell& cell) const;
   Moduli cellModuli(const Cell& cell) const;  // Pa, of what the cell is filled with
-  Vec3 cornerWeight(const Cell& cell) const;  // gravity on an eighth of it (N)
-  double cornerMass(const Cell& cell) const;  // of an eighth of it (kg)
+  // Gravity on what the corner bears of the cell (N), and its mass (kg).
+  Vec3 cornerWeight(const Cell& cell, int corner) const;
+  double cornerMass(const Cell& cell, int corner) const;
   std::vector<Vec3> cellForces(const LatticeState& state) const;  // no gravity, no time step (N)
   std::vector<double> nodeMasses(const CellSet& cells) const;     // ghosts last (kg)
   bool movesInTime() const { return moves_in_time_; }       // solves may have an inertial term
@@ -62,9 +63,10 @@ class ElasticModel : public EnergyModel {
     return substances_[kinds_[at(cell.place)]];
   }
 
-  Moduli stepModuli(const Cell& cell) const;     // with what a time step adds
-  double cornerInertia(const Cell& cell) const;  // N/m; zero without a time step
-  Vec3 inertialForce(int node) const;            // that does not hang on the shape (N)
+  Moduli stepModuli(const Cell& cell) const;                 // with what a time step adds
+  double cornerInertia(const Cell& cell, int corner) const;  // N/m; zero without a time step
+  void addInertia(const Cell& cell, CellHessian& hessian) const;
+  Vec3 inertialForce(int node) const;  // that does not hang on the shape (N)
 
   const Lattice& lattice_;
   bool moves_in_time_;

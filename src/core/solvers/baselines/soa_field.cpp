@@ -14,8 +14,8 @@ constexpr std::size_t kAlignment = 4096;
 constexpr int kApart = 5;
 
 bool isLane(const CellSet& cells, const Cell& cell) {
-  return !cell.isPart() && std::none_of(cell.nodes.begin(), cell.nodes.end(),
-                                        [&](int node) { return cells.isGhost(node); });
+  return cell.fill == nullptr && std::none_of(cell.nodes.begin(), cell.nodes.end(),
+                                              [&](int node) { return cells.isGhost(node); });
 }
 
 }  // namespace
@@ -214,7 +214,8 @@ void SoaField::takeRims(const ConstrainedState& shape) {
 }
 
 // Sorts cells and nodes into those that the vector kernels do and the odd ones, which are done one
-// by one: parts of cut cells, and nodes in contact or in cells that the kernels do not do.
+// by one: cells filled in part, parts of cut ones, and nodes in contact or in cells that the
+// kernels do not do.
 void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patch_hold) {
   std::vector<std::uint8_t> has_cell(at(size_), 0), has_node(at(size_), 0);
   std::vector<std::uint8_t> odd(slots_.size(), 0);
@@ -229,7 +230,7 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
     bulk_[slot] = static_cast<float>(moduli.bulk / rest_modulus_);
     if (stiffens_) stiffening_[slot] = static_cast<float>(moduli.stiffening);
     has_cell[at(slot)] = 1;
-    const Vec3 weight = model_.cornerWeight(cell);
+    const Vec3 weight = model_.cornerWeight(cell, 0);  // alike at all corners
     for (const int node : cell.nodes) scratch_[at(node)] += weight;
     if (inertia_ == nullptr) continue;
     for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell);

@@ -1,6 +1,6 @@
 // A shape of model `elastic` in single precision, laid out for vector instructions
 // (colored_layout.h), with what may move in it (own). What lanes cannot do is done beside them in
-// double precision: cells that a cut parted, and nodes in contact ("odd" ones).
+// double precision: cells filled in part, as a cut leaves them, and nodes in contact ("odd" ones).
 //
 // Units: lane_kernels.h.
 #pragma once

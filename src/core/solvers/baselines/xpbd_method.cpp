@@ -24,8 +24,9 @@ XpbdMethod::XpbdMethod(const Lattice& lattice, const ElasticModel& model,
 void XpbdMethod::weigh() {
   weight_.assign(shape_.state.displacement.size(), Vec3::Zero());
   for (const Cell& cell : shape_.state.cells->all()) {
-    const Vec3 weight = model_.cornerWeight(cell);
-    for (const int node : cell.nodes) weight_[at(node)] += weight;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      weight_[at(cell.nodes[at(corner)])] += model_.cornerWeight(cell, corner);
+    }
   }
 }
 

@@ -206,6 +206,9 @@ std::vector<LevelCell> CompositeGrid<Real>::finestCells(const ElasticModel& mode
     level_cell.shear = moduli.shear / modulus_;
     level_cell.bulk = moduli.bulk / modulus_;
     level_cell.stiffening = moduli.stiffening;
+    if (cell.fill != nullptr) {
+      level_cell.fill = levelFill(*cell.fill, level_cell.shear / cell.share());
+    }
     for (int corner = 0; corner < kCorners; ++corner) {
       level_cell.nodes[at(corner)] = entryOf(cell.nodes[at(corner)]);
     }
@@ -226,12 +229,12 @@ template <typename Real>
 void CompositeGrid<Real>::findWeight(const ElasticModel& model, const CellSet& cells) {
   const double unit = modulus_ * spacing_ * spacing_;
   for (const Cell& cell : cells.all()) {
-    const Vec3 weight = model.cornerWeight(cell) / unit;
-    if (weight.isZero(0.0)) continue;
-    for (auto& values : weight_) values.resize(at(finest().count()), Real(0));
-    for (const int node : cell.nodes) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const Vec3 weight = model.cornerWeight(cell, corner) / unit;
+      if (weight.isZero(0.0)) continue;
+      for (auto& values : weight_) values.resize(at(finest().count()), Real(0));
       for (int axis = 0; axis < 3; ++axis) {
-        weight_[at(axis)][at(entryOf(node))] += static_cast<Real>(weight[axis]);
+        weight_[at(axis)][at(entryOf(cell.nodes[at(corner)]))] += static_cast<Real>(weight[axis]);
       }
     }
   }

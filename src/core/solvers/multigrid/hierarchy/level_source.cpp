@@ -105,7 +105,7 @@ bool isBlock(const Lattice& lattice, const ElasticModel& model, const CellSet& c
   const int all = (size[0] - 1) * (size[1] - 1) * (size[2] - 1);
   return cells.ghosts().empty() && static_cast<int>(cells.all().size()) == all &&
          std::all_of(cells.all().begin(), cells.all().end(), [&](const Cell& cell) {
-           return !cell.isPart() && model.cornerWeight(cell).isZero(0.0);
+           return cell.fill == nullptr && model.cornerWeight(cell, 0).isZero(0.0);
          });
 }
 

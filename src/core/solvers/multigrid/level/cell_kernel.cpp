@@ -118,6 +118,63 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
 }
 
 template <typename V>
+ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
+                                        const FilledCell<typename V::Real>* cells, int count) {
+  using L = typename V::Lanes;
+  Block<V> block;
+  typename Block<V>::Fill fill;
+  block.shear = block.bulk = block.exponent = L{};
+  for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
+  for (auto* values : {&fill.centroid, &fill.pairs, &fill.bending, &fill.between_parts}) {
+    for (L& value : *values) value = L{};
+  }
+  fill.twisting = L{};
+  for (int cell = 0; cell < count; ++cell) {
+    const auto& of = cells[cell];
+    block.shear[cell] = of.shear;
+    block.bulk[cell] = of.bulk;
+    block.exponent[cell] = of.stiffening;
+    for (int axis = 0; axis < 3; ++axis) {
+      fill.centroid[axis][cell] = of.centroid[at(axis)];
+      fill.pairs[axis][cell] = of.pairs[at(axis)];
+      fill.bending[axis][cell] = of.bending[at(axis)];
+      fill.between_parts[axis][cell] = of.between_parts[at(axis)];
+      for (int corner = 0; corner < kCorners; ++corner) {
+        block.mode[corner][axis][cell] = grid.displacement[at(axis)][of.nodes[at(corner)]];
+      }
+    }
+    fill.twisting[cell] = of.twisting;
+  }
+  block.has_parts = grid.loose_stand;
+  block.parts = block.bulk;
+  L stiffness[kCorners];
+  L* const asked = grid.lower_stiffness != nullptr ? stiffness : nullptr;
+  if (grid.stiffening == nullptr) {
+    block.template solveFill<false>(fill, asked);
+  } else {
+    block.template solveFill<true>(fill, asked);
+  }
+  for (int cell = 0; cell < count; ++cell) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int sum = cells[cell].sums[at(corner)];
+      for (int axis = 0; axis < 3; ++axis) {
+        grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
+      }
+      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[sum] += stiffness[corner][cell];
+    }
+  }
+}
+
+template <typename V>
+ROBOT_TISSUE_INLINE void addAllFilled(const CellGrid<typename V::Real>& grid,
+                                      const FilledCell<typename V::Real>* cells, int count) {
+  constexpr int kSize = V::kSize;
+  for (int cell = 0; cell < count; cell += kSize) {
+    addFilledBlock<V>(grid, cells + cell, std::min(kSize, count - cell));
+  }
+}
+
+template <typename V>
 ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<typename V::Real>& grid,
                                      const LooseCell<typename V::Real>* cells, int count) {
   constexpr int kSize = V::kSize;
@@ -142,6 +199,14 @@ ROBOT_TISSUE_INLINE void addAllLoose(const CellGrid<typename V::Real>& grid,
   kind void addLooseHere(const CellGrid<double>& grid, const LooseCell<double>* cells,            \
                          int count) {                                                             \
     addAllLoose<Vector<double, bytes>>(grid, cells, count);                                       \
+  }                                                                                               \
+  kind void addFilledHere(const CellGrid<float>& grid, const FilledCell<float>* cells,            \
+                          int count) {                                                            \
+    addAllFilled<Vector<float, bytes>>(grid, cells, count);                                       \
+  }                                                                                               \
+  kind void addFilledHere(const CellGrid<double>& grid, const FilledCell<double>* cells,          \
+                          int count) {                                                            \
+    addAllFilled<Vector<double, bytes>>(grid, cells, count);                                      \
   }
 
 ROBOT_TISSUE_FOR_EACH_PROCESSOR(ROBOT_TISSUE_KERNELS)
@@ -161,6 +226,14 @@ void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int co
 
 void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count) {
   addLooseHere(grid, cells, count);
+}
+
+void addFilled(const CellGrid<float>& grid, const FilledCell<float>* cells, int count) {
+  addFilledHere(grid, cells, count);
+}
+
+void addFilled(const CellGrid<double>& grid, const FilledCell<double>* cells, int count) {
+  addFilledHere(grid, cells, count);
 }
 
 }  // namespace robot_tissue

@@ -67,4 +67,18 @@ struct LooseCell {
 void addLoose(const CellGrid<float>& grid, const LooseCell<float>* cells, int count);
 void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int count);
 
+// One that is filled in part (core/material/fill_law.h; pairs by the axis that they leave out).
+template <typename Real>
+struct FilledCell : LooseCell<Real> {
+  std::array<Real, 3> centroid{};
+  std::array<Real, 3> pairs{};
+  std::array<Real, 3> bending{};
+  Real twisting = 0;
+  std::array<Real, 3> between_parts{};  // of a coarse cell: variance of its parts' centroids
+};
+
+// Likewise.
+void addFilled(const CellGrid<float>& grid, const FilledCell<float>* cells, int count);
+void addFilled(const CellGrid<double>& grid, const FilledCell<double>* cells, int count);
+
 }  // namespace robot_tissue

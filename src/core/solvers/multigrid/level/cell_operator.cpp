@@ -6,6 +6,27 @@
 #include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+template <typename Real>
+std::array<Real, 3> rounded(const Vec3& values) {
+  return {static_cast<Real>(values[0]), static_cast<Real>(values[1]), static_cast<Real>(values[2])};
+}
+
+template <typename Real>
+FilledCell<Real> filledCell(const LooseCell<Real>& cell, const LevelFill& fill) {
+  FilledCell<Real> filled;
+  static_cast<LooseCell<Real>&>(filled) = cell;
+  filled.centroid = rounded<Real>(fill.law.centroid);
+  filled.pairs = rounded<Real>(fill.law.pairs);
+  filled.bending = rounded<Real>(fill.law.bending);
+  filled.twisting = static_cast<Real>(fill.law.twisting);
+  filled.between_parts = rounded<Real>(fill.between_parts);
+  return filled;
+}
+
+}  // namespace
+
 template <typename Real>
 CellOperator<Real>::CellOperator(const LevelGrid& grid, int beside,
                                  const std::vector<LevelCell>& cells, const LevelPart& part)
@@ -37,7 +58,7 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
     }
     const Real shear = static_cast<Real>(cell.shear), bulk = static_cast<Real>(cell.bulk);
     const Real stiffening = static_cast<Real>(cell.stiffening);
-    if (regular) {
+    if (regular && cell.fill == nullptr) {
       if (shear > Real(0) && stiffens) {  // the mean by stiffness
         Real& mean = stiffening_[at(lowest)];
         const Real before = shear_[at(lowest)];
@@ -45,20 +66,29 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
       }
       shear_[at(lowest)] += shear;
       bulk_[at(lowest)] += bulk;
-    } else {
-      loose_.push_back({cell.nodes, {}, shear, bulk, stiffening});
-      loose_nodes_.insert(loose_nodes_.end(), cell.nodes.begin(), cell.nodes.end());
+      continue;
     }
+    const LooseCell<Real> loose = {cell.nodes, {}, shear, bulk, stiffening};
+    if (cell.fill == nullptr) {
+      loose_.push_back(loose);
+    } else {
+      filled_.push_back(filledCell(loose, *cell.fill));
+    }
+    loose_nodes_.insert(loose_nodes_.end(), cell.nodes.begin(), cell.nodes.end());
   }
   std::sort(loose_nodes_.begin(), loose_nodes_.end());
   loose_nodes_.erase(std::unique(loose_nodes_.begin(), loose_nodes_.end()), loose_nodes_.end());
   for (auto& sums : loose_sums_) sums.assign(loose_nodes_.size(), Real(0));
-  for (LooseCell<Real>& cell : loose_) {
-    for (std::size_t corner = 0; corner < cell.nodes.size(); ++corner) {
-      const auto found =
-          std::lower_bound(loose_nodes_.begin(), loose_nodes_.end(), cell.nodes[corner]);
-      cell.sums[corner] = static_cast<int>(found - loose_nodes_.begin());
-    }
+  for (LooseCell<Real>& cell : loose_) placeSums(cell);
+  for (FilledCell<Real>& cell : filled_) placeSums(cell);
+}
+
+template <typename Real>
+void CellOperator<Real>::placeSums(LooseCell<Real>& cell) const {
+  for (std::size_t corner = 0; corner < cell.nodes.size(); ++corner) {
+    const auto found =
+        std::lower_bound(loose_nodes_.begin(), loose_nodes_.end(), cell.nodes[corner]);
+    cell.sums[corner] = static_cast<int>(found - loose_nodes_.begin());
   }
 }
 
@@ -225,12 +255,13 @@ void CellOperator<Real>::addInertia(const Loads& loads, Find what, int first, in
 // Nodes beside the grid, and those on it that loose cells have.
 template <typename Real>
 void CellOperator<Real>::finishBeside(const Loads& loads, Find what) {
-  if (loose_.empty()) return;
+  if (loose_nodes_.empty()) return;
   for (auto& sums : loose_sums_) std::fill(sums.begin(), sums.end(), Real(0));
   CellGrid<Real> cells = gridOf(loads);
   for (std::size_t axis = 0; axis < 3; ++axis) cells.lower[axis] = loose_sums_[axis].data();
   if (what == Find::kForcesAndStiffness) cells.lower_stiffness = loose_sums_[3].data();
   addLoose(cells, loose_.data(), static_cast<int>(loose_.size()));
+  addFilled(cells, filled_.data(), static_cast<int>(filled_.size()));
   for (std::size_t i = 0; i < loose_nodes_.size(); ++i) {
     const std::size_t node = at(loose_nodes_[i]);
     const bool is_free = loads.free[node] != Real(0), is_beside = loose_nodes_[i] >= grid_.beside;

@@ -72,6 +72,7 @@ class CellOperator {
   using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
 
   void place(const std::vector<LevelCell>& cells);
+  void placeSums(LooseCell<Real>& cell) const;
   void findBlocks();
   void makeSums(int threads);
   void findForces(const Loads& loads, Find what, const Blocks& blocks);
@@ -89,7 +90,8 @@ class CellOperator {
   std::vector<Real> shear_, bulk_;
   std::vector<Real> stiffening_;  // empty: 0 in all
   std::vector<LooseCell<Real>> loose_;
-  std::vector<int> loose_nodes_;                 // of loose cells
+  std::vector<FilledCell<Real>> filled_;
+  std::vector<int> loose_nodes_;                 // of loose cells and filled ones
   std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness
   std::vector<std::array<int, 3>> beside_places_;
   LevelPart part_;

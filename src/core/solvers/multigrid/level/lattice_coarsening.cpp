@@ -21,12 +21,59 @@ Place cornerOf(const Place& place, int corner) {
   return {place[0] + (corner & 1), place[1] + (corner >> 1 & 1), place[2] + (corner >> 2 & 1)};
 }
 
+FillIntegrals integralsIn(const LevelCell& cell) {
+  return cell.fill != nullptr ? cell.fill->integrals : integralsOf(CellFill()).scaledBy(cell.shear);
+}
+
+// The fill of a coarse cell from its parts' (own).
+class FillSum {
+ public:
+  void add(const LevelCell& part) {
+    ++count_;
+    is_full_ = is_full_ && part.fill == nullptr && (count_ == 1 || part.shear == shear_);
+    shear_ = part.shear;
+    const FillIntegrals in_part = integralsIn(part);
+    Vec3 middle;
+    for (int axis = 0; axis < 3; ++axis)
+      middle[axis] = part.place[at(axis)] % 2 == 0 ? -0.25 : 0.25;
+    const double weight = in_part.volume / kCorners;
+    const Vec3 first = in_part.first / kCorners;
+    sum_.volume += weight;
+    sum_.first += weight * middle + 0.5 * first;
+    sum_.second += weight * middle * middle.transpose() +
+                   0.5 * (first * middle.transpose() + middle * first.transpose()) +
+                   0.25 / kCorners * in_part.second;
+    const Vec3 centroid = middle + 0.5 * in_part.first / in_part.volume;
+    squares_ += weight * centroid.cwiseAbs2();
+  }
+
+  // Null: eight full parts that are alike.
+  std::shared_ptr<const LevelFill> fill() const {
+    if (is_full_ && count_ == kCorners) return nullptr;
+    auto fill = std::make_shared<LevelFill>();
+    fill->integrals = sum_;
+    fill->law = fillLaw(fillOf(sum_));
+    const Vec3& centroid = fill->law.centroid;
+    fill->between_parts = (squares_ / sum_.volume - centroid.cwiseAbs2()).cwiseMax(0.0);
+    return fill;
+  }
+
+ private:
+  FillIntegrals sum_;
+  Vec3 squares_ = Vec3::Zero();
+  bool is_full_ = true;
+  double shear_ = 0.0;
+  int count_ = 0;
+};
+
 // Whatever the object's size, the work beside what is cut, or at its outside, is a few steps a
 // cell: most cells are plain, their nodes the grid's own.
 class Coarsener {
  public:
   Coarsener(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries)
       : fine_(fine), cells_(cells), entries_(entries) {
+    has_fills_ = std::any_of(cells.begin(), cells.end(),
+                             [](const LevelCell& cell) { return cell.fill != nullptr; });
     Place size{};
     for (std::size_t axis = 0; axis < 3; ++axis) size[axis] = fine.size[axis] / 2 + 1;
     result_.grid = LevelGrid(size);
@@ -91,7 +138,8 @@ class Coarsener {
       if (root == static_cast<int>(i)) {
         piece = static_cast<int>(result_.cells.size());
         const Place& place = cells_[at(first[i])].place;
-        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0.0, 0.0, 0.0});
+        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0, 0, 0, {}});
+        fills_.emplace_back();
       } else {
         piece = piece_of_[at(first[root])];
       }
@@ -100,11 +148,14 @@ class Coarsener {
       coarse.shear += fine.shear / kCorners;
       coarse.bulk += fine.bulk / kCorners;
       coarse.stiffening += fine.shear * fine.stiffening / kCorners;
+      if (has_fills_) fills_[at(piece) - first_piece].add(fine);
     }
     for (std::size_t piece = first_piece; piece < result_.cells.size(); ++piece) {
       LevelCell& coarse = result_.cells[piece];
       if (coarse.stiffening > 0.0) coarse.stiffening /= coarse.shear;  // the mean by stiffness
+      if (has_fills_) coarse.fill = fills_[piece - first_piece].fill();
     }
+    fills_.clear();
     is_alone_.resize(result_.cells.size(), result_.cells.size() - first_piece == 1 ? 1 : 0);
   }
 
@@ -284,6 +335,10 @@ class Coarsener {
   const LevelGrid& fine_;
   const std::vector<LevelCell>& cells_;
   int entries_;
+  // Of any of the cells: then coarse cells have theirs. Without, an odd block's last cells have the
+  // mean moduli alone.
+  bool has_fills_ = false;
+  std::vector<FillSum> fills_;  // of the pieces at the present place
   Coarsening result_;
   std::vector<int> piece_of_;             // per fine cell: the coarse one
   std::vector<std::uint8_t> is_alone_;    // per coarse cell: no other is at its place
@@ -295,6 +350,13 @@ class Coarsener {
 };
 
 }  // namespace
+
+std::shared_ptr<const LevelFill> levelFill(const CellFill& fill, double shear_where_full) {
+  auto level = std::make_shared<LevelFill>();
+  level->integrals = integralsOf(fill).scaledBy(shear_where_full);
+  level->law = fillLaw(fill);
+  return level;
+}
 
 LevelGrid::LevelGrid(const std::array<int, 3>& points)
     : size(points),

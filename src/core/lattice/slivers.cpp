@@ -1,0 +1,65 @@
+#include "lattice/slivers.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace robot_tissue {
+namespace {
+
+double leastSpread(const Cell& cell) {
+  return cell.fill != nullptr ? cell.fill->spread[0] : CellFill().spread[0];
+}
+
+// Cells by their nodes.
+class CellsAtNodes {
+ public:
+  CellsAtNodes(const std::vector<Cell>& cells, int node_count) : first_(at(node_count) + 1, 0) {
+    for (const Cell& cell : cells) {
+      for (const int node : cell.nodes) ++first_[at(node) + 1];
+    }
+    for (std::size_t node = 1; node < first_.size(); ++node) first_[node] += first_[node - 1];
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    cells_.resize(kCorners * cells.size());
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+      for (const int node : cells[cell].nodes) {
+        cells_[at(next[at(node)]++)] = static_cast<int>(cell);
+      }
+    }
+  }
+
+  const int* begin(int node) const { return cells_.data() + first_[at(node)]; }
+  const int* end(int node) const { return cells_.data() + first_[at(node) + 1]; }
+
+ private:
+  std::vector<int> first_, cells_;
+};
+
+}  // namespace
+
+void stiffenSlivers(std::vector<Cell>& cells, int node_count) {
+  const auto in_part = [](const Cell& cell) { return cell.fill != nullptr; };
+  if (std::none_of(cells.begin(), cells.end(), in_part)) return;
+  const CellsAtNodes beside(cells, node_count);
+  std::vector<double> spreads;
+  for (const Cell& cell : cells) {
+    double spread = leastSpread(cell);
+    for (std::size_t corner = 0; in_part(cell) && corner < kCorners; ++corner) {
+      const int node = cell.nodes[corner];
+      for (const int* other = beside.begin(node); other != beside.end(node); ++other) {
+        const Cell& lender = cells[at(*other)];
+        const double lent = std::min(1.0, lender.share() / cell.share());
+        const double least = leastSpread(lender);
+        spread = std::max(spread, lent * least * least / CellFill().spread[0]);
+      }
+    }
+    spreads.push_back(spread);
+  }
+  for (std::size_t index = 0; index < cells.size(); ++index) {
+    if (spreads[index] == leastSpread(cells[index])) continue;
+    CellFill raised = *cells[index].fill;
+    raised.spread = raised.spread.cwiseMax(spreads[index]);
+    cells[index].fill = std::make_shared<const CellFill>(raised);
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,208 @@
+// Cells of model `elastic` that are filled in part: the energy, and what it does in a tissue.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "elastic_fixtures.h"
+#include "mesh_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kSpacing = 0.01;
+const Moduli kModuli = {3448.0, 33333.0};  // Pa: 10 kPa, Poisson's ratio 0.45
+
+using Corners = ElasticCell::Corners;
+
+Vec3 restOf(int corner) { return kSpacing * Vec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1); }
+
+Corners deformedBy(const Eigen::Matrix3d& gradient) {
+  Corners displacement;
+  for (int c = 0; c < kCorners; ++c) displacement[at(c)] = gradient * restOf(c) - restOf(c);
+  return displacement;
+}
+
+Corners shaken(Corners displacement, double size, unsigned seed) {
+  Shaker shaker(seed);
+  for (Vec3& corner : displacement) corner += shaker.displacement(size);
+  return displacement;
+}
+
+// A wall along no axis, a rod, an edge's chip, half a cell, and one octant.
+CellFill fillNumber(int number) {
+  FillIntegrals fill;
+  Random random;
+  for (int i = 0; i < 4000 && number < 3; ++i) {
+    const Vec3 point = random.offset(0.5);
+    const Vec3 from = point - Vec3(0.1, -0.15, 0.2);
+    const double across = from.dot(Vec3(1, 2, 3).normalized());
+    const bool in_wall = std::abs(across) < 0.1;
+    const bool in_rod = (from - across * Vec3(1, 2, 3).normalized()).norm() < 0.15;
+    const bool in_chip = point.x() + point.z() > 0.7;
+    if (number == 0 ? in_wall : number == 1 ? in_rod : in_chip) fill.add(point, 1.0 / 4000.0);
+  }
+  if (number == 3) return fillOf(octantIntegrals(0x0f));
+  if (number == 4) return fillOf(octantIntegrals(0x20));
+  return fillOf(fill);
+}
+constexpr int kFills = 5;
+
+class PartialCell : public testing::TestWithParam<std::tuple<int, double>> {
+ protected:
+  PartialCell() : fill_(fillNumber(std::get<0>(GetParam()))) {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+    gradient(2, 2) = std::get<1>(GetParam());
+    gradient(0, 2) = 0.2;
+    shape_ = shaken(deformedBy(gradient), 0.1 * kSpacing, 7);
+  }
+  ElasticCell cellAt(const Corners& shape) const { return {kModuli, kSpacing, shape, &fill_}; }
+
+  CellFill fill_;
+  Corners shape_;
+};
+
+TEST_P(PartialCell, GradientIsTheEnergysSlope) {
+  const ElasticCell cell = cellAt(shape_);
+  constexpr double kStep = 1e-5 * kSpacing;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    Vec3 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      Corners ahead = shape_, behind = shape_;
+      ahead[at(corner)][axis] += kStep;
+      behind[at(corner)][axis] -= kStep;
+      slope[axis] = (cellAt(ahead).energy() - cellAt(behind).energy()) / (2.0 * kStep);
+    }
+    ASSERT_GT(slope.norm(), 1e-4 * kModuli.shear * kSpacing * kSpacing);
+    EXPECT_LT((cell.gradient(corner) - slope).norm(),
+              1e-6 * slope.norm() + 1e-9 * kModuli.bulk * kSpacing * kSpacing)
+        << corner;
+  }
+}
+
+TEST_P(PartialCell, HessianIsTheGradientsSlope) {
+  const CellHessian hessian = cellAt(shape_).hessian();
+  constexpr double kStep = 1e-6 * kSpacing;
+  for (int column = 0; column < 3 * kCorners; ++column) {
+    Corners ahead = shape_, behind = shape_;
+    ahead[at(column / 3)][column % 3] += kStep;
+    behind[at(column / 3)][column % 3] -= kStep;
+    const ElasticCell after = cellAt(ahead), before = cellAt(behind);
+    Eigen::Matrix<double, 3 * kCorners, 1> slope;
+    for (int c = 0; c < kCorners; ++c) {
+      slope.segment<3>(3 * c) = (after.gradient(c) - before.gradient(c)) / (2.0 * kStep);
+    }
+    ASSERT_GT(slope.norm(), 1e-3 * kModuli.shear * kSpacing);
+    EXPECT_LT((hessian.col(column) - slope).norm(), 1e-6 * hessian.norm() / 5.0) << column;
+  }
+  EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-13 * hessian.norm());
+  for (int c = 0; c < kCorners; ++c) {
+    const Eigen::Matrix3d block = hessian.block<3, 3>(3 * c, 3 * c);
+    EXPECT_LT((cellAt(shape_).block(c) - block).norm(), 1e-12 * hessian.norm());
+  }
+}
+
+TEST_P(PartialCell, TurningChangesNothing) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).matrix();
+  Corners turned;
+  for (int c = 0; c < kCorners; ++c) {
+    turned[at(c)] = turn * (restOf(c) + shape_[at(c)]) - restOf(c);
+  }
+  const double energy = cellAt(shape_).energy();
+  ASSERT_GT(energy, 0.0);
+  EXPECT_NEAR(cellAt(turned).energy(), energy, 1e-12 * energy);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fills, PartialCell,
+                         testing::Combine(testing::Range(0, kFills),
+                                          testing::Values(0.9, 0.35, 0.07, -0.3)));
+
+// Wherever in the cell the material is.
+TEST(PartialCells, HomogeneousDeformationHasTheMaterialsEnergy) {
+  Eigen::Matrix3d gradient;
+  gradient << 1.2, 0.3, -0.1, 0.05, 0.8, 0.2, 0.0, -0.15, 0.9;
+  const double full = ElasticCell(kModuli, kSpacing, deformedBy(gradient)).energy();
+  ASSERT_GT(full, 0.0);
+  for (int number = 0; number < kFills; ++number) {
+    const CellFill fill = fillNumber(number);
+    const ElasticCell cell(kModuli, kSpacing, deformedBy(gradient), &fill);
+    EXPECT_NEAR(cell.energy(), full, 1e-12 * full) << number;
+  }
+}
+
+TEST(PartialCells, OneThatIsFullIsAFullCell) {
+  const Corners shape = shaken(deformedBy(Eigen::Matrix3d::Identity()), 0.2 * kSpacing, 3);
+  const CellFill fill;
+  const ElasticCell full(kModuli, kSpacing, shape), same(kModuli, kSpacing, shape, &fill);
+  ASSERT_GT(full.energy(), 0.0);
+  EXPECT_NEAR(same.energy(), full.energy(), 1e-13 * full.energy());
+  EXPECT_LT((same.hessian() - full.hessian()).norm(), 1e-13 * full.hessian().norm());
+  for (int c = 0; c < kCorners; ++c) {
+    EXPECT_LT((same.gradient(c) - full.gradient(c)).norm(), 1e-13 * full.gradient(0).norm());
+  }
+}
+
+// A bar along no axis, stretched along itself and thinner by Poisson's ratio: its sides bear no
+// stress, so that no node away from its ends feels a force, however the bar fills the cells there.
+TEST(PartialCells, StretchedBarAlongNoAxisIsInBalance) {
+  constexpr double kStrain = 1e-6;
+  Random random;
+  for (int trial = 0; trial < 5; ++trial) {
+    const Vec3 half(0.1, random.between(0.003, 0.02), random.between(0.003, 0.02));
+    const Pose pose = random.pose(0.01);
+    TissueConfig config;
+    config.mesh = std::make_shared<const TriangleMesh>(moved(boxMesh(-half, half), pose));
+    config.spacing = kSpacing;
+    config.material.young_modulus = 1e4;
+    config.material.poisson_ratio = 0.3;
+    const Lattice lattice(config);
+    const ElasticModel model(lattice, config);
+    LatticeState state = lattice.restState();
+    const Vec3 stretch = kStrain * Vec3(1.0, -0.3, -0.3);
+    for (int node = 0; node < lattice.nodeCount(); ++node) {
+      const Vec3 in_bar = pose.inverse() * lattice.restPosition(node);
+      state.displacement[at(node)] = pose.linear() * stretch.cwiseProduct(in_bar);
+    }
+    const double stress = 1e4 * kStrain;
+    int beside = 0;
+    Vec3 across = Vec3::Zero();
+    for (int node = 0; node < lattice.nodeCount(); ++node) {
+      const Vec3 in_bar = pose.inverse() * lattice.restPosition(node);
+      const Vec3 force = model.nodeForce(state, node);
+      if (in_bar.x() > 0.0) across += force;
+      if (std::abs(in_bar.x()) > half.x() - 2.0 * kSpacing) continue;
+      ++beside;
+      // Cells that the surface only grazes hold a thousandth, spread over them.
+      EXPECT_LT(force.norm(), 1e-3 * stress * kSpacing * kSpacing);
+    }
+    EXPECT_GT(beside, 50);
+    const double force = stress * 4.0 * half.y() * half.z();
+    EXPECT_LT((across + force * pose.linear().col(0)).norm(), 1e-3 * force);
+  }
+}
+
+// Masses of the corners are those of where the material is: their center is the mesh's.
+TEST(PartialCells, WeighWhereTheyAreFilled) {
+  TissueConfig config;
+  const TriangleMesh box =
+      moved(boxMesh(Vec3(-0.03, -0.012, -0.004), Vec3(0.031, 0.013, 0.0035)), Random().pose(0.02));
+  config.mesh = std::make_shared<const TriangleMesh>(box);
+  config.spacing = kSpacing;
+  const Lattice lattice(config);
+  const ElasticModel model(lattice, config);
+  const std::vector<double> masses = model.nodeMasses(*lattice.restState().cells);
+  Vec3 center = Vec3::Zero(), middle = Vec3::Zero();
+  double mass = 0.0;
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    EXPECT_GE(masses[at(node)], 0.0);
+    EXPECT_NEAR(lattice.mass(node), masses[at(node)], 1e-12 * lattice.mass(0) + 1e-18);
+    mass += masses[at(node)];
+    center += masses[at(node)] * lattice.restPosition(node);
+  }
+  for (const Vec3& vertex : box.vertices) middle += vertex / 8.0;
+  // Cells that the surface only grazes hold a thousandth.
+  EXPECT_NEAR(mass, 1000.0 * volumeOf(box), 2e-3 * mass);
+  EXPECT_LT((center / mass - middle).norm(), 2e-3 * kSpacing);
+}
+
+}  // namespace
+}  // namespace robot_tissue
