@@ -9,8 +9,8 @@ robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h triangle_mesh.h triangle_point.h
   FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_pieces.cpp mesh_pieces.h
-    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp triangle_mesh.cpp
-    triangle_point.cpp tuning.h)
+    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp tetrahedron.cpp
+    tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
   PUBLIC removed_space.h scene.h suture.h tool_role.h
@@ -21,9 +21,9 @@ robot_tissue_room(lattice
   FILES cells.cpp connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
     piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
-  USES base config lattice
-  FILES blade_surface.cpp blade_surface.h cut.cpp cut.h removal.cpp removal.h split_cells.cpp
-    split_cells.h tear.cpp tear.h)
+  USES base geometry config lattice
+  FILES blade_surface.cpp blade_surface.h cell_division.cpp cell_division.h cut.cpp cut.h
+    removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC surface.h

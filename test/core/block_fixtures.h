@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cutting/blade_surface.h"
 #include "material/six_spring_model.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/loading_patch.h"
@@ -52,6 +53,12 @@ inline TissueConfig withFixedBottom(TissueConfig config) {
 }
 
 inline std::vector<int> nodesOf(const Lattice& lattice) { return lattice.nodesIn(everywhere()); }
+
+inline std::vector<int> springsOf(const std::vector<Crossing>& crossings) {
+  std::vector<int> springs;
+  for (const Crossing& crossing : crossings) springs.push_back(crossing.spring);
+  return springs;
+}
 
 inline LoadingPatch displaced(const std::vector<int>& nodes, const Vec3& displacement) {
   LoadingPatch patch;

@@ -31,12 +31,6 @@ Triangles sheet(const std::vector<Vec3>& profile, double from_z, double to_z) {
   return triangles;
 }
 
-std::vector<int> springsOf(const std::vector<Crossing>& crossings) {
-  std::vector<int> springs;
-  for (const Crossing& crossing : crossings) springs.push_back(crossing.spring);
-  return springs;
-}
-
 // A saddle over the whole block parts it, whichever way round its corners are told.
 TEST(WarpedPolygon, SeversOneSpringOfEveryRowAndParts) {
   const Lattice lattice(blockOf(6, 6, 6));
@@ -48,7 +42,7 @@ TEST(WarpedPolygon, SeversOneSpringOfEveryRowAndParts) {
   std::set<int> first;
   for (int turn = 0; turn < 8; ++turn) {
     LatticeState state = lattice.restState();
-    const std::vector<int> crossing = springsAcross(lattice, state, saddle);
+    const std::vector<int> crossing = springsOf(springsAcross(lattice, state, saddle));
     const std::set<int> once(crossing.begin(), crossing.end());
     EXPECT_EQ(once.size(), crossing.size());
     std::set<std::array<int, 2>> columns;
@@ -95,8 +89,8 @@ TEST(WarpedPolygon, NotchIsSpared) {
   for (const bool turned : {false, true}) {
     if (turned) std::reverse(ell.begin(), ell.end());
     std::set<std::array<int, 3>> below;
-    for (const int spring : springsAcross(lattice, lattice.restState(), ell)) {
-      below.insert(lattice.gridIndex(lattice.springs()[at(spring)].a));
+    for (const Crossing& each : springsAcross(lattice, lattice.restState(), ell)) {
+      below.insert(lattice.gridIndex(lattice.springs()[at(each.spring)].a));
     }
     EXPECT_EQ(below, (std::set<std::array<int, 3>>{{0, 0, 0},
                                                    {1, 0, 0},

@@ -35,7 +35,8 @@ TEST(Cut, PlaneBetweenNodesSeversOneSpringOfEveryRow) {
   const Lattice lattice(config);
   for (int axis = 0; axis < 3; ++axis) {
     LatticeState state = lattice.restState();
-    const auto crossing = springsAcross(lattice, state, acrossBlock(config, axis, 1.3 * kSpacing));
+    const auto crossing =
+        springsOf(springsAcross(lattice, state, acrossBlock(config, axis, 1.3 * kSpacing)));
     const auto& size = lattice.size();
     EXPECT_EQ(static_cast<int>(crossing.size()),
               size[at((axis + 1) % 3)] * size[at((axis + 2) % 3)]);
@@ -57,7 +58,7 @@ TEST(Cut, PlaneThroughNodesSeversOneSpringOfEveryRow) {
         Corners corners = acrossBlock(config, axis, 2.0 * kSpacing + off);
         if (turned) corners = reversed(corners);
         LatticeState state = lattice.restState();
-        const auto crossing = springsAcross(lattice, state, corners);
+        const auto crossing = springsOf(springsAcross(lattice, state, corners));
         const auto& size = lattice.size();
         EXPECT_EQ(static_cast<int>(crossing.size()),
                   size[at((axis + 1) % 3)] * size[at((axis + 2) % 3)]);
@@ -68,6 +69,28 @@ TEST(Cut, PlaneThroughNodesSeversOneSpringOfEveryRow) {
         }
         sever(lattice, crossing, state);
         EXPECT_EQ(countPieces(lattice, state), 2);
+      }
+    }
+  }
+}
+
+// Told without the slack that decides on which side a node is, so to the last digits.
+TEST(Cut, TellsWhereInTheSpringsTheBladePasses) {
+  const TissueConfig config = blockOf(4, 3, 3);
+  const Lattice lattice(config);
+  const LatticeState state = lattice.restState();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double along : {0.0, 0.1, 0.3, 0.75}) {
+      const Corners flat = acrossBlock(config, axis, (1.0 + along) * kSpacing);
+      Corners bent = flat;  // by less than a hair, but not flat
+      bent[0][axis] += 2e-3 * kSpacing;
+      for (const Crossing& each : springsAcross(lattice, state, flat)) {
+        const bool below = lattice.gridIndex(lattice.springs()[at(each.spring)].a)[at(axis)] == 0;
+        EXPECT_NEAR(each.along, below ? along + 1.0 : along, 1e-9);
+      }
+      for (const Crossing& each : springsAcross(lattice, state, bent)) {
+        const bool below = lattice.gridIndex(lattice.springs()[at(each.spring)].a)[at(axis)] == 0;
+        EXPECT_NEAR(each.along, below ? along + 1.0 : along, 2.1e-3);
       }
     }
   }
@@ -103,8 +126,8 @@ TEST(Cut, SmallPolygonSeversWhatItCoversOnly) {
       springsAcross(lattice, lattice.restState(),
                     {{0.015, 0.005, z}, {0.045, 0.005, z}, {0.045, 0.025, z}, {0.015, 0.025, z}});
   std::set<std::array<int, 3>> below;
-  for (const int spring : crossing)
-    below.insert(lattice.gridIndex(lattice.springs()[at(spring)].a));
+  for (const Crossing& each : crossing)
+    below.insert(lattice.gridIndex(lattice.springs()[at(each.spring)].a));
   EXPECT_EQ(below, (std::set<std::array<int, 3>>{
                        {2, 1, 0}, {3, 1, 0}, {4, 1, 0}, {2, 2, 0}, {3, 2, 0}, {4, 2, 0}}));
 }
@@ -121,8 +144,8 @@ TEST(Cut, NotchOfANonConvexPolygonIsSpared) {
   for (const bool turned : {false, true}) {
     if (turned) ell = reversed(ell);
     std::set<std::array<int, 3>> below;
-    for (const int spring : springsAcross(lattice, lattice.restState(), ell)) {
-      below.insert(lattice.gridIndex(lattice.springs()[at(spring)].a));
+    for (const auto& each : springsAcross(lattice, lattice.restState(), ell)) {
+      below.insert(lattice.gridIndex(lattice.springs()[at(each.spring)].a));
     }
     EXPECT_EQ(below, (std::set<std::array<int, 3>>{{0, 0, 0},
                                                    {1, 0, 0},
@@ -152,7 +175,8 @@ TEST(Cut, CutsInTheDeformedShape) {
   const Lattice lattice(config);
   LatticeState state = lattice.restState();
   for (Vec3& moved : state.displacement) moved.x() = -1.0 * kSpacing;
-  const auto crossing = springsAcross(lattice, state, acrossBlock(config, 0, 0.5 * kSpacing));
+  const auto crossing =
+      springsOf(springsAcross(lattice, state, acrossBlock(config, 0, 0.5 * kSpacing)));
   ASSERT_EQ(crossing.size(), 9u);
   for (const int spring : crossing) {
     EXPECT_EQ(lattice.gridIndex(lattice.springs()[at(spring)].a)[0], 1);
@@ -162,8 +186,8 @@ TEST(Cut, CutsInTheDeformedShape) {
     state.displacement[at(node)] = Vec3(lattice.restPosition(node).z(), 0.0, 0.0);
   }
   std::array<int, 3> cut_along{};
-  for (const int spring : springsAcross(lattice, state, acrossBlock(config, 0, 2.5 * kSpacing))) {
-    ++cut_along[at(lattice.springs()[at(spring)].axis)];
+  for (const auto& each : springsAcross(lattice, state, acrossBlock(config, 0, 2.5 * kSpacing))) {
+    ++cut_along[at(lattice.springs()[at(each.spring)].axis)];
   }
   EXPECT_EQ(cut_along, (std::array<int, 3>{9, 0, 6}));
 }

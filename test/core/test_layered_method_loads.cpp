@@ -44,14 +44,14 @@ TEST(LayeredLoads, CutAtRestNeedsNoCycle) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(24, 24, 12, 0.45));
   const double h = config.spacing;
   LayeredBlock block(config);
-  const std::vector<int> crossing = springsAcross(block.lattice, block.state,
-                                                  {{12.4 * h, 6.3 * h, 7.6 * h},
-                                                   {12.4 * h, 18.7 * h, 7.6 * h},
-                                                   {12.4 * h, 18.7 * h, 13.0 * h},
-                                                   {12.4 * h, 6.3 * h, 13.0 * h}});
+  const std::vector<Crossing> crossing = springsAcross(block.lattice, block.state,
+                                                       {{12.4 * h, 6.3 * h, 7.6 * h},
+                                                        {12.4 * h, 18.7 * h, 7.6 * h},
+                                                        {12.4 * h, 18.7 * h, 13.0 * h},
+                                                        {12.4 * h, 6.3 * h, 13.0 * h}});
   ASSERT_FALSE(crossing.empty());
   sever(block.lattice, crossing, block.state, block.model.splitCells());
-  const SolveReport report = block.solve({}, {block.lattice.springs()[at(crossing[0])].a});
+  const SolveReport report = block.solve({}, {block.lattice.springs()[at(crossing[0].spring)].a});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   EXPECT_EQ(report.iterations, 0);
   EXPECT_EQ(report.error_estimate, 0.0);

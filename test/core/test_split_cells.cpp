@@ -37,7 +37,8 @@ void sever(ElasticBlock& block, const std::vector<int>& springs) {
 }
 
 void cut(ElasticBlock& block, const Corners& corners) {
-  sever(block, springsAcross(block.lattice, block.state, corners));
+  sever(block.lattice, springsAcross(block.lattice, block.state, corners), block.state,
+        SplitCells::kParted);
 }
 
 double filled(const CellSet& cells) {
@@ -116,7 +117,8 @@ TEST(Ghosts, PlaneThroughABlockGivesEachSideALayer) {
   EXPECT_EQ(block.state.cells->ghosts().size(), 2u * 4u * 3u);
   EXPECT_EQ(block.state.cells->all().size(), 24u + 6u);
   for (const Cell& cell : block.state.cells->all()) {
-    EXPECT_EQ(cell.share(), cell.isPart() ? 0.5 : 1.0);
+    const double part = cell.owns(0) ? 0.4 : 0.6;
+    EXPECT_NEAR(cell.share(), cell.isPart() ? part : 1.0, 1e-12);
   }
   const std::vector<int> piece = piecesOf(block);
   for (int node = 0; node < block.state.cells->nodeCount(); ++node) {
@@ -168,8 +170,9 @@ TEST(Ghosts, SliverOfOneCornerIsFree) {
   cut(block, {{0.03, -0.012, -0.012}, {-0.012, 0.03, -0.012}, {-0.012, -0.012, 0.03}});
   ASSERT_EQ(block.state.springs_cut, 3);
   EXPECT_EQ(block.state.cells->ghosts().size(), 7u + 1u);
-  EXPECT_EQ(block.state.cells->owner(0, 0)->share(), 0.125);
-  EXPECT_EQ(block.state.cells->owner(0, 7)->share(), 0.875);
+  // The blade leaves a corner of 0.6 spacings along each edge.
+  EXPECT_NEAR(block.state.cells->owner(0, 0)->share(), 0.6 * 0.6 * 0.6 / 6.0, 1e-12);
+  EXPECT_NEAR(block.state.cells->owner(0, 7)->share(), 1.0 - 0.6 * 0.6 * 0.6 / 6.0, 1e-12);
   expectSound(block, 8.0);
 }
 

@@ -14,6 +14,9 @@ struct LatticeState {
   std::vector<Vec3> displacement;     // per node, the ghosts last, from rest (m)
   std::vector<std::uint8_t> severed;  // per spring, 1 = cut
   int springs_cut = 0;
+  // Per spring that is severed, how far along it from its lower end, of its length (1), material
+  // was parted; 0: it was not, there is none left along the spring. Empty: half way along all.
+  std::vector<double> parted_at;
   std::shared_ptr<const CellSet> cells;  // what the cuts left of the lattice's
   int pieces = 1;                        // parts of the lattice that springs hold together
   // Per cell of the lattice, bit c: the eighth at its corner c was removed. Empty: nothing was.
@@ -28,6 +31,12 @@ inline unsigned takenOf(const LatticeState& state, int place) {
 
 inline bool isTaken(const LatticeState& state, int place, int corner) {
   return (takenOf(state, place) >> corner & 1U) != 0;
+}
+
+// As parted_at; 0 for a spring that is whole.
+inline double partedAt(const LatticeState& state, int spring) {
+  if (state.severed[at(spring)] == 0) return 0.0;
+  return state.parted_at.empty() ? 0.5 : state.parted_at[at(spring)];
 }
 
 // Of a node of the lattice, 0 to 1.

@@ -29,6 +29,7 @@ class SolverMethod;
 class TimeIntegrator;
 class TissueModel;
 class Threads;
+struct Crossing;
 struct NodeMotion;
 struct LoadRamp;
 struct SavedState;
@@ -249,7 +250,7 @@ class Tissue {
 
  private:
   SolveReport solve(const std::vector<int>& disturbed);
-  SolveReport severAndBalance(const std::vector<int>& springs);
+  SolveReport severAndBalance(const std::vector<Crossing>& crossings);
   bool takesNoTime() const;
   void findFreePieces();
   std::vector<std::size_t> fallingPieces();
@@ -331,6 +332,7 @@ class Tissue {
   mutable std::shared_ptr<const CellSet> piece_of_nodes_of_;  // null: to be found
   bool drops_free_ = false;
   mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
+  mutable std::vector<double> volume_at_node_;       // of cells, per node of the lattice (m^3)
   std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
   double rest_volume_ = 0.0;                         // m^3
   Vec3 weight_ = Vec3::Zero();                       // N

@@ -121,6 +121,7 @@ BladeSurface::BladeSurface(const std::vector<Corners>& triangles, double spacing
       triangle.box.extend(triangle.corners[i]);
     }
     triangle.normal = twice_area.normalized();
+    triangle.shift = slack_ * triangle.normal.dot(kShift);
     triangle.box = grownBy(slack_, triangle.box);
     bounds_.extend(triangle.box);
     triangles_.push_back(triangle);
@@ -168,7 +169,8 @@ std::optional<Crossing> BladeSurface::crossing(const Vec3& from, const Vec3& to)
         distanceToEdge(point, c, a) > triangle.slack[2]) {
       continue;
     }
-    return Crossing{-1, point, std::abs(triangle.normal.dot((to - from).normalized()))};
+    const double along = share + triangle.shift / (height_from - height_to);
+    return Crossing{-1, along, point, std::abs(triangle.normal.dot((to - from).normalized()))};
   }
   return std::nullopt;
 }

@@ -13,6 +13,7 @@ namespace robot_tissue {
 // Where a spring crosses the surface.
 struct Crossing {
   int spring = 0;
+  double along = 0.5;         // from the spring's lower end, of its length
   Vec3 point = Vec3::Zero();  // of the deformed spring (m)
   double cosine = 0.0;        // between the deformed spring and the surface's normal, >= 0
 };
@@ -34,7 +35,8 @@ class BladeSurface {
   const Box& bounds() const { return bounds_; }
   // Of a segment from one point to the other (m); the first triangle that it crosses counts. The
   // surface counts as shifted by a thousandth of the spacing, always to the same side: a node on it
-  // is on one side of it, whichever triangle looks, so that no spring is missed or cut twice.
+  // is on one side of it, whichever triangle looks, so that no spring is missed or cut twice. Where
+  // the crossing is told without that shift, and may be beyond an end by it.
   std::optional<Crossing> crossing(const Vec3& from, const Vec3& to) const;
   // Of all springs that are not severed yet, in the deformed shape, in ascending order.
   std::vector<Crossing> crossings(const Lattice& lattice, const LatticeState& state) const;
@@ -44,6 +46,7 @@ class BladeSurface {
     Corners corners;
     std::array<double, 3> slack{};  // of its edges, each from the corner of its number on (m)
     Vec3 normal = Vec3::Zero();     // unit
+    double shift = 0.0;             // along the normal (m)
     Box box;
   };
 

@@ -1,8 +1,8 @@
 #include "cutting/cut.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "cutting/blade_surface.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 
@@ -12,6 +12,9 @@ namespace {
 // Of the spacing (1): what is nearer to the blade's plane or outline is on it. More: more springs
 // are severed along the outline; less: nodes in the plane fall to either side by rounding. Chosen.
 constexpr double kOnPlane = 1e-3;
+// Of a spring's length (1): what both ends keep. More: a cut along nodes lies farther beside the
+// blade; less than kOnPlane: nothing, as nodes so near are on the blade. Chosen.
+constexpr double kEnd = 1e-3;
 
 // A polygon on its mean plane.
 class CutPolygon {
@@ -44,14 +47,17 @@ class CutPolygon {
 
   bool isFlat() const { return is_flat_; }
 
-  // Whether the segment crosses; its ends count as on the positive side when on the plane.
-  bool crosses(const Vec3& from, const Vec3& to) const {
+  // Where the segment crosses; its ends count as on the positive side when on the plane.
+  std::optional<Crossing> crossing(const Vec3& from, const Vec3& to) const {
     const double height_from = normal_.dot(from - center_) + slack_;
     const double height_to = normal_.dot(to - center_) + slack_;
-    if ((height_from >= 0.0) == (height_to >= 0.0)) return false;
+    if ((height_from >= 0.0) == (height_to >= 0.0)) return std::nullopt;
     const double share = height_from / (height_from - height_to);
-    const Vec3 point = from + share * (to - from) - center_;
-    return contains({along_.dot(point), across_.dot(point)});
+    const Vec3 point = from + share * (to - from);
+    const Vec3 seen = point - center_;
+    if (!contains({along_.dot(seen), across_.dot(seen)})) return std::nullopt;
+    const double along = share - slack_ / (height_from - height_to);
+    return Crossing{-1, along, point, std::abs(normal_.dot((to - from).normalized()))};
   }
 
  private:
@@ -84,35 +90,50 @@ class CutPolygon {
 
 }  // namespace
 
-std::vector<int> springsAcross(const Lattice& lattice, const LatticeState& state,
-                               const std::vector<Vec3>& corners) {
+std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& state,
+                                    const std::vector<Vec3>& corners) {
   const CutPolygon polygon(corners, lattice.spacing());
-  std::vector<int> crossing;
   if (!polygon.isFlat()) {
-    const BladeSurface surface = BladeSurface::of(corners, lattice.spacing());
-    for (const Crossing& each : surface.crossings(lattice, state)) crossing.push_back(each.spring);
-    return crossing;
+    return BladeSurface::of(corners, lattice.spacing()).crossings(lattice, state);
   }
   const auto position = [&](int node) -> Vec3 {
     return lattice.restPosition(node) + state.displacement[at(node)];
   };
+  std::vector<Crossing> crossings;
   for (std::size_t index = 0; index < lattice.springs().size(); ++index) {
-    const Spring& spring = lattice.springs()[index];
-    if (state.severed[index] == 0 && polygon.crosses(position(spring.a), position(spring.b))) {
-      crossing.push_back(static_cast<int>(index));
-    }
+    if (state.severed[index] != 0) continue;
+    const Spring spring = lattice.springs()[index];
+    std::optional<Crossing> found = polygon.crossing(position(spring.a), position(spring.b));
+    if (!found) continue;
+    found->spring = static_cast<int>(index);
+    crossings.push_back(*found);
   }
-  return crossing;
+  return crossings;
 }
 
-void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
+void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, LatticeState& state,
            SplitCells split) {
-  for (const int spring : springs) state.severed[at(spring)] = 1;
-  state.springs_cut += static_cast<int>(springs.size());
+  if (state.parted_at.empty()) state.parted_at.assign(state.severed.size(), 0.5);
+  for (const Crossing& crossing : crossings) {
+    state.severed[at(crossing.spring)] = 1;
+    state.parted_at[at(crossing.spring)] = std::clamp(crossing.along, kEnd, 1.0 - kEnd);
+  }
+  state.springs_cut += static_cast<int>(crossings.size());
   state.pieces = countPieces(lattice, state);
   const auto left = cellsLeft(lattice, state, split);
   state.displacement = carriedOver(*state.cells, state.displacement, *left);
   state.cells = left;
+}
+
+void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
+           SplitCells split) {
+  sever(lattice, halfWay(springs), state, split);
+}
+
+std::vector<Crossing> halfWay(const std::vector<int>& springs) {
+  std::vector<Crossing> crossings(springs.size());
+  for (std::size_t i = 0; i < springs.size(); ++i) crossings[i].spring = springs[i];
+  return crossings;
 }
 
 }  // namespace robot_tissue

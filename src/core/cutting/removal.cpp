@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cutting/cell_division.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 
@@ -38,31 +39,26 @@ unsigned bitsOfPart(const std::array<int, kCorners>& parts, int part) {
   return bits;
 }
 
-int countOf(unsigned bits) {
-  int count = 0;
-  for (; bits != 0; bits &= bits - 1) ++count;
-  return count;
-}
-
-// Share of the corner `of` in the place of the middle of the eighth at `eighth`.
-double weightIn(int eighth, int of) {
-  double weight = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-    weight *= (eighth >> axis & 1) == (of >> axis & 1) ? 0.75 : 0.25;
-  return weight;
-}
-
-// Mean of the middles of the part's eighths, deformed (m). A part that the model has lost goes with
-// its own corners.
+// Of the material in these eighths, deformed (m). A part that the model has lost goes with its own
+// corners.
 Vec3 centerOf(const Lattice& lattice, const LatticeState& state, const Cell& cell, unsigned bits,
               int part) {
   const Cell* there = state.cells->owner(cell.place, part);
+  const auto fills = cornerFills(lattice, state, cell);
+  double volume = 0.0;
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    if ((bits >> corner & 1U) != 0) volume += fills[corner].volume;
+  }
   Vec3 center = Vec3::Zero();
-  const double share = 1.0 / countOf(bits);
   for (int eighth = 0; eighth < kCorners; ++eighth) {
     if ((bits >> eighth & 1U) == 0) continue;
+    const FillIntegrals& fill = fills[at(eighth)];
+    const Vec3 place = fill.first / fill.volume;
     for (int corner = 0; corner < kCorners; ++corner) {
-      const double weight = share * weightIn(eighth, corner);
+      double weight = fill.volume / volume;
+      for (int axis = 0; axis < 3; ++axis) {
+        weight *= 0.5 + ((corner >> axis & 1) != 0 ? place[axis] : -place[axis]);
+      }
       center += weight * lattice.restPosition(cell.nodes[at(corner)]);
       const int mover = there != nullptr ? there->nodes[at(corner)] : cell.nodes[at(eighth)];
       center += weight * state.displacement[at(mover)];
@@ -71,7 +67,7 @@ Vec3 centerOf(const Lattice& lattice, const LatticeState& state, const Cell& cel
   return center;
 }
 
-// Springs of which no cell has both ends any more are severed.
+// Springs of which no cell has both ends any more are severed; that parts no material.
 void severBareSprings(const Lattice& lattice, LatticeState& state) {
   std::vector<std::uint8_t> bare(state.severed.size(), 1);
   for (const Cell& cell : lattice.cells()) {
@@ -84,8 +80,11 @@ void severBareSprings(const Lattice& lattice, LatticeState& state) {
       }
     }
   }
+  state.parted_at.resize(bare.size(), 0.5);
   for (std::size_t spring = 0; spring < bare.size(); ++spring) {
-    if (bare[spring] != 0) state.severed[spring] = 1;
+    if (bare[spring] == 0 || state.severed[spring] != 0) continue;
+    state.severed[spring] = 1;
+    state.parted_at[spring] = 0.0;
   }
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
 }
@@ -176,13 +175,18 @@ std::vector<int> nodesAround(const Lattice& lattice, const std::vector<std::uint
   return nodes;
 }
 
-double volumeOf(const Lattice& lattice, const std::vector<std::uint8_t>& cells) {
-  const double eighth = std::pow(lattice.spacing(), 3) / kCorners;
+double volumeOf(const Lattice& lattice, const LatticeState& state,
+                const std::vector<std::uint8_t>& cells) {
   double volume = 0.0;
   for (const Cell& cell : lattice.cells()) {
-    volume += eighth * cell.share() * countOf(cells[at(cell.place)]);
+    const unsigned bits = cells[at(cell.place)];
+    if (bits == 0) continue;
+    const auto fills = cornerFills(lattice, state, cell);
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      if ((bits >> corner & 1U) != 0) volume += fills[corner].volume;
+    }
   }
-  return volume;
+  return volume * std::pow(lattice.spacing(), 3);
 }
 
 }  // namespace robot_tissue

@@ -35,6 +35,7 @@ std::vector<int> nodesAround(const Lattice& lattice, const std::vector<std::uint
                              const LatticeState& state);
 
 // Of the cells' material (m^3).
-double volumeOf(const Lattice& lattice, const std::vector<std::uint8_t>& cells);
+double volumeOf(const Lattice& lattice, const LatticeState& state,
+                const std::vector<std::uint8_t>& cells);
 
 }  // namespace robot_tissue

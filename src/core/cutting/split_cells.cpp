@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cutting/cell_division.h"
 #include "lattice/slivers.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
@@ -21,10 +22,32 @@ int lowestOwn(const Cell& cell) {
   return corner;
 }
 
-// The eighths at its own corners. Where in them a mesh is that fills the cell in part is not looked
-// at: its share is spread over them.
-std::shared_ptr<const CellFill> fillOfPart(const Cell& cell, std::uint8_t own) {
-  return std::make_shared<const CellFill>(fillOf(octantIntegrals(own).scaledBy(cell.share())));
+// Of a cell (1): a part has as much of it at least, or an eighth of what there is, and the greatest
+// part so much less. More: thin parts are too stiff and heavy; less: their nodes are so soft that
+// solves take longer. Chosen, as for cells that a mesh fills.
+constexpr double kLeastShare = 1e-3;
+
+using PartFills = std::array<FillIntegrals, kCorners>;  // by the lowest corners of parts
+
+PartFills partFills(const Lattice& lattice, const LatticeState& state, const Cell& cell,
+                    const Parts& parts) {
+  const auto of_corners = cornerFills(lattice, state, cell);
+  PartFills fills;
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    fills[at(parts[corner])] += of_corners[corner];
+  }
+  const double least = std::min(kLeastShare, cell.share() / kCorners);
+  FillIntegrals& greatest = *std::max_element(
+      fills.begin(), fills.end(),
+      [](const auto& one, const auto& other) { return one.volume < other.volume; });
+  for (int part = 0; part < kCorners; ++part) {
+    FillIntegrals& fill = fills[at(part)];
+    if (parts[at(part)] != part || fill.volume >= least) continue;
+    const double lack = least - fill.volume;
+    fill = fill.scaledBy(least / fill.volume);
+    greatest = greatest.scaledBy(1.0 - lack / greatest.volume);
+  }
+  return fills;
 }
 
 // Gives the parts' lost corners their nodes. A lost corner has the number (nodes of the lattice) +
@@ -167,6 +190,7 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
       continue;
     }
     if (split == SplitCells::kLost) continue;
+    const PartFills fills = partFills(lattice, state, cell, parts);
     for (int part = 0; part < kCorners; ++part) {
       if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
       Cell parted = cell;
@@ -174,7 +198,7 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
       for (int corner = part; corner < kCorners; ++corner) {
         if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
       }
-      parted.fill = fillOfPart(cell, parted.own);
+      parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
       left.push_back(parted);
     }
   }

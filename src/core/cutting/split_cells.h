@@ -2,9 +2,9 @@
 // 2004; which ghosts are one, what a part weighs and what is fixed: own).
 //
 // Severed springs part a cell where its corners no longer hang together. Every part becomes a cell
-// with 8 corners and share = (share of the cell) * (its own corners) / 8. So no volume is lost,
-// none is below an eighth, and it is the volume that the displayed surface encloses, which runs
-// half way between own and lost corners. Where in its spring the blade passed is not kept.
+// with 8 corners, filled where its own corners have the cell's material: up to where the blade
+// passed through the springs (cell_division.h). So no volume is lost, and it is the volume that the
+// displayed surface encloses; a part of less than a thousandth of the cell counts as one.
 //
 // A part lost corners. Its ghosts there are shared with parts of neighboring cells that it hangs
 // together with: parts that own a common corner in the face between the cells have one and the same

@@ -17,13 +17,15 @@ namespace {
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kPlain = 1;
 constexpr std::uint32_t kWithExtras = 2;
-// Bits of what later versions have more; the last one only from version 3 on.
+constexpr std::uint32_t kWithPieceNumbers = 3;
+// Bits of what later versions have more: the third from version 3 on, the fourth from 4 on.
 constexpr std::uint8_t kHasRemovals = 1;
 constexpr std::uint8_t kHasSutures = 2;
 constexpr std::uint8_t kHasPieceNumbers = 4;
+constexpr std::uint8_t kHasPartings = 8;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -108,23 +110,44 @@ std::uint8_t extrasOf(const SavedState& state) {
   if (!state.lattice.taken.empty()) extras |= kHasRemovals;
   if (!state.sutures.empty()) extras |= kHasSutures;
   if (!state.pieces.areCounted()) extras |= kHasPieceNumbers;
+  if (!state.lattice.parted_at.empty()) extras |= kHasPartings;
   return extras;
 }
 
 // The lowest version that holds these.
 std::uint32_t versionOf(std::uint8_t extras) {
   if (extras == 0) return kPlain;
-  return (extras & kHasPieceNumbers) != 0 ? kVersion : kWithExtras;
+  if ((extras & kHasPartings) != 0) return kVersion;
+  return (extras & kHasPieceNumbers) != 0 ? kWithPieceNumbers : kWithExtras;
 }
 
 std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
   if (version == kPlain) return 0;
   const std::uint8_t extras = in.u8();
-  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers;
+  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings;
   if (extras > all || versionOf(extras) != version) {
     throw InputError("is damaged: it has nothing of its version, or more");
   }
   return extras;
+}
+
+// Of severed springs, in ascending order.
+void putPartings(const LatticeState& state, ByteWriter& out) {
+  for (std::size_t spring = 0; spring < state.severed.size(); ++spring) {
+    if (state.severed[spring] != 0) out.f64(state.parted_at[spring]);
+  }
+}
+
+void takePartings(LatticeState& state, ByteReader& in) {
+  state.parted_at.assign(state.severed.size(), 0.5);
+  for (std::size_t spring = 0; spring < state.severed.size(); ++spring) {
+    if (state.severed[spring] == 0) continue;
+    const double along = in.f64();
+    if (!(along >= 0.0 && along < 1.0)) {
+      throw InputError("is damaged: a spring is parted beyond its ends");
+    }
+    state.parted_at[spring] = along;
+  }
 }
 
 void putRemovals(const LatticeState& state, ByteWriter& out) {
@@ -160,6 +183,7 @@ CellSet cellsOfOneCut(const Lattice& lattice, const LatticeState& state, SplitCe
   LatticeState whole = lattice.restState();
   whole.severed = state.severed;
   whole.springs_cut = state.springs_cut;
+  whole.parted_at = state.parted_at;
   whole.taken = state.taken;
   return *cellsLeft(lattice, whole, split);
 }
@@ -262,6 +286,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   putBits(state.lattice.severed, body);
   const std::uint8_t extras = extrasOf(state);
   if (extras != 0) body.u8(extras);
+  if ((extras & kHasPartings) != 0) putPartings(state.lattice, body);
   if ((extras & kHasRemovals) != 0) putRemovals(state.lattice, body);
   putGhosts(lattice, split, state.lattice, body);
   for (const Vec3& displacement : state.lattice.displacement) body.vec3(displacement);
@@ -286,6 +311,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   state.severed = takeBits(springs, in);
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
   const std::uint8_t extras = takeExtras(opened.version, in);
+  if ((extras & kHasPartings) != 0) takePartings(state, in);
   if ((extras & kHasRemovals) != 0) takeRemovals(lattice, state, in);
   state.pieces = countPieces(lattice, state);
   state.cells = takeCells(lattice, split, state, in);
@@ -298,7 +324,9 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
         "has loads of another scene; allowed: a state without named loads, or of the same "
         "material, regions, gravity, method and tolerance");
   }
-  saved.in_balance = in.u8() == 1 && opened.of_this_scene;
+  // Where a blade passed, older versions did not keep: what they hold is balanced anew.
+  const bool is_older = state.springs_cut > 0 && (extras & kHasPartings) == 0;
+  saved.in_balance = in.u8() == 1 && opened.of_this_scene && !is_older;
   saved.report = takeReport(saved.loads.size(), in);
   if ((extras & kHasSutures) != 0) saved.sutures = takeSutures(state.cells->nodeCount(), in);
   saved.pieces = (extras & kHasPieceNumbers) != 0

@@ -48,7 +48,7 @@ class CutMeshBuilder {
     for (const auto& octant : region_) {
       for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
     }
-    separateHinges(OctantGrid(lattice_, state_), std::move(owners_), surface_);
+    separateHinges(OctantGrid(lattice_, state_), std::move(owners_), std::move(places_), surface_);
     return std::move(surface_);
   }
 
@@ -214,6 +214,7 @@ class CutMeshBuilder {
       surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
                                   ? mesh_.vertices[at(point)]
                                   : placed(pieces_.vertex(point)));
+      places_.push_back(2.0 * pieces_.vertex(point));
       surface_.carriers.push_back(parts_.withoutGhosts(hold.carriers));
       surface_.node.push_back(-1);
     }
@@ -245,6 +246,7 @@ class CutMeshBuilder {
   std::map<std::pair<int, std::vector<int>>, int> vertices_;  // point and its nodes
   TissueSurface surface_;
   std::vector<Octant> owners_;  // per triangle
+  std::vector<Vec3> places_;    // per vertex, in half spacings
 };
 
 }  // namespace

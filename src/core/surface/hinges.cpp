@@ -35,9 +35,11 @@ struct Edge {
 
 class HingeSeparator {
  public:
-  HingeSeparator(const OctantGrid& octants, std::vector<Octant> owners, TissueSurface& surface)
+  HingeSeparator(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
+                 TissueSurface& surface)
       : octants_(octants),
         owners_(std::move(owners)),
+        places_(std::move(places)),
         surface_(surface),
         fans_(3 * surface.triangles.size()) {}
 
@@ -140,8 +142,8 @@ class HingeSeparator {
   // The four octants around the edge, one after the other; of a longer edge around its middle.
   // False where it runs along none of the half grid's lines.
   bool findAround(EdgePlace place) {
-    const Vec3 a = placeAt(vertexAt(place / 3, place % 3));
-    const Vec3 b = placeAt(vertexAt(place / 3, (place % 3 + 1) % 3));
+    const Vec3& a = places_[at(vertexAt(place / 3, place % 3))];
+    const Vec3& b = places_[at(vertexAt(place / 3, (place % 3 + 1) % 3))];
     Eigen::Index along = 0;
     (a - b).cwiseAbs().maxCoeff(&along);
     along_ = static_cast<int>(along);
@@ -192,8 +194,6 @@ class HingeSeparator {
     return 0;
   }
 
-  Vec3 placeAt(int vertex) const { return octants_.inHalfSpacings(surface_.rest[at(vertex)]); }
-
   // The first fan at a vertex keeps it, others get copies.
   void separate() {
     std::vector<int> fan_of(surface_.rest.size(), -1);
@@ -206,6 +206,7 @@ class HingeSeparator {
       if (first == fan) continue;
       const auto [copy, is_new] = copies.try_emplace(fan, static_cast<int>(surface_.rest.size()));
       if (is_new) {
+        places_.push_back(Vec3(places_[at(vertex)]));
         surface_.rest.push_back(Vec3(surface_.rest[at(vertex)]));
         surface_.carriers.push_back(std::vector<NodeWeight>(surface_.carriers[at(vertex)]));
         surface_.node.push_back(int(surface_.node[at(vertex)]));
@@ -245,6 +246,7 @@ class HingeSeparator {
     }
     std::vector<NodeWeight> carriers;
     for (const auto& [node, weight] : weights) carriers.push_back({node, weight});
+    places_.push_back(0.5 * (places_[at(a)] + places_[at(b)]));
     surface_.rest.push_back(0.5 * (surface_.rest[at(a)] + surface_.rest[at(b)]));
     surface_.carriers.push_back(std::move(carriers));
     surface_.node.push_back(-1);
@@ -263,6 +265,7 @@ class HingeSeparator {
 
   const OctantGrid& octants_;
   std::vector<Octant> owners_;  // per triangle
+  std::vector<Vec3> places_;    // per vertex, in half spacings
   TissueSurface& surface_;
   DisjointSets fans_;        // of corners of triangles
   std::vector<Edge> edges_;  // by their ends
@@ -272,8 +275,9 @@ class HingeSeparator {
 
 }  // namespace
 
-void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, TissueSurface& surface) {
-  HingeSeparator(octants, std::move(owners), surface).run();
+void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
+                    TissueSurface& surface) {
+  HingeSeparator(octants, std::move(owners), std::move(places), surface).run();
 }
 
 }  // namespace robot_tissue

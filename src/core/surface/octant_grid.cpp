@@ -33,6 +33,17 @@ OctantGrid::OctantGrid(const Lattice& lattice, const LatticeState& state)
   for (std::size_t cell = 0; cell < open_.size(); ++cell) {
     open_[cell] = parts_.isOpen(static_cast<int>(cell)) ? 1 : 0;
   }
+  divide();
+}
+
+// Also cells that are whole may have springs that are parted.
+void OctantGrid::divide() {
+  division_of_.assign(open_.size(), -1);
+  for (const Cell& cell : lattice_.cells()) {
+    if (!hasPartedSprings(lattice_, state_, cell)) continue;
+    division_of_[at(cell.place)] = static_cast<int>(divisions_.size());
+    divisions_.emplace_back(lattice_, state_, cell);
+  }
 }
 
 int OctantGrid::nodeOf(const Octant& octant) const {
@@ -64,15 +75,24 @@ Octant OctantGrid::beyond(const Octant& octant, int side) const {
   return octantAt(lowest);
 }
 
+// From the cell's lowest corner, in spacings.
+Vec3 OctantGrid::inCell(const Octant& octant, const HalfPoint& point) const {
+  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  CellPoint from_low{};
+  for (std::size_t axis = 0; axis < 3; ++axis) from_low[axis] = point[axis] - 2 * low[axis];
+  const int division = division_of_.empty() ? -1 : division_of_[at(octant.cell)];
+  if (division >= 0) return divisions_[at(division)].at(from_low);
+  return 0.5 * Vec3(from_low[0], from_low[1], from_low[2]);
+}
+
 Hold OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
   const Cell& part = *parts_.owner(octant.cell, octant.corner);
-  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  const Vec3 place = inCell(octant, point);
   Hold hold;
   for (int corner = 0; corner < kCorners; ++corner) {
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-      const int from_low = point[at(axis)] - 2 * low[at(axis)];  // 0 to 2 half spacings
-      weight *= 0.5 * ((corner >> axis & 1) != 0 ? from_low : 2 - from_low);
+      weight *= (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
     }
     if (weight > 0.0) hold.add(part.nodes[at(corner)], weight);
   }
@@ -94,12 +114,10 @@ bool OctantGrid::isJoined(const Octant& octant, int side) const {
   });
 }
 
-Vec3 OctantGrid::inHalfSpacings(const Vec3& place) const {
-  return 2.0 / lattice_.spacing() * (place - lattice_.bounds().min());
-}
-
-Vec3 OctantGrid::placeOf(const HalfPoint& point) const {
-  return lattice_.bounds().min() + 0.5 * lattice_.spacing() * Vec3(point[0], point[1], point[2]);
+Vec3 OctantGrid::placeOf(const Octant& octant, const HalfPoint& point) const {
+  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  const Vec3 place = Vec3(low[0], low[1], low[2]) + inCell(octant, point);
+  return lattice_.bounds().min() + lattice_.spacing() * place;
 }
 
 }  // namespace robot_tissue

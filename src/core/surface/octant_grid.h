@@ -1,13 +1,15 @@
 // The eighths of the lattice's cells, each around one corner, and what holds their points (own).
 //
-// A point of the half grid has indices in half spacings: even ones at nodes. What a part of a cell
-// has of it moves as the material there: with trilinear weights on the part's corners, ghosts where
-// it lost them.
+// A point of the half grid has indices in half spacings: even ones at nodes. Where a blade parted
+// cells it stands where that passed (cutting/cell_division.h), so that the sides of eighths along a
+// cut lie on the blade. What a part of a cell has of it moves as the material there: with trilinear
+// weights on the part's corners, ghosts where it lost them.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "cutting/cell_division.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "surface/cell_parts.h"
@@ -59,14 +61,18 @@ class OctantGrid {
   }
   // Material is on both sides of the side, and the same nodes hold it there.
   bool isJoined(const Octant& octant, int side) const;
-  Vec3 placeOf(const HalfPoint& point) const;    // at rest (m)
-  Vec3 inHalfSpacings(const Vec3& place) const;  // from the lowest point
+  Vec3 placeOf(const Octant& octant, const HalfPoint& point) const;  // at rest (m)
 
  private:
+  void divide();
+  Vec3 inCell(const Octant& octant, const HalfPoint& point) const;
+
   const Lattice& lattice_;
   const LatticeState& state_;
   CellParts parts_;
-  std::vector<char> open_;  // per cell
+  std::vector<char> open_;        // per cell
+  std::vector<int> division_of_;  // per cell, -1: nothing parts it
+  std::vector<CellDivision> divisions_;
 };
 
 // Corners of an octant's or a cell's side, counter-clockwise seen from outside; the first is at the

@@ -36,7 +36,7 @@ class SurfaceBuilder {
       if (octants_.isOpen(cell.place)) addInside(cell);
     }
     for (const WholeSide& whole : whole_sides_) addWhole(whole);
-    separateHinges(octants_, std::move(owners_), surface_);
+    separateHinges(octants_, std::move(owners_), std::move(places_), surface_);
     return std::move(surface_);
   }
 
@@ -164,7 +164,8 @@ class SurfaceBuilder {
     known->second = next;
     next_there_.push_back(first_there);
     holds_.push_back(hold);
-    surface_.rest.push_back(octants_.placeOf(point));
+    surface_.rest.push_back(octants_.placeOf(octant, point));
+    places_.push_back(Vec3(point[0], point[1], point[2]));
     surface_.carriers.push_back(octants_.carriersOf(hold));
     surface_.node.push_back(hold.count > 1 ? octants_.nodeOf(octant) : hold.begin()->node);
     return next;
@@ -174,6 +175,7 @@ class SurfaceBuilder {
   OctantGrid octants_;
   TissueSurface surface_;
   std::vector<Octant> owners_;  // per triangle
+  std::vector<Vec3> places_;    // per vertex, in the half grid
   std::vector<WholeSide> whole_sides_;
   std::vector<Hold> holds_;                                        // per vertex
   std::unordered_map<HalfPoint, int, HalfPointHash> vertices_at_;  // the last one made there

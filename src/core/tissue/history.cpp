@@ -19,7 +19,8 @@ std::size_t bytesOf(const std::shared_ptr<const SavedState>& state) {
   if (!state) return 0;
   const LatticeState& lattice = state->lattice;
   return lattice.displacement.size() * sizeof(Vec3) + lattice.severed.size() +
-         lattice.taken.size() + lattice.left.size() * sizeof(double) +
+         lattice.parted_at.size() * sizeof(double) + lattice.taken.size() +
+         lattice.left.size() * sizeof(double) +
          lattice.cells->all().size() * (sizeof(Cell) + kCorners * sizeof(CellSet::Meeting));
 }
 

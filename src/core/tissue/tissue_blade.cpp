@@ -18,13 +18,13 @@ bool Tissue::mayReach(const Box& bounds) const {
 }
 
 // Severs the springs and balances what they leave.
-SolveReport Tissue::severAndBalance(const std::vector<int>& springs) {
+SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings) {
   std::vector<int> disturbed;
-  for (const int spring : springs) {
-    disturbed.push_back(lattice_.springs()[at(spring)].a);
-    disturbed.push_back(lattice_.springs()[at(spring)].b);
+  for (const Crossing& crossing : crossings) {
+    disturbed.push_back(lattice_.springs()[at(crossing.spring)].a);
+    disturbed.push_back(lattice_.springs()[at(crossing.spring)].b);
   }
-  sever(lattice_, springs, state_, model_->splitCells());
+  sever(lattice_, crossings, state_, model_->splitCells());
   renumberPieces();
   dropFreed();
   return changeTopology(disturbed);
@@ -38,17 +38,15 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   if (!mayReach(surface.bounds())) return report;
   const std::vector<Crossing> crossings = surface.crossings(lattice_, state_);
   if (crossings.empty()) return report;
-  std::vector<int> springs;
   for (const Crossing& crossing : crossings) {
-    springs.push_back(crossing.spring);
     report.center += crossing.point / static_cast<double>(crossings.size());
   }
-  report.springs_cut = static_cast<int>(springs.size());
+  report.springs_cut = static_cast<int>(crossings.size());
   report.area = newSurface(lattice_, crossings);
   const TopologyChange change(
       *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
   const int torn = springs_torn_;
-  severAndBalance(springs);
+  severAndBalance(crossings);
   report.solve = tear();
   report.springs_torn = springs_torn_ - torn;
   report.pieces = state_.pieces;
@@ -67,7 +65,7 @@ bool Tissue::tearOut(const std::vector<int>& nodes) {
   if (around.empty()) return false;
   const TopologyChange change(*this, History::Kind::kTear);
   springs_torn_ += static_cast<int>(around.size());
-  severAndBalance(around);
+  severAndBalance(halfWay(around));
   tear();
   return true;
 }
@@ -92,7 +90,7 @@ SolveReport Tissue::tear() {
     if (!any) change.emplace(*this, History::Kind::kTear);
     any = true;
     springs_torn_ += static_cast<int>(weakest.size());
-    const SolveReport round_report = severAndBalance(weakest);
+    const SolveReport round_report = severAndBalance(halfWay(weakest));
     if (takesNoTime()) break;
     worst = std::max(worst, round_report.status);
     wall_ms += round_report.wall_ms;

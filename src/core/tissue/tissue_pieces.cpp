@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "cutting/cell_division.h"
 #include "cutting/removal.h"
 #include "lattice/connectivity.h"
 #include "lattice/piece_numbers.h"
@@ -47,22 +48,24 @@ const std::vector<TissuePiece>& Tissue::piecesAtRest() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   if (!pieces_at_rest_.empty()) return pieces_at_rest_;
   pieces_at_rest_.resize(at(piece_numbers_->names().next));
-  const double volume = std::pow(lattice_.spacing(), 3) / kCorners;
+  volume_at_node_.assign(at(lattice_.nodeCount()), 0.0);
+  const double cell_volume = std::pow(lattice_.spacing(), 3);
   for (const Cell& cell : lattice_.cells()) {
-    const double eighth = volume * cell.share();
+    const auto fills = cornerFills(lattice_, state_, cell);
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(state_, cell.place, corner)) continue;
       const int node = cell.nodes[at(corner)];
+      const FillIntegrals& fill = fills[at(corner)];
       TissuePiece& piece = pieces_at_rest_[at(piece_of[at(node)])];
       piece.fixed = piece.fixed || lattice_.isFixed(node);
-      piece.volume += eighth;
-      piece.center +=
-          eighth * (0.75 * lattice_.restPosition(node) +
-                    0.25 * lattice_.restPosition(cell.nodes[at(kCorners - 1 - corner)]));
+      volume_at_node_[at(node)] += cell_volume * fill.volume;
+      piece.volume += fill.volume;
+      piece.center += fill.volume * lattice_.cellCenter(cell) + lattice_.spacing() * fill.first;
     }
   }
   for (TissuePiece& piece : pieces_at_rest_) {
     if (piece.volume > 0.0) piece.center /= piece.volume;
+    piece.volume *= cell_volume;
   }
   return pieces_at_rest_;
 }
@@ -83,15 +86,11 @@ std::vector<TissuePiece> Tissue::restingPieces() const {
 std::vector<TissuePiece> Tissue::pieces() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   std::vector<Vec3> moved(at(piece_numbers_->names().next), Vec3::Zero());
-  const double volume = std::pow(lattice_.spacing(), 3) / kCorners;
-  for (const Cell& cell : lattice_.cells()) {
-    for (int corner = 0; corner < kCorners; ++corner) {
-      if (isTaken(state_, cell.place, corner)) continue;
-      const int node = cell.nodes[at(corner)];
-      moved[at(piece_of[at(node)])] += volume * cell.share() * state_.displacement[at(node)];
-    }
-  }
   std::vector<TissuePiece> pieces = restingPieces();
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    const double volume = volume_at_node_[at(node)];
+    if (volume > 0.0) moved[at(piece_of[at(node)])] += volume * state_.displacement[at(node)];
+  }
   for (TissuePiece& piece : pieces) piece.center += moved[at(piece.number)] / piece.volume;
   return pieces;
 }

@@ -24,6 +24,7 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   LatticeState state = lattice.restState();
   state.severed.assign(entry.severed.begin(), entry.severed.end());
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+  state.parted_at = entry.parted_at;
   state.taken = entry.taken;
   if (!state.taken.empty()) noteTaken(lattice, state);
   state.pieces = countPieces(lattice, state);
@@ -65,7 +66,7 @@ SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
-  const std::vector<int> crossing = springsAcross(lattice_, state_, corners);
+  const std::vector<Crossing> crossing = springsAcross(lattice_, state_, corners);
   CutReport report;
   report.springs_cut = static_cast<int>(crossing.size());
   report.pieces = state_.pieces;
@@ -109,7 +110,7 @@ RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& cells, Stroke str
       *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
   removeCells(lattice_, cells, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
-  report.volume = volumeOf(lattice_, cells);
+  report.volume = volumeOf(lattice_, state_, cells);
   renumberPieces();
   report.loads = dropLostLoads();
   dropFreed();

@@ -17,6 +17,7 @@ class Tissue::TopologyChange {
       const LatticeState& state = tissue_.state_;
       tissue_.history_->begin(kind,
                               {{state.severed.begin(), state.severed.end()},
+                               state.parted_at,
                                state.taken,
                                tissue_.threads_->all(),
                                tissue_.piece_numbers_,

@@ -1,0 +1,65 @@
+// How severed springs divide a cell among its corners (own).
+//
+// The blade is known by where it passed through springs. A cell's corner has the part of it nearest
+// along the cell's edges, faces and diagonals: up to where its springs were parted, to a point of
+// each face at it, and to a point inside. These points lie where the blade passed:
+//   edge   where the spring was parted, half way where it is whole;
+//   face   half way between two parted edges, where the lines between opposite ones cross; else its
+//          middle. It hangs on the face's edges alone, so cells on both sides have the same;
+//   inside the mean of the parted edges between two parts of the cell; where more parts meet, what
+//          is nearest to the planes through the points between each two of them.
+// Springs that are severed since nothing is left along them part nothing here, so that what is left
+// of a cell stays as it is.
+// The corner's part is six tetrahedra of corner, edge, face and inside point. All have a volume
+// above zero and they fill the cell, whatever was severed. A plane through the cell, two that
+// cross, or three, come out exactly; of a curved blade each cell has facets through the points on
+// its springs. A blade that passes a spring a second time, or that no spring of the cell crosses,
+// is not seen.
+#pragma once
+
+#include <array>
+
+#include "geometry/tetrahedron.h"
+#include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/lattice_state.h"
+
+namespace robot_tissue {
+
+// Indices along x, y, z in half spacings from the cell's lowest corner, 0 to 2: corners have 0 or
+// 2, edges a 1, faces two.
+using CellPoint = std::array<int, 3>;
+
+// Whether a blade parted any spring of the lattice's cell.
+bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const Cell& cell);
+
+class CellDivision {
+ public:
+  // Of the lattice's cell, with what was removed of it.
+  CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell);
+
+  // From the cell's lowest corner, in spacings.
+  const Vec3& at(const CellPoint& point) const { return points_[indexOf(point)]; }
+  // The corner's tetrahedra, in spacings from the cell's middle.
+  std::array<Tetrahedron, 6> aroundCorner(int corner) const;
+
+ private:
+  static std::size_t indexOf(const CellPoint& point) {
+    return static_cast<std::size_t>(point[0] + 3 * point[1] + 9 * point[2]);
+  }
+  bool isParted(const CellPoint& edge) const { return parted_[indexOf(edge)]; }
+  void placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell);
+  void placeFace(int across, int side);
+  int partedEdges(const CellPoint& face, int across) const;
+  void placeInside();
+
+  std::array<Vec3, 27> points_;
+  std::array<bool, 27> parted_{};  // edges
+};
+
+// The material that each corner of the lattice's cell has; together all of the cell's. Where a mesh
+// fills a cell in part, that is taken as a box along the axes of its covariance, of the same
+// volume, centroid and second moments, and clipped: exact where the fill is a box, else near it.
+std::array<FillIntegrals, kCorners> cornerFills(const Lattice& lattice, const LatticeState& state,
+                                                const Cell& cell);
+
+}  // namespace robot_tissue
