@@ -53,7 +53,7 @@ TEST(WarpedPolygon, SeversOneSpringOfEveryRowAndParts) {
       EXPECT_TRUE(columns.insert({index[0], index[1]}).second);
     }
     EXPECT_EQ(columns.size(), 49u);
-    sever(lattice, crossing, state);
+    sever(lattice, halfWay(crossing), state);
     EXPECT_EQ(countPieces(lattice, state), 2);
     if (turn == 0) first = once;
     EXPECT_EQ(once, first);
@@ -73,7 +73,7 @@ TEST(WarpedPolygon, FoldAlongLatticePlanesParts) {
       kSpacing);
   const std::vector<int> crossing = springsOf(surface.crossings(lattice, state));
   EXPECT_EQ(crossing.size(), 5u * 5u);  // round the 2 x 3 columns of nodes in the corner
-  sever(lattice, crossing, state);
+  sever(lattice, halfWay(crossing), state);
   EXPECT_EQ(countPieces(lattice, state), 2);
   LatticeState again = lattice.restState();
   sever(lattice, springsAcross(lattice, again, fold), again);
@@ -141,7 +141,7 @@ TEST(BladeSurface, NothingSlipsThrough) {
     }
     LatticeState state = lattice.restState();
     const BladeSurface surface(sheet(profile, -0.01, 0.05), kSpacing);
-    sever(lattice, springsOf(surface.crossings(lattice, state)), state);
+    sever(lattice, surface.crossings(lattice, state), state);
     const std::vector<int> pieces = pieceOfNodes(lattice, state);
     EXPECT_NE(pieces[at(lattice.node(0, 0, 0))], pieces[at(lattice.node(0, 8, 0))]);
     for (const int x : {0, 4, 8}) {

@@ -66,7 +66,8 @@ TEST(TetrahedronIntegrals, OfACubeAreItsMoments) {
   for (int corner = 0; corner < kCorners; ++corner) {
     std::vector<HalfSpace> halves;
     for (int axis = 0; axis < 3; ++axis) {
-      halves.push_back({(corner >> axis & 1) != 0 ? -Vec3::Unit(axis) : Vec3::Unit(axis), 0.0});
+      const double side = (corner >> axis & 1) != 0 ? -1.0 : 1.0;
+      halves.push_back({side * Vec3::Unit(axis), 0.0});
     }
     expectEqual(cubeWithin(halves), octantIntegrals(static_cast<std::uint8_t>(1 << corner)), 1e-15);
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr double kSpacing = 0.01;
 
 void sever(const Lattice& lattice, LatticeState& state, int node, int direction) {
-  sever(lattice, {lattice.springOf(node, direction)}, state);
+  sever(lattice, halfWay({lattice.springOf(node, direction)}), state);
 }
 
 TEST(Cells, CornersAreNumberedByTheirBits) {
@@ -70,7 +70,7 @@ TEST(Cells, AllSpringsCutMakeEightParts) {
   LatticeState state = lattice.restState();
   std::vector<int> all(state.severed.size());
   std::iota(all.begin(), all.end(), 0);
-  sever(lattice, all, state);
+  sever(lattice, halfWay(all), state);
   const auto parts = cellParts(lattice, state, lattice.cells().front().nodes);
   for (int corner = 0; corner < kCorners; ++corner) EXPECT_EQ(parts[at(corner)], corner);
 }

@@ -44,7 +44,7 @@ TEST(Cut, PlaneBetweenNodesSeversOneSpringOfEveryRow) {
       EXPECT_EQ(lattice.springs()[at(spring)].axis, axis);
       EXPECT_EQ(lattice.gridIndex(lattice.springs()[at(spring)].a)[at(axis)], 1);
     }
-    sever(lattice, crossing, state);
+    sever(lattice, halfWay(crossing), state);
     EXPECT_EQ(countPieces(lattice, state), 2);
   }
 }
@@ -67,7 +67,7 @@ TEST(Cut, PlaneThroughNodesSeversOneSpringOfEveryRow) {
           // The nodes on the plane belong to the side that the normal looks to.
           EXPECT_EQ(lattice.gridIndex(lattice.springs()[at(spring)].a)[at(axis)], turned ? 2 : 1);
         }
-        sever(lattice, crossing, state);
+        sever(lattice, halfWay(crossing), state);
         EXPECT_EQ(countPieces(lattice, state), 2);
       }
     }

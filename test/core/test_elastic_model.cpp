@@ -131,7 +131,7 @@ TEST(ElasticModel, CellThatHangsTogetherIsWhole) {
   shake(block.state, 0.1 * kSpacing);
   const double before = block.model.energy(block.state);
   ASSERT_GT(before, 0.0);
-  sever(block.lattice, {block.lattice.springOf(0, 1)}, block.state, SplitCells::kParted);
+  sever(block.lattice, halfWay({block.lattice.springOf(0, 1)}), block.state, SplitCells::kParted);
   EXPECT_TRUE(block.state.cells->ghosts().empty());
   EXPECT_EQ(block.model.energy(block.state), before);
 }

@@ -33,7 +33,7 @@ Corners across(int axis, double height, double from = -100.0) {
 }
 
 void sever(ElasticBlock& block, const std::vector<int>& springs) {
-  sever(block.lattice, springs, block.state, SplitCells::kParted);
+  sever(block.lattice, halfWay(springs), block.state, SplitCells::kParted);
 }
 
 void cut(ElasticBlock& block, const Corners& corners) {

@@ -23,11 +23,12 @@ struct TissueSurface {
   std::uint64_t revision = 0;
 };
 
-// Sides of the cells that nothing joins to others. A part of a cut cell has the eighths of the cell
-// around its own corners, and shows their sides: the surface encloses the parts' volumes, and its
-// sides along a cut lie on each other at rest. A vertex is carried as the part's material there, by
-// its corners, and by ghosts where it lost them; where the model has none, by the own corners that
-// are nearest. Two triangles run along every edge.
+// Sides of the cells that nothing joins to others. A part of a cut cell has of the cell what is
+// around its own corners, up to where the blade passed (cutting/cell_division.h), and shows the
+// sides of that: the surface encloses the parts' volumes, and its sides along a cut lie on the
+// blade and on each other at rest. A vertex is carried as the part's material there, by its
+// corners, and by ghosts where it lost them; where the model has none, by the own corners that are
+// nearest. Two triangles run along every edge.
 TissueSurface extractSurface(const Lattice& lattice, const LatticeState& state);
 
 // Deformed vertices (m, tissue frame) for node displacements (m, from rest). Returns their bounds.

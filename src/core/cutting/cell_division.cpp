@@ -97,12 +97,16 @@ bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const C
   return false;
 }
 
-CellDivision::CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell) {
+CellDivision::CellDivision() {
   for (int z = 0; z < 3; ++z) {
     for (int y = 0; y < 3; ++y) {
       for (int x = 0; x < 3; ++x) points_[indexOf({x, y, z})] = 0.5 * Vec3(x, y, z);
     }
   }
+}
+
+CellDivision::CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell)
+    : CellDivision() {
   placeEdges(lattice, state, cell);
   for (int side = 0; side < 6; ++side) placeFace(side / 2, side % 2);
   placeInside();

@@ -34,6 +34,7 @@ bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const C
 
 class CellDivision {
  public:
+  CellDivision();  // of a cell of which nothing is parted
   // Of the lattice's cell, with what was removed of it.
   CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell);
 

@@ -12,10 +12,6 @@ namespace {
 // Of the spacing (1): what is nearer to the blade's plane or outline is on it. More: more springs
 // are severed along the outline; less: nodes in the plane fall to either side by rounding. Chosen.
 constexpr double kOnPlane = 1e-3;
-// Of a spring's length (1): what both ends keep. More: a cut along nodes lies farther beside the
-// blade; less than kOnPlane: nothing, as nodes so near are on the blade. Chosen.
-constexpr double kEnd = 1e-3;
-
 // A polygon on its mean plane.
 class CutPolygon {
  public:
@@ -123,11 +119,6 @@ void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, Latti
   const auto left = cellsLeft(lattice, state, split);
   state.displacement = carriedOver(*state.cells, state.displacement, *left);
   state.cells = left;
-}
-
-void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
-           SplitCells split) {
-  sever(lattice, halfWay(springs), state, split);
 }
 
 std::vector<Crossing> halfWay(const std::vector<int>& springs) {

@@ -10,6 +10,11 @@
 
 namespace robot_tissue {
 
+// Of a severed spring's length (1): what both ends keep, so that every part of a cell has some of
+// it. More: a cut along nodes lies farther beside the blade; less than the slack below: nothing, as
+// nodes so near are on the blade. Chosen.
+constexpr double kEnd = 1e-3;
+
 // Springs, not yet severed, that cross the polygon (3 or more corners in order, m, tissue frame).
 // A node on the polygon's plane, within a thousandth of the spacing, counts as on the side that
 // the normal points to (right-handed along the corners), so that each spring is cut once or not. A
@@ -24,8 +29,6 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
 // thousandth of its length at both ends, so that every part of a cell has some of it.
 void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, LatticeState& state,
            SplitCells split = SplitCells::kLost);
-void sever(const Lattice& lattice, const std::vector<int>& springs, LatticeState& state,
-           SplitCells split = SplitCells::kLost);  // half way
 
 // What no blade severs parts half way along it.
 std::vector<Crossing> halfWay(const std::vector<int>& springs);

@@ -6,13 +6,20 @@
 namespace robot_tissue {
 namespace {
 
+// Spacings (1): so near a plane a point is on it; and steps of the search for it. Rounding.
+constexpr double kOnPlane = 1e-13;
+constexpr int kMostSteps = 60;
+
 int next(int axis) { return (axis + 1) % 3; }
 int afterNext(int axis) { return (axis + 2) % 3; }
 
 }  // namespace
 
-MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells)
-    : vertices_(std::move(vertices)) {
+MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells,
+                       const BentGrid& grid)
+    : grid_(grid), places_(std::move(vertices)) {
+  vertices_.reserve(places_.size());
+  for (const Vec3& place : places_) vertices_.push_back(grid_.straightened(place));
   for (std::size_t axis = 0; axis < 3; ++axis) octants_[axis] = 2 * cells[axis];
 }
 
@@ -20,9 +27,20 @@ void MeshPieces::add(const MeshTriangle& triangle, bool keep_pieces) {
   cutAlong(0, {{triangle[0], -1}, {triangle[1], -1}, {triangle[2], -1}}, keep_pieces);
 }
 
-int MeshPieces::addVertex(const Vec3& point) {
-  vertices_.push_back(point);
+int MeshPieces::addVertex(const Vec3& straight, const Vec3& place) {
+  vertices_.push_back(straight);
+  places_.push_back(place);
   return static_cast<int>(vertices_.size()) - 1;
+}
+
+int MeshPieces::addMiddle(const std::vector<int>& points) {
+  Vec3 straight = Vec3::Zero(), place = Vec3::Zero();
+  for (const int point : points) {
+    straight += vertices_[at(point)];
+    place += places_[at(point)];
+  }
+  const double count = static_cast<double>(points.size());
+  return addVertex(straight / count, place / count);
 }
 
 // The border planes of the grid cut nothing: what stands out there belongs to the octants inside.
@@ -40,19 +58,49 @@ bool MeshPieces::isAbove(int vertex, int axis, int plane) const {
   return vertices_[at(vertex)][axis] >= 0.5 * plane;
 }
 
-// Kept between the ends, so that a convex polygon stays one, also to the last bit.
+// How far along the edge it meets the plane, of its length (1). Planes of nodes are straight; a
+// bent plane is found by false position (Illinois: Dowell and Jarratt 1971).
+double MeshPieces::alongEdge(int from, int to, int axis, int plane) const {
+  const double height = 0.5 * plane;
+  const Vec3 &a = places_[at(from)], &b = places_[at(to)];
+  if (plane % 2 == 0) return (height - a[axis]) / (b[axis] - a[axis]);
+  double low = 0.0, high = 1.0;
+  double at_low = vertices_[at(from)][axis] - height, at_high = vertices_[at(to)][axis] - height;
+  double along = at_low / (at_low - at_high);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double above = grid_.straightened(a + along * (b - a))[axis] - height;
+    if (std::abs(above) < kOnPlane) break;
+    const bool is_low = (above < 0.0) == (at_low < 0.0);
+    (is_low ? low : high) = along;
+    (is_low ? at_low : at_high) = above;
+    (is_low ? at_high : at_low) *= 0.5;
+    along = low + at_low / (at_low - at_high) * (high - low);
+  }
+  return along;
+}
+
+// Along the axes before this one the edge has been cut already: the point is in its octant there.
 int MeshPieces::crossing(int from, int to, int axis, int plane) {
   const auto [low, high] = std::minmax(from, to);
-  const auto [place, is_new] = crossings_.try_emplace({low, high, axis, plane}, 0);
+  const auto [known, is_new] = crossings_.try_emplace({low, high, axis, plane}, 0);
   if (is_new) {
-    const Vec3 a = vertices_[at(low)];
-    const Vec3 b = vertices_[at(high)];
-    const double share = (0.5 * plane - a[axis]) / (b[axis] - a[axis]);
-    Vec3 point = (a + share * (b - a)).cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
-    point[axis] = 0.5 * plane;
-    place->second = addVertex(point);
+    const Vec3 a = places_[at(low)], b = places_[at(high)];
+    Vec3 place = a + alongEdge(low, high, axis, plane) * (b - a);
+    place = place.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
+    if (plane % 2 == 0) place[axis] = 0.5 * plane;
+    Vec3 straight = grid_.straightened(place);
+    for (int other = 0; other < 3; ++other) {
+      const double from_end = vertices_[at(low)][other], to_end = vertices_[at(high)][other];
+      if (from_end == to_end) straight[other] = from_end;  // in a plane
+      if (from_end == to_end || other > axis) continue;
+      const double octant = std::floor(2.0 * std::min(from_end, to_end));  // that the edge is in
+      const double end = 0.5 * (octant + 1.0);
+      straight[other] = std::clamp(straight[other], 0.5 * octant, std::nextafter(end, 0.0));
+    }
+    straight[axis] = 0.5 * plane;
+    known->second = addVertex(straight, place);
   }
-  return place->second;
+  return known->second;
 }
 
 // From below to above along each axis, as cutAlong does, so that the points are the same.
@@ -79,13 +127,11 @@ std::vector<int> MeshPieces::subdivided(int from, int to) {
   return points;
 }
 
-void MeshPieces::split(const Polygon& polygon, int axis, int plane, Polygon& below,
+void MeshPieces::split(const Polygon& triangle, int axis, int plane, Polygon& below,
                        Polygon& above) {
-  below.clear();
-  above.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Corner& from = polygon[i];
-    const Corner& to = polygon[(i + 1) % polygon.size()];
+  for (std::size_t i = 0; i < triangle.size(); ++i) {
+    const Corner& from = triangle[i];
+    const Corner& to = triangle[(i + 1) % triangle.size()];
     const bool starts_above = isAbove(from.vertex, axis, plane);
     (starts_above ? above : below).push_back(from);
     if (starts_above == isAbove(to.vertex, axis, plane)) continue;
@@ -112,27 +158,40 @@ void MeshPieces::noteCrossing(const Corner& from, int axis, int plane, int verte
       {vertices_[at(vertex)][along], vertex, turn * rise});
 }
 
-void MeshPieces::cutAlong(int axis, Polygon rest, bool keep) {
+std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon) {
+  std::vector<Polygon> triangles;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
+    if (i > 1) triangles.back()[0].face = -1;
+    if (i + 2 < polygon.size()) triangles.back()[2].face = -1;
+  }
+  return triangles;
+}
+
+void MeshPieces::cutAlong(int axis, const Polygon& triangle, bool keep) {
   if (axis == 3) {
-    if (keep) keepPiece(rest);
+    if (keep) keepPiece(triangle);
     return;
   }
   int first = octants_[at(axis)];
   int last = 0;
-  for (const Corner& corner : rest) {
+  for (const Corner& corner : triangle) {
     const int octant = octantOf(vertices_[at(corner.vertex)])[at(axis)];
     first = std::min(first, octant);
     last = std::max(last, octant);
   }
-  Polygon below, above;
-  for (int octant = first; octant < last; ++octant) {
-    split(rest, axis, octant + 1, below, above);
-    octant_[at(axis)] = octant;
-    if (below.size() > 2) cutAlong(axis + 1, below, keep);
-    rest.swap(above);
+  if (first == last) {
+    octant_[at(axis)] = first;
+    cutAlong(axis + 1, triangle, keep);
+    return;
   }
-  octant_[at(axis)] = last;
-  if (rest.size() > 2) cutAlong(axis + 1, std::move(rest), keep);
+  Polygon below, above;
+  split(triangle, axis, first + 1, below, above);
+  for (const Polygon& piece : trianglesOf(below)) {
+    octant_[at(axis)] = first;
+    cutAlong(axis + 1, piece, keep);
+  }
+  for (const Polygon& piece : trianglesOf(above)) cutAlong(axis, piece, keep);
 }
 
 void MeshPieces::keepPiece(const Polygon& piece) {
@@ -149,7 +208,9 @@ void MeshPieces::keepPiece(const Polygon& piece) {
 
 int MeshPieces::gridPoint(const HalfIndex& point) {
   const auto [place, is_new] = grid_points_.try_emplace(point, 0);
-  if (is_new) place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]));
+  if (is_new) {
+    place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]), grid_.placeOf(point));
+  }
   return place->second;
 }
 

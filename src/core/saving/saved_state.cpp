@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutting/cut.h"
 #include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
@@ -143,7 +144,7 @@ void takePartings(LatticeState& state, ByteReader& in) {
   for (std::size_t spring = 0; spring < state.severed.size(); ++spring) {
     if (state.severed[spring] == 0) continue;
     const double along = in.f64();
-    if (!(along >= 0.0 && along < 1.0)) {
+    if (along != 0.0 && !(along >= kEnd && along <= 1.0 - kEnd)) {
       throw InputError("is damaged: a spring is parted beyond its ends");
     }
     state.parted_at[spring] = along;

@@ -8,6 +8,7 @@
 
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
+#include "surface/divided_grid.h"
 #include "surface/hinges.h"
 #include "surface/octant_grid.h"
 
@@ -23,7 +24,8 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        pieces_(inSpacings(), cells()) {
+        grid_(lattice, state),
+        pieces_(inSpacings(), cells(), grid_) {
     findRegion();
   }
 
@@ -115,16 +117,10 @@ class CutMeshBuilder {
       outline.insert(outline.end(), points.begin(), points.end() - 1);
     }
     if (outline.size() == 3) return addPlain({outline[0], outline[1], outline[2]});
-    const int middle = pieces_.addVertex(meanOf(outline));
+    const int middle = pieces_.addMiddle(outline);
     for (std::size_t i = 0; i < outline.size(); ++i) {
       addPlain({middle, outline[i], outline[(i + 1) % outline.size()]});
     }
-  }
-
-  Vec3 meanOf(const std::vector<int>& points) const {
-    Vec3 sum = Vec3::Zero();
-    for (const int point : points) sum += pieces_.vertex(point);
-    return sum / static_cast<double>(points.size());
   }
 
   // Off the region a vertex hangs on whole cells, whatever its octant.
@@ -166,7 +162,7 @@ class CutMeshBuilder {
     if (!parted) return;
     std::vector<int> points;
     for (const auto& segment : border) points.push_back(segment.first);
-    const int middle = pieces_.addVertex(meanOf(points));
+    const int middle = pieces_.addMiddle(points);
     for (const auto& [from, to] : border) {
       if (below) add({middle, from, to}, octant, Face::kOpened);
       if (above) add({middle, to, from}, upper, Face::kOpened);
@@ -192,7 +188,7 @@ class CutMeshBuilder {
 
   // What holds a point, as the material in the octant has it.
   Hold holdOf(int point, const HalfIndex& octant) const {
-    const Vec3& place = pieces_.vertex(point);
+    const Vec3& place = pieces_.place(point);
     int cell = cellOf(octant);
     if (cell < 0 || !parts_.isOpen(cell)) {
       const int around = cellAround(lattice_, place);  // whichever octant asks
@@ -213,7 +209,7 @@ class CutMeshBuilder {
       known->second = static_cast<int>(surface_.rest.size());
       surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
                                   ? mesh_.vertices[at(point)]
-                                  : placed(pieces_.vertex(point)));
+                                  : placed(pieces_.place(point)));
       places_.push_back(2.0 * pieces_.vertex(point));
       surface_.carriers.push_back(parts_.withoutGhosts(hold.carriers));
       surface_.node.push_back(-1);
@@ -240,6 +236,7 @@ class CutMeshBuilder {
   const LatticeState& state_;
   CellParts parts_;
   const TriangleMesh& mesh_;
+  DividedGrid grid_;
   MeshPieces pieces_;
   std::set<HalfIndex> region_;
   std::set<std::pair<int, int>> cut_edges_;
