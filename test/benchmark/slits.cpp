@@ -19,9 +19,16 @@ namespace {
 constexpr double kFar = 1.0;
 constexpr double kSpacing = 0.005;
 
-void cut(ElasticBlock& block, const std::vector<Vec3>& corners) {
-  sever(block.lattice, springsAcross(block.lattice, block.state, corners), block.state,
-        block.model.splitCells());
+// Where the blade passes, or half way between nodes, as a tear.
+enum class Parting { kAtBlade, kHalfWay };
+
+void cut(ElasticBlock& block, const std::vector<Vec3>& corners,
+         Parting parting = Parting::kAtBlade) {
+  std::vector<Crossing> crossings = springsAcross(block.lattice, block.state, corners);
+  if (parting == Parting::kHalfWay) {
+    for (Crossing& crossing : crossings) crossing.along = 0.5;
+  }
+  sever(block.lattice, crossings, block.state, block.model.splitCells());
 }
 
 double solveFor(ElasticBlock& block, const std::vector<LoadingPatch>& patches, int axis) {
@@ -60,6 +67,7 @@ struct Slit {
   double x = 0.0;
   double nu = 0.25;
   bool is_cut = true;
+  Parting parting = Parting::kAtBlade;
 };
 
 TissueConfig blockFor(const Slit& slit, int finer) {
@@ -73,7 +81,7 @@ void cutSlit(const Slit& slit, ElasticBlock& block) {
   if (!slit.is_cut) return;
   constexpr double kEnd = 0.02;  // a plane of nodes: there the cut is closed
   const double x = slit.x;
-  cut(block, {{x, -kFar, kEnd}, {x, kFar, kEnd}, {x, kFar, kFar}, {x, -kFar, kFar}});
+  cut(block, {{x, -kFar, kEnd}, {x, kFar, kEnd}, {x, kFar, kFar}, {x, -kFar, kFar}}, slit.parting);
 }
 
 struct Answer {
@@ -126,27 +134,39 @@ double apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return std::sqrt(difference / all);
 }
 
-void compare(double offset, double nu, int finer) {
-  const Slit slit{0.03 + offset * kSpacing, nu}, whole{slit.x, nu, false};
-  const Answer coarse = drawn(slit, 1), fine = drawn(slit, finer);
-  const double force = coarse.force / drawn(whole, 1).force;
-  const double fine_force = fine.force / drawn(whole, finer).force;
-  std::printf(
-      "%.2f h off nodes, nu %.2f: drawn: force / uncut %.4f, fine %.4f (%+.1f %%), shape %.1f %%",
-      offset, nu, force, fine_force, 100.0 * (force / fine_force - 1.0),
-      100.0 * apart(coarse.shape, fine.shape));
-  double lips[2][2];  // left, right; coarse, fine: over uncut
-  for (const bool is_right : {false, true}) {
-    for (const bool is_fine : {false, true}) {
-      const int times = is_fine ? finer : 1;
-      lips[is_right][is_fine] =
-          pushed(slit, times, is_right).force / pushed(whole, times, is_right).force;
-    }
+struct Cut {
+  Slit slit;
+  Answer drawn;
+  double drawn_uncut = 0.0, left = 0.0, right = 0.0;  // lips over the uncut block
+
+  Cut(const Slit& of, int finer) : slit(of) {
+    Slit whole = of;
+    whole.is_cut = false;
+    drawn = ::drawn(slit, finer);
+    drawn_uncut = drawn.force / ::drawn(whole, finer).force;
+    left = pushed(slit, finer, false).force / pushed(whole, finer, false).force;
+    right = pushed(slit, finer, true).force / pushed(whole, finer, true).force;
   }
-  std::printf("; lips: left %+.2f %%, right %+.2f %% of fine, right / left %.4f\n",
-              100.0 * (lips[0][0] / lips[0][1] - 1.0), 100.0 * (lips[1][0] / lips[1][1] - 1.0),
-              lips[1][0] / lips[0][0]);
-  std::fflush(stdout);
+};
+
+double percentOff(double value, double reference) { return 100.0 * (value / reference - 1.0); }
+
+void compare(double offset, double nu, int finer) {
+  Slit slit;
+  slit.x = 0.03 + offset * kSpacing;
+  slit.nu = nu;
+  const Cut fine(slit, finer);
+  for (const Parting parting : {Parting::kAtBlade, Parting::kHalfWay}) {
+    slit.parting = parting;
+    const Cut coarse(slit, 1);
+    std::printf("| %.2f | %.2f | %s | %+.1f | %.1f | %+.1f, %+.1f | %.4f |\n", offset, nu,
+                parting == Parting::kAtBlade ? "at the blade" : "half way",
+                percentOff(coarse.drawn_uncut, fine.drawn_uncut),
+                100.0 * apart(coarse.drawn.shape, fine.drawn.shape),
+                percentOff(coarse.left, fine.left), percentOff(coarse.right, fine.right),
+                coarse.right / coarse.left);
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace
@@ -156,6 +176,9 @@ int main(int argc, char** argv) {
   for (const double nu : {0.3, 0.45}) {
     for (const int cells : {1, 2, 4}) bendHalf(cells, nu);
   }
+  std::printf(
+      "| off nodes (h) | nu | parted | drawn: force, %% | field, %% | lips: left, right, %% | "
+      "right / left |\n");
   for (const double nu : {0.25, 0.45}) {
     for (const double offset : {0.0, 0.25, 0.5}) compare(offset, nu, finer);
   }
