@@ -9,6 +9,7 @@
 
 #include "broad_phase.h"
 #include "collision_shape.h"
+#include "flat_face.h"
 #include "link_contacts.h"
 #include "link_penetration.h"
 #include "placed_link.h"
@@ -316,6 +317,19 @@ std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& 
     depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices);
   }
   return depths;
+}
+
+bool ContactFinder::hasFlatFaces(std::size_t link) const {
+  const Link& of = impl_->links[link];
+  const auto end = of.shapes.begin() + static_cast<std::ptrdiff_t>(of.in_use);
+  return std::any_of(of.shapes.begin(), end,
+                     [](const CollisionShape& shape) { return robot_tissue::hasFlatFaces(shape); });
+}
+
+std::optional<FlatFace> ContactFinder::flatFace(std::size_t link, const Pose& tissue_T_link,
+                                                const Vec3& facing, const Vec3& point,
+                                                double reach) const {
+  return flatFaceOf(impl_->links[link].placedAt(tissue_T_link), facing, point, reach);
 }
 
 double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {

@@ -49,6 +49,7 @@ ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::st
       bounds_(tree_.bounds()) {
   findEdges();
   findNormals();
+  findSharpEdges();
   measureThickness();
 }
 
@@ -98,6 +99,33 @@ void ToolMesh::findNormals() {
   for (std::size_t triangle = 0; triangle < normals_.size(); ++triangle) {
     for (const int edge : edges_of_triangles_[triangle])
       edge_normals_[at(edge)] += normals_[triangle];
+  }
+}
+
+void ToolMesh::findSharpEdges() {
+  std::vector<std::array<int, 2>> sides(edges_.size(), {-1, -1});
+  for (int triangle = 0; triangle < static_cast<int>(normals_.size()); ++triangle) {
+    for (const int edge : edges_of_triangles_[at(triangle)]) {
+      std::array<int, 2>& of_edge = sides[at(edge)];
+      of_edge[of_edge[0] < 0 ? 0 : 1] = triangle;
+    }
+  }
+  for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
+    if (sides[edge][1] < 0) continue;
+    const std::array<Vec3, 2> normals = {normals_[at(sides[edge][0])],
+                                         normals_[at(sides[edge][1])]};
+    if (normals[0].dot(normals[1]) > tuning::kSharpEdge) continue;
+    const std::array<Vec3, 2> ends = {mesh_.vertices[at(edges_[edge].ends[0])],
+                                      mesh_.vertices[at(edges_[edge].ends[1])]};
+    const Vec3 along = (ends[1] - ends[0]).stableNormalized();
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vec3 across = along.cross(normals[side]);
+      const Vec3 outward = across.dot(normals[1 - side]) > 0.0 ? across : Vec3(-across);
+      Vec3 inside = Vec3::Zero();  // of the side's own triangle, to tell a fold outwards
+      for (const Vec3& corner : corners(sides[edge][side])) inside += (corner - ends[0]) / 3.0;
+      if (inside.dot(outward) >= 0.0) continue;
+      sharp_edges_.push_back({ends, normals[side], outward});
+    }
   }
 }
 

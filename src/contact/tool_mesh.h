@@ -19,6 +19,13 @@ class ToolMesh {
     std::array<int, 2> opposite;  // of its two triangles
   };
 
+  // A face's end where the mesh folds outwards.
+  struct SharpEdge {
+    std::array<Vec3, 2> ends;
+    Vec3 normal;   // of the face; unit
+    Vec3 outward;  // in the face, across the edge; unit
+  };
+
   // `owner` begins the message. Throws InputError: a mesh that cannot be loaded, that is not closed
   // or has no volume. One that intersects itself is warned of.
   ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
@@ -36,6 +43,8 @@ class ToolMesh {
   const std::vector<std::array<int, 3>>& edgesOfTriangles() const { return edges_of_triangles_; }
   // Vertices joined by an edge with each vertex.
   const std::vector<std::vector<int>>& neighbors() const { return neighbors_; }
+  // Twice, once for each of its two faces.
+  const std::vector<SharpEdge>& sharpEdges() const { return sharp_edges_; }
   // Mean of the normals around a vertex, weighted by their angles; unit.
   const std::vector<Vec3>& vertexNormals() const { return vertex_normals_; }
   const TriangleBvh& tree() const { return tree_; }
@@ -47,6 +56,7 @@ class ToolMesh {
  private:
   void findEdges();
   void findNormals();
+  void findSharpEdges();
   void measureThickness();
   SignedDistance signedBy(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
   bool isInside(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
@@ -57,6 +67,7 @@ class ToolMesh {
   Box bounds_;
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edges_of_triangles_;
+  std::vector<SharpEdge> sharp_edges_;
   std::vector<std::vector<int>> neighbors_;
   std::vector<Vec3> normals_;  // of the triangles, unit; zero without area
   std::vector<Vec3> vertex_normals_;

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "rim_touch.h"
 #include "touch_spring.h"
 #include "tuning.h"
 
@@ -33,8 +34,9 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     const double times = growth_.times(at(touch.contact.link), pose.links[at(touch.contact.link)]);
     touch.spring.multiplier *= times;
     touch.spring.friction_bound *= times;
-    touch.spring.plane_point = moved * touch.spring.plane_point;
+    touch.tool_point = moved * touch.tool_point;
     touch.spring.normal = moved.linear() * touch.spring.normal;
+    putPlane(touch);
     anchor(pose, touch);
   }
 }
@@ -44,7 +46,7 @@ std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) cons
   for (const ContactConstraint& touch : touches_) {
     PressGrowth::Press& press = presses[at(touch.contact.link)];
     press.force += touch.spring.multiplier;
-    press.place += touch.spring.multiplier * touch.spring.plane_point;
+    press.place += touch.spring.multiplier * touch.tool_point;
   }
   for (PressGrowth::Press& press : presses) {
     if (press.force > 0.0) press.place /= press.force;
@@ -68,6 +70,8 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
     touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
+    touch.firm_stiffness = touch.spring.stiffness;
+    soften(tissue, touch);
   }
   for (const Contact& contact : contacts.contacts) {
     if (!friction_[at(contact.tool)]) continue;
@@ -90,10 +94,10 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
         pushing.count(touch.contact.link) != 0)
       continue;
     ContactSpring& spring = touch.spring;
-    spring.friction_stiffness =
-        tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
-    spring.friction_bound =
-        tuning::kMostForce * spring.friction_stiffness * tissue.lattice().spacing();
+    const double stiffness =
+        tuning::kFrictionStiffness / tuning::kContactStiffness * touch.firm_stiffness;
+    spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
+    spring.friction_bound = tuning::kMostForce * stiffness * tissue.lattice().spacing();
   }
 }
 
@@ -130,8 +134,9 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.contact.link)].linear() * touch.since_normal;
     spring.normal = turnedBy(since, contact->normal, tuning::kMostTurn);
-    spring.plane_point = planePointOf(*contact, tissue);
+    touch.tool_point = planePointOf(*contact, tissue);
   }
+  soften(tissue, touch);
   anchor(pose, touch);
   const double gap = gapOf(spring, tissue.state().displacement);
   const double slack = slackOf(touch, tissue);
@@ -143,7 +148,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
 // The depth or gap that counts as none (m): closing it would change the touch's force by less than
 // kSlackOfForce of what its tool presses with, within bounds.
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
-  const double stiffness = touch.spring.stiffness;
+  const double stiffness = touch.firm_stiffness;
   const double spacing = tissue.lattice().spacing();
   const double slack = stiffness > 0.0 ? tuning::kSlackOfForce * tuning::kContactStiffness *
                                              pressed_[at(touch.contact.tool)] / stiffness
@@ -172,13 +177,14 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     add(contact, pose, tissue, held);
     return false;
   }
-  const Vec3 normal = touch->spring.normal, foot = touch->spring.plane_point;
+  const Vec3 normal = touch->spring.normal, foot = touch->tool_point;
   const Vec3 since_normal = touch->since_normal;
   put(contact, pose, tissue, held, *touch);
   touch->since_normal = since_normal;
   if (!same_side) {
     touch->spring.normal = normal;
-    touch->spring.plane_point = foot;
+    touch->tool_point = foot;
+    putPlane(*touch);
     anchor(pose, *touch);
   }
   return contact.depth_m <= slack;
@@ -202,10 +208,13 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
     const double fine = fineness(touch.contact.link, spacing);
-    const double soft = tuning::kFrictionStiffness / tuning::kContactStiffness * spring.stiffness;
-    spring.friction_stiffness =
+    const double soft =
+        tuning::kFrictionStiffness / tuning::kContactStiffness * touch.firm_stiffness;
+    const double stiffness =
         std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
                  friction_bound / (tuning::kElasticSlip * fine));
+    spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
+    putPlane(touch);
   }
   return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
 }
@@ -218,7 +227,21 @@ void SlidingContacts::pressHarder(const Tissue& tissue) {
     if (gapOf(spring, tissue.state().displacement) >= -slackOf(touch, tissue)) continue;
     const double force = normalForceOf(spring, tissue.state().displacement);
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+    putPlane(touch);
   }
+}
+
+void SlidingContacts::soften(const Tissue& tissue, ContactConstraint& touch) {
+  touch.compliance = complianceOf(touch, tissue);
+  touch.spring.stiffness = softened(touch.firm_stiffness, touch.compliance.normal);
+  touch.spring.shown_compliance = touch.compliance.shown;
+  putPlane(touch);
+}
+
+void SlidingContacts::putPlane(ContactConstraint& touch) {
+  ContactSpring& spring = touch.spring;
+  spring.plane_point =
+      touch.tool_point - touch.compliance.normal * spring.multiplier * spring.normal;
 }
 
 bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
@@ -250,6 +273,7 @@ SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact
   double least = tuning::kSamePoint;
   for (ContactConstraint& touch : touches_) {
     if (touch.contact.link != contact.link || touch.vertex != vertex) continue;
+    if (touch.contact.rim.is_beyond != contact.rim.is_beyond) continue;
     if (vertex >= 0) return &touch;
     const SurfacePoint& known = touch.contact.place;
     if (known.triangle != contact.place.triangle) continue;
@@ -266,7 +290,7 @@ void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const T
   ContactConstraint touch;
   touch.contact = contact;
   touch.vertex = vertexAt(tissue.surface(), contact.place);
-  touch.spring.plane_point = contact.point;
+  touch.tool_point = contact.point;
   touch.friction_ratio = frictionRatioAround(touch);
   touches_.push_back(touch);
   put(contact, pose, tissue, held, touches_.back());
@@ -277,7 +301,7 @@ Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const 
   Vec3 ratio = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (const ContactConstraint& other : touches_) {
-    const double off = (other.spring.plane_point - touch.spring.plane_point).norm();
+    const double off = (other.tool_point - touch.tool_point).norm();
     if (other.contact.link != touch.contact.link || other.spring.multiplier <= 0.0 || off >= least)
       continue;
     least = off;
@@ -291,8 +315,10 @@ void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const T
   touch.found = true;
   touch.contact = contact;
   touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
+  touch.firm_stiffness = touch.spring.stiffness;
   touch.spring.normal = contact.normal;
-  touch.spring.plane_point = planePointOf(contact, tissue);
+  touch.tool_point = planePointOf(contact, tissue);
+  soften(tissue, touch);
   touch.since_normal = pose.links[at(touch.contact.link)].linear().transpose() * contact.normal;
   anchor(pose, touch);
 }
@@ -301,6 +327,7 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   since_links_ = pose.links;
   since_displacement_ = tissue.displacements();
   growth_.note(pose.links, presses(pose.links.size()));
+  noteFacing(pose);
   cut_rounds_ = 0;
   for (ContactConstraint& touch : touches_) {
     const ContactSpring& spring = touch.spring;
@@ -320,6 +347,22 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
     return gapOf(touch.spring, *since_displacement_) > far;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
+}
+
+// Touches beside a face say nothing of where it looks.
+void SlidingContacts::noteFacing(const RobotPose& pose) {
+  facing_.assign(pose.links.size(), Vec3::Zero());
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.contact.rim.is_beyond) continue;
+    const Pose& tissue_T_link = pose.links[at(touch.contact.link)];
+    facing_[at(touch.contact.link)] +=
+        touch.spring.multiplier * (tissue_T_link.linear().transpose() * touch.spring.normal);
+  }
+}
+
+Vec3 SlidingContacts::facing(int link, const Pose& tissue_T_link) const {
+  if (at(link) >= facing_.size()) return Vec3::Zero();
+  return tissue_T_link.linear() * facing_[at(link)].normalized();
 }
 
 void SlidingContacts::pass(const RobotPose& pose) {

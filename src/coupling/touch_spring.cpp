@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tuning.h"
 
@@ -17,7 +18,9 @@ double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
 }
 
 Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
-  const double most = tuning::kMostPush * tissue.lattice().spacing();
+  // What is at a rim is not to come out.
+  const double most = contact.rim.edges.empty() ? tuning::kMostPush * tissue.lattice().spacing()
+                                                : std::numeric_limits<double>::infinity();
   return contact.point + std::min(contact.depth_m, most) * contact.normal;
 }
 

@@ -196,6 +196,7 @@ SolveReport LoadStepper::balance() {
 }
 
 void LoadStepper::meet(const RobotPose& pose) {
+  touch_finder_.beginStep();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   world_.sliding.meet(touch_finder_.touchesAt(pose, held), pose, world_.tissue, held);
 }

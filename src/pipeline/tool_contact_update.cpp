@@ -43,12 +43,12 @@ std::vector<double> ToolContactUpdate::longestWays() {
 double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), before, vertices_);
-  const std::vector<Vec3>& now = world_.tissue.vertices();
+  deform(world_.tissue.surface(), world_.tissue.state().displacement, now_);
   double share = 1.0, strides = 1.0;
   for (const Surroundings& near : surroundings()) {
-    for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-      if (!near.box.contains(now[vertex]) && !near.box.contains(vertices_[vertex])) continue;
-      const double way = (now[vertex] - vertices_[vertex]).norm();
+    for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
+      if (!near.box.contains(now_[vertex]) && !near.box.contains(vertices_[vertex])) continue;
+      const double way = (now_[vertex] - vertices_[vertex]).norm();
       if (way > near.longest) share = std::min(share, near.longest / way);
       strides = std::max(strides, way / near.stride);
     }
@@ -86,10 +86,9 @@ double ToolContactUpdate::shareOutside(double share, int strides) const {
 
 // depthsIn of the shape at that share of the way.
 std::vector<double> ToolContactUpdate::depthsAt(double share) const {
-  const std::vector<Vec3>& now = world_.tissue.vertices();
-  std::vector<Vec3> there(now.size());
-  for (std::size_t vertex = 0; vertex < now.size(); ++vertex) {
-    there[vertex] = vertices_[vertex] + share * (now[vertex] - vertices_[vertex]);
+  std::vector<Vec3> there(now_.size());
+  for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
+    there[vertex] = vertices_[vertex] + share * (now_[vertex] - vertices_[vertex]);
   }
   return depthsIn(there);
 }
@@ -103,7 +102,8 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
     if (world_.isInWound(at(contact.link))) continue;
     if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;
-    depths[at(contact.link)] = std::max(depths[at(contact.link)], contact.depth_m);
+    const double depth = (1.0 - touch_finder_.rims().partOfDepth(contact)) * contact.depth_m;
+    depths[at(contact.link)] = std::max(depths[at(contact.link)], depth);
   }
   return depths;
 }
@@ -115,7 +115,11 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   if (new_surface) world_.sliding.clear();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   const ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
-  left_inside_ = deepest(contacts);
+  left_inside_ = 0.0;
+  for (const Contact& contact : contacts.contacts) {
+    const double part = contact.rim.share > 0.0 ? touch_finder_.rims().partOfDepth(contact) : 0.0;
+    left_inside_ = std::max(left_inside_, (1.0 - part) * contact.depth_m);
+  }
   if (new_surface) {
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);

@@ -40,6 +40,7 @@ class ToolContactUpdate : public ContactUpdate {
   TouchFinder& touch_finder_;
   std::uint64_t surface_revision_;
   std::vector<Vec3> vertices_;  // where the way began that is looked at
+  std::vector<Vec3> now_;       // and where it ends, of the lattice's own
   double left_inside_ = 0.0;    // depth of the deepest contact after the last solve (m)
 };
 

@@ -14,12 +14,18 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
   const Stopwatch watch(world_.report.contact_ms);
   std::vector<std::optional<Contact>> tracked;
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    if (touch.contact.rim.is_beyond) {
+      tracked.push_back(rims_.beyond(touch.contact, vertices_));
+      continue;
+    }
     Contact contact = touch.contact;
     contact.normal = touch.spring.normal;
     contact.depth_m = 0.0;
     contact.point = pointOf(touch.spring, world_.tissue.state().displacement);
     const bool near = turn(pose, contact);
-    tracked.push_back(near ? std::optional<Contact>(contact) : std::nullopt);
+    rims_.mark(contact);
+    const bool stays = near && !ToolRims::isTakenOver(contact);
+    tracked.push_back(stays ? std::optional<Contact>(contact) : std::nullopt);
   }
   return tracked;
 }
@@ -117,23 +123,43 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
-  depths_.assign(pose.links.size(), 0.0);
-  for (const Contact& contact : all) {
-    if (world_.isInWound(at(contact.link))) continue;
-    depths_[at(contact.link)] = std::max(depths_[at(contact.link)], contact.depth_m);
+  findNormals();
+  std::vector<double> nearest;  // depths by the nearest way out, of those that stay
+  std::size_t kept = 0;
+  for (Contact& contact : all) {
+    const double depth = contact.depth_m;
+    if (!turn(pose, contact) && world_.isInWound(at(contact.link))) continue;
+    nearest.push_back(depth);
+    all[kept++] = contact;
   }
+  all.resize(kept);
+  rims_.look(pose, vertices_, contacts);
+  depths_.assign(pose.links.size(), 0.0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (world_.isInWound(at(all[i].link))) continue;
+    const double depth = (1.0 - rims_.partOfDepth(all[i])) * nearest[i];
+    depths_[at(all[i].link)] = std::max(depths_[at(all[i].link)], depth);
+  }
+  takeRims(held, contacts);
+  return contacts;
+}
+
+void TouchFinder::findNormals() {
   outwards_.assign(vertices_.size(), Vec3::Zero());
   for (const MeshTriangle& corners : world_.tissue.surface().triangles) {
     const Vec3 area = doubleArea(vertices_, corners);
     for (const int corner : corners) outwards_[at(corner)] += area;
   }
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](Contact& contact) {
-                             const bool turned = turn(pose, contact);
-                             return !turned && world_.isInWound(at(contact.link));
-                           }),
-            all.end());
-  return contacts;
+}
+
+// What is at the rim of a flat face is pushed as the rim has it, and what is beside the face, too.
+void TouchFinder::takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts) {
+  auto& all = contacts.contacts;
+  for (Contact& contact : all) rims_.mark(contact);
+  all.erase(std::remove_if(all.begin(), all.end(), ToolRims::isTakenOver), all.end());
+  for (const Contact& contact : rims_.beyond(vertices_).contacts) {
+    if (SlidingContacts::givesWay(contact.place, world_.tissue, held)) all.push_back(contact);
+  }
 }
 
 // A tool that no longer touches the deformed surface may be in the way of its return to rest.

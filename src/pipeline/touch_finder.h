@@ -5,13 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include "tool_rims.h"
 #include "world.h"
 
 namespace robot_tissue {
 
 class TouchFinder {
  public:
-  explicit TouchFinder(World& world) : world_(world) {}
+  explicit TouchFinder(World& world) : world_(world), rims_(world) {}
 
   // With gaps that a solve may close.
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
@@ -19,6 +20,9 @@ class TouchFinder {
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);
+
+  void beginStep() { rims_.beginStep(); }
+  const ToolRims& rims() const { return rims_; }  // of the last touchesAt
 
   // In each link, of the deepest point of the last touchesAt, by the nearest way out (m).
   const std::vector<double>& depths() const { return depths_; }
@@ -29,8 +33,11 @@ class TouchFinder {
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   bool turnAside(const RobotPose& pose, Contact& contact) const;
   bool turn(const RobotPose& pose, Contact& contact) const;
+  void findNormals();
+  void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
   World& world_;
+  ToolRims rims_;
   std::vector<Vec3> vertices_;  // of the last contacts
   std::vector<Vec3> outwards_;  // their normals
   std::vector<double> depths_;

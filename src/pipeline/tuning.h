@@ -73,6 +73,41 @@ constexpr double kSameSide = 0.3;
 // Barycentric weight (1): with more of each corner, a point is on no edge of its triangle. Chosen.
 constexpr double kInsideTriangle = 1e-3;
 
+// Contacts: rims of flat faces.
+// Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side of
+// a face is not seen. Chosen: more than kWideFace.
+constexpr double kRimReach = 2.5;
+// Of the spacing (1): a vertex so far inside all edges is joined to the face firmly, as the shift of
+// no motion is greater (core's rim_law.h).
+constexpr double kFirmDepth = 0.3;
+// Of the spacing (1): a vertex so near to a face's plane is on it. Chosen.
+constexpr double kOnFace = 0.3;
+// Of a length at rest (1): less of it along a face is none. Chosen.
+constexpr double kLevel = 0.3;
+// Cosine of the angle between a face and the surface around its link: rims of a face are left out
+// where it is tilted by 35 degrees, and are there in full up to 15. More: they fade sooner. Chosen.
+constexpr double kTiltedFace = 0.819;
+constexpr double kFlatFace = 0.966;
+// Cosine of the angle between a face and where its link presses to, likewise: 20 and 8 degrees. A
+// tool that ploughs presses forwards, too, and tissue lies against its front. Chosen.
+constexpr double kTiltedPush = 0.94;
+constexpr double kStraightPush = 0.99;
+// Of the spacing (1): the same of a face's width. Chosen: two columns of nodes in any place.
+constexpr double kNarrowFace = 1.0;
+constexpr double kWideFace = 2.0;
+// Of the surface beside a face over the face (1): likewise, rise over length at rest. Chosen.
+constexpr double kSteep = 1.3;
+constexpr double kGentle = 0.8;
+// Cosine of two edges of a face that are on opposite sides, and on one. Chosen.
+constexpr double kOppositeEdges = -0.7;
+constexpr double kSameEdge = 0.7;
+// Of their spread along it (1): points that spread less across a line are on it. Rounding.
+constexpr double kOnALine = 1e-3;
+// Share (1) of a touch that rims bear; more is all. Chosen.
+constexpr double kAllOfIt = 0.98;
+// Likewise (1): from here on, all of its depth is the rims'. Less is firm but for some percent.
+constexpr double kSomeOfIt = 0.2;
+
 // Contacts: how far tissue goes between two looks at them.
 // Of the spacing (1): the longest way of a vertex beside a tool. More: fewer rounds, but what slips
 // meets the tool again elsewhere. Chosen.

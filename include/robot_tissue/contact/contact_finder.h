@@ -26,6 +26,14 @@ struct WayOut {
   Vec3 normal = Vec3::Zero();  // unit, away from the shape; zero when every way is as good
 };
 
+// A flat face of a link at a point of its plane: where its sharp edges are from there.
+struct FlatFace {
+  Vec3 normal = Vec3::Zero();   // unit, out of the link
+  double height_m = 0.0;        // of the point over the face; < 0: in the link
+  double roundness_m = 0.0;     // radius of the edges
+  std::vector<FaceEdge> edges;  // those within reach, each of another side, the nearest first
+};
+
 class ContactFinder {
  public:
   // Throws InputError: a mesh that cannot be loaded, is not closed or has no volume, a measure that
@@ -70,6 +78,14 @@ class ContactFinder {
   std::optional<WayOut> wayOutAlong(std::size_t link, const Pose& tissue_T_link, const Vec3& point,
                                     const Vec3& direction, double clear, double reach,
                                     double farthest) const;
+
+  // Whether the link has flat faces with sharp edges: boxes, cylinders' ends, and faces of meshes
+  // that end where the mesh folds outwards by 40 degrees and more.
+  bool hasFlatFaces(std::size_t link) const;
+  // The face that looks along `facing` (unit, tissue frame), by 35 degrees at most, and has an edge
+  // within `reach` (m) of the point along the face, over it or beyond it; of several the nearest.
+  std::optional<FlatFace> flatFace(std::size_t link, const Pose& tissue_T_link, const Vec3& facing,
+                                   const Vec3& point, double reach) const;
 
   // Of each of these links the deepest point inside the surface, or of the surface inside the link
   // (m); 0 when they do not overlap: points of the surface as in find, and corners, edges and rims

@@ -8,6 +8,19 @@
 
 namespace robot_tissue {
 
+// A sharp edge of a flat face, as seen from a point on the face or beside it.
+struct FaceEdge {
+  Vec3 outward = Vec3::Zero();  // unit, in the face, off it across the edge
+  double depth_m = 0.0;         // of the point inside the edge; < 0: beyond it
+};
+
+// What the lattice adds at the edges of a flat face is taken back by springs (SlidingContacts).
+struct Rim {
+  double share = 0.0;           // of the push that goes by these springs; 0: there is no rim
+  bool is_beyond = false;       // the point is beside the face
+  std::vector<FaceEdge> edges;  // near the point; none: others bear what it would
+};
+
 // A point of the surface that is inside a tool, or near it: the one form of what was found. What
 // is kept of it from solve to solve has it as a part (SlidingContacts::ContactConstraint).
 struct Contact {
@@ -17,6 +30,7 @@ struct Contact {
   Vec3 point = Vec3::Zero();   // where that is now; tissue frame, m
   Vec3 normal = Vec3::Zero();  // unit, from the tool into the tissue: the way out of the tool
   double depth_m = 0.0;        // penetration depth along the normal; < 0: a gap
+  Rim rim;
 };
 
 struct ContactSet {

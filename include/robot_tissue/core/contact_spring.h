@@ -40,8 +40,11 @@ struct ContactSpring {
   Vec3 friction_force = Vec3::Zero();  // t_0: across the normal, when it was at the anchor (N)
   double friction_stiffness = 0.0;     // k_t (N/m)
   double friction_bound = 0.0;         // N; 0: slides freely
-  bool is_thread = false;              // has carriers, rest, stiffness and, besides:
-  double rest_length = 0.0;            // L (m)
+  // At a tool's rim the surface is shown where the tool has it: off the spring's point by so much
+  // times the normal force, along the normal (m/N).
+  double shown_compliance = 0.0;
+  bool is_thread = false;    // has carriers, rest, stiffness and, besides:
+  double rest_length = 0.0;  // L (m)
 };
 
 // The springs of a patch as a solve has them. Copies share them: patches, the shapes that are kept

@@ -73,6 +73,13 @@ struct SutureResult {
   SolveReport solve;  // balance after it
 };
 
+// Of the spring between a bonded flat plate and a node at its edge (m/N); infinite: free.
+struct RimCompliance {
+  double across = 0.0;  // in the surface, across the edge
+  double along = 0.0;
+  double normal = 0.0;
+};
+
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
 enum class Bedding { kFixedNodes, kSupports };
 
@@ -123,7 +130,8 @@ class Tissue {
   int cellsBeyondLaw() const;
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
-  // Displacements as they are shown (m): nodes of a patch's rim where the patch has them.
+  // Displacements as they are shown (m): nodes of a patch's rim where the patch has them, of a
+  // tool's where the tool has them.
   std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
   // its tool.
@@ -136,6 +144,10 @@ class Tissue {
   double nodeStiffness(int node) const;
   double stiffening(int node) const;
   Vec3 nodePosition(int node) const;  // deformed (m)
+  // Of a node of the surface that is so many spacings inside the plate's edge, < 0: beyond it
+  // (doc/model.md, "The rim"). None where cells at the node are filled in part, and where method or
+  // model have no rims.
+  std::optional<RimCompliance> rimCompliance(int node, double depth) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
   void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
@@ -296,6 +308,7 @@ class Tissue {
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
   void deformSurface();
+  std::vector<std::pair<int, Vec3>> shownAsTheirOwn() const;
   LoadingPatch makePatch(const PatchConfig& config) const;
   std::size_t place(const LoadingPatch& patch);
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;

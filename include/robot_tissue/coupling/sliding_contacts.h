@@ -11,6 +11,10 @@
 // update() until that says the contacts are settled, and ends with commit(). In: contacts (tissue
 // frame, normals from the tool into the tissue), poses of the links. Out: the springs of each tool.
 // Points that held nodes carry, but for a tenth of their weight, are never taken.
+//
+// At the rim of a flat face a touch gives way, by a compliance c: its plane is c times the
+// multiplier below the tool's, its spring k in series with 1 / c. Then the gap goes to -c f. (With
+// f = multiplier - k' (g + c multiplier), k' = k / (1 + k c), f is the multiplier for g = -c f.)
 #pragma once
 
 #include <cstdint>
@@ -25,15 +29,25 @@
 
 namespace robot_tissue {
 
+// Of a touch at a rim (m/N).
+struct TouchCompliance {
+  double normal = 0.0;
+  double friction = 0.0;
+  double shown = 0.0;  // of the normal one what the surface is shown without
+};
+
 class SlidingContacts {
  public:
   static constexpr std::uint8_t kGrasped = 2;
 
   // What is kept of a contact from round to round, and from load step to load step.
   struct ContactConstraint {
-    Contact contact;                     // as it was seen in the last update
-    int vertex = -1;                     // of the surface; -1: a point of a triangle
-    ContactSpring spring;                // as the next solve will have it
+    Contact contact;              // as it was seen in the last update
+    int vertex = -1;              // of the surface; -1: a point of a triangle
+    ContactSpring spring;         // as the next solve will have it
+    double firm_stiffness = 0.0;  // k, without its compliance (N/m)
+    TouchCompliance compliance;
+    Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
     Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
     double stiffening = 1.0;             // of the tissue, in the time step under way
@@ -85,6 +99,8 @@ class SlidingContacts {
   const std::vector<ContactConstraint>& touches() const { return touches_; }
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
+  // Where the link pressed to at the last commit (unit, tissue frame); zero when it did not.
+  Vec3 facing(int link, const Pose& tissue_T_link) const;
   // Of its touches, in their order.
   ContactSprings springsOf(int tool) const;
 
@@ -105,6 +121,9 @@ class SlidingContacts {
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);
+  static void soften(const Tissue& tissue, ContactConstraint& touch);
+  static void putPlane(ContactConstraint& touch);
+  void noteFacing(const RobotPose& pose);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
   Vec3 frictionRatioAround(const ContactConstraint& touch) const;
 
@@ -114,6 +133,7 @@ class SlidingContacts {
   PressGrowth growth_;
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
+  std::vector<Vec3> facing_;                  // per link, of its normal forces (N, link's frame)
   std::vector<Pose> since_links_;             // at the last commit
   Tissue::Displacements since_displacement_;  // likewise (m)
 };

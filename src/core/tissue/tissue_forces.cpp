@@ -1,4 +1,5 @@
 // Tissue: forces on it.
+#include "loads/rim_law.h"
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
@@ -44,6 +45,22 @@ Vec3 Tissue::forceOfFixedNodes() const {
 }
 
 double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+
+std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
+  if (!method_->findsEquilibrium()) return std::nullopt;
+  const CellSet& cells = *state_.cells;
+  for (auto met = cells.first(node); met != cells.last(node); ++met) {
+    if (lattice_.cells()[at(cells.all()[at(met->cell)].place)].share() < 1.0) return std::nullopt;
+  }
+  const Moduli moduli = model_->moduliAt(state_, node);
+  if (moduli.shear <= 0.0) return std::nullopt;
+  const RimLaw law = rimLaw(poissonRatio(moduli));
+  const double unit = moduli.shear * lattice_.spacing();
+  const auto compliance = [&](const RimMode& mode) {
+    return 1.0 / (unit * rimStiffness(mode, depth));
+  };
+  return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
+}
 
 double Tissue::stiffening(int node) const {
   const double stiffness = expects_time_step_ ? nodeStiffness(node) : 0.0;

@@ -19,24 +19,33 @@ std::uint64_t newRevision() {
 
 double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
 
+// Nodes at rims, and their displacements as patches and tools have them (m).
+std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn() const {
+  std::vector<std::pair<int, Vec3>> own;
+  for (const LoadingPatch& patch : patches_) {
+    if (!patch.rim.empty()) {
+      const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
+      for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
+    }
+    for (const ContactSpring& spring : patch.contacts) {
+      if (spring.shown_compliance <= 0.0) continue;
+      const double off = spring.shown_compliance * normalForceOf(spring, state_.displacement);
+      for (const NodeWeight& carrier : spring.carriers) {
+        own.emplace_back(carrier.node, state_.displacement[at(carrier.node)] + off * spring.normal);
+      }
+    }
+  }
+  return own;
+}
+
 std::vector<Vec3> Tissue::shownDisplacement() const {
   std::vector<Vec3> shown = state_.displacement;
-  for (const LoadingPatch& patch : patches_) {
-    if (patch.rim.empty()) continue;
-    const std::vector<Vec3> own = ownDisplacement(patch, state_.displacement);
-    for (std::size_t i = 0; i < own.size(); ++i) shown[at(patch.nodes[i])] = own[i];
-  }
+  for (const auto& [node, own] : shownAsTheirOwn()) shown[at(node)] = own;
   return shown;
 }
 
-// Where patches have rims their nodes are shown as their own (shownDisplacement).
 void Tissue::deformSurface() {
-  std::vector<std::pair<int, Vec3>> own;
-  for (const LoadingPatch& patch : patches_) {
-    if (patch.rim.empty()) continue;
-    const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
-    for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
-  }
+  std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn();
   const auto exchange = [&](std::pair<int, Vec3>& of_node) {
     std::swap(state_.displacement[at(of_node.first)], of_node.second);
   };

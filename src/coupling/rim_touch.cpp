@@ -1,0 +1,70 @@
+#include "rim_touch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+// What takes `share` of the stiffness from a spring.
+double complianceLeaving(double share, double stiffness) {
+  return stiffness > 0.0 ? share / ((1.0 - share) * stiffness) : 0.0;
+}
+
+// 1 at `full`, 0 at `none`.
+double fade(double value, double none, double full) {
+  return std::min(1.0, std::max(0.0, (value - none) / (full - none)));
+}
+
+// Along the friction: of a motion across the edge and along it in equal parts where there is none.
+double frictionCompliance(const RimCompliance& of_edge, const Vec3& outward, const Vec3& friction) {
+  const double length = friction.norm();
+  const double across = length > 0.0 ? outward.dot(friction) / length : std::sqrt(0.5);
+  return across * across * of_edge.across + (1.0 - across * across) * of_edge.along;
+}
+
+// Those that are infinite are finite.
+RimCompliance limited(const RimCompliance& of_edge, double most) {
+  return {std::min(of_edge.across, most), std::min(of_edge.along, most),
+          std::min(of_edge.normal, most)};
+}
+
+}  // namespace
+
+TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
+                             const Tissue& tissue) {
+  const Rim& rim = touch.contact.rim;
+  TouchCompliance sum;
+  if (rim.share <= 0.0 || touch.firm_stiffness <= 0.0) return sum;
+  if (rim.edges.empty()) {
+    const double friction = tuning::kFrictionStiffness / tuning::kContactStiffness;
+    sum.normal = complianceLeaving(rim.share, touch.firm_stiffness);
+    sum.friction = complianceLeaving(rim.share, friction * touch.firm_stiffness);
+    return sum;
+  }
+  const double most = 1.0 / (tuning::kSoftestRim * touch.firm_stiffness);
+  double least_depth = 0.0;  // spacings
+  for (const FaceEdge& edge : rim.edges) {
+    const double depth = edge.depth_m / tissue.lattice().spacing();
+    const auto found = tissue.rimCompliance(touch.spring.carriers.front().node, depth);
+    if (!found) return {};
+    const RimCompliance of_edge = limited(*found, most);
+    sum.normal += of_edge.normal;
+    sum.friction += frictionCompliance(of_edge, edge.outward, touch.spring.friction_force);
+    least_depth = std::min(least_depth, depth);
+  }
+  const double part = rim.is_beyond ? 1.0 / rim.share : rim.share;
+  sum.normal *= part;
+  sum.friction *= part;
+  sum.shown = sum.normal * fade(rim.share, 0.0, tuning::kShownShare) *
+              fade(least_depth, -1.0, -1.0 + tuning::kShownLate);
+  return sum;
+}
+
+double softened(double stiffness, double compliance) {
+  return stiffness / (1.0 + stiffness * compliance);
+}
+
+}  // namespace robot_tissue

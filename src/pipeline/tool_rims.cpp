@@ -1,0 +1,325 @@
+#include "tool_rims.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+// 1 where the value is `full` or beyond, seen from `none`, where it is 0.
+double fade(double value, double none, double full) {
+  return std::min(1.0, std::max(0.0, (value - none) / (full - none)));
+}
+
+// Of the face at the point (m); infinite where it ends on one side only, as far as is seen.
+double widthOf(const FlatFace& face) {
+  double width = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < face.edges.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool are_opposite =
+          face.edges[i].outward.dot(face.edges[j].outward) < tuning::kOppositeEdges;
+      if (are_opposite) width = std::min(width, face.edges[i].depth_m + face.edges[j].depth_m);
+    }
+  }
+  return width;
+}
+
+const FaceEdge& outermost(const Rim& rim) {
+  return *std::min_element(
+      rim.edges.begin(), rim.edges.end(),
+      [](const FaceEdge& a, const FaceEdge& b) { return a.depth_m < b.depth_m; });
+}
+
+double leastDepth(const FlatFace& face) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FaceEdge& edge : face.edges) least = std::min(least, edge.depth_m);
+  return least;
+}
+
+}  // namespace
+
+void ToolRims::takeSurface() {
+  const TissueSurface& surface = world_.tissue.surface();
+  if (revision_ == surface.revision && neighbors_.size() == surface.rest.size()) return;
+  revision_ = surface.revision;
+  neighbors_.assign(surface.rest.size(), {});
+  places_.resize(surface.rest.size());
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    const MeshTriangle& corners = surface.triangles[triangle];
+    for (std::size_t k = 0; k < 3; ++k) {
+      neighbors_[at(corners[k])].push_back(corners[(k + 1) % 3]);  // each edge runs both ways
+      places_[at(corners[k])] = {static_cast<int>(triangle), Vec3::Unit(static_cast<int>(k))};
+    }
+  }
+}
+
+void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                    const ContactSet& contacts) {
+  at_rims_.clear();
+  std::map<int, Link> links;
+  for (const Contact& contact : contacts.contacts) {
+    const std::size_t number = at(contact.link);
+    if (links.count(contact.link) != 0 || world_.isInWound(number)) continue;
+    if (!world_.finder.hasFlatFaces(number) || isSticking(contact.tool)) continue;
+    Link& link = links[contact.link];
+    link.tool = contact.tool;
+    link.number = contact.link;
+    link.tissue_T_link = pose.links[number];
+  }
+  if (links.empty()) return;
+  takeSurface();
+  for (auto& [number, link] : links) {
+    link.facing = facingOf(link, contacts);
+    if (link.facing.isZero(0.0)) continue;
+    link.inwards = inwardsAround(link, vertices);
+    findFirm(contacts, link);
+    if (!findTurn(vertices, link)) continue;
+    lookAround(vertices, link);
+    leaveSteep(number);
+  }
+}
+
+// Of the surface beside that edge, over the vertices there.
+double ToolRims::meanSlope(int link, const FaceEdge& edge) const {
+  double sum = 0.0;
+  int count = 0;
+  for (auto at_rim = at_rims_.lower_bound({link, 0}); at_rim != at_rims_.end(); ++at_rim) {
+    if (at_rim->first.first != link) break;
+    const AtRim& other = at_rim->second;
+    if (!other.rim.is_beyond || outermost(other.rim).outward.dot(edge.outward) < tuning::kSameEdge)
+      continue;
+    sum += other.slope;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+// The law is of small slopes. Those of all of an edge count: of vertices by themselves the ones
+// that are left out would rise, and their neighbors would bear the more.
+void ToolRims::leaveSteep(int link) {
+  const auto first = at_rims_.lower_bound({link, 0}), last = at_rims_.lower_bound({link + 1, 0});
+  for (auto at_rim = first; at_rim != last; ++at_rim) {
+    Rim& rim = at_rim->second.rim;
+    const double slope = meanSlope(link, outermost(rim));
+    rim.share =
+        shares_.try_emplace(at_rim->first, rim.share * fade(slope, tuning::kSteep, tuning::kGentle))
+            .first->second;
+  }
+}
+
+bool ToolRims::isSticking(int tool) const {
+  return at(tool) < world_.tools.size() && world_.tools.isRigid(tool);
+}
+
+// Where the link pressed to at the end of the last load step or, as it meets the tissue, across
+// what it touches.
+Vec3 ToolRims::facingOf(const Link& link, const ContactSet& contacts) const {
+  const Vec3 known = world_.sliding.facing(link.number, link.tissue_T_link);
+  if (!known.isZero(0.0)) return known;
+  Vec3 sum = Vec3::Zero();
+  for (const Contact& contact : contacts.contacts) {
+    if (contact.link == link.number) sum += contact.normal;
+  }
+  return sum.normalized();
+}
+
+// The sum of the areas of a surface is that of any other with the same border: it knows no dent.
+Vec3 ToolRims::inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const {
+  const Box near = grownBy(world_.tissue.lattice().spacing(),
+                           world_.finder.bounds(at(link.number), link.tissue_T_link));
+  Vec3 sum = Vec3::Zero();
+  for (const MeshTriangle& corners : world_.tissue.surface().triangles) {
+    const Vec3 center =
+        (vertices[at(corners[0])] + vertices[at(corners[1])] + vertices[at(corners[2])]) / 3.0;
+    if (near.contains(center)) sum -= doubleArea(vertices, corners);
+  }
+  return sum.normalized();
+}
+
+// Vertices that are on the face, and farther from its edges than any shift.
+void ToolRims::findFirm(const ContactSet& contacts, Link& link) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  for (const Contact& contact : contacts.contacts) {
+    if (contact.link != link.number) continue;
+    const int vertex = vertexAt(world_.tissue.surface(), contact.place);
+    if (vertex < 0) continue;
+    const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,
+                                             contact.point, tuning::kRimReach * spacing);
+    if (!face || std::abs(face->height_m) > tuning::kOnFace * spacing) continue;
+    if (leastDepth(*face) >= tuning::kFirmDepth * spacing) link.firm.insert(vertex);
+  }
+}
+
+// Rotation that takes them from rest to where they are (Kabsch 1976). False: they are on a line.
+bool ToolRims::findTurn(const std::vector<Vec3>& vertices, Link& link) const {
+  const std::vector<Vec3>& rest = world_.tissue.surface().rest;
+  const double count = static_cast<double>(link.firm.size());
+  if (link.firm.size() < 3) return false;
+  Vec3 middle = Vec3::Zero(), rest_middle = Vec3::Zero();
+  for (const int vertex : link.firm) {
+    middle += vertices[at(vertex)] / count;
+    rest_middle += rest[at(vertex)] / count;
+  }
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const int vertex : link.firm) {
+    sum += (vertices[at(vertex)] - middle) * (rest[at(vertex)] - rest_middle).transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (parts.singularValues()[1] < tuning::kOnALine * parts.singularValues()[0]) return false;
+  const double sign = (parts.matrixU() * parts.matrixV().transpose()).determinant();
+  link.turn = parts.matrixU() * Vec3(1.0, 1.0, sign).asDiagonal() * parts.matrixV().transpose();
+  return true;
+}
+
+// The neighbors of firm vertices, and their neighbors: at corners of faces, and where the last
+// column on the face is not firm, none is nearer.
+void ToolRims::lookAround(const std::vector<Vec3>& vertices, const Link& link) {
+  const TissueSurface& surface = world_.tissue.surface();
+  struct Guess {
+    Vec3 sum = Vec3::Zero();
+    double slope = 0.0;
+    int count = 0;
+  };
+  std::map<int, Vec3> places;  // of the columns found so far
+  for (const int vertex : link.firm) places[vertex] = vertices[at(vertex)];
+  for (int column = 0; column < 3; ++column) {
+    std::map<int, Guess> guesses;
+    for (const auto& [from, place] : places) {
+      for (const int vertex : neighbors_[at(from)]) {
+        if (places.count(vertex) != 0 || surface.carriers[at(vertex)].size() != 1) continue;
+        const Vec3 way = link.turn * (surface.rest[at(vertex)] - surface.rest[at(from)]);
+        const Vec3 level = way - link.facing.dot(way) * link.facing;
+        if (level.norm() < tuning::kLevel * way.norm()) continue;
+        const double rise = link.facing.dot(vertices[at(from)] - vertices[at(vertex)]);
+        Guess& guess = guesses[vertex];
+        guess.sum += place + level;
+        guess.slope += rise / level.norm();
+        ++guess.count;
+      }
+    }
+    for (const auto& [vertex, guess] : guesses) {
+      places[vertex] = guess.sum / guess.count;
+      put(vertex, places[vertex], vertices, link, guess.slope / guess.count);
+    }
+  }
+}
+
+// `place`: where the vertex would be, did it stick to the face.
+void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices,
+                   const Link& link, double slope) {
+  const double spacing = world_.tissue.lattice().spacing();
+  const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing, place,
+                                           tuning::kRimReach * spacing);
+  if (!face) return;
+  AtRim at_rim;
+  at_rim.tool = link.tool;
+  at_rim.slope = slope;
+  at_rim.normal = face->normal;
+  at_rim.height = face->height_m + face->normal.dot(vertices[at(vertex)] - place);
+  at_rim.rim.share = shareAt(*face, link);
+  for (const FaceEdge& edge : face->edges) {
+    if (edge.depth_m >= tuning::kFirmDepth * spacing) continue;
+    if (edge.depth_m <= -spacing) return;
+    if (edge.depth_m < 0.0) at_rim.rim.is_beyond = true;
+    if (hasTissueBeyond(vertex, edge, link)) at_rim.rim.edges.push_back(edge);
+  }
+  if (at_rim.rim.edges.empty()) return;
+  const int node = world_.tissue.surface().carriers[at(vertex)].front().node;
+  if (!world_.tissue.rimCompliance(node, 0.0)) return;  // here it has none
+  at_rims_[{link.number, vertex}] = at_rim;
+}
+
+// The law is of sharp edges, of a wide face that lies flat on the tissue.
+double ToolRims::shareAt(const FlatFace& face, const Link& link) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  return fade(face.normal.dot(link.facing), tuning::kTiltedPush, tuning::kStraightPush) *
+         fade(face.normal.dot(link.inwards), tuning::kTiltedFace, tuning::kFlatFace) *
+         fade(face.roundness_m, spacing, 0.0) *
+         fade(widthOf(face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
+}
+
+// Where the tissue ends with the tool there is no rim.
+bool ToolRims::hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& link) const {
+  const std::vector<Vec3>& rest = world_.tissue.surface().rest;
+  return std::any_of(neighbors_[at(vertex)].begin(), neighbors_[at(vertex)].end(), [&](int other) {
+    const Vec3 way = link.turn * (rest[at(other)] - rest[at(vertex)]);
+    return edge.outward.dot(way) > tuning::kLevel * way.norm();
+  });
+}
+
+void ToolRims::mark(Contact& contact) const {
+  contact.rim = {};
+  const int vertex = vertexAt(world_.tissue.surface(), contact.place);
+  if (vertex < 0) {
+    contact.rim.share = shareOf(contact);
+    return;
+  }
+  const auto found = at_rims_.find({contact.link, vertex});
+  if (found == at_rims_.end() || found->second.rim.is_beyond) return;
+  if (found->second.rim.share <= 0.0) return;
+  contact.rim = found->second.rim;
+  contact.normal = found->second.normal;
+  contact.depth_m = -found->second.height;
+}
+
+double ToolRims::shareOf(const Contact& contact) const {
+  if (at_rims_.empty()) return 0.0;
+  const TissueSurface& surface = world_.tissue.surface();
+  double share = 0.0, weight = 0.0;
+  for (int corner = 0; corner < 3; ++corner) {
+    const int vertex = surface.triangles[at(contact.place.triangle)][at(corner)];
+    const auto found = at_rims_.find({contact.link, vertex});
+    if (found == at_rims_.end()) continue;
+    const double part = std::max(0.0, contact.place.barycentric[corner]);
+    share += part * found->second.rim.share;
+    weight += part;
+  }
+  return weight > 0.0 ? share / weight : 0.0;
+}
+
+double ToolRims::partOfDepth(const Contact& contact) const {
+  return fade(shareOf(contact), 0.0, tuning::kSomeOfIt);
+}
+
+bool ToolRims::isTakenOver(const Contact& contact) {
+  return contact.rim.edges.empty() && contact.rim.share > tuning::kAllOfIt;
+}
+
+Contact ToolRims::contactOf(int link, int vertex, const AtRim& at_rim,
+                            const std::vector<Vec3>& vertices) const {
+  Contact contact;
+  contact.tool = at_rim.tool;
+  contact.link = link;
+  contact.place = places_[at(vertex)];
+  contact.point = vertices[at(vertex)];
+  contact.normal = at_rim.normal;
+  contact.depth_m = -at_rim.height;
+  contact.rim = at_rim.rim;
+  return contact;
+}
+
+ContactSet ToolRims::beyond(const std::vector<Vec3>& vertices) const {
+  ContactSet contacts;
+  const double near = tuning::kNearGap * world_.tissue.lattice().spacing();
+  for (const auto& [key, at_rim] : at_rims_) {
+    if (!at_rim.rim.is_beyond || at_rim.rim.share <= 0.0 || at_rim.height > near) continue;
+    contacts.contacts.push_back(contactOf(key.first, key.second, at_rim, vertices));
+  }
+  return contacts;
+}
+
+std::optional<Contact> ToolRims::beyond(const Contact& known,
+                                        const std::vector<Vec3>& vertices) const {
+  const int vertex = vertexAt(world_.tissue.surface(), known.place);
+  const auto found = at_rims_.find({known.link, vertex});
+  if (found == at_rims_.end() || !found->second.rim.is_beyond) return std::nullopt;
+  if (found->second.rim.share <= 0.0) return std::nullopt;
+  return contactOf(known.link, vertex, found->second, vertices);
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,84 @@
+// Where flat faces of tools end on the tissue: which points of the surface are at their rims (own;
+// doc/contact.md, "The rim").
+//
+// The tool's edge runs between two columns of vertices. The last that stands firm on the face tells
+// where the others would be, did they stick to it: a spacing of the surface at rest farther.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "world.h"
+
+namespace robot_tissue {
+
+class ToolRims {
+ public:
+  explicit ToolRims(const World& world) : world_(world) {}
+
+  // A load step begins: how much rims bear is of the shape that there is.
+  void beginStep() { shares_.clear(); }
+  // In this shape, where the links have these contacts, with their planes.
+  void look(const RobotPose& pose, const std::vector<Vec3>& vertices, const ContactSet& contacts);
+
+  // Writes the rim into a contact, and of a vertex at it the face's plane.
+  void mark(Contact& contact) const;
+  // The vertices beside faces that their rims push.
+  ContactSet beyond(const std::vector<Vec3>& vertices) const;
+  // The known touch of such a vertex as it is now; none where it is at no rim.
+  std::optional<Contact> beyond(const Contact& known, const std::vector<Vec3>& vertices) const;
+  // Of what a contact would push that rims bear (1).
+  double shareOf(const Contact& contact) const;
+  // Part of a contact's depth (1) that is none, as rims give way.
+  double partOfDepth(const Contact& contact) const;
+  // Rims bear all that it would.
+  static bool isTakenOver(const Contact& contact);
+
+ private:
+  struct AtRim {
+    int tool = 0;
+    Vec3 normal = Vec3::Zero();  // of the face
+    double height = 0.0;         // over it (m)
+    double slope = 0.0;          // of the surface beside it, as rise over length at rest
+    Rim rim;
+  };
+  // Of one link.
+  struct Link {
+    int tool = 0, number = 0;
+    Pose tissue_T_link;
+    Vec3 facing = Vec3::Zero();   // where it presses to
+    Vec3 inwards = Vec3::Zero();  // of the surface around it, as if there were no dent
+    std::set<int> firm;           // vertices that stand on the face
+    Eigen::Matrix3d turn;         // of these, from rest
+  };
+
+  void takeSurface();
+  bool isSticking(int tool) const;
+  Vec3 facingOf(const Link& link, const ContactSet& contacts) const;
+  Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
+  void findFirm(const ContactSet& contacts, Link& link) const;
+  bool findTurn(const std::vector<Vec3>& vertices, Link& link) const;
+  void lookAround(const std::vector<Vec3>& vertices, const Link& link);
+  void put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices, const Link& link,
+           double slope);
+  double shareAt(const FlatFace& face, const Link& link) const;
+  double meanSlope(int link, const FaceEdge& edge) const;
+  void leaveSteep(int link);
+  bool hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& link) const;
+  Contact contactOf(int link, int vertex, const AtRim& at_rim,
+                    const std::vector<Vec3>& vertices) const;
+
+  const World& world_;
+  std::map<std::pair<int, int>, AtRim> at_rims_;  // of link and vertex
+  std::map<std::pair<int, int>, double> shares_;  // likewise, of the load step
+  // Of the surface with that number.
+  std::uint64_t revision_ = 0;
+  std::vector<std::vector<int>> neighbors_;  // of vertices, along edges
+  std::vector<SurfacePoint> places_;         // of vertices
+};
+
+}  // namespace robot_tissue
