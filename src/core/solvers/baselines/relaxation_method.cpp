@@ -45,13 +45,16 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
                                             : SoaField::Inertia::kNone)),
       time_steps_(time_steps) {
   const double count = static_cast<double>(lattice.cells().size());
+  const double volume = std::pow(lattice.spacing(), 3);
   double softness = 0.0;
   for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
     mean_.shear += moduli.shear / count;
     mean_.bulk += moduli.bulk / count;
     softness += cell.share() / moduli.shear / count;
-    mean_density_ += kCorners * model.cornerMass(cell) / (count * std::pow(lattice.spacing(), 3));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      mean_density_ += model.cornerMass(cell, corner) / (count * volume);
+    }
   }
   soft_shear_ = 1.0 / softness;
 }

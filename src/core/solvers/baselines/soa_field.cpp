@@ -233,7 +233,7 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
     const Vec3 weight = model_.cornerWeight(cell, 0);  // alike at all corners
     for (const int node : cell.nodes) scratch_[at(node)] += weight;
     if (inertia_ == nullptr) continue;
-    for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell);
+    for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell, 0);
   }
   for (const int index : odd_cells_) {
     for (const int node : cells_->all()[at(index)].nodes) odd[at(node)] = 1;

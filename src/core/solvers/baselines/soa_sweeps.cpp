@@ -110,7 +110,9 @@ void SoaField::findForces(const LatticeState& state) {
     model_.addElasticForces(state, odd_cells_, scratch_);
     for (const int index : odd_cells_) {
       const Cell& cell = cells_->all()[at(index)];
-      for (const int node : cell.nodes) scratch_[at(node)] += model_.cornerWeight(cell);
+      for (int corner = 0; corner < kCorners; ++corner) {
+        scratch_[at(cell.nodes[at(corner)])] += model_.cornerWeight(cell, corner);
+      }
     }
   }
   for (const int node : watched_) {
