@@ -5,6 +5,7 @@
 #include <random>
 
 #include "geometry/mesh_slicing.h"
+#include "lattice/slivers.h"
 #include "mesh_fixtures.h"
 #include "robot_tissue/core/cell_fill.h"
 #include "robot_tissue/core/cells.h"
@@ -158,6 +159,43 @@ TEST(CellFill, OfALatticeIsThatOfItsMesh) {
     EXPECT_LT((cell.fill->centroid - Vec3(0, 0, 0.175 * side)).norm(), 1e-9);
     EXPECT_NEAR(cell.fill->covariance()(2, 2), 0.65 * 0.65 / 12.0, 1e-9);
   }
+}
+
+// A slab on the floor of a cell that stands on another one.
+std::vector<Cell> stacked(double thickness, double below) {
+  std::vector<Cell> cells(2);
+  for (int corner = 0; corner < kCorners; ++corner) {
+    cells[0].nodes[at(corner)] = corner;
+    cells[1].nodes[at(corner)] = corner + 4;
+  }
+  const auto slab = [](double low, double high) {
+    return std::make_shared<const CellFill>(
+        fillOf(boxIntegrals({-0.5, -0.5, low}, {0.5, 0.5, high})));
+  };
+  if (below < 1.0) cells[0].fill = slab(0.5 - below, 0.5);
+  cells[1].fill = slab(-0.5, -0.5 + thickness);
+  return cells;
+}
+
+TEST(Slivers, BesideAFullCellBendAsThat) {
+  std::vector<Cell> cells = stacked(0.1, 1.0);
+  EXPECT_NEAR(cells[1].fill->spread[0], 0.01 / 12.0, kRounding);
+  stiffenSlivers(cells, 12);
+  EXPECT_EQ(cells[0].fill, nullptr);
+  EXPECT_NEAR(cells[1].fill->spread[0], 1.0 / 12.0, kRounding);
+  EXPECT_NEAR(cells[1].share(), 0.1, kRounding);
+}
+
+TEST(Slivers, BesideAThinWallStayThin) {
+  std::vector<Cell> cells = stacked(0.1, 0.5);
+  stiffenSlivers(cells, 12);
+  EXPECT_NEAR(cells[0].fill->spread[0], 0.25 / 12.0, kRounding);
+  EXPECT_NEAR(cells[1].fill->spread[0], 0.0625 / 12.0, kRounding);
+  // What holds a fifth of a cell lends a fifth.
+  cells = stacked(0.1, 0.5);
+  cells[0].fill = std::make_shared<const CellFill>(fillOf(integralsOf(CellFill()).scaledBy(0.02)));
+  stiffenSlivers(cells, 12);
+  EXPECT_NEAR(cells[1].fill->spread[0], 0.2 / 12.0, kRounding);
 }
 
 }  // namespace

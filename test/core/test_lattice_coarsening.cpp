@@ -57,6 +57,25 @@ TEST(Coarsening, OfABlockIsTheBlockOfTwiceTheSpacing) {
   for (const LevelCell& cell : coarse.cells) EXPECT_EQ(cell.shear, 1.0);
 }
 
+// With one cell in part, coarse cells are filled where theirs are: the octants but the last.
+TEST(Coarsening, CoarseCellIsFilledWhereItsCellsAre) {
+  const LevelGrid grid({3, 3, 3});
+  std::vector<LevelCell> cells = blockOf(grid);
+  cells.pop_back();
+  cells.front().fill = levelFill(CellFill(), 1.0);
+  const Coarsening coarse = coarsened(grid, cells, grid.beside);
+  ASSERT_EQ(coarse.cells.size(), 1U);
+  ASSERT_NE(coarse.cells.front().fill, nullptr);
+  const FillIntegrals& sum = coarse.cells.front().fill->integrals;
+  const FillIntegrals expected = octantIntegrals(0x7f);
+  EXPECT_NEAR(sum.volume, expected.volume, 1e-14);
+  EXPECT_LT((sum.first - expected.first).norm(), 1e-14);
+  EXPECT_LT((sum.second - expected.second).norm(), 1e-14);
+  EXPECT_LT((coarse.cells.front().fill->law.centroid - fillOf(expected).centroid).norm(), 1e-14);
+  // Of seven middles at +-1/4, of which one more along each axis is low.
+  EXPECT_LT((coarse.cells.front().fill->between_parts - Vec3::Constant(3.0 / 49.0)).norm(), 1e-14);
+}
+
 TEST(Coarsening, OfAnOddBlockKeepsItsVolumeAndStartsItsOuterNodesFromThoseNextToThem) {
   const LevelGrid grid({4, 5, 5});
   const auto cells = blockOf(grid);

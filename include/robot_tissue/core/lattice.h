@@ -1,7 +1,7 @@
 // The constant model: nodes on a rectangular grid, joined by one spring to each of their up to six
 // neighbors (paper, section 4.1 and figure 1). Never changes after construction, but for its
 // material (weigh); what changes is in LatticeState. Own: cells, moduli, regions, fixed nodes,
-// shapes by a mesh: a cell that a mesh fills in part has that share of the material, spread evenly.
+// shapes by a mesh: a cell that a mesh fills in part knows how much of it, and where (CellFill).
 // Cells that meet in an edge or corner alone are joined by their common nodes, so by a hinge; a gap
 // thinner than a cell is bridged.
 #pragma once

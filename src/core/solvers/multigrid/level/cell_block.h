@@ -278,7 +278,7 @@ struct Block {
 
   // With the variance of the parts' centroids along each axis, 1/16 of eight equal ones.
   ROBOT_TISSUE_INLINE void addParts(const L (&spread)[3], L (&push)[kCorners][3]) {
-    const auto product = [](const L(&x)[3], const L(&y)[3]) {
+    const auto product = [](const L(&x)[3], const L(&y)[3]) __attribute__((always_inline)) {
       return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
     };
     L whole[3][3];
