@@ -7,6 +7,7 @@
 
 #include "stopwatch.h"
 #include "tuning.h"
+#include "way_lengths.h"
 
 namespace robot_tissue {
 namespace {
@@ -45,7 +46,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
   for (int round = 1;; ++round) {
     world_.sticking.ride(pose, world_.tissue);
     if (round == 1) {
-      expectTimeStep(pose.stamp_s - good.pose.stamp_s);
+      expectTimeStep(durationOf(good.pose, pose));
       meet(pose);
     }
     pushRigid(pose);  // robot pose -> contacts -> loading patches
@@ -56,7 +57,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
     if (round == 1) {
       good.shape = world_.tissue.shape();
-      beginTimeStep(pose.stamp_s - good.pose.stamp_s,
+      beginTimeStep(durationOf(good.pose, pose),
                     patches.empty() ? Touched::kByNone : Touched::kByTools);
     }
     follow(std::move(patches));  // loading patches -> solve
@@ -68,6 +69,15 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
     if (world_.unfinished) return true;
   }
+}
+
+// s: time between the poses. A robot that jumps would throw the tissue away: a tool that goes
+// faster than a load step in kShortestTimeStep takes that for each.
+double LoadStepper::durationOf(const RobotPose& from, const RobotPose& to) const {
+  const double duration = to.stamp_s - from.stamp_s;
+  if (!world_.tissue.hasTime() || !(duration > 0.0)) return duration;
+  const double load_steps = WayLengths(world_).stepsBetween(from, to);
+  return std::max(duration, tuning::kShortestTimeStep * std::min(1.0, load_steps));
 }
 
 void LoadStepper::expectTimeStep(double duration) {

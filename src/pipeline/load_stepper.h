@@ -51,6 +51,7 @@ class LoadStepper {
   double throughAt(std::size_t link) const;
 
  private:
+  double durationOf(const RobotPose& from, const RobotPose& to) const;
   void expectTimeStep(double duration);
   void beginTimeStep(double duration, Touched touched);
   void meet(const RobotPose& pose);

@@ -68,7 +68,8 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   while (gone < steps) {
     const bool flies = load_steps > 0.0 && !world_.tissue.isMoving();
     const double free = flies ? ways_.freeSteps(came(), pose) * (steps / load_steps) : 0.0;
-    const double stride = std::max(longest, free);
+    // Whole ones in time, too: what is left at the end would be short.
+    const double stride = std::max(longest, world_.tissue.hasTime() ? std::floor(free) : free);
     const bool is_last = gone + stride >= steps;
     const double there = is_last ? steps : gone + stride;
     const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);

@@ -100,6 +100,27 @@ TEST_P(UnevenPoses, AToolThatPressesEvenlyPressesEvenly) {
   EXPECT_LT(greatest_change_, 0.25 * at_rest);
 }
 
+// Its way takes the tissue a millisecond a load step, so that no step throws the tissue away: what
+// a step of that length has is its shape's force, and damping_time / 1 ms times as much.
+TEST_P(UnevenPoses, ARobotThatJumpsIsFollowed) {
+  const double at_rest = forceWithoutTime();
+  for (const double gap : {0.005, 0.0005}) {
+    greatest_ = 0.0;
+    move(-0.05, -0.05, 0.05);
+    stamp_ += gap;
+    step(kDepth);
+    EXPECT_LT(greatest_, 3.0 * (1.0 + GetParam().damping_time / 0.001) * at_rest);
+    move(kDepth, kDepth, 0.5);
+    expectHeld(at_rest);
+    stamp_ += gap;
+    step(-0.05);
+    EXPECT_EQ(force(), 0.0);
+    move(-0.05, -0.05, 1.5);
+    EXPECT_FALSE(pipeline_.tissue().isMoving());
+    EXPECT_LT(greatestDisplacement(pipeline_.tissue()), 1e-5);
+  }
+}
+
 // A bound on the time of an update that is over at once: each update makes one time step, whole.
 TEST_P(UnevenPoses, ThatAreLateComeToTheSameRest) {
   pipeline_.setBudget(1e-9);
