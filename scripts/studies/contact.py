@@ -1,6 +1,6 @@
 """Measures contact: tools pressed and dragged, a sphere on a layer, friction, a block lifted.
 
-Runs the programs of test/benchmark (contact_press, contact_hertz, contact_friction, contact_lift;
+Runs the programs of test/benchmark (contact_press, contact_hertz, contact_friction, contact_lift, contact_rim;
 contact_random only with --only random, a quarter of an hour), one after the other, each up to its
 study's limit: what it wrote by then is kept. Writes doc/data/contact_*.csv to four digits, draws
 doc/images/contact_press.png and contact_hertz.png from them and prints the tables of
@@ -29,6 +29,8 @@ HERTZ = ["spacing_mm", "radius_mm", "layer_mm", "depth_mm", "force_n", "lateral_
 FRICTION = ["tool", "friction", "spacing_mm", "way_mm", "fx", "fz", "ratio", "normal_n", "drag_n",
             "steepest", "penetration_mm", "unbalanced_n", "ms", "status", "sliding_normal_n",
             "sliding_drag_n"]
+RIM = ["tool", "spacing_mm", "poisson", "friction", "offset", "depth_mm", "force_n",
+       "penetration_mm", "ms", "status"]
 RANDOM = ["seed", "friction", "visit", "motions", "load_steps", "not_finite", "inverted_updates",
           "inverted_at_leave", "left_mm", "greatest_force_n", "deepest_mm", "most_displacement_mm",
           "unconverged", "lost", "deepest_followed_mm"]
@@ -47,6 +49,8 @@ STUDIES += [Study(f"friction_{tool}", "friction", FRICTION, "contact_friction", 
                   ("tool", tool), 40) for tool in ("plate", "box", "sphere")]
 STUDIES += [Study("lift", "lift", LIFT, "contact_lift", ["grasp", "0.5", "10"], ("way", "grasp"),
                   60)]
+STUDIES += [Study(f"rim_{tool}", "rim", RIM, "contact_rim", [tool, spacing], ("tool", tool), 60)
+            for tool, spacing in (("patch", "2.5"), ("box", "5"))]
 STUDIES += [Study(f"random_{seed}", "random", RANDOM, "contact_random", ["2500", "0.3", "10", seed],
                   ("seed", seed), 3600) for seed in "1234"]
 
@@ -248,6 +252,20 @@ def tell_lift():
               f"not OK {sum(row['status'] != 'OK' for row in own)}")
 
 
+def tell_rim():
+    right = {(row["poisson"], row["depth_mm"]): float(row["force_n"]) for row in table_of("rim")
+             if row["tool"] == "patch"}
+    print("| edges off nodes (spacings) | " + " | ".join(
+        f"nu {poisson}, {float(depth):g} mm (%)" for poisson, depth in right if depth in "15") + " |")
+    rows = [row for row in table_of("rim") if row["tool"] == "box"]
+    for offset in sorted({row["offset"] for row in rows}, key=float):
+        off = [f"{100 * (float(row['force_n']) / right[row['poisson'], row['depth_mm']] - 1):+.1f}"
+               for row in rows if row["offset"] == offset and row["depth_mm"] in "15"]
+        deepest = max(float(row["penetration_mm"]) for row in rows if row["offset"] == offset)
+        print(f"| {offset} | {' | '.join(off)} | {deepest:.2f} |")
+    print("not OK", sum(row["status"] != "OK" for row in rows), "of", len(rows))
+
+
 def tell_random():
     rows = table_of("random")
     if not rows:
@@ -278,5 +296,5 @@ def run(options):
         measure(options.programs, options.only)
     draw_press()
     draw_hertz()
-    for tell in (tell_press, tell_hertz, tell_friction, tell_lift, tell_random):
+    for tell in (tell_press, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
         tell()

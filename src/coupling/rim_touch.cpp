@@ -31,8 +31,7 @@ RimCompliance limited(const RimCompliance& of_edge, double most) {
           std::min(of_edge.normal, most)};
 }
 
-}  // namespace
-
+// Of the springs between the tool's face and the lattice.
 TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
                              const Tissue& tissue) {
   const Rim& rim = touch.contact.rim;
@@ -61,6 +60,21 @@ TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
   sum.shown = sum.normal * fade(rim.share, 0.0, tuning::kShownShare) *
               fade(least_depth, -1.0, -1.0 + tuning::kShownLate);
   return sum;
+}
+
+}  // namespace
+
+void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch) {
+  touch.compliance = complianceOf(touch, tissue);
+  touch.spring.stiffness = softened(touch.firm_stiffness, touch.compliance.normal);
+  touch.spring.shown_compliance = touch.compliance.shown;
+  putPlane(touch);
+}
+
+void putPlane(SlidingContacts::ContactConstraint& touch) {
+  ContactSpring& spring = touch.spring;
+  spring.plane_point =
+      touch.tool_point - touch.compliance.normal * spring.multiplier * spring.normal;
 }
 
 double softened(double stiffness, double compliance) {

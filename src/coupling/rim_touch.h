@@ -8,9 +8,12 @@
 
 namespace robot_tissue {
 
-// Of the springs between the tool's face and the lattice, by the contact's rim; the touch has its
-// carriers, firm stiffness and friction.
-TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch, const Tissue& tissue);
+// Gives the touch the compliance of its rim: in series with its spring, which has the firm
+// stiffness and friction.
+void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch);
+
+// The spring's plane: below the tool's by what the multiplier presses the rim together.
+void putPlane(SlidingContacts::ContactConstraint& touch);
 
 // In series with a spring of that stiffness (N/m).
 double softened(double stiffness, double compliance);

@@ -231,19 +231,6 @@ void SlidingContacts::pressHarder(const Tissue& tissue) {
   }
 }
 
-void SlidingContacts::soften(const Tissue& tissue, ContactConstraint& touch) {
-  touch.compliance = complianceOf(touch, tissue);
-  touch.spring.stiffness = softened(touch.firm_stiffness, touch.compliance.normal);
-  touch.spring.shown_compliance = touch.compliance.shown;
-  putPlane(touch);
-}
-
-void SlidingContacts::putPlane(ContactConstraint& touch) {
-  ContactSpring& spring = touch.spring;
-  spring.plane_point =
-      touch.tool_point - touch.compliance.normal * spring.multiplier * spring.normal;
-}
-
 bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
   double free = 0.0;
   for (const auto& [node, weight] : carriers) {

@@ -43,6 +43,15 @@ double leastDepth(const FlatFace& face) {
 
 }  // namespace
 
+void ToolRims::beginStep() {
+  shares_.clear();
+  last_shares_.clear();
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    if (touch.contact.rim.edges.empty()) continue;
+    last_shares_[{touch.contact.link, touch.vertex}] = touch.contact.rim.share;
+  }
+}
+
 void ToolRims::takeSurface() {
   const TissueSurface& surface = world_.tissue.surface();
   if (revision_ == surface.revision && neighbors_.size() == surface.rest.size()) return;
@@ -74,9 +83,10 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
   if (links.empty()) return;
   takeSurface();
   for (auto& [number, link] : links) {
-    link.facing = facingOf(link, contacts);
-    if (link.facing.isZero(0.0)) continue;
     link.inwards = inwardsAround(link, vertices);
+    link.facing = world_.sliding.facing(number, link.tissue_T_link);
+    if (link.facing.isZero(0.0)) link.facing = link.inwards;  // it only meets the tissue
+    if (link.facing.isZero(0.0)) continue;
     findFirm(contacts, link);
     if (!findTurn(vertices, link)) continue;
     lookAround(vertices, link);
@@ -106,26 +116,18 @@ void ToolRims::leaveSteep(int link) {
   for (auto at_rim = first; at_rim != last; ++at_rim) {
     Rim& rim = at_rim->second.rim;
     const double slope = meanSlope(link, outermost(rim));
-    rim.share =
-        shares_.try_emplace(at_rim->first, rim.share * fade(slope, tuning::kSteep, tuning::kGentle))
-            .first->second;
+    double share = rim.share * fade(slope, tuning::kSteep, tuning::kGentle);
+    const auto last_share = last_shares_.find(at_rim->first);
+    if (last_share != last_shares_.end()) {
+      share = std::max(share, last_share->second - tuning::kMostOfShare);
+      share = std::min(share, last_share->second + tuning::kMostOfShare);
+    }
+    rim.share = shares_.try_emplace(at_rim->first, share).first->second;
   }
 }
 
 bool ToolRims::isSticking(int tool) const {
   return at(tool) < world_.tools.size() && world_.tools.isRigid(tool);
-}
-
-// Where the link pressed to at the end of the last load step or, as it meets the tissue, across
-// what it touches.
-Vec3 ToolRims::facingOf(const Link& link, const ContactSet& contacts) const {
-  const Vec3 known = world_.sliding.facing(link.number, link.tissue_T_link);
-  if (!known.isZero(0.0)) return known;
-  Vec3 sum = Vec3::Zero();
-  for (const Contact& contact : contacts.contacts) {
-    if (contact.link == link.number) sum += contact.normal;
-  }
-  return sum.normalized();
 }
 
 // The sum of the areas of a surface is that of any other with the same border: it knows no dent.

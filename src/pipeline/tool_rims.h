@@ -21,7 +21,7 @@ class ToolRims {
   explicit ToolRims(const World& world) : world_(world) {}
 
   // A load step begins: how much rims bear is of the shape that there is.
-  void beginStep() { shares_.clear(); }
+  void beginStep();
   // In this shape, where the links have these contacts, with their planes.
   void look(const RobotPose& pose, const std::vector<Vec3>& vertices, const ContactSet& contacts);
 
@@ -58,7 +58,6 @@ class ToolRims {
 
   void takeSurface();
   bool isSticking(int tool) const;
-  Vec3 facingOf(const Link& link, const ContactSet& contacts) const;
   Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
   void findFirm(const ContactSet& contacts, Link& link) const;
   bool findTurn(const std::vector<Vec3>& vertices, Link& link) const;
@@ -73,8 +72,9 @@ class ToolRims {
                     const std::vector<Vec3>& vertices) const;
 
   const World& world_;
-  std::map<std::pair<int, int>, AtRim> at_rims_;  // of link and vertex
-  std::map<std::pair<int, int>, double> shares_;  // likewise, of the load step
+  std::map<std::pair<int, int>, AtRim> at_rims_;       // of link and vertex
+  std::map<std::pair<int, int>, double> shares_;       // likewise, of the load step
+  std::map<std::pair<int, int>, double> last_shares_;  // of the touches when it began
   // Of the surface with that number.
   std::uint64_t revision_ = 0;
   std::vector<std::vector<int>> neighbors_;  // of vertices, along edges

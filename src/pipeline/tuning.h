@@ -98,6 +98,9 @@ constexpr double kWideFace = 2.0;
 // Of the surface beside a face over the face (1): likewise, rise over length at rest. Chosen.
 constexpr double kSteep = 1.3;
 constexpr double kGentle = 0.8;
+// Share (1): the most that it changes by in a load step. More: forces jump where rims come and go.
+// Chosen.
+constexpr double kMostOfShare = 0.1;
 // Cosine of two edges of a face that are on opposite sides, and on one. Chosen.
 constexpr double kOppositeEdges = -0.7;
 constexpr double kSameEdge = 0.7;

@@ -1,9 +1,9 @@
 // A flat tool of 20 mm across pressed into a block of 100 x 100 x 50 mm, bottom fixed, its edges
 // anywhere between the nodes: force over depth, beside that of a bonded patch of the same size.
-//   contact_rim [box|turned|cylinder|patch] [SPACING in mm] [POISSON] [FRICTION]
-//               [OFFSET in spacings: the edges of the box off nodes] [DEPTH in mm] [STEPS] [METHOD]
-//               [TOLERANCE]
-// `turned`: the box by 45 degrees about its axis; `patch`: a load. Writes
+//   contact_rim [box|turned|cylinder|patch] [SPACING in mm] [FRICTION] [DEPTH in mm] [STEPS]
+//               [METHOD] [TOLERANCE] [POISSON] [OFFSET in spacings: the edges of the box off nodes]
+// Without the last two all of some. `turned`: the box by 45 degrees about its axis; `patch`: a
+// load, its edges on nodes where all are asked for. Writes
 // tool,spacing_mm,poisson,friction,offset,depth_mm,force_n,penetration_mm,ms,status: one line a
 // step.
 #include <cstdio>
@@ -101,14 +101,22 @@ int main(int argc, char** argv) {
   Job job;
   job.tool = argc > 1 ? argv[1] : "box";
   job.tissue = blockOf(Vec3(0.1, 0.1, kTop), 1e-3 * argument(argc, argv, 2, 5.0));
-  job.tissue.material.poisson_ratio = argument(argc, argv, 3, kPoisson);
-  job.friction = argument(argc, argv, 4, 10.0);
-  job.offset = argument(argc, argv, 5, 0.0);
-  job.depth = 1e-3 * argument(argc, argv, 6, 5.0);
-  job.steps = static_cast<int>(argument(argc, argv, 7, 5.0));
-  job.solver = solverOf(argc > 8 ? argv[8] : "layered", argument(argc, argv, 9, 0.01));
+  job.friction = argument(argc, argv, 3, 2.0);
+  job.depth = 1e-3 * argument(argc, argv, 4, 5.0);
+  job.steps = static_cast<int>(argument(argc, argv, 5, 5.0));
+  job.solver = solverOf(argc > 6 ? argv[6] : "layered", argument(argc, argv, 7, 0.003));
+  std::vector<double> ratios = {0.25, 0.45}, offsets = {0.0};
+  if (job.tool != "patch") offsets = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9};
+  if (argc > 8) ratios = {std::atof(argv[8])};
+  if (argc > 9) offsets = {std::atof(argv[9])};
   std::printf(
       "tool,spacing_mm,poisson,friction,offset,depth_mm,force_n,penetration_mm,ms,status\n");
-  job.tool == "patch" ? pressPatch(job) : pressTool(job);
+  for (const double ratio : ratios) {
+    for (const double offset : offsets) {
+      job.tissue.material.poisson_ratio = ratio;
+      job.offset = offset;
+      job.tool == "patch" ? pressPatch(job) : pressTool(job);
+    }
+  }
   return 0;
 }

@@ -67,7 +67,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
         if (seen[at(vertex)] != 0 || depthOf(point) <= -kNear) continue;
         seen[at(vertex)] = 1;
         set.contacts.push_back(
-            {0, 0, {static_cast<int>(i), Vec3::Unit(corner)}, point, normal(), depthOf(point)});
+            {0, 0, {static_cast<int>(i), Vec3::Unit(corner)}, point, normal(), depthOf(point), {}});
       }
     }
     return set;

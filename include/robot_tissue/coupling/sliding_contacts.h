@@ -121,8 +121,6 @@ class SlidingContacts {
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);
-  static void soften(const Tissue& tissue, ContactConstraint& touch);
-  static void putPlane(ContactConstraint& touch);
   void noteFacing(const RobotPose& pose);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
   Vec3 frictionRatioAround(const ContactConstraint& touch) const;
