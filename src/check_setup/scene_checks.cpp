@@ -136,8 +136,8 @@ Finding obliqueWalls(const Walls& walls) {
   return {Finding::Level::kWarning,
           "tissue.spacing: " + percentText(walls.stiff_share) +
               " of the walls are oblique to the grid and thin for it, one of " +
-              numberText(1e3 * walls.stiffest) + " mm bends " + percentText(walls.too_stiff) +
-              " too stiffly",
+              numberText(std::round(1e4 * walls.stiffest) / 10.0) + " mm bends " +
+              percentText(walls.too_stiff) + " too stiffly",
           "a mesh turned so that its walls lie along the axes, or tissue.spacing: " +
               numberText(walls.spacing) + " or less"};
 }

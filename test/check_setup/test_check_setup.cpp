@@ -99,31 +99,31 @@ TEST_F(CheckSetup, MeshOfAThousandMetersLooksLikeMillimeters) {
 }
 
 TEST_F(CheckSetup, ThinWallsAreMeasured) {
-  writeMesh("sheet.obj", 0.06, 0.06, 0.004);
+  writeMesh("sheet.obj", 0.06, 0.06, 0.005);
   const std::string rest =
       "\n  material: {young_modulus: 10000.0}\n"
       "  fixed: [{min: [-1, -1, -1], max: [1, 1, 5.0e-4]}]\n";
   const std::string shape = "{type: mesh, resource: sheet.obj}";
   EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
-  EXPECT_TRUE(says("no thicker than a spacing, the thinnest 4 mm")) << out_;
-  EXPECT_TRUE(says("remedy: tissue.spacing: 0.002 or less")) << out_;
-  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.002" + rest), kFine) << out_ << err_;
+  EXPECT_TRUE(says("no thicker than a spacing, the thinnest 5 mm")) << out_;
+  EXPECT_TRUE(says("remedy: tissue.spacing: 0.0025 or less")) << out_;
+  EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.0025" + rest), kFine) << out_ << err_;
   EXPECT_EQ(check(kHead + "{type: box, min: [0, 0, 0], max: [0.05, 0.05, 0.005]}" +
                   "\n  spacing: 0.005" + kRest),
             kHasWarnings);
   EXPECT_TRUE(says("thinnest 5 mm")) << out_;
 }
 
-// 1.1 (5 / 10)^2 at 45 degrees; 10 % at sqrt(0.1 / 1.1) times the thickness.
+// 1.1 (5 / 10.5)^2 at 45 degrees; 10 % at sqrt(0.1 / 1.1) times the thickness.
 TEST_F(CheckSetup, ObliqueWallsAreMeasured) {
-  writeMesh("sheet.obj", 0.06, 0.06, 0.01, 0.25 * M_PI);
+  writeMesh("sheet.obj", 0.06, 0.06, 0.0105, 0.25 * M_PI);
   const std::string shape = "{type: mesh, resource: sheet.obj}",
                     rest =
                         "\n  material: {young_modulus: 10000.0}\n"
                         "  fixed: [{min: [-1, -1, -1], max: [1, 1, -0.03]}]\n";
   EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
-  EXPECT_TRUE(says("one of 10 mm bends 28 % too stiffly")) << out_;
-  EXPECT_TRUE(says("tissue.spacing: 0.00301511")) << out_;
+  EXPECT_TRUE(says("one of 10.5 mm bends 25 % too stiffly")) << out_;
+  EXPECT_TRUE(says("tissue.spacing: 0.00316")) << out_;
   EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.003" + rest), kFine) << out_ << err_;
 }
 
