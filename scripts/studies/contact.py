@@ -256,7 +256,9 @@ def tell_rim():
     right = {(row["poisson"], row["depth_mm"]): float(row["force_n"]) for row in table_of("rim")
              if row["tool"] == "patch"}
     print("| edges off nodes (spacings) | " + " | ".join(
-        f"nu {poisson}, {float(depth):g} mm (%)" for poisson, depth in right if depth in "15") + " |")
+        f"nu {poisson}, {float(depth):g} mm (%)" for poisson, depth in right if depth in "15") +
+          " | penetration, greatest (mm) |")
+    print("|---|---|---|---|---|---|")
     rows = [row for row in table_of("rim") if row["tool"] == "box"]
     for offset in sorted({row["offset"] for row in rows}, key=float):
         off = [f"{100 * (float(row['force_n']) / right[row['poisson'], row['depth_mm']] - 1):+.1f}"
