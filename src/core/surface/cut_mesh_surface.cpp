@@ -24,7 +24,7 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        grid_(lattice, state),
+        grid_(lattice, lattice.restState()),
         pieces_(inSpacings(), cells(), grid_) {
     findRegion();
   }
@@ -236,6 +236,8 @@ class CutMeshBuilder {
   const LatticeState& state_;
   CellParts parts_;
   const TriangleMesh& mesh_;
+  // Straight, as if no blade had passed: along bent planes, pieces of triangles that are larger
+  // than the bends come to cross each other.
   DividedGrid grid_;
   MeshPieces pieces_;
   std::set<HalfIndex> region_;
