@@ -66,10 +66,12 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   part_.findSeeds(solve, disturbed);
   if (in_time) part_.seedAll();
   SolveReport report;
+  wants_double_ = false;
   if (part_.isEmpty()) return report;
   for (int round = 0; round < tuning::kMostTurns; ++round) {
     report.status = balance(solve);
-    if (!shape_.levels().isFinite() || isForDouble(solve, report.status)) return giveUp(solve);
+    wants_double_ = isForDouble(solve, report.status);
+    if (!shape_.levels().isFinite() || wants_double_) return giveUp(solve);
     writeShape(solve);
     if (!settlePatches(solve) || report.status != SolveStatus::kOk) break;
   }
@@ -80,12 +82,13 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   return report;
 }
 
-// Where tissue is about to buckle, a motion has hardly any stiffness: what rounding leaves of the
-// forces, over that stiffness, is more than the tolerance. In contact a solve ends unconverged for
-// other reasons, too, and its load step is tried in shorter ones.
+// Where tissue is about to buckle, a motion has hardly any stiffness: forces are balanced up to
+// rounding, and that, over the stiffness, is more than the tolerance. In contact a solve ends
+// unconverged for other reasons, too, and its load step is tried in shorter ones.
 template <typename Real>
-bool FasCgSolver<Real>::isForDouble(const SolveContext& solve, SolveStatus status) {
-  return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged && !solve.in_contact;
+bool FasCgSolver<Real>::isForDouble(const SolveContext& solve, SolveStatus status) const {
+  return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged && !solve.in_contact &&
+         forces_.residual(solve.shape) <= tuning::kRoundedForces;
 }
 
 // As it was when the solve began.

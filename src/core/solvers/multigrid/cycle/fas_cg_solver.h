@@ -32,6 +32,7 @@ class FasCgSolver : public MultigridSolver {
   void limitWays(std::vector<NodeLimit> limits) override { limits_.set(std::move(limits)); }
   void beginStep() override { warm_start_.beginStep(); }
   Vec3 forceLeft() override;
+  bool wantsDouble() const override { return wants_double_; }
   const GridBox* visited() const override;
   void forget() override;
   std::vector<Vec3> cellForces(const LatticeState& shape) override;
@@ -45,7 +46,7 @@ class FasCgSolver : public MultigridSolver {
   void writeShape(SolveContext& solve) const;
   bool settlePatches(SolveContext& solve);
   SolveReport giveUp(const SolveContext& solve);
-  static bool isForDouble(const SolveContext& solve, SolveStatus status);
+  bool isForDouble(const SolveContext& solve, SolveStatus status) const;
   void answer(const SolveContext& solve, SolveReport& report);
 
   const Lattice& lattice_;
@@ -59,6 +60,7 @@ class FasCgSolver : public MultigridSolver {
   WarmStart<Real> warm_start_;
   FasCgIteration<Real> iteration_;
   CompositeVector<Real> free_motion_;  // in a time step
+  bool wants_double_ = false;
 };
 
 extern template class FasCgSolver<float>;

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "solvers/multigrid/cycle/solve_context.h"
-
 namespace robot_tissue {
 
 LayeredMethod::LayeredMethod(const Lattice& lattice, const ElasticModel& model,
@@ -28,12 +26,6 @@ void LayeredMethod::forget() {
   makeSolver(usual);
 }
 
-// Single precision left it as it was (MultigridSolver::run).
-bool LayeredMethod::isForDouble(const SolveReport& report, const ConstrainedState& shape) const {
-  return precision_ == Precision::kSingle && report.status == SolveStatus::kUnconverged &&
-         !isInContact(shape);
-}
-
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
 
 void LayeredMethod::limitWays(std::vector<double> longest) {
@@ -51,7 +43,7 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   hold_.bind(shape);
   hold_.place(shape);
   SolveReport report = solver_->run(shape, hold_, disturbed, budget);
-  if (isForDouble(report, shape)) {
+  if (solver_->wantsDouble()) {
     const int in_single = report.iterations;
     makeSolver(Precision::kDouble);
     hold_.bind(shape);

@@ -36,7 +36,6 @@ class LayeredMethod : public SolverMethod {
 
  private:
   void makeSolver(Precision precision);
-  bool isForDouble(const SolveReport& report, const ConstrainedState& shape) const;
 
   const Lattice& lattice_;
   const ElasticModel& model_;

@@ -35,11 +35,13 @@ class MultigridSolver {
   virtual ~MultigridSolver() = default;
 
   // Moves the shape to where it balances; `hold` is bound to it. Fills status, iterations,
-  // error_estimate, residual, active_nodes and the patches' answers. In single precision a shape
-  // without contacts that did not converge stays as it was: it is to be solved for in double.
+  // error_estimate, residual, active_nodes and the patches' answers.
   // `disturbed`: nodes whose balance something else has disturbed.
   virtual SolveReport run(ConstrainedState& shape, const DofConstraints& hold,
                           const std::vector<int>& disturbed, const Budget& budget) = 0;
+  // The last solve stopped at what single precision can tell, and the shape is as it was before: it
+  // is to be solved for in double.
+  virtual bool wantsDouble() const = 0;
   // How far nodes may go from where a solve begins (m).
   struct NodeLimit {
     int node = 0;
