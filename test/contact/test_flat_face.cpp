@@ -70,9 +70,14 @@ TEST(FlatFace, FoldsInwardsAreNoEdges) {
   const double prong = 0.01, notch = 0.02;
   const ContactFinder finder(
       {makeTool({mesh(writeStl("fork.stl", forkTriangles(prong, notch, 0.02, 0.01)))})});
-  const auto in_notch = faceBelow(finder, Vec3(0.009, 0.0, 0.02));  // its end, between the prongs
-  if (in_notch) {
-    EXPECT_TRUE(std::isnan(depthAlong(*in_notch, Vec3::UnitX())));
+  // The notch's end, between the prongs, whose own ends are out of so short a reach: it ends at the
+  // fork's sides alone.
+  const double reach = 0.006;
+  const auto in_notch = finder.flatFace(0, Pose::Identity(), kDown, Vec3(0.009, 0.0, 0.02), reach);
+  ASSERT_TRUE(in_notch);
+  EXPECT_NEAR(std::abs(in_notch->edges.front().outward.y()), 1.0, 1e-9);
+  for (const Vec3& along : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX())}) {
+    EXPECT_TRUE(std::isnan(depthAlong(*in_notch, along)));
   }
   const auto on_prong = faceBelow(finder, Vec3(0.011, 0.0, 0.0));
   ASSERT_TRUE(on_prong);

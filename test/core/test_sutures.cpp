@@ -189,7 +189,8 @@ TEST(Sutures, HoldWhenALoadIsReleased) {
   }
 }
 
-// The cut runs through the end's cell: it stays with its own side, wherever that goes.
+// The cut runs through the end's cell: it stays with its own side, wherever that goes. A cut acts
+// on the shape as it is: under the thread's pull it parts the cells a little elsewhere.
 TEST(Sutures, KeepTheirSideWhenTheTissueIsCutBeside) {
   const TissueConfig config = barOf();
   Tissue first(config, solverWith("newton")), last(config, solverWith("newton"));
@@ -201,7 +202,7 @@ TEST(Sutures, KeepTheirSideWhenTheTissueIsCutBeside) {
   last.suture(thread);
   EXPECT_GT(last.sutures()[0].tension, 0.01);
   EXPECT_NEAR(first.sutures()[0].tension, last.sutures()[0].tension,
-              1e-3 * last.sutures()[0].tension);
+              0.01 * last.sutures()[0].tension);
 }
 
 TEST(Sutures, PullInTime) {
