@@ -53,6 +53,16 @@ void readStepsPart(const Entry& entry, SceneReading& reading) {
   }
 }
 
+// Their small time steps take a tool where it will be at the end of the whole one (doc/time.md).
+void remarkToolsInTime(const Entry& entry, Scene& scene) {
+  const std::string& method = scene.solver.method;
+  if (!scene.tissue.time || scene.tools.empty()) return;
+  if (method != "xpbd" && method != "explicit") return;
+  scene.remarks.push_back(
+      entry.line("beside tissue.time the forces of method " + method +
+                 " on tools are not to be trusted, those of layered, newton and vbd are"));
+}
+
 const KeyTable<SceneReading> kSceneKeys = {
     {"tissue", readTissuePart},
     {"solver", readSolverPart},
@@ -61,6 +71,7 @@ const KeyTable<SceneReading> kSceneKeys = {
        Scene& scene = reading.scene;
        if (!entry.given()) return;
        scene.tools = readTools(entry, reading.source, scene.tissue, scene.remarks);
+       remarkToolsInTime(entry, scene);
      }},
     {"supports",
      [](const Entry& entry, SceneReading& reading) {

@@ -33,7 +33,7 @@ std::vector<std::string> sceneNames() {
 std::vector<geometry_msgs::TransformStamped> transforms() {
   std::vector<geometry_msgs::TransformStamped> all;
   for (const char* link : {"jaw_left", "jaw_right", "blade", "tool_tip", "sphere", "probe",
-                           "forceps", "left_jaw", "right_jaw", "knife"}) {
+                           "forceps", "left_jaw", "right_jaw", "knife", "scissors"}) {
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = ros::Time::now();
     transform.header.frame_id = "tissue";
