@@ -84,14 +84,14 @@ constexpr int kTrianglesOfPart = 24;
 constexpr int kParts = 256;
 
 // Flat faces.
-// Cosine of the angle by which a mesh folds at the edge of a face (1): 40 degrees. Less: fewer edges
-// are sharp. Chosen.
+// Cosine of the angle by which a mesh folds at the edge of a face (1): 40 degrees. Less: fewer
+// edges are sharp. Chosen.
 constexpr double kSharpEdge = 0.766;
 // Cosine between a flat face and where its link presses to (1): 35 degrees. Less: more tilted faces
 // are looked at. Chosen.
 constexpr double kFaces = 0.819;
-// Cosine between two edges of a face that bound it on different sides (1): 60 degrees. More: rounded
-// outlines have several edges near to each other. Chosen.
+// Cosine between two edges of a face that bound it on different sides (1): 60 degrees. More:
+// rounded outlines have several edges near to each other. Chosen.
 constexpr double kOtherSide = 0.5;
 
 // Others.

@@ -74,11 +74,11 @@ constexpr double kSameSide = 0.3;
 constexpr double kInsideTriangle = 1e-3;
 
 // Contacts: rims of flat faces.
-// Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side of
-// a face is not seen. Chosen: more than kWideFace.
+// Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side
+// of a face is not seen. Chosen: more than kWideFace.
 constexpr double kRimReach = 2.5;
-// Of the spacing (1): a vertex so far inside all edges is joined to the face firmly, as the shift of
-// no motion is greater (core's rim_law.h).
+// Of the spacing (1): a vertex so far inside all edges is joined to the face firmly, as the shift
+// of no motion is greater (core's rim_law.h).
 constexpr double kFirmDepth = 0.3;
 // Of the spacing (1): a vertex so near to a face's plane is on it. Chosen.
 constexpr double kOnFace = 0.3;
