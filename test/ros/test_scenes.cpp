@@ -32,8 +32,9 @@ std::vector<std::string> sceneNames() {
 // The links of all tools, well above the tissue.
 std::vector<geometry_msgs::TransformStamped> transforms() {
   std::vector<geometry_msgs::TransformStamped> all;
-  for (const char* link : {"jaw_left", "jaw_right", "blade", "tool_tip", "sphere", "probe",
-                           "forceps", "left_jaw", "right_jaw", "knife", "scissors"}) {
+  for (const char* link :
+       {"jaw_left", "jaw_right", "blade", "tool_tip", "sphere", "probe", "forceps", "left_jaw",
+        "right_jaw", "knife", "scissors", "left_blade", "right_blade"}) {
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = ros::Time::now();
     transform.header.frame_id = "tissue";
