@@ -84,6 +84,23 @@ std::vector<HalfSpace> boxOf(const CellFill& fill) {
 
 }  // namespace
 
+std::vector<char> cellsWithSevered(const Lattice& lattice, const LatticeState& state) {
+  std::vector<char> has(lattice.cells().size(), 0);
+  for (std::size_t index = 0; index < state.severed.size(); ++index) {
+    if (state.severed[index] == 0) continue;
+    const Spring spring = lattice.springs()[index];
+    const std::size_t u = at((spring.axis + 1) % 3), v = at((spring.axis + 2) % 3);
+    for (int around = 0; around < 4; ++around) {
+      std::array<int, 3> lowest = lattice.gridIndex(spring.a);
+      lowest[u] -= around & 1;
+      lowest[v] -= around >> 1;
+      const int cell = lattice.cellAt(lowest);
+      if (cell >= 0) has[at(cell)] = 1;
+    }
+  }
+  return has;
+}
+
 bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const Cell& cell) {
   if (state.springs_cut == 0) return false;
   for (int corner = 0; corner < kCorners; ++corner) {

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "geometry/tetrahedron.h"
 #include "robot_tissue/core/lattice.h"
@@ -28,6 +29,9 @@ namespace robot_tissue {
 // Indices along x, y, z in half spacings from the cell's lowest corner, 0 to 2: corners have 0 or
 // 2, edges a 1, faces two.
 using CellPoint = std::array<int, 3>;
+
+// Per cell of the lattice, 1: one of its springs is severed.
+std::vector<char> cellsWithSevered(const Lattice& lattice, const LatticeState& state);
 
 // Whether a blade parted any spring of the lattice's cell.
 bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const Cell& cell);

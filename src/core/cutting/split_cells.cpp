@@ -182,9 +182,12 @@ std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& 
 
 std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
                                          SplitCells split) {
+  const std::vector<char> has_severed = cellsWithSevered(lattice, state);
   std::vector<Cell> left;
+  left.reserve(state.cells->all().size());
   for (const Cell& cell : lattice.cells()) {
-    const Parts parts = cellParts(lattice, state, cell.nodes);
+    const Parts parts =
+        has_severed[at(cell.place)] != 0 ? cellParts(lattice, state, cell.nodes) : Parts{};
     if (isWhole(parts)) {
       if (takenOf(state, cell.place) == 0) left.push_back(cell);
       continue;

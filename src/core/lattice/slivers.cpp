@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
 namespace robot_tissue {
 namespace {
@@ -10,19 +11,26 @@ double leastSpread(const Cell& cell) {
   return cell.fill != nullptr ? cell.fill->spread[0] : CellFill().spread[0];
 }
 
-// Cells by their nodes.
+bool isInPart(const Cell& cell) { return cell.fill != nullptr; }
+
+// Cells by their nodes, of nodes of cells that are filled in part.
 class CellsAtNodes {
  public:
   CellsAtNodes(const std::vector<Cell>& cells, int node_count) : first_(at(node_count) + 1, 0) {
+    std::vector<char> is_asked(at(node_count), 0);
     for (const Cell& cell : cells) {
-      for (const int node : cell.nodes) ++first_[at(node) + 1];
+      if (!isInPart(cell)) continue;
+      for (const int node : cell.nodes) is_asked[at(node)] = 1;
     }
-    for (std::size_t node = 1; node < first_.size(); ++node) first_[node] += first_[node - 1];
+    for (const Cell& cell : cells) {
+      for (const int node : cell.nodes) first_[at(node) + 1] += is_asked[at(node)];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
     std::vector<int> next(first_.begin(), first_.end() - 1);
-    cells_.resize(kCorners * cells.size());
+    cells_.resize(at(first_.back()));
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
       for (const int node : cells[cell].nodes) {
-        cells_[at(next[at(node)]++)] = static_cast<int>(cell);
+        if (is_asked[at(node)] != 0) cells_[at(next[at(node)]++)] = static_cast<int>(cell);
       }
     }
   }
@@ -37,13 +45,12 @@ class CellsAtNodes {
 }  // namespace
 
 void stiffenSlivers(std::vector<Cell>& cells, int node_count) {
-  const auto in_part = [](const Cell& cell) { return cell.fill != nullptr; };
-  if (std::none_of(cells.begin(), cells.end(), in_part)) return;
+  if (std::none_of(cells.begin(), cells.end(), isInPart)) return;
   const CellsAtNodes beside(cells, node_count);
   std::vector<double> spreads;
   for (const Cell& cell : cells) {
     double spread = leastSpread(cell);
-    for (std::size_t corner = 0; in_part(cell) && corner < kCorners; ++corner) {
+    for (std::size_t corner = 0; isInPart(cell) && corner < kCorners; ++corner) {
       const int node = cell.nodes[corner];
       for (const int* other = beside.begin(node); other != beside.end(node); ++other) {
         const Cell& lender = cells[at(*other)];

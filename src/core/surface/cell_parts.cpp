@@ -2,15 +2,23 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "cutting/split_cells.h"
 
 namespace robot_tissue {
 
 CellParts::CellParts(const Lattice& lattice, const LatticeState& state) : cells_(state.cells) {
-  if (hasAll(lattice, state)) return;
-  cells_ = cellsLeft(lattice, state, SplitCells::kParted);
-  replaceGhosts();
+  const bool has_all = hasAll(lattice, state);
+  if (!has_all) cells_ = cellsLeft(lattice, state, SplitCells::kParted);
+  findFirst(lattice.cells().size());
+  if (!has_all) replaceGhosts();
+}
+
+void CellParts::findFirst(std::size_t places) {
+  first_at_.assign(places + 1, 0);
+  for (const Cell& cell : cells_->all()) ++first_at_[at(cell.place) + 1];
+  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
 }
 
 std::vector<NodeWeight> CellParts::withoutGhosts(std::vector<NodeWeight> carriers) const {

@@ -22,13 +22,19 @@ class CellParts {
     return first == nullptr || first->isPart();
   }
   // The part that has the eighth at the corner; null where it was removed.
-  const Cell* owner(int place, int corner) const { return cells_->owner(place, corner); }
+  const Cell* owner(int place, int corner) const {
+    for (int part = first_at_[at(place)]; part < first_at_[at(place) + 1]; ++part) {
+      if (cells_->all()[at(part)].owns(corner)) return &cells_->all()[at(part)];
+    }
+    return nullptr;
+  }
 
   std::vector<NodeWeight> withoutGhosts(std::vector<NodeWeight> carriers) const;
 
  private:
   bool hasAll(const Lattice& lattice, const LatticeState& state) const;
   void replaceGhosts();
+  void findFirst(std::size_t places);
 
   struct StandIn {
     int distance = kCorners;  // in springs
@@ -36,6 +42,7 @@ class CellParts {
   };
 
   std::shared_ptr<const CellSet> cells_;
+  std::vector<int> first_at_;       // per place, the first of its cells; then how many there are
   std::vector<StandIn> stand_ins_;  // per ghost; empty: ghosts move by themselves
 };
 

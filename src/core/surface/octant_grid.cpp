@@ -9,6 +9,8 @@ namespace {
 constexpr int kSideCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                     {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
+bool isNode(const HalfPoint& point) { return ((point[0] | point[1] | point[2]) & 1) == 0; }
+
 }  // namespace
 
 bool holdTheSame(const Hold& a, const Hold& b) {
@@ -29,6 +31,7 @@ std::array<HalfPoint, 4> cornersOfSide(const HalfPoint& lowest, int side, int le
 
 OctantGrid::OctantGrid(const Lattice& lattice, const LatticeState& state)
     : lattice_(lattice), state_(state), parts_(lattice, state), open_(lattice.cells().size(), 0) {
+  placeCells();
   if (isAsMade(state)) return;
   for (std::size_t cell = 0; cell < open_.size(); ++cell) {
     open_[cell] = parts_.isOpen(static_cast<int>(cell)) ? 1 : 0;
@@ -36,11 +39,23 @@ OctantGrid::OctantGrid(const Lattice& lattice, const LatticeState& state)
   divide();
 }
 
+void OctantGrid::placeCells() {
+  const auto& size = lattice_.size();
+  row_ = size[0] + 2;
+  plane_ = row_ * (size[1] + 2);
+  cell_at_.assign(at(plane_ * (size[2] + 2)), -1);
+  for (const Cell& cell : lattice_.cells()) {
+    const auto& low = lattice_.gridIndex(cell.nodes.front());
+    cell_at_[at(low[0] + 1 + row_ * (low[1] + 1) + plane_ * (low[2] + 1))] = cell.place;
+  }
+}
+
 // Also cells that are whole may have springs that are parted.
 void OctantGrid::divide() {
   division_of_.assign(open_.size(), -1);
+  const std::vector<char> has_severed = cellsWithSevered(lattice_, state_);
   for (const Cell& cell : lattice_.cells()) {
-    if (!hasPartedSprings(lattice_, state_, cell)) continue;
+    if (has_severed[at(cell.place)] == 0 || !hasPartedSprings(lattice_, state_, cell)) continue;
     division_of_[at(cell.place)] = static_cast<int>(divisions_.size());
     divisions_.emplace_back(lattice_, state_, cell);
   }
@@ -61,7 +76,7 @@ HalfPoint OctantGrid::lowestOf(const Octant& octant) const {
 Octant OctantGrid::octantAt(const HalfPoint& lowest) const {
   if (std::any_of(lowest.begin(), lowest.end(), [](int index) { return index < 0; })) return {};
   Octant octant;
-  octant.cell = lattice_.cellAt({lowest[0] / 2, lowest[1] / 2, lowest[2] / 2});
+  octant.cell = cellAt({lowest[0] / 2, lowest[1] / 2, lowest[2] / 2});
   for (int axis = 0; axis < 3; ++axis) octant.corner |= (lowest[at(axis)] & 1) << axis;
   return octant;
 }
@@ -85,10 +100,24 @@ Vec3 OctantGrid::inCell(const Octant& octant, const HalfPoint& point) const {
   return 0.5 * Vec3(from_low[0], from_low[1], from_low[2]);
 }
 
+// Of the octant's cell.
+int OctantGrid::cornerAt(const Octant& octant, const HalfPoint& node) const {
+  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  int corner = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (node[at(axis)] > 2 * low[at(axis)]) corner |= 1 << axis;
+  }
+  return corner;
+}
+
 Hold OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
   const Cell& part = *parts_.owner(octant.cell, octant.corner);
-  const Vec3 place = inCell(octant, point);
   Hold hold;
+  if (isNode(point)) {
+    hold.add(part.nodes[at(cornerAt(octant, point))], 1.0);
+    return hold;
+  }
+  const Vec3 place = inCell(octant, point);
   for (int corner = 0; corner < kCorners; ++corner) {
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis) {

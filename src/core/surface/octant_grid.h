@@ -42,6 +42,10 @@ class OctantGrid {
  public:
   OctantGrid(const Lattice& lattice, const LatticeState& state);
 
+  // As Lattice::cellAt, for points from -1 to one beyond the lattice's last.
+  int cellAt(const std::array<int, 3>& index) const {
+    return cell_at_[at(index[0] + 1 + row_ * (index[1] + 1) + plane_ * (index[2] + 1))];
+  }
   // The cell was split, or removed, at least in part.
   bool isOpen(int cell) const { return open_[at(cell)] != 0; }
   bool isThere(const Octant& octant) const {
@@ -64,13 +68,17 @@ class OctantGrid {
   Vec3 placeOf(const Octant& octant, const HalfPoint& point) const;  // at rest (m)
 
  private:
+  void placeCells();
   void divide();
   Vec3 inCell(const Octant& octant, const HalfPoint& point) const;
+  int cornerAt(const Octant& octant, const HalfPoint& node) const;
 
   const Lattice& lattice_;
   const LatticeState& state_;
   CellParts parts_;
   std::vector<char> open_;        // per cell
+  std::vector<int> cell_at_;      // per lowest corner's grid point, with one more on all sides
+  int row_ = 0, plane_ = 0;       // of these
   std::vector<int> division_of_;  // per cell, -1: nothing parts it
   std::vector<CellDivision> divisions_;
 };

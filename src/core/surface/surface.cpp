@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "surface/hinges.h"
@@ -15,12 +13,22 @@ namespace {
 
 enum class Face { kOuter, kOpened };  // opened by a cut, or a removal
 
-struct HalfPointHash {
-  std::size_t operator()(const HalfPoint& point) const {
-    std::size_t hash = 0;
-    for (const int index : point) hash = 1000003 * hash + static_cast<std::size_t>(index);
-    return hash;
+// A value for each point of the half grid.
+template <typename Value>
+class OnHalfGrid {
+ public:
+  OnHalfGrid(const std::array<int, 3>& size, Value all)
+      : row_(at(2 * size[0])),
+        plane_(row_ * at(2 * size[1])),
+        values_(plane_ * at(2 * size[2]), all) {}
+
+  Value& operator[](const HalfPoint& point) {
+    return values_[at(point[0]) + row_ * at(point[1]) + plane_ * at(point[2])];
   }
+
+ private:
+  std::size_t row_, plane_;
+  std::vector<Value> values_;
 };
 
 // Whole cells show whole sides; split ones, and what a removal left of cells, show the sides of
@@ -28,7 +36,10 @@ struct HalfPointHash {
 class SurfaceBuilder {
  public:
   SurfaceBuilder(const Lattice& lattice, const LatticeState& state)
-      : lattice_(lattice), octants_(lattice, state) {}
+      : lattice_(lattice),
+        octants_(lattice, state),
+        vertices_at_(lattice.size(), -1),
+        is_fine_(lattice.size(), 0) {}
 
   TissueSurface build() {
     for (const Cell& cell : lattice_.cells()) {
@@ -60,7 +71,7 @@ class SurfaceBuilder {
   void addSide(const Cell& cell, int side) {
     auto index = lattice_.gridIndex(cell.nodes.front());
     index[at(side / 2)] += side % 2 == 1 ? 1 : -1;
-    const int neighbor = lattice_.cellAt(index);
+    const int neighbor = octants_.cellAt(index);
     const bool is_whole = !octants_.isOpen(cell.place);
     if (neighbor >= 0 && is_whole && !octants_.isOpen(neighbor)) return;
     const Face face = neighbor < 0 ? Face::kOuter : Face::kOpened;
@@ -101,7 +112,7 @@ class SurfaceBuilder {
         if (axis != side / 2) odd += corners[i][at(axis)] & 1;
       }
       if (odd == 0) first = i;
-      if (isBetweenNodes(corners[i])) fine_points_.insert(corners[i]);
+      if (isBetweenNodes(corners[i])) is_fine_[corners[i]] = 1;
     }
     for (const std::size_t start : {first, first + 2}) {
       add({vertices[start % 4], vertices[(start + 1) % 4], vertices[(start + 2) % 4]}, octant,
@@ -123,7 +134,7 @@ class SurfaceBuilder {
       outline.push_back(vertex(whole.octant, from));
       const HalfPoint middle = {(from[0] + to[0]) / 2, (from[1] + to[1]) / 2,
                                 (from[2] + to[2]) / 2};
-      if (fine_points_.count(middle) != 0) outline.push_back(vertex(whole.octant, middle));
+      if (is_fine_[middle] != 0) outline.push_back(vertex(whole.octant, middle));
     }
     if (outline.size() == 4) {
       const std::size_t first =
@@ -153,15 +164,15 @@ class SurfaceBuilder {
   int vertex(const Octant& octant, const HalfPoint& point) {
     const Hold hold = octants_.holdOf(octant, point);
     const int next = static_cast<int>(surface_.rest.size());
-    const auto [known, is_new] = vertices_at_.emplace(point, next);
-    const int first_there = is_new ? -1 : known->second;
+    int& last_there = vertices_at_[point];
+    const int first_there = last_there;
     for (int vertex = first_there; vertex >= 0; vertex = next_there_[at(vertex)]) {
       if (!holdTheSame(holds_[at(vertex)], hold)) continue;
       int& node = surface_.node[at(vertex)];
       if (node != octants_.nodeOf(octant) && hold.count > 1) node = -1;
       return vertex;
     }
-    known->second = next;
+    last_there = next;
     next_there_.push_back(first_there);
     holds_.push_back(hold);
     surface_.rest.push_back(octants_.placeOf(octant, point));
@@ -177,10 +188,10 @@ class SurfaceBuilder {
   std::vector<Octant> owners_;  // per triangle
   std::vector<Vec3> places_;    // per vertex, in the half grid
   std::vector<WholeSide> whole_sides_;
-  std::vector<Hold> holds_;                                        // per vertex
-  std::unordered_map<HalfPoint, int, HalfPointHash> vertices_at_;  // the last one made there
-  std::vector<int> next_there_;                                    // per vertex; -1: none
-  std::unordered_set<HalfPoint, HalfPointHash> fine_points_;       // in the middle of springs
+  std::vector<Hold> holds_;      // per vertex
+  OnHalfGrid<int> vertices_at_;  // the last one made there
+  std::vector<int> next_there_;  // per vertex; -1: none
+  OnHalfGrid<char> is_fine_;     // in the middle of springs
 };
 
 }  // namespace

@@ -21,8 +21,8 @@ FasCgIteration<Real>::FasCgIteration(const On& on, const LayeredOptions& options
       estimator_(on.shape) {}
 
 template <typename Real>
-void FasCgIteration<Real>::reset(const Lattice& lattice, const ElasticModel& model,
-                                 const LatticeState& state) {
+void FasCgIteration<Real>::resetOnTrial(const Lattice& lattice, const ElasticModel& model,
+                                        const LatticeState& state) {
   cycle_.reset();
   estimator_.factor.restart(
       leastErrorFactor(shape_, lattice, model, state, cycle_.smootherSteps()));

@@ -26,8 +26,13 @@ class FasCgIteration {
   };
   FasCgIteration(const On& on, const LayeredOptions& options);
 
-  // The shape is on the levels of other cells.
-  void reset(const Lattice& lattice, const ElasticModel& model, const LatticeState& state);
+  // The shape is on the levels of other cells. On trial: what a trial at rest shows of them is the
+  // least error factor; else the earlier one stays.
+  void reset() {
+    cycle_.reset();
+    estimator_.factor.forget();
+  }
+  void resetOnTrial(const Lattice& lattice, const ElasticModel& model, const LatticeState& state);
   // The shape is on the same levels, of which another part is open.
   void noteOpened() { estimator_.noteOpened(); }
   void forget() { estimator_.factor.forget(); }

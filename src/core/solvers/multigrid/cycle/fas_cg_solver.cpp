@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "lattice/changed_cells.h"
 #include "solvers/multigrid/cycle/patch_answers.h"
 #include "solvers/multigrid/cycle/tuning.h"
 
@@ -29,6 +30,7 @@ FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model
 template <typename Real>
 void FasCgSolver<Real>::forget() {
   iteration_.forget();
+  measured_.reset();
   part_.forget();
   warm_start_.forget();
   forces_.noteHeld(0.0);
@@ -47,12 +49,18 @@ Vec3 FasCgSolver<Real>::forceLeft() {
 template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state) {
   if (cells_ == state.cells) return;
-  shape_.reset(
-      std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get()));
+  const bool is_measured = measured_ != nullptr &&
+                           shareChanged(*measured_, *state.cells) <= tuning::kMeasuredAgain;
+  const std::vector<double> stiffness =
+      is_measured ? shape_.levels().grid().greatestStiffness() : std::vector<double>();
+  shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells,
+                                                     workers_.get(), stiffness));
   cells_ = state.cells;
   warm_start_.forget();
   part_.forgetLoads();
-  iteration_.reset(lattice_, model_, state);
+  if (is_measured) return iteration_.reset();
+  iteration_.resetOnTrial(lattice_, model_, state);
+  measured_ = state.cells;
 }
 
 template <typename Real>

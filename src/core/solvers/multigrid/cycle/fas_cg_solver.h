@@ -52,7 +52,8 @@ class FasCgSolver : public MultigridSolver {
   const Lattice& lattice_;
   const ElasticModel& model_;
   std::unique_ptr<Workers> workers_;
-  std::shared_ptr<const CellSet> cells_;  // that the levels were made of
+  std::shared_ptr<const CellSet> cells_;     // that the levels were made of
+  std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of
   CompositeShape<Real> shape_;
   OpenPart part_;
   NodeLimits limits_;

@@ -116,6 +116,9 @@ constexpr int kTrialCycles = 6;
 constexpr int kTrialCyclesInPart = 12;
 // Spacings from end to end of its random numbers: so small that the answer is linear.
 constexpr double kTrialMotion = 1e-3;
+// Share of the cells: once cuts have changed more since the trial, it is made again, and the
+// levels' greatest stiffness is measured again. Up: fewer trials, errors are told as too small.
+constexpr double kMeasuredAgain = 0.01;
 // Greatest factor that it may show: nu 0.49 has it. Up: more cycles there.
 constexpr double kMostAtRest = 8.0;
 

@@ -57,7 +57,8 @@ double greatestShear(const ElasticModel& model, const CellSet& cells) {
 
 template <typename Real>
 CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers)
+                                   const CellSet& cells, Workers* workers,
+                                   const std::vector<double>& known_stiffness)
     : lattice_(lattice),
       workers_(workers),
       spacing_(lattice.spacing()),
@@ -69,8 +70,15 @@ CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& m
     measureStiffness();
     openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
   } else {
-    openAll(model, cells);
+    openAll(model, cells, known_stiffness);
   }
+}
+
+template <typename Real>
+std::vector<double> CompositeGrid<Real>::greatestStiffness() const {
+  std::vector<double> greatest;
+  for (const GridLevel<Real>& level : levels_) greatest.push_back(level.greatestStiffness());
+  return greatest;
 }
 
 // Of lattices of equal cells, by a block of them that all stand for finer ones, the stiffest there
@@ -166,7 +174,8 @@ GridTransfer<Real> CompositeGrid<Real>::transferTo(std::size_t level, const Leve
 
 // What is no block: all of it, with the nodes that stand beside the grid.
 template <typename Real>
-void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cells) {
+void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cells,
+                                  const std::vector<double>& known_stiffness) {
   LevelGrid grid(lattice_.size());
   int beside = static_cast<int>(cells.ghosts().size());
   for (int node = 0; node < cells.nodeCount(); ++node) {
@@ -179,7 +188,9 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
   std::vector<LevelCell> level_cells = finestCells(model, cells);
   while (true) {
     const GridBox all = grid.whole();
-    addLevel(grid, beside, level_cells, {all, levels_.empty() ? kCoversNothing : all}, 0.0);
+    const std::size_t level = levels_.size();
+    addLevel(grid, beside, level_cells, {all, level == 0 ? kCoversNothing : all},
+             level < known_stiffness.size() ? known_stiffness[level] : 0.0);
     free_.push_back(all);
     if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());

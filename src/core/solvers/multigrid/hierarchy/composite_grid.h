@@ -23,9 +23,10 @@ namespace robot_tissue {
 template <typename Real>
 class CompositeGrid {
  public:
-  // A block is open in its middle. The workers, null for none, must outlive the grid.
+  // A block is open in its middle. The workers, null for none, must outlive the grid. Of what is no
+  // block the levels' greatest stiffness is measured where it is not known.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers);
+                Workers* workers, const std::vector<double>& known_stiffness);
 
   // Opens the least part that has the box (points of the finest lattice), and so many layers more
   // on each coarser level. The levels are new then, at rest and held by nothing. False: it was
@@ -38,6 +39,7 @@ class CompositeGrid {
   GridBox whole() const { return wholeOf(lattice_.size()); }
 
   std::size_t levelCount() const { return levels_.size(); }
+  std::vector<double> greatestStiffness() const;  // as GridLevel's, per level
   GridLevel<Real>& level(std::size_t index) { return levels_[index]; }
   const GridLevel<Real>& level(std::size_t index) const { return levels_[index]; }
   GridLevel<Real>& finest() { return levels_.front(); }
@@ -79,7 +81,8 @@ class CompositeGrid {
   GridBox middle() const;
   void openParts(const std::vector<GridBox>& free);
   GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
-  void openAll(const ElasticModel& model, const CellSet& cells);
+  void openAll(const ElasticModel& model, const CellSet& cells,
+               const std::vector<double>& known_stiffness);
   std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);
