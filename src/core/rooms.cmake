@@ -8,7 +8,8 @@ robot_tissue_room(simd
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h triangle_mesh.h triangle_point.h
-  FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_pieces.cpp mesh_pieces.h
+  FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_columns.cpp
+    mesh_columns.h mesh_pieces.cpp mesh_pieces.h
     mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)
 robot_tissue_room(config
@@ -17,8 +18,9 @@ robot_tissue_room(config
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
-  PUBLIC cells.h filled_grid.h lattice.h lattice_state.h
-  FILES cells.cpp changed_cells.cpp changed_cells.h connectivity.cpp connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
+  PUBLIC cells.h composition.h filled_grid.h lattice.h lattice_state.h
+  FILES cells.cpp changed_cells.cpp changed_cells.h composition.cpp connectivity.cpp
+    connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
     piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
   USES base geometry config lattice

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "material_reader.h"
+#include "robot_tissue/core/composition.h"
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/method_names.h"
 #include "robot_tissue/scene/memory.h"
@@ -16,7 +17,7 @@ struct TissueReading {
   const bool supported;
   Remarks& remarks;
   TissueConfig tissue;
-  std::optional<Grid> grid;
+  std::optional<FilledGrid> filled;
 };
 
 const std::vector<MapType<TissueReading>>& shapeTypes() {
@@ -96,21 +97,81 @@ const KeyTable<Region> kRegionKeys = {
      }},
     {"min"},
     {"max"},
+    {"shape"},
 };
 
-Region readRegion(const Entry& entry, const TissueConfig& tissue, const Grid& grid,
-                  Remarks& remarks) {
+struct RegionShapeReading {
+  const std::string& scene_folder;
+  Region& region;
+};
+
+void readBox(const MapReader& map, RegionShapeReading& reading) {
+  reading.region.box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
+}
+
+const std::vector<MapType<RegionShapeReading>> kRegionShapeTypes = {
+    {"box", {{"min"}, {"max"}}, readBox},
+    {"mesh",
+     {{"resource"}, {"scale"}},
+     [](const MapReader& map, RegionShapeReading& reading) {
+       reading.region.mesh =
+           std::make_shared<const TriangleMesh>(readMeshShape(map, reading.scene_folder));
+     }},
+};
+
+std::string extentText(const Box& box) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    text += std::string(axis == 0 ? "" : ", ") + "xyz"[axis] + " " + numberText(box.min()[axis]) +
+            " to " + numberText(box.max()[axis]);
+  }
+  return text + " m";
+}
+
+// Refuses a mesh that has nothing of the tissue, or all.
+void requireInTissue(const Entry& resource, const Region& region, const TissueReading& reading) {
+  TissueConfig alone = reading.tissue;
+  alone.regions = {region};
+  bool has_some = false, leaves_some = false;
+  for (const Composition& kind : compositionsOf(alone, *reading.filled).kinds) {
+    for (const MaterialShare& part : kind) {
+      (part.region == kOwnMaterial ? leaves_some : has_some) = true;
+    }
+  }
+  if (has_some && leaves_some) return;
+  resource.fail(std::string("the mesh encloses ") + (has_some ? "all" : "nothing") +
+                " of the tissue, must enclose a part of it; it reaches from " +
+                extentText(boundsOf(region.mesh->vertices)) + ", the tissue's nodes from " +
+                extentText(reading.filled->grid.shape()));
+}
+
+// Keys min and max, or shape with the keys of tissue.shape.
+void readPlace(const MapReader& map, const TissueReading& reading, Region& region) {
+  RegionShapeReading place{reading.scene_folder, region};
+  const Entry shape = map["shape"];
+  if (!shape.given()) {
+    readBox(map, place);
+  } else {
+    for (const char* key : {"min", "max"}) {
+      if (map[key].given()) map[key].fail("must not stand beside shape, which says the same");
+    }
+    const MapReader of_shape = readTyped(shape, {{"type"}}, kRegionShapeTypes, place);
+    if (region.mesh) requireInTissue(of_shape["resource"], region, reading);
+  }
+  if (region.mesh || reading.filled->grid.holdsCell(region.box)) return;
+  map.entry().fail("the box holds no cell's center, must hold at least one; " +
+                   nodesText(reading.filled->grid, 0.5));
+}
+
+Region readRegion(const Entry& entry, TissueReading& reading) {
   std::vector<std::string> keys = namesOf(kRegionKeys);
   const std::vector<std::string> of_material = materialKeys();
   keys.insert(keys.end(), of_material.begin(), of_material.end());
   const MapReader map(entry, keys);
   Region region;
   readKeys(map, kRegionKeys, region);
-  region.box = map.box(ranges::pickedPlace(), FlatBox::kAllowed);
-  if (!grid.holdsCell(region.box)) {
-    entry.fail("the box holds no cell's center, must hold at least one; " + nodesText(grid, 0.5));
-  }
-  readRegionMaterial(map, tissue, remarks, region);
+  readPlace(map, reading, region);
+  readRegionMaterial(map, reading.tissue, reading.remarks, region);
   return region;
 }
 
@@ -142,15 +203,15 @@ void readMaterial(const Entry& entry, TissueReading& reading) {
 void readRegions(const Entry& entry, TissueReading& reading) {
   if (!entry.given()) return;
   for (const Entry& region : entry.list(0, "regions")) {
-    reading.tissue.regions.push_back(
-        readRegion(region, reading.tissue, *reading.grid, reading.remarks));
+    reading.tissue.regions.push_back(readRegion(region, reading));
   }
 }
 
 void readFixed(const Entry& entry, TissueReading& reading) {
   if (!entry.given()) return;
   for (const Entry& box : entry.list(0, "boxes with min and max")) {
-    reading.tissue.fixed.push_back(readNodeBox(MapReader(box, {"min", "max"}), *reading.grid));
+    reading.tissue.fixed.push_back(
+        readNodeBox(MapReader(box, {"min", "max"}), reading.filled->grid));
   }
 }
 
@@ -245,7 +306,7 @@ TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, boo
   readKeys(map, kBodyKeys, reading);
   const TissueConfig& tissue = reading.tissue;
   requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());
-  reading.grid = filledGrid(tissue).grid;
+  reading.filled = filledGrid(tissue);
   readKeys(map, kGridKeys, reading);
   return reading.tissue;
 }

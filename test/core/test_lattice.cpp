@@ -102,8 +102,8 @@ TEST(Lattice, SpringConstantIsThatOfEverySpring) {
 
 TEST(Lattice, LaterRegionWins) {
   TissueConfig config = blockOf(8, 4, 4);
-  Region left{"left", nodeBox(config, {0, 0, 0}, {6, 4, 4}), config.material};
-  Region right{"right", nodeBox(config, {4, 0, 0}, {8, 4, 4}), config.material};
+  Region left{"left", nodeBox(config, {0, 0, 0}, {6, 4, 4}), nullptr, config.material};
+  Region right{"right", nodeBox(config, {4, 0, 0}, {8, 4, 4}), nullptr, config.material};
   left.material.young_modulus = 2e4;
   right.material.young_modulus = 5e4;
   right.material.density = 3000.0;

@@ -131,7 +131,7 @@ TEST(LayeredParts, ForgottenLeaveNoTrace) {
 TEST(LayeredParts, TakeInWhatCoarseLatticesDoNotTell) {
   TissueConfig config = elasticBlockOf(32, 32, 16, 0.3);
   config.fixed.push_back(nodeBox(config, {0, 0, 0}, {19, 32, 0}));
-  Region stiff{"stiff", {Vec3(0.19, 0.13, 0.09), Vec3(0.22, 0.18, 0.12)}, config.material};
+  Region stiff{"stiff", {Vec3(0.19, 0.13, 0.09), Vec3(0.22, 0.18, 0.12)}, nullptr, config.material};
   stiff.material.young_modulus *= 100.0;
   config.regions.push_back(stiff);
   LayeredBlock block(config, within(kTolerance));
@@ -175,7 +175,7 @@ TEST(LevelSource, TellsWhereACoarserLatticeDiffers) {
   ASSERT_FALSE(sources(config).empty());
   EXPECT_TRUE(sources(config).front().rough.isEmpty());
   EXPECT_TRUE(sources(config).front().isUniform());
-  Region stiff{"stiff", {Vec3(0.05, 0.04, 0.04), Vec3(0.06, 0.06, 0.06)}, config.material};
+  Region stiff{"stiff", {Vec3(0.05, 0.04, 0.04), Vec3(0.06, 0.06, 0.06)}, nullptr, config.material};
   stiff.material.young_modulus *= 2.0;
   config.regions.push_back(stiff);
   const std::vector<LevelSource> all = sources(config);

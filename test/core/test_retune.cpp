@@ -1,6 +1,7 @@
 // Other moduli, another tolerance: a tissue that goes on with them is the one made with them.
 #include <gtest/gtest.h>
 
+#include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {
@@ -47,6 +48,20 @@ TEST(Retune, IsTheTissueOfThatMaterial) {
   EXPECT_LT((force - expected).norm(), kForceError * expected.norm());
   EXPECT_GT(force.norm(), 1.2 * before.norm());
   EXPECT_LT(force.norm(), 1.9 * before.norm());  // the region's modulus stays
+}
+
+TEST(Retune, CellsOfTwoMaterialsKeepTheirShares) {
+  TissueConfig soft = blockWith(1e4), hard = blockWith(2e4);
+  const TriangleMesh ball = moved(sphereMesh(0.017, 2), Vec3(0.028, 0.023, 0.019));
+  for (TissueConfig* config : {&soft, &hard}) {
+    config->regions[0].mesh = std::make_shared<const TriangleMesh>(ball);
+  }
+  Tissue made(hard, exactSolver()), retuned(soft, exactSolver());
+  made.load(press(hard));
+  retuned.load(press(soft));
+  EXPECT_TRUE(retuned.retune(hard, exactSolver()));
+  const Vec3 force = forceOf(retuned.settle()), expected = forceOf(made.lastReport());
+  EXPECT_LT((force - expected).norm(), kForceError * expected.norm());
 }
 
 TEST(Retune, SpringsHaveTheStiffnessOfTheirCells) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cutting/tear.h"
+#include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {
@@ -141,6 +142,25 @@ TEST(Tear, ARegionTearsByItsOwnMaterial) {
   for (std::size_t i = 0; i < tissue.lattice().springs().size(); ++i) {
     if (tissue.state().severed[i] == 0) continue;
     EXPECT_GE(tissue.lattice().gridIndex(tissue.lattice().springs()[i].a)[0], 7);
+  }
+}
+
+// The same by a mesh that holds all of the strip beyond 41 mm, so of its springs those from 40 mm
+// on.
+TEST(Tear, ARegionByAMeshTearsByItsOwnMaterial) {
+  TissueConfig config = strip(0.005, 0.0);
+  Region weak;
+  const Vec3 far = config.shape.max() + Vec3::Constant(1.0);
+  weak.mesh = std::make_shared<const TriangleMesh>(boxMesh(Vec3(0.041, -1.0, -1.0), far));
+  weak.material = config.material;
+  weak.material.tear_stretch = 1.2;
+  config.regions.push_back(weak);
+  Tissue tissue(config, SolverConfig());
+  tissue.load(pulled(0.5 * kLength, 10));
+  EXPECT_EQ(tissue.state().pieces, 2);
+  for (std::size_t i = 0; i < tissue.lattice().springs().size(); ++i) {
+    if (tissue.state().severed[i] == 0) continue;
+    EXPECT_GE(tissue.lattice().gridIndex(tissue.lattice().springs()[i].a)[0], 8);
   }
 }
 

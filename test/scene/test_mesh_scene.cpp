@@ -85,6 +85,71 @@ TEST_F(BallScene, BoxInAnEmptyCornerOfTheGridHoldsNoNode) {
                 {"tissue.regions[0] = {min", "no cell's center"});
 }
 
+std::string withTumor(const std::string& shape) {
+  return "regions:\n    - {name: tumor, shape: {type: mesh, " + shape +
+         "}, young_modulus: 1.0e+5}\n";
+}
+
+const std::string kBoxRegion =
+    "regions:\n    - {min: [-0.01, -0.01, -0.01], max: [0.01, 0.01, 0.01], young_modulus: "
+    "1.0e+5}\n";
+
+// A file beside the scene, as the tissue's own; by each format.
+TEST_F(BallScene, RegionsHaveShapes) {
+  const TriangleMesh tumor = moved(sphereMesh(9.0, 2), Vec3(4, 5, 6));
+  writeFile("tumor.stl", stlText(tumor));
+  writeFile("tumor.obj", objText(tumor));
+  writeFile("tumor.dae", daeText(tumor, "Z_UP", 1.0));
+  for (const char* file : {"tumor.stl", "tumor.obj", "tumor.dae"}) {
+    const Scene scene = parsed(replaced(
+        kBallScene, kBoxRegion, withTumor("resource: " + std::string(file) + ", scale: 0.001")));
+    ASSERT_EQ(scene.tissue.regions.size(), 1U);
+    const Region& region = scene.tissue.regions[0];
+    ASSERT_NE(region.mesh, nullptr) << file;
+    EXPECT_NEAR(boundsOf(region.mesh->vertices).max().z(), 0.015, 1e-8) << file;
+    EXPECT_EQ(region.material.young_modulus, 1e5);
+  }
+  const std::string shaped =
+      "regions:\n    - {shape: {type: box, min: [-0.01, -0.01, -0.01], "
+      "max: [0.01, 0.01, 0.01]}, young_modulus: 1.0e+5}\n";
+  const Region box = parsed(replaced(kBallScene, kBoxRegion, shaped)).tissue.regions.at(0);
+  EXPECT_EQ(box.mesh, nullptr);
+  EXPECT_EQ(box.box.max(), Vec3::Constant(0.01));
+}
+
+TEST_F(BallScene, MeshesOfRegionsThatAreNoneAreRefusedByTheirKey) {
+  TriangleMesh open = sphereMesh(9.0, 2);
+  open.triangles.pop_back();
+  writeFile("open.stl", stlText(open));
+  writeFile("tumor.stl", stlText(sphereMesh(9.0, 2)));
+  writeFile("far.stl", stlText(moved(sphereMesh(9.0, 2), Vec3(60, 0, 0))));
+  // In the grid around the ball, in none of its cells.
+  writeFile("corner.stl", stlText(moved(sphereMesh(3.0, 2), Vec3(31, 31, 31))));
+  writeFile("around.stl", stlText(sphereMesh(50.0, 2)));
+  writeFile("tumor.txt", stlText(sphereMesh(9.0, 2)));
+  writeFile("words.stl", "no mesh");
+  const std::string key = "tissue.regions[0].shape.resource = ";
+  const auto refused = [&](const std::string& shape, const std::vector<std::string>& fragments) {
+    expectRefusal(kBoxRegion, withTumor(shape), fragments);
+  };
+  const std::string scale = ", scale: 0.001";
+  refused("resource: open.stl" + scale, {key + "open.stl: the mesh is not closed"});
+  for (const std::string far : {"far.stl", "corner.stl"}) {
+    refused("resource: " + far + scale, {key + far + ": the mesh encloses nothing of the tissue"});
+  }
+  refused("resource: around.stl" + scale,
+          {key + "around.stl: the mesh encloses all of the tissue", "x -0.05 to 0.05"});
+  refused("resource: tumor.stl", {key + "tumor.stl: the mesh encloses all", "x -9 to 9"});
+  refused("resource: tumor.stl, scale: 1.0e+9", {"resource = tumor.stl: the mesh encloses all"});
+  refused("resource: tumor.stl, scale: 0", {"tissue.regions[0].shape.scale = 0", "from 1e-09"});
+  refused("resource: tumor.txt" + scale, {key + "tumor.txt", "neither in .stl nor .obj nor .dae"});
+  refused("resource: words.stl" + scale, {key + "words.stl"});
+  refused("resource: none.stl" + scale, {key + "none.stl: must be an existing file"});
+  refused("resource: tumor.stl, min: [0, 0, 0]", {"tissue.regions[0].shape.min", "must be one of"});
+  refused("resource: tumor.stl" + scale + "}, min: [0, 0, 0], max: {x: 0",
+          {"tissue.regions[0].min = [0, 0, 0]: must not stand beside shape"});
+}
+
 // The second box reaches over the first one's, but at a height of 35 mm the ball has no node at
 // x = 35 mm.
 TEST_F(BallScene, PatchesShareOnlyNodesThatThereAre) {

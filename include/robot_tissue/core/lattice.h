@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/composition.h"
 #include "robot_tissue/core/filled_grid.h"
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/lattice_state.h"
@@ -88,6 +89,11 @@ class Lattice {
   // The cell whose lowest corner stands at the grid index, -1 = none.
   int cellAt(const std::array<int, 3>& index) const;
   Vec3 cellCenter(const Cell& cell) const;  // at rest (m)
+  const std::vector<Composition>& compositions() const { return compositions_.kinds; }
+  // Which of them the cell has, or the one that it is a part of.
+  std::size_t compositionOf(const Cell& cell) const {
+    return compositions_.of_cell[at(cell.place)];
+  }
 
   SpringList springs() const { return SpringList(*this); }
   // Index of the spring in `direction`, -1 at the border.
@@ -117,6 +123,7 @@ class Lattice {
   std::vector<int> node_at_;                  // per grid point, -1 = none
   std::vector<std::array<int, 3>> index_of_;  // per node
   std::shared_ptr<const CellSet> cells_;
+  CellCompositions compositions_;
   std::vector<std::uint8_t> fixed_;
   std::vector<double> mass_;
   std::vector<int> lower_ends_;           // per spring: 4 times the node, and the axis

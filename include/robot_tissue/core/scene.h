@@ -35,9 +35,10 @@ struct Material {
 
 struct Region {
   std::string name;
-  Box box;
-  Material material;         // the tissue's, with the region's own entries in place
-  bool own_modulus = false;  // its young_modulus is such an entry
+  Box box{Vec3::Zero(), Vec3::Zero()};       // the cells whose centers it holds; unused with mesh
+  std::shared_ptr<const TriangleMesh> mesh;  // as the tissue's; may reach beyond it
+  Material material;                         // the tissue's, with the region's own entries in place
+  bool own_modulus = false;                  // its young_modulus is such an entry
 };
 
 // The tissue moves in time, by its mass; in its stress the rate of strain counts, too:

@@ -105,6 +105,39 @@ std::vector<double> loadsOf(const Lattice& lattice, const LatticeState& state,
   return loads;
 }
 
+// Of the tissue in the cells around the spring, what is the region's (1).
+double shareAround(const Lattice& lattice, const Spring& spring, int region) {
+  double all = 0.0, of_region = 0.0;
+  for (int side = 0; side < 4; ++side) {
+    std::array<int, 3> index = lattice.gridIndex(spring.a);
+    index[at((spring.axis + 1) % 3)] -= side & 1;
+    index[at((spring.axis + 2) % 3)] -= side >> 1;
+    const int number = lattice.cellAt(index);
+    if (number < 0) continue;
+    const Cell& cell = lattice.cells()[at(number)];
+    all += cell.share();
+    for (const MaterialShare& part : lattice.compositions()[lattice.compositionOf(cell)]) {
+      if (part.region == region) of_region += part.share * cell.share();
+    }
+  }
+  return of_region / all;
+}
+
+// Of the last region that holds the spring's middle; one of a mesh holds it with half of the tissue
+// around.
+const Material& materialAt(const Lattice& lattice, const TissueConfig& config,
+                           const Spring& spring) {
+  const Vec3 middle =
+      lattice.restPosition(spring.a) + 0.5 * lattice.spacing() * Vec3::Unit(spring.axis);
+  for (int region = static_cast<int>(config.regions.size()) - 1; region >= 0; --region) {
+    const Region& here = config.regions[at(region)];
+    const bool holds = here.mesh ? shareAround(lattice, spring, region) >= 0.5
+                                 : contains(here, middle, lattice.spacing());
+    if (holds) return here.material;
+  }
+  return config.material;
+}
+
 }  // namespace
 
 double tearStrain(const Material& material, double spacing) {
@@ -121,9 +154,7 @@ std::vector<double> tearStrains(const Lattice& lattice, const TissueConfig& conf
   std::vector<double> strains;
   if (!any) return strains;
   for (const Spring spring : lattice.springs()) {
-    const Vec3 middle =
-        lattice.restPosition(spring.a) + 0.5 * lattice.spacing() * Vec3::Unit(spring.axis);
-    strains.push_back(tearStrain(materialAt(config, middle), lattice.spacing()));
+    strains.push_back(tearStrain(materialAt(lattice, config, spring), lattice.spacing()));
   }
   return strains;
 }

@@ -239,14 +239,50 @@ Grid gridAround(const TriangleMesh& mesh, double spacing) {
   return Grid({middle - half, middle + half}, spacing);
 }
 
+namespace {
+
+// In spacings from the grid's lowest node.
+Polygon placed(const TriangleMesh& mesh, const MeshTriangle& triangle, const Grid& grid) {
+  Polygon polygon;
+  for (const int vertex : triangle) {
+    polygon.push_back((mesh.vertices[at(vertex)] - grid.shape().min()) / grid.spacing());
+  }
+  return polygon;
+}
+
+// What of the triangle has a shadow in the grid's cells: the part beside the grid and below it
+// goes, the part above it is laid down on its top.
+void addWithin(const Grid& grid, Polygon rest, Slicer& slicer) {
+  Polygon below, above;
+  for (int axis = 0; axis < 3; ++axis) {
+    split(rest, axis, 0.0, below, above);
+    rest.swap(above);
+    if (rest.size() < 3) return;
+    split(rest, axis, grid.size()[at(axis)] - 1.0, below, above);
+    rest.swap(below);
+    if (axis < 2 && rest.size() < 3) return;
+  }
+  if (rest.size() > 2) slicer.add(rest);
+  const double top = grid.size()[2] - 1.0;
+  const bool is_above = std::any_of(above.begin(), above.end(),
+                                    [top](const Vec3& corner) { return corner.z() > top; });
+  if (!is_above) return;
+  for (Vec3& corner : above) corner.z() = top;
+  slicer.add(above);
+}
+
+}  // namespace
+
 MeshCells sliced(const TriangleMesh& mesh, const Grid& grid) {
   Slicer slicer(grid);
-  Polygon polygon(3);
+  for (const MeshTriangle& triangle : mesh.triangles) slicer.add(placed(mesh, triangle, grid));
+  return slicer.finish();
+}
+
+MeshCells slicedWithin(const TriangleMesh& mesh, const Grid& grid) {
+  Slicer slicer(grid);
   for (const MeshTriangle& triangle : mesh.triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      polygon[i] = (mesh.vertices[at(triangle[i])] - grid.shape().min()) / grid.spacing();
-    }
-    slicer.add(polygon);
+    addWithin(grid, placed(mesh, triangle, grid), slicer);
   }
   return slicer.finish();
 }

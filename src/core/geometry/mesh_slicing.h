@@ -41,4 +41,7 @@ Grid gridAround(const TriangleMesh& mesh, double spacing);
 // The mesh must pass meshFault, face outwards, and lie in the grid to a thousandth of its spacing.
 MeshCells sliced(const TriangleMesh& mesh, const Grid& grid);
 
+// The same of a mesh that may reach beyond the grid: what of it lies in the grid's cells.
+MeshCells slicedWithin(const TriangleMesh& mesh, const Grid& grid);
+
 }  // namespace robot_tissue

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/material.h"
 #include "lattice/connectivity.h"
 #include "lattice/slivers.h"
 
@@ -12,16 +11,34 @@ namespace {
 
 constexpr int kAxes = 4;  // numbers of axes that an end leaves room for
 
+// Means over a cell's materials.
+struct CellStiffness {
+  bool has_constants = false;
+  double spring_stiffness = 0.0;  // N/m
+  double young_modulus = 0.0;     // Pa
+};
+
+CellStiffness stiffnessOf(const TissueConfig& config, const Composition& composition) {
+  CellStiffness mean;
+  for (const MaterialShare& part : composition) {
+    const Material& material = materialOf(config, part.region);
+    mean.has_constants = material.spring_stiffness.has_value();
+    mean.spring_stiffness += part.share * material.spring_stiffness.value_or(0.0);
+    mean.young_modulus += part.share * material.young_modulus;
+  }
+  return mean;
+}
+
 // What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any
 // cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
 class SpringStiffness {
  public:
-  void add(const Material& material, double spacing, double share) {
-    if (material.spring_stiffness) {
-      sum_ += *material.spring_stiffness;
+  void add(const CellStiffness& cell, double spacing, double share) {
+    if (cell.has_constants) {
+      sum_ += cell.spring_stiffness;
       ++constants_;
     } else {
-      sum_ += share * material.young_modulus * spacing / 4.0;
+      sum_ += share * cell.young_modulus * spacing / 4.0;
     }
   }
   double value() const { return constants_ > 0 ? sum_ / constants_ : sum_; }
@@ -39,6 +56,7 @@ Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(t
   placeNodes(tissue.filled);
   placeCells(tissue);
   placeSprings();
+  compositions_ = compositionsOf(config, tissue);
   weigh(config);
   fix(config.fixed);
 }
@@ -108,15 +126,17 @@ void Lattice::weigh(const TissueConfig& config) {
   std::vector<SpringStiffness> stiffness(lower_ends_.size());
   const double volume = std::pow(spacing(), 3), corner_volume = volume / kCorners;
   for (const Cell& cell : cells()) {
-    const Material& material = materialAt(config, cellCenter(cell));
+    const Composition& composition = compositions()[compositionOf(cell)];
+    const double density = densityOf(config, composition);
+    const CellStiffness here = stiffnessOf(config, composition);
     for (int corner = 0; corner < kCorners; ++corner) {
       const int node = cell.nodes[at(corner)];
-      mass_[at(node)] += cell.fill == nullptr ? material.density * corner_volume
-                                              : cell.share() * material.density * volume *
-                                                    cell.fill->cornerShare(corner);
+      mass_[at(node)] += cell.fill == nullptr
+                             ? density * corner_volume
+                             : cell.share() * density * volume * cell.fill->cornerShare(corner);
       for (int axis = 0; axis < 3; ++axis) {
         if (corner >> axis & 1) continue;
-        stiffness[at(springOf(node, 2 * axis + 1))].add(material, spacing(), cell.share());
+        stiffness[at(springOf(node, 2 * axis + 1))].add(here, spacing(), cell.share());
       }
     }
   }

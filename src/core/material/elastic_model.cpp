@@ -29,16 +29,13 @@ ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
 ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
     : lattice_(lattice), moves_in_time_(config.time.has_value()) {
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
-  std::vector<const Material*> materials;
-  kinds_.reserve(lattice.cells().size());
-  for (const Cell& cell : lattice.cells()) {
-    const Material& material = materialAt(config, lattice.cellCenter(cell));
-    const auto found = std::find(materials.begin(), materials.end(), &material);
-    kinds_.push_back(static_cast<std::uint16_t>(found - materials.begin()));
-    if (found != materials.end()) continue;
-    materials.push_back(&material);
-    const double corner_mass = material.density * corner_volume;
-    substances_.push_back({moduliOf(material), corner_mass * config.gravity, corner_mass});
+  for (const Composition& composition : lattice.compositions()) {
+    std::vector<std::pair<Moduli, double>> parts;
+    for (const MaterialShare& part : composition) {
+      parts.emplace_back(moduliOf(materialOf(config, part.region)), part.share);
+    }
+    const double corner_mass = densityOf(config, composition) * corner_volume;
+    substances_.push_back({mixed(parts), corner_mass * config.gravity, corner_mass});
   }
 }
 

@@ -60,7 +60,7 @@ class ElasticModel : public EnergyModel {
     double corner_mass = 0.0;           // of such an eighth (kg)
   };
   const Substance& substanceOf(const Cell& cell) const {
-    return substances_[kinds_[at(cell.place)]];
+    return substances_[lattice_.compositionOf(cell)];
   }
 
   Moduli stepModuli(const Cell& cell) const;                 // with what a time step adds
@@ -71,8 +71,7 @@ class ElasticModel : public EnergyModel {
   const Lattice& lattice_;
   bool moves_in_time_;
   const InertialTerm* inertia_ = nullptr;
-  std::vector<Substance> substances_;
-  std::vector<std::uint16_t> kinds_;  // per cell of the lattice, into substances_
+  std::vector<Substance> substances_;  // per composition of the lattice
 };
 
 }  // namespace robot_tissue

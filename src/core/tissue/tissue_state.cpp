@@ -28,6 +28,12 @@ void add(const Material& material, ByteWriter& out) {
 void add(const Region& region, ByteWriter& out) {
   out.vec3(region.box.min());
   out.vec3(region.box.max());
+  if (region.mesh) {
+    for (const Vec3& vertex : region.mesh->vertices) out.vec3(vertex);
+    for (const MeshTriangle& triangle : region.mesh->triangles) {
+      for (const int corner : triangle) out.index(corner);
+    }
+  }
   add(region.material, out);
 }
 
