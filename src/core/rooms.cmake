@@ -57,11 +57,11 @@ robot_tissue_room(solvers/multigrid/level
     skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
     woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy
-  USES simd lattice material loads solvers/multigrid/level
+  USES base simd lattice material loads solvers/multigrid/level
   FILES coarse_correction.cpp coarse_correction.h composite_grid.cpp composite_grid.h
     fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
     grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
-    node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
+    listed_cells.cpp listed_cells.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
     uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy

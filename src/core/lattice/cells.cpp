@@ -94,18 +94,25 @@ int countInvertedCells(const Lattice& lattice, const LatticeState& state) {
 
 int countInvertedCells(const Lattice& lattice, const LatticeState& state, const GridBox& points) {
   const double share = 0.25 / lattice.spacing();
+  const CellSet& cells = *state.cells;
   int inverted = 0;
+  const auto count_at = [&](int lowest) {
+    for (const auto* met = cells.first(lowest); met != cells.last(lowest); ++met) {
+      if (met->corner == 0 && isInverted(cells.all()[met->cell], state, share)) ++inverted;
+    }
+  };
   for (int k = points.low[2] - 1; k <= points.high[2]; ++k) {
     for (int j = points.low[1] - 1; j <= points.high[1]; ++j) {
       for (int i = points.low[0] - 1; i <= points.high[0]; ++i) {
         const int lowest = lattice.node(i, j, k);
-        if (lowest < 0) continue;
-        const CellSet& cells = *state.cells;
-        for (const auto* met = cells.first(lowest); met != cells.last(lowest); ++met) {
-          if (met->corner == 0 && isInverted(cells.all()[met->cell], state, share)) ++inverted;
-        }
+        if (lowest >= 0) count_at(lowest);
       }
     }
+  }
+  GridBox lowest = points;
+  for (int& low : lowest.low) --low;
+  for (int node = cells.latticeNodeCount(); node < cells.nodeCount(); ++node) {
+    if (lowest.has(lattice.gridIndex(cells.original(node)))) count_at(node);
   }
   return inverted;
 }

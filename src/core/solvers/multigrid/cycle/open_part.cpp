@@ -88,8 +88,10 @@ int OpenPart::nodesIn(const GridBox& open, const DofConstraints& hold) const {
     return hold.dirichletMask()[node] != kAllAxes || hold.carriers()[node] >= 0 ? 1 : 0;
   };
   int count = 0;
-  if (open == wholeOf(lattice_.size())) {  // with ghosts, which are in no box
-    for (std::size_t node = 0; node < hold.dirichletMask().size(); ++node) count += moves(node);
+  const auto ghosts = at(lattice_.nodeCount());  // which are all in the part
+  for (std::size_t node = ghosts; node < hold.dirichletMask().size(); ++node) count += moves(node);
+  if (open == wholeOf(lattice_.size())) {
+    for (std::size_t node = 0; node < ghosts; ++node) count += moves(node);
     return count;
   }
   for (int k = open.low[2]; k <= open.high[2]; ++k) {

@@ -38,6 +38,16 @@ NodeShares extrapolated(const LevelGrid& grid, const std::array<int, 3>& beyond)
   return shares;
 }
 
+// The point of a level's whole grid so far from a point of it, or where the grid ends before.
+std::array<int, 3> lastOn(const LevelSource& source, const std::array<int, 3>& from,
+                          const std::array<int, 3>& way) {
+  std::array<int, 3> place{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    place[axis] = std::min(from[axis] + way[axis], source.size[axis] - 1);
+  }
+  return place;
+}
+
 GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
   GridBox local = box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -67,7 +77,7 @@ CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& m
                    ? std::vector<LevelSource>()
                    : levelSources(lattice, model, cells, modulus_, tuning::kFewestPoints)) {
   if (isBlock()) {
-    measureStiffness();
+    measureStiffness(known_stiffness);
     openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
   } else {
     openAll(model, cells, known_stiffness);
@@ -82,19 +92,39 @@ std::vector<double> CompositeGrid<Real>::greatestStiffness() const {
 }
 
 // Of lattices of equal cells, by a block of them that all stand for finer ones, the stiffest there
-// is: not of each part anew.
+// is: not of each part anew. Where they are cut, what is listed is measured, too; of cells that are
+// cut and not equal, all.
 template <typename Real>
-void CompositeGrid<Real>::measureStiffness() {
+void CompositeGrid<Real>::measureStiffness(const std::vector<double>& known_stiffness) {
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     LevelSource& source = sources_[level];
-    if (!source.isUniform()) continue;
-    GridBox points = source.whole();
-    for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
+    if (isCut() && level < known_stiffness.size()) {
+      source.greatest_stiffness = known_stiffness[level];
+      continue;
+    }
+    if (source.isUniform()) {
+      GridBox points = source.whole();
+      for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
+      const LevelGrid grid = gridOf(points);
+      source.greatest_stiffness = stiffnessOf(grid, 0, source.uncutIn(points, grid), points, level);
+    }
+    if (!isCut()) continue;
+    const GridBox points = source.isUniform() ? source.listed.box : source.whole();
     const LevelGrid grid = gridOf(points);
-    const GridLevel<Real> block(grid, 0, source.cellsIn(points, grid),
-                                {points, level == 0 ? kCoversNothing : points});
-    source.greatest_stiffness = block.greatestStiffness();
+    source.greatest_stiffness = std::max(
+        source.greatest_stiffness,
+        stiffnessOf(grid, source.listed.beside, source.cellsIn(points, grid), points, level));
   }
+}
+
+// Of a level with these cells alone, all free.
+template <typename Real>
+double CompositeGrid<Real>::stiffnessOf(const LevelGrid& grid, int beside,
+                                        const std::vector<LevelCell>& cells, const GridBox& points,
+                                        std::size_t level) {
+  const GridBox all = from(points, points.low);
+  return GridLevel<Real>(grid, beside, cells, {all, level == 0 ? kCoversNothing : all})
+      .greatestStiffness();
 }
 
 // A part about as large as a tool opens, for the trial at rest; it hangs on the lattice alone, so
@@ -133,7 +163,8 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
         level == 0 ? kCoversNothing
                    : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
     if (level > 0) transfers_.push_back(transferTo(level, grid));
-    addLevel(grid, 0, source.cellsIn(points, grid), part, source.greatest_stiffness);
+    addLevel(grid, source.listed.beside, source.cellsIn(points, grid), part,
+             source.greatest_stiffness);
   }
   finest().constrained.setUnits(spacing_, modulus_);
   nodes_.clear();
@@ -146,6 +177,10 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
         entries_.push_back(entryOf(nodes_.back()));
       }
     }
+  }
+  for (int ghost = 0; ghost < sources_.front().listed.beside; ++ghost) {
+    nodes_.push_back(lattice_.nodeCount() + ghost);
+    entries_.push_back(entryOf(nodes_.back()));
   }
 }
 
@@ -164,12 +199,30 @@ GridTransfer<Real> CompositeGrid<Real>::transferTo(std::size_t level, const Leve
       for (int i = 0; i <= fine_grid.size[0] / 2; ++i) {
         const std::array<int, 3> twice = {2 * i, 2 * j, 2 * k};
         if (fine_grid.whole().has(twice)) continue;
+        if (sources_[level - 1].listed.box.has(lastOn(sources_[level - 1], fine.low, twice)))
+          continue;
         to.starts.push_back(
             {grid.index(place[0] + i, place[1] + j, place[2] + k), extrapolated(fine_grid, twice)});
       }
     }
   }
+  if (isCut()) addListed(level, grid, to);
   return {fine_grid, std::move(to), place};
+}
+
+// What is listed of P.
+template <typename Real>
+void CompositeGrid<Real>::addListed(std::size_t level, const LevelGrid& grid,
+                                    Coarsening& to) const {
+  const ListedCells &from = sources_[level - 1].listed, &there = sources_[level].listed;
+  const PartEntries fine(from.grid, points_[level - 1], levels_.back().grid());
+  const PartEntries coarse(there.grid, points_[level], grid);
+  for (const Coarsening::Carried& carried : from.to_coarser.carried) {
+    to.carried.push_back({fine(carried.node), coarse(carried.carriers)});
+  }
+  for (const Coarsening::Start& start : from.to_coarser.starts) {
+    to.starts.push_back({coarse(start.node), fine(start.fine)});
+  }
 }
 
 // What is no block: all of it, with the nodes that stand beside the grid.
@@ -211,19 +264,9 @@ std::vector<LevelCell> CompositeGrid<Real>::finestCells(const ElasticModel& mode
   std::vector<LevelCell> level_cells;
   level_cells.reserve(cells.all().size());
   for (const Cell& cell : cells.all()) {
-    LevelCell level_cell;
-    level_cell.place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
-    const Moduli moduli = model.cellModuli(cell);
-    level_cell.shear = moduli.shear / modulus_;
-    level_cell.bulk = moduli.bulk / modulus_;
-    level_cell.stiffening = moduli.stiffening;
-    if (cell.fill != nullptr) {
-      level_cell.fill = levelFill(*cell.fill, level_cell.shear / cell.share());
-    }
-    for (int corner = 0; corner < kCorners; ++corner) {
-      level_cell.nodes[at(corner)] = entryOf(cell.nodes[at(corner)]);
-    }
-    level_cells.push_back(level_cell);
+    const auto& place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
+    level_cells.push_back(
+        levelCellOf(model, cell, modulus_, place, [this](int node) { return entryOf(node); }));
   }
   return level_cells;
 }
@@ -311,6 +354,8 @@ void CompositeGrid<Real>::takeTimeStep(const InertialTerm* inertia) {
 template <typename Real>
 int CompositeGrid<Real>::entryOf(int node) const {
   if (!isBlock()) return entries_[at(node)];
+  const int ghost = node - lattice_.nodeCount();
+  if (ghost >= 0) return levels_.front().grid().beside + ghost;
   const GridBox& points = points_.front();
   const std::array<int, 3>& place = lattice_.gridIndex(node);
   if (!points.has(place)) return -1;

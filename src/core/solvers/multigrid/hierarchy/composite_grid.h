@@ -1,10 +1,11 @@
 // The levels of a tissue and what joins them: on each the part that is open, between a level and
 // the next coarser one the transfer P, and which node of the tissue is which entry of the finest.
 //
-// Of a block that is all there, each level is open in a part only, wider from level to level; nodes
+// Of a block, cut or not, each level is open in a part only, wider from level to level; nodes
 // beyond are where the next coarser level has them, u = P u_coarse. Where two spacings meet, the
 // forces of the fine cells go to the coarse nodes by P^T, so that nothing is lost there (fast
-// adaptive composite grid: McCormick 1984). What is no block is open as a whole on every level.
+// adaptive composite grid: McCormick 1984). A part has all that is cut, so that what meets beyond
+// it is whole. What was no block before cuts is open as a whole on every level.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +25,7 @@ template <typename Real>
 class CompositeGrid {
  public:
   // A block is open in its middle. The workers, null for none, must outlive the grid. Of what is no
-  // block the levels' greatest stiffness is measured where it is not known.
+  // block, or is cut, the levels' greatest stiffness is measured where it is not known.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
                 Workers* workers, const std::vector<double>& known_stiffness);
 
@@ -34,6 +35,7 @@ class CompositeGrid {
   bool open(const GridBox& box, int layers);
 
   bool isBlock() const { return !sources_.empty(); }
+  bool isCut() const { return isBlock() && !sources_.front().listed.isEmpty(); }
   bool isWhole() const { return free_.front() == whole(); }  // all of the finest level is open
   const GridBox& free() const { return free_.front(); }      // nodes of the finest lattice
   GridBox whole() const { return wholeOf(lattice_.size()); }
@@ -59,6 +61,9 @@ class CompositeGrid {
   template <typename Visit>
   void forNodesAt(std::size_t level, Visit visit) const;
 
+  // Of a block: what of a level is cut, with some more (ListedCells).
+  const GridBox& cutBox(std::size_t level) const { return sources_[level].listed.box; }
+
   // Of the tissue, in the open part, and their entries in the finest level's fields.
   const std::vector<int>& nodes() const { return nodes_; }
   const std::vector<int>& entries() const { return entries_; }
@@ -77,10 +82,13 @@ class CompositeGrid {
   void takeTimeStep(const InertialTerm* inertia);
 
  private:
-  void measureStiffness();
+  void measureStiffness(const std::vector<double>& known_stiffness);
+  static double stiffnessOf(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
+                            const GridBox& points, std::size_t level);
   GridBox middle() const;
   void openParts(const std::vector<GridBox>& free);
   GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
+  void addListed(std::size_t level, const LevelGrid& grid, Coarsening& to) const;
   void openAll(const ElasticModel& model, const CellSet& cells,
                const std::vector<double>& known_stiffness);
   std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;

@@ -34,9 +34,15 @@ NodeShares GridTransfer<Real>::carriersOf(int fine_node) const {
       to_.carried.begin(), to_.carried.end(), fine_node,
       [](const Coarsening::Carried& carried, int node) { return carried.node < node; });
   if (found != to_.carried.end() && found->node == fine_node) return found->carriers;
+  return sharesAround(to_.grid, placeOnCoarse(fine_node));
+}
+
+// In the fine spacing, from the coarse grid's lowest point.
+template <typename Real>
+std::array<int, 3> GridTransfer<Real>::placeOnCoarse(int fine_node) const {
   std::array<int, 3> place = fine_.placeOf(fine_node);
   for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += 2 * at_[axis];
-  return sharesAround(to_.grid, place);
+  return place;
 }
 
 template <typename Real>
@@ -61,7 +67,7 @@ void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& co
     for (const auto& [node, carriers] : to_.carried) {
       const Real quarter = Real(0.25) * fine[axis][at(node)];
       if (node < fine_.beside) {
-        for (const NodeShare& share : sharesAround(to_.grid, fine_.placeOf(node))) {
+        for (const NodeShare& share : sharesAround(to_.grid, placeOnCoarse(node))) {
           to[share.node] -= static_cast<Real>(share.weight) * quarter;
         }
       }

@@ -33,6 +33,7 @@ class GridTransfer {
   void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
  private:
+  std::array<int, 3> placeOnCoarse(int fine_node) const;
   int coarseRow(int j, int k) const;  // entry at the lowest fine point's x
   int countAlongX() const { return fine_.size[0] / 2 + 1; }
 

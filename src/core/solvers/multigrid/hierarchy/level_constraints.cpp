@@ -157,7 +157,11 @@ void LevelConstraints<Real>::holdCoarse(std::size_t index) {
   const GridTransfer<Real>& transfer = grid_.transfer(index - 1);
   coarse.freeAll();
   if (grid_.isBlock()) {
+    // Where it is cut, what stands at a fixed node's place may be of another piece.
     grid_.forNodesAt(index, [&](int entry, int node) {
+      std::array<int, 3> on_fine = grid_.lattice().gridIndex(node);
+      for (int& place : on_fine) place >>= index - 1;
+      if (grid_.cutBox(index - 1).has(on_fine)) return;
       if (grid_.lattice().isFixed(node)) coarse.hold(entry, kAllAxes);
     });
   }

@@ -1,6 +1,7 @@
 #include "solvers/multigrid/hierarchy/level_source.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "solvers/multigrid/hierarchy/tuning.h"
 
@@ -8,8 +9,6 @@ namespace robot_tissue {
 namespace {
 
 namespace tuning = hierarchy_tuning;
-
-constexpr GridBox kNowhere = {{1, 1, 1}, {0, 0, 0}};
 
 template <typename Visit>
 void forAll(const std::array<int, 3>& count, Visit visit) {
@@ -100,13 +99,75 @@ Held heldOn(const LevelSource& coarse, LevelSource& fine, const Held& held) {
   return on_coarse;
 }
 
-bool isBlock(const Lattice& lattice, const ElasticModel& model, const CellSet& cells) {
+bool isBlock(const Lattice& lattice, const ElasticModel& model) {
   const auto& size = lattice.size();
   const int all = (size[0] - 1) * (size[1] - 1) * (size[2] - 1);
-  return cells.ghosts().empty() && static_cast<int>(cells.all().size()) == all &&
-         std::all_of(cells.all().begin(), cells.all().end(), [&](const Cell& cell) {
+  return static_cast<int>(lattice.cells().size()) == all &&
+         std::all_of(lattice.cells().begin(), lattice.cells().end(), [&](const Cell& cell) {
            return cell.fill == nullptr && model.cornerWeight(cell, 0).isZero(0.0);
          });
+}
+
+// Around the cells of a block that are not there, or only in part.
+GridBox cutBox(const Lattice& lattice, const CellSet& cells) {
+  GridBox box = kNowhere;
+  const auto add = [&](int place) {
+    const std::array<int, 3>& low = lattice.gridIndex(lattice.cells()[at(place)].nodes[0]);
+    box = joined(box, {low, {low[0] + 1, low[1] + 1, low[2] + 1}});
+  };
+  int next = 0;
+  for (const Cell& cell : cells.all()) {
+    for (; next < cell.place; ++next) add(next);
+    if (cell.isPart() || cell.fill != nullptr) add(cell.place);
+    next = cell.place + 1;
+  }
+  for (; next < static_cast<int>(lattice.cells().size()); ++next) add(next);
+  return box;
+}
+
+// Beside what is cut, cells that are whole on the next coarser level, too.
+constexpr int kBesideCut = 2;
+
+ListedCells listedIn(const GridBox& box, const Lattice& lattice, const ElasticModel& model,
+                     const CellSet& cells, double modulus) {
+  ListedCells listed;
+  listed.box = box;
+  listed.grid = LevelGrid(lattice.size());
+  listed.beside = static_cast<int>(cells.ghosts().size());
+  const auto entry_of = [&](int node) {
+    if (cells.isGhost(node)) return listed.grid.beside + node - cells.latticeNodeCount();
+    const std::array<int, 3>& place = lattice.gridIndex(node);
+    return listed.grid.index(place[0], place[1], place[2]);
+  };
+  for (const Cell& cell : cells.all()) {
+    const std::array<int, 3>& place = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes[0]);
+    if (listed.hasCell(place)) {
+      listed.cells.push_back(levelCellOf(model, cell, modulus, place, entry_of));
+    }
+  }
+  return listed;
+}
+
+// Lists the coarse cells for those that the finer level lists, and as many of the block's beside
+// them as the next coarser level asks for.
+void listCoarse(LevelSource& fine, LevelSource& coarse) {
+  ListedCells& from = fine.listed;
+  ListedCells& to = coarse.listed;
+  from.to_coarser = coarsened(from.grid, from.cells, from.grid.beside + from.beside);
+  GridBox covered = from.box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    covered.low[axis] /= 2;
+    covered.high[axis] = (covered.high[axis] + 1) / 2;
+  }
+  to.grid = from.to_coarser.grid;
+  to.beside = from.to_coarser.nodes_beside;
+  to.cells = std::move(from.to_coarser.cells);
+  to.box = evenAround(covered, kBesideCut, coarse.whole());
+  ListedCells there;
+  there.box = covered;
+  for (LevelCell& cell : coarse.uncutIn(coarse.whole(), to.grid)) {
+    if (to.hasCell(cell.place) && !there.hasCell(cell.place)) to.cells.push_back(std::move(cell));
+  }
 }
 
 }  // namespace
@@ -117,6 +178,19 @@ bool LevelSource::isThick() const {
 }
 
 std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGrid& grid) const {
+  std::vector<LevelCell> cells = uncutIn(points, grid);
+  if (listed.isEmpty()) return cells;
+  const auto is_listed = [&](const LevelCell& cell) {
+    return listed.hasCell({cell.place[0] + points.low[0], cell.place[1] + points.low[1],
+                           cell.place[2] + points.low[2]});
+  };
+  cells.erase(std::remove_if(cells.begin(), cells.end(), is_listed), cells.end());
+  const PartEntries in_part(listed.grid, points, grid);
+  for (const LevelCell& cell : listed.cells) cells.push_back(in_part(cell));
+  return cells;
+}
+
+std::vector<LevelCell> LevelSource::uncutIn(const GridBox& points, const LevelGrid& grid) const {
   std::vector<LevelCell> cells;
   const std::array<int, 3> count = {points.high[0] - points.low[0], points.high[1] - points.low[1],
                                     points.high[2] - points.low[2]};
@@ -139,17 +213,22 @@ std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGr
 
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
                                       const CellSet& cells, double modulus, int fewest) {
-  if (!isBlock(lattice, model, cells)) return {};
+  if (!isBlock(lattice, model)) return {};
   std::vector<LevelSource> sources(1);
   sources.front().size = lattice.size();
   sources.front().rough = kNowhere;
-  for (const Cell& cell : cells.all()) {
+  for (const Cell& cell : lattice.cells()) {
     const Moduli moduli = model.cellModuli(cell);
     sources.front().shear.push_back(moduli.shear / modulus);
     sources.front().bulk.push_back(moduli.bulk / modulus);
     sources.front().stiffening.push_back(moduli.stiffening);
   }
   lessen(sources.front());
+  const GridBox cut = cutBox(lattice, cells);
+  if (!cut.isEmpty()) {
+    const GridBox box = evenAround(cut, kBesideCut, sources.front().whole());
+    sources.front().listed = listedIn(box, lattice, model, cells, modulus);
+  }
   Held held;
   for (int node = 0; node < lattice.nodeCount(); ++node) held.push_back(lattice.isFixed(node));
   while (*std::max_element(sources.back().size.begin(), sources.back().size.end()) > fewest) {
@@ -157,6 +236,7 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
     coarse.rough = kNowhere;
     held = heldOn(coarse, sources.back(), held);
     lessen(coarse);
+    if (!sources.back().listed.isEmpty()) listCoarse(sources.back(), coarse);
     sources.push_back(std::move(coarse));
   }
   return sources;

@@ -1,5 +1,5 @@
-// What the levels of a block with all its cells are made of (own): the moduli of each level's
-// cells, and where the next coarser level has lost some of what they say.
+// What the levels of a block are made of (own): the moduli of each level's cells, what cuts left of
+// them, and where the next coarser level has lost some of what they say.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "material/elastic_model.h"
 #include "robot_tissue/core/lattice.h"
-#include "solvers/multigrid/level/lattice_coarsening.h"
+#include "solvers/multigrid/hierarchy/listed_cells.h"
 
 namespace robot_tissue {
 
@@ -21,6 +21,7 @@ struct LevelSource {
   // differ in modulus, and fixed nodes of which not all carriers in P are fixed, or the other way
   // round. Empty: low above high.
   GridBox rough;
+  ListedCells listed;               // none where nothing is cut
   double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
 
   // More than tuning::kThick points along the shortest side, and at most tuning::kMostSlender times
@@ -28,16 +29,19 @@ struct LevelSource {
   // bending (shear locking): there a coarse level does not stand for the finer one (model.md).
   bool isThick() const;
   GridBox whole() const { return wholeOf(size); }
-  // Of the cells between these points, placed from its low corner.
+  // Of the cells between these points, placed from its low corner. The points have all of the
+  // listed ones, or the cells are those of the block without cuts.
   std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
+  std::vector<LevelCell> uncutIn(const GridBox& points, const LevelGrid& grid) const;
   bool isUniform() const { return shear.size() == 1; }
   std::size_t cellAt(int i, int j, int k) const {
     return shear.size() == 1 ? 0 : at(i + (size[0] - 1) * (j + (size[1] - 1) * k));
   }
 };
 
-// From the finest on, down to `fewest` points along the longest side. Empty where the tissue is no
-// block, is cut, or has a weight, which is no load of a part: then all levels are open as a whole.
+// From the finest on, down to `fewest` points along the longest side. Empty where the tissue was no
+// block before cuts, or has a weight, which is no load of a part: then all levels are open as a
+// whole.
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
                                       const CellSet& cells, double modulus, int fewest);
 

@@ -48,8 +48,9 @@ void NodeDisplacements<Real>::takeCoarse(const std::vector<Vec3>& displacement) 
 
 template <typename Real>
 Vec3 NodeDisplacements<Real>::of(int node) const {
-  if (grid_.isBlock()) return grid_.spacing() * valueAt(0, grid_.lattice().gridIndex(node));
-  return grid_.spacing() * vectorAt(grid_.finest().displacement, grid_.entryOf(node));
+  const int entry = grid_.entryOf(node);
+  if (entry < 0) return grid_.spacing() * valueAt(0, grid_.lattice().gridIndex(node));
+  return grid_.spacing() * vectorAt(grid_.finest().displacement, entry);
 }
 
 // In spacings of the finest lattice, at a point of the level's whole grid: where that is not open,

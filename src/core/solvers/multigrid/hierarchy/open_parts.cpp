@@ -45,6 +45,7 @@ std::vector<GridBox> openPartsAround(const std::vector<LevelSource>& sources, co
     const bool has_coarser = level + 1 < sources.size() && sources[level + 1].isThick();
     if (!source.rough.isEmpty())
       wanted = joined(wanted, around(source.rough, tuning::kBesideRough));
+    wanted = joined(wanted, source.listed.box);
     free.push_back(has_coarser ? fitted(wanted, source.whole()) : source.whole());
     wanted = around(coveredBy(free.back(), source.whole()), layers);
   }

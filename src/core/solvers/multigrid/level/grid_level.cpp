@@ -203,7 +203,11 @@ void GridLevel<Real>::setFasRightHandSideInPart(const Field<Real>& residual) {
     with_interface.high[axis] = std::min(with_interface.high[axis] + 1, grid().size[axis] - 1);
   }
   const int length = with_interface.high[0] - with_interface.low[0] + 1;
+  const int beside = grid().beside;  // all covered
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    fasRightHandSideBeside(residual[axis].data() + beside, of_covered_[axis].data() + beside,
+                           free_.data() + beside, right_hand_side[axis].data() + beside,
+                           force[axis].data() + beside, count() - beside);
     for (int k = with_interface.low[2]; k <= with_interface.high[2]; ++k) {
       for (int j = with_interface.low[1]; j <= with_interface.high[1]; ++j) {
         const int first = grid().index(with_interface.low[0], j, k);
