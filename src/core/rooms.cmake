@@ -7,10 +7,10 @@ robot_tissue_room(simd
   FILES field_kernel.cpp field_kernel.h lanes.h vector_clones.h workers.cpp workers.h)
 robot_tissue_room(geometry
   USES base
-  PUBLIC cell_fill.h grid.h mesh_checks.h triangle_mesh.h triangle_point.h
+  PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
   FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_columns.cpp
     mesh_columns.h mesh_pieces.cpp mesh_pieces.h
-    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h self_intersection.cpp tetrahedron.cpp
+    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h mesh_walls.cpp self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry

@@ -8,6 +8,7 @@
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/readers.h"
 #include "robot_tissue/scene/value_text.h"
+#include "robot_tissue/scene/wall_remarks.h"
 
 namespace robot_tissue {
 namespace {
@@ -306,6 +307,9 @@ TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, boo
   readKeys(map, kBodyKeys, reading);
   const TissueConfig& tissue = reading.tissue;
   requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());
+  for (const WallRemark& remark : wallRemarks(tissue)) {
+    remarks.push_back(map["spacing"].line(remark.text + "; remedy: " + remark.remedy));
+  }
   reading.filled = filledGrid(tissue);
   readKeys(map, kGridKeys, reading);
   return reading.tissue;

@@ -3,6 +3,8 @@
 // against it.
 #pragma once
 
+#include <cstddef>
+
 namespace robot_tissue::tuning {
 
 // Of the spacing (1): how far a box's side may be off a node or a cell's center and still hold it,
@@ -24,5 +26,12 @@ constexpr double kFlatShare = 1e-9;
 // Whole parts of the shortest side, beyond those asked for, that are tried for a spacing that fits.
 // More: a proposal in more refusals, later. Chosen.
 constexpr double kMostTriedParts = 10000.0;
+
+// Rays through a mesh that tell how thick it is (1): more: walls that are a small part of the
+// surface are met, slower; the products of rays and triangles cost 10 ns each. Chosen.
+constexpr std::size_t kMostRays = 300, kLeastRays = 30, kMostRayTests = 10000000;
+// Cosine between the normals of two faces, one turned round: less, the edge of a body counts as a
+// wall; more, walls of uneven thickness do not. Chosen: 45 degrees.
+constexpr double kNearlyParallel = 0.7;
 
 }  // namespace robot_tissue::tuning
