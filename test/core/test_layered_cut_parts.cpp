@@ -124,7 +124,8 @@ TEST(ChangedCells, AreCountedByPlaceAndCorners) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(8, 8, 8, 0.3));
   LayeredBlock block(config);
   const auto whole = block.state.cells;
-  EXPECT_EQ(shareChanged(*whole, *whole), 0.0);
+  EXPECT_EQ(changedCells(block.lattice, *whole, *whole).share, 0.0);
+  EXPECT_TRUE(changedCells(block.lattice, *whole, *whole).box.isEmpty());
   const double h = config.spacing;
   sever(block.lattice,
         springsAcross(block.lattice, block.state,
@@ -134,10 +135,11 @@ TEST(ChangedCells, AreCountedByPlaceAndCorners) {
   const CellSet& cut = *block.state.cells;
   // Eight cells along the top's middle are two parts each; those below hang together.
   const double parts = static_cast<double>(cut.all().size() - whole->all().size());
-  ASSERT_GT(parts, 0.0);
-  const double share = (3.0 * parts) / static_cast<double>(cut.all().size());
-  EXPECT_NEAR(shareChanged(*whole, cut), share, 1e-12);
-  EXPECT_EQ(shareChanged(*whole, cut), shareChanged(cut, *whole));
+  ASSERT_EQ(parts, 8.0);
+  const ChangedCells changed = changedCells(block.lattice, *whole, cut);
+  EXPECT_NEAR(changed.share, 3.0 * parts / static_cast<double>(cut.all().size()), 1e-12);
+  EXPECT_EQ(changed.box, (GridBox{{4, 0, 7}, {5, 8, 8}}));
+  EXPECT_EQ(changed.share, changedCells(block.lattice, cut, *whole).share);
 }
 
 }  // namespace

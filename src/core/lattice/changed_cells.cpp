@@ -5,10 +5,18 @@
 
 namespace robot_tissue {
 
-double shareChanged(const CellSet& one, const CellSet& other) {
+ChangedCells changedCells(const Lattice& lattice, const CellSet& one, const CellSet& other) {
+  ChangedCells changed;
+  changed.box = {{1, 1, 1}, {0, 0, 0}};
+  std::size_t count = 0;
+  const auto add = [&](const Cell& cell) {
+    const auto& nodes = lattice.cells()[at(cell.place)].nodes;
+    changed.box =
+        joined(changed.box, {lattice.gridIndex(nodes.front()), lattice.gridIndex(nodes.back())});
+    ++count;
+  };
   const auto key = [](const Cell& cell) { return std::make_pair(cell.place, cell.own); };
   const std::vector<Cell>&left = one.all(), &right = other.all();
-  std::size_t apart = 0;
   auto a = left.begin(), b = right.begin();
   while (a != left.end() && b != right.end()) {
     if (key(*a) == key(*b)) {
@@ -16,12 +24,13 @@ double shareChanged(const CellSet& one, const CellSet& other) {
       ++b;
       continue;
     }
-    ++apart;
-    key(*a) < key(*b) ? ++a : ++b;
+    add(key(*a) < key(*b) ? *a++ : *b++);
   }
-  apart += static_cast<std::size_t>((left.end() - a) + (right.end() - b));
+  std::for_each(a, left.end(), add);
+  std::for_each(b, right.end(), add);
   const std::size_t most = std::max(left.size(), right.size());
-  return most == 0 ? 0.0 : static_cast<double>(apart) / static_cast<double>(most);
+  if (most > 0) changed.share = static_cast<double>(count) / static_cast<double>(most);
+  return changed;
 }
 
 }  // namespace robot_tissue

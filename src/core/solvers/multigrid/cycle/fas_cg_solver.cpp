@@ -49,15 +49,18 @@ Vec3 FasCgSolver<Real>::forceLeft() {
 template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state) {
   if (cells_ == state.cells) return;
-  const bool is_measured = measured_ != nullptr &&
-                           shareChanged(*measured_, *state.cells) <= tuning::kMeasuredAgain;
-  const std::vector<double> stiffness =
-      is_measured ? shape_.levels().grid().greatestStiffness() : std::vector<double>();
-  shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells,
-                                                     workers_.get(), stiffness));
+  const bool is_measured =
+      measured_ != nullptr &&
+      changedCells(lattice_, *measured_, *state.cells).share <= tuning::kMeasuredAgain;
+  KnownLevels known;
+  if (is_measured) {
+    known = {shape_.levels().grid().greatestStiffness(),
+             changedCells(lattice_, *cells_, *state.cells).box, part_.box(), part_.layers()};
+  }
+  shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get(),
+                                                     is_measured ? &known : nullptr));
   cells_ = state.cells;
   warm_start_.forget();
-  part_.forgetLoads();
   if (is_measured) return iteration_.reset();
   iteration_.resetOnTrial(lattice_, model_, state);
   measured_ = state.cells;
@@ -70,9 +73,10 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   solve.in_contact = isInContact(shape);
   const bool in_time = model_.inertia() != nullptr;
   solve.has_changed = solve.in_contact || !disturbed.empty() || in_time;
-  findLevels(shape.state);
+  if (cells_ != shape.state.cells) part_.forgetLoads();
   part_.findSeeds(solve, disturbed);
   if (in_time) part_.seedAll();
+  findLevels(shape.state);
   SolveReport report;
   wants_double_ = false;
   if (part_.isEmpty()) return report;

@@ -67,8 +67,7 @@ double greatestShear(const ElasticModel& model, const CellSet& cells) {
 
 template <typename Real>
 CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers,
-                                   const std::vector<double>& known_stiffness)
+                                   const CellSet& cells, Workers* workers, const KnownLevels* known)
     : lattice_(lattice),
       workers_(workers),
       spacing_(lattice.spacing()),
@@ -76,11 +75,14 @@ CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& m
       sources_(model.movesInTime()
                    ? std::vector<LevelSource>()
                    : levelSources(lattice, model, cells, modulus_, tuning::kFewestPoints)) {
-  if (isBlock()) {
-    measureStiffness(known_stiffness);
+  if (!isBlock()) {
+    openAll(model, cells);
+  } else if (known == nullptr) {
+    measureStiffness();
     openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
   } else {
-    openAll(model, cells, known_stiffness);
+    measureChanged(*known);
+    openParts(openPartsAround(sources_, known->box, known->layers));
   }
 }
 
@@ -95,35 +97,46 @@ std::vector<double> CompositeGrid<Real>::greatestStiffness() const {
 // is: not of each part anew. Where they are cut, what is listed is measured, too; of cells that are
 // cut and not equal, all.
 template <typename Real>
-void CompositeGrid<Real>::measureStiffness(const std::vector<double>& known_stiffness) {
+void CompositeGrid<Real>::measureStiffness() {
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     LevelSource& source = sources_[level];
-    if (isCut() && level < known_stiffness.size()) {
-      source.greatest_stiffness = known_stiffness[level];
-      continue;
-    }
     if (source.isUniform()) {
       GridBox points = source.whole();
       for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
       const LevelGrid grid = gridOf(points);
-      source.greatest_stiffness = stiffnessOf(grid, 0, source.uncutIn(points, grid), points, level);
+      const GridLevel<Real> block(grid, 0, source.uncutIn(points, grid),
+                                  {points, level == 0 ? kCoversNothing : points});
+      source.greatest_stiffness = block.greatestStiffness();
     }
     if (!isCut()) continue;
     const GridBox points = source.isUniform() ? source.listed.box : source.whole();
-    const LevelGrid grid = gridOf(points);
-    source.greatest_stiffness = std::max(
-        source.greatest_stiffness,
-        stiffnessOf(grid, source.listed.beside, source.cellsIn(points, grid), points, level));
+    source.greatest_stiffness = std::max(source.greatest_stiffness, stiffnessIn(level, points));
   }
 }
 
-// Of a level with these cells alone, all free.
+// Of all the greatest, or of what has changed.
 template <typename Real>
-double CompositeGrid<Real>::stiffnessOf(const LevelGrid& grid, int beside,
-                                        const std::vector<LevelCell>& cells, const GridBox& points,
-                                        std::size_t level) {
-  const GridBox all = from(points, points.low);
-  return GridLevel<Real>(grid, beside, cells, {all, level == 0 ? kCoversNothing : all})
+void CompositeGrid<Real>::measureChanged(const KnownLevels& known) {
+  GridBox box = known.changed;
+  for (std::size_t level = 0; level < sources_.size(); ++level) {
+    const GridBox points = evenAround(box, tuning::kBesideChanged, sources_[level].whole());
+    sources_[level].greatest_stiffness =
+        std::max(known.stiffness[level], stiffnessIn(level, points));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] /= 2;
+      box.high[axis] = (box.high[axis] + 1) / 2;
+    }
+  }
+}
+
+// Of a level with the cells between these points alone, all free.
+template <typename Real>
+double CompositeGrid<Real>::stiffnessIn(std::size_t level, const GridBox& points) const {
+  const LevelSource& source = sources_[level];
+  const LevelGrid grid = gridOf(points);
+  const GridBox all = grid.whole();
+  return GridLevel<Real>(grid, source.listed.beside, source.cellsIn(points, grid),
+                         {all, level == 0 ? kCoversNothing : all})
       .greatestStiffness();
 }
 
@@ -227,8 +240,7 @@ void CompositeGrid<Real>::addListed(std::size_t level, const LevelGrid& grid,
 
 // What is no block: all of it, with the nodes that stand beside the grid.
 template <typename Real>
-void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cells,
-                                  const std::vector<double>& known_stiffness) {
+void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cells) {
   LevelGrid grid(lattice_.size());
   int beside = static_cast<int>(cells.ghosts().size());
   for (int node = 0; node < cells.nodeCount(); ++node) {
@@ -241,9 +253,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
   std::vector<LevelCell> level_cells = finestCells(model, cells);
   while (true) {
     const GridBox all = grid.whole();
-    const std::size_t level = levels_.size();
-    addLevel(grid, beside, level_cells, {all, level == 0 ? kCoversNothing : all},
-             level < known_stiffness.size() ? known_stiffness[level] : 0.0);
+    addLevel(grid, beside, level_cells, {all, levels_.empty() ? kCoversNothing : all}, 0.0);
     free_.push_back(all);
     if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());

@@ -21,13 +21,21 @@
 
 namespace robot_tissue {
 
+// What another grid of the same lattice knows, of a block, of which few cells have changed since.
+struct KnownLevels {
+  std::vector<double> stiffness;  // as GridLevel::greatestStiffness, per level
+  GridBox changed;                // points of the finest lattice around those cells
+  GridBox box;                    // to be open from the first on, with so many layers
+  int layers = 0;
+};
+
 template <typename Real>
 class CompositeGrid {
  public:
-  // A block is open in its middle. The workers, null for none, must outlive the grid. Of what is no
-  // block, or is cut, the levels' greatest stiffness is measured where it is not known.
+  // A block is open in its middle where nothing is known. The workers, null for none, must outlive
+  // the grid.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, const std::vector<double>& known_stiffness);
+                Workers* workers, const KnownLevels* known);
 
   // Opens the least part that has the box (points of the finest lattice), and so many layers more
   // on each coarser level. The levels are new then, at rest and held by nothing. False: it was
@@ -82,15 +90,14 @@ class CompositeGrid {
   void takeTimeStep(const InertialTerm* inertia);
 
  private:
-  void measureStiffness(const std::vector<double>& known_stiffness);
-  static double stiffnessOf(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
-                            const GridBox& points, std::size_t level);
+  void measureStiffness();
+  void measureChanged(const KnownLevels& known);
+  double stiffnessIn(std::size_t level, const GridBox& points) const;
   GridBox middle() const;
   void openParts(const std::vector<GridBox>& free);
   GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
   void addListed(std::size_t level, const LevelGrid& grid, Coarsening& to) const;
-  void openAll(const ElasticModel& model, const CellSet& cells,
-               const std::vector<double>& known_stiffness);
+  void openAll(const ElasticModel& model, const CellSet& cells);
   std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);

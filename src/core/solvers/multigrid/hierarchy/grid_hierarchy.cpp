@@ -8,9 +8,8 @@ namespace robot_tissue {
 
 template <typename Real>
 GridHierarchy<Real>::GridHierarchy(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers,
-                                   const std::vector<double>& known_stiffness)
-    : grid_(lattice, model, cells, workers, known_stiffness),
+                                   const CellSet& cells, Workers* workers, const KnownLevels* known)
+    : grid_(lattice, model, cells, workers, known),
       displacements_(grid_),
       constraints_(grid_),
       restriction_(grid_, constraints_),

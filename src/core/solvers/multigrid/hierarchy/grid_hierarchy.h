@@ -27,7 +27,7 @@ class GridHierarchy {
  public:
   // As CompositeGrid.
   GridHierarchy(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, const std::vector<double>& known_stiffness = {});
+                Workers* workers, const KnownLevels* known = nullptr);
   GridHierarchy(const GridHierarchy&) = delete;
   GridHierarchy& operator=(const GridHierarchy&) = delete;
 

@@ -141,7 +141,7 @@ ListedCells listedIn(const GridBox& box, const Lattice& lattice, const ElasticMo
   };
   for (const Cell& cell : cells.all()) {
     const std::array<int, 3>& place = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes[0]);
-    if (listed.hasCell(place)) {
+    if (hasCell(box, place)) {
       listed.cells.push_back(levelCellOf(model, cell, modulus, place, entry_of));
     }
   }
@@ -163,10 +163,9 @@ void listCoarse(LevelSource& fine, LevelSource& coarse) {
   to.beside = from.to_coarser.nodes_beside;
   to.cells = std::move(from.to_coarser.cells);
   to.box = evenAround(covered, kBesideCut, coarse.whole());
-  ListedCells there;
-  there.box = covered;
   for (LevelCell& cell : coarse.uncutIn(coarse.whole(), to.grid)) {
-    if (to.hasCell(cell.place) && !there.hasCell(cell.place)) to.cells.push_back(std::move(cell));
+    const bool is_beside = hasCell(to.box, cell.place) && !hasCell(covered, cell.place);
+    if (is_beside) to.cells.push_back(std::move(cell));
   }
 }
 
@@ -181,12 +180,14 @@ std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGr
   std::vector<LevelCell> cells = uncutIn(points, grid);
   if (listed.isEmpty()) return cells;
   const auto is_listed = [&](const LevelCell& cell) {
-    return listed.hasCell({cell.place[0] + points.low[0], cell.place[1] + points.low[1],
-                           cell.place[2] + points.low[2]});
+    return hasCell(listed.box, {cell.place[0] + points.low[0], cell.place[1] + points.low[1],
+                                cell.place[2] + points.low[2]});
   };
   cells.erase(std::remove_if(cells.begin(), cells.end(), is_listed), cells.end());
   const PartEntries in_part(listed.grid, points, grid);
-  for (const LevelCell& cell : listed.cells) cells.push_back(in_part(cell));
+  for (const LevelCell& cell : listed.cells) {
+    if (hasCell(points, cell.place)) cells.push_back(in_part(cell));
+  }
   return cells;
 }
 

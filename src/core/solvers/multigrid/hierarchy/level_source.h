@@ -29,8 +29,8 @@ struct LevelSource {
   // bending (shear locking): there a coarse level does not stand for the finer one (model.md).
   bool isThick() const;
   GridBox whole() const { return wholeOf(size); }
-  // Of the cells between these points, placed from its low corner. The points have all of the
-  // listed ones, or the cells are those of the block without cuts.
+  // Of the cells between these points, placed from its low corner, with all nodes beside the grid;
+  // and of the block's, as if nothing was cut.
   std::vector<LevelCell> cellsIn(const GridBox& points, const LevelGrid& grid) const;
   std::vector<LevelCell> uncutIn(const GridBox& points, const LevelGrid& grid) const;
   bool isUniform() const { return shear.size() == 1; }

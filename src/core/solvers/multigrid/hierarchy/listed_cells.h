@@ -22,13 +22,15 @@ struct ListedCells {
   Coarsening to_coarser;         // of the box, without its cells
 
   bool isEmpty() const { return box.isEmpty(); }
-  bool hasCell(const std::array<int, 3>& place) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (place[axis] < box.low[axis] || place[axis] >= box.high[axis]) return false;
-    }
-    return true;
-  }
 };
+
+// Of the cells between the points, by the lowest corner.
+inline bool hasCell(const GridBox& points, const std::array<int, 3>& place) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (place[axis] < points.low[axis] || place[axis] >= points.high[axis]) return false;
+  }
+  return true;
+}
 
 // A cell of the finest level; `entry_of` a node: its entry there. Moduli in `modulus` (Pa).
 template <typename EntryOf>

@@ -40,6 +40,9 @@ constexpr int kLayersAroundMiddle = 6;
 // Relative: a displacement in spacings that was written in meters and read back may differ by so
 // much (rounding, double precision). Up: what others moved by less is not seen.
 constexpr double kSame = 1e-15;
+// Cells around those that a cut has changed, whose greatest stiffness is measured with them
+// (chosen). Up: slower; less is told of sides that are none.
+constexpr int kBesideChanged = 2;
 // Cells along an axis of the block that tells the greatest stiffness of equal cells (chosen; larger
 // blocks have the same). Up: slower to build.
 constexpr int kMeasuredCells = 24;
