@@ -103,7 +103,8 @@ TEST(LevelSource, ListsWhatIsCutAndNoMore) {
                        h * Vec3(20.5, 12, 17)}),
         block.state, SplitCells::kParted);
   const CellSet& cells = *block.state.cells;
-  const std::vector<LevelSource> sources = levelSources(block.lattice, block.model, cells, 1.0, 3);
+  std::vector<LevelSource> sources = levelSources(block.lattice, block.model, 1.0, 3);
+  listCuts(block.lattice, block.model, cells, 1.0, sources);
   ASSERT_GT(sources.size(), 2U);
   const ListedCells& finest = sources[0].listed;
   EXPECT_EQ(finest.beside, static_cast<int>(cells.ghosts().size()));

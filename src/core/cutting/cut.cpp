@@ -43,10 +43,12 @@ class CutPolygon {
 
   bool isFlat() const { return is_flat_; }
 
+  // On the plane's positive side, or on it.
+  bool isAbove(const Vec3& point) const { return heightOf(point) >= 0.0; }
+
   // Where the segment crosses; its ends count as on the positive side when on the plane.
   std::optional<Crossing> crossing(const Vec3& from, const Vec3& to) const {
-    const double height_from = normal_.dot(from - center_) + slack_;
-    const double height_to = normal_.dot(to - center_) + slack_;
+    const double height_from = heightOf(from), height_to = heightOf(to);
     if ((height_from >= 0.0) == (height_to >= 0.0)) return std::nullopt;
     const double share = height_from / (height_from - height_to);
     const Vec3 point = from + share * (to - from);
@@ -57,6 +59,8 @@ class CutPolygon {
   }
 
  private:
+  double heightOf(const Vec3& point) const { return normal_.dot(point - center_) + slack_; }
+
   // Closed, with slack: a point on the outline is inside.
   bool contains(const Eigen::Vector2d& point) const {
     bool inside = false;
@@ -95,14 +99,25 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
   const auto position = [&](int node) -> Vec3 {
     return lattice.restPosition(node) + state.displacement[at(node)];
   };
+  std::vector<char> is_above(at(lattice.nodeCount()));
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    is_above[at(node)] = polygon.isAbove(position(node)) ? 1 : 0;
+  }
   std::vector<Crossing> crossings;
-  for (std::size_t index = 0; index < lattice.springs().size(); ++index) {
-    if (state.severed[index] != 0) continue;
-    const Spring spring = lattice.springs()[index];
-    std::optional<Crossing> found = polygon.crossing(position(spring.a), position(spring.b));
-    if (!found) continue;
-    found->spring = static_cast<int>(index);
-    crossings.push_back(*found);
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    const std::array<int, 3>& low = lattice.gridIndex(node);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int spring = lattice.springOf(node, 2 * axis + 1);
+      if (spring < 0 || state.severed[at(spring)] != 0) continue;
+      std::array<int, 3> high = low;
+      ++high[at(axis)];
+      const int other = lattice.node(high[0], high[1], high[2]);
+      if (is_above[at(node)] == is_above[at(other)]) continue;
+      std::optional<Crossing> found = polygon.crossing(position(node), position(other));
+      if (!found) continue;
+      found->spring = spring;
+      crossings.push_back(*found);
+    }
   }
   return crossings;
 }
@@ -115,7 +130,9 @@ void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, Latti
     state.parted_at[at(crossing.spring)] = std::clamp(crossing.along, kEnd, 1.0 - kEnd);
   }
   state.springs_cut += static_cast<int>(crossings.size());
-  state.pieces = countPieces(lattice, state);
+  std::vector<int> springs;
+  for (const Crossing& crossing : crossings) springs.push_back(crossing.spring);
+  if (!holdTogether(lattice, state, springs)) state.pieces = countPieces(lattice, state);
   const auto left = cellsLeft(lattice, state, split);
   state.displacement = carriedOver(*state.cells, state.displacement, *left);
   state.cells = left;

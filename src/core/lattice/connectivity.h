@@ -11,6 +11,11 @@ namespace robot_tissue {
 // Number of parts that uncut springs hold together.
 int countPieces(const Lattice& lattice, const LatticeState& state);
 
+// None of them came apart as these springs, the last that were, were severed: around them, what
+// hung together still does. False: that is not known.
+bool holdTogether(const Lattice& lattice, const LatticeState& state,
+                  const std::vector<int>& severed);
+
 // Of each node, the ghosts last: the number of its part, from 0 on, in the order of the parts'
 // lowest nodes; -1: it was removed. A ghost is of the part whose cell has it.
 std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state);

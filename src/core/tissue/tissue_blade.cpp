@@ -24,8 +24,9 @@ SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings) {
     disturbed.push_back(lattice_.springs()[at(crossing.spring)].a);
     disturbed.push_back(lattice_.springs()[at(crossing.spring)].b);
   }
+  const int pieces_before = state_.pieces;
   sever(lattice_, crossings, state_, model_->splitCells());
-  renumberPieces();
+  if (state_.pieces != pieces_before) renumberPieces();
   dropFreed();
   return changeTopology(disturbed);
 }

@@ -54,7 +54,8 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state) {
       changedCells(lattice_, *measured_, *state.cells).share <= tuning::kMeasuredAgain;
   KnownLevels known;
   if (is_measured) {
-    known = {shape_.levels().grid().greatestStiffness(),
+    const std::vector<double> stiffness = shape_.levels().grid().greatestStiffness();
+    known = {shape_.levels().takeSources(), stiffness,
              changedCells(lattice_, *cells_, *state.cells).box, part_.box(), part_.layers()};
   }
   shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get(),

@@ -57,9 +57,10 @@ GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
   return local;
 }
 
-double greatestShear(const ElasticModel& model, const CellSet& cells) {
+double greatestShear(const ElasticModel& model, const Lattice& lattice) {
   double greatest = 0.0;
-  for (const Cell& cell : cells.all()) greatest = std::max(greatest, model.cellModuli(cell).shear);
+  for (const Cell& cell : lattice.cells())
+    greatest = std::max(greatest, model.cellModuli(cell).shear);
   return greatest == 0.0 ? 1.0 : greatest;
 }
 
@@ -67,14 +68,17 @@ double greatestShear(const ElasticModel& model, const CellSet& cells) {
 
 template <typename Real>
 CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers, const KnownLevels* known)
+                                   const CellSet& cells, Workers* workers, KnownLevels* known)
     : lattice_(lattice),
       workers_(workers),
       spacing_(lattice.spacing()),
-      modulus_(greatestShear(model, cells)),
-      sources_(model.movesInTime()
-                   ? std::vector<LevelSource>()
-                   : levelSources(lattice, model, cells, modulus_, tuning::kFewestPoints)) {
+      modulus_(greatestShear(model, lattice)) {
+  if (known != nullptr) {
+    sources_ = std::move(known->sources);
+  } else if (!model.movesInTime()) {
+    sources_ = levelSources(lattice, model, modulus_, tuning::kFewestPoints);
+  }
+  listCuts(lattice, model, cells, modulus_, sources_);
   if (!isBlock()) {
     openAll(model, cells);
   } else if (known == nullptr) {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "material/elastic_model.h"
@@ -23,6 +24,7 @@ namespace robot_tissue {
 
 // What another grid of the same lattice knows, of a block, of which few cells have changed since.
 struct KnownLevels {
+  std::vector<LevelSource> sources;
   std::vector<double> stiffness;  // as GridLevel::greatestStiffness, per level
   GridBox changed;                // points of the finest lattice around those cells
   GridBox box;                    // to be open from the first on, with so many layers
@@ -35,7 +37,7 @@ class CompositeGrid {
   // A block is open in its middle where nothing is known. The workers, null for none, must outlive
   // the grid.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, const KnownLevels* known);
+                Workers* workers, KnownLevels* known);
 
   // Opens the least part that has the box (points of the finest lattice), and so many layers more
   // on each coarser level. The levels are new then, at rest and held by nothing. False: it was
@@ -49,6 +51,8 @@ class CompositeGrid {
   GridBox whole() const { return wholeOf(lattice_.size()); }
 
   std::size_t levelCount() const { return levels_.size(); }
+  // For the next grid; empty where this is no block.
+  std::vector<LevelSource> takeSources() { return std::move(sources_); }
   std::vector<double> greatestStiffness() const;  // as GridLevel's, per level
   GridLevel<Real>& level(std::size_t index) { return levels_[index]; }
   const GridLevel<Real>& level(std::size_t index) const { return levels_[index]; }

@@ -8,7 +8,7 @@ namespace robot_tissue {
 
 template <typename Real>
 GridHierarchy<Real>::GridHierarchy(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers, const KnownLevels* known)
+                                   const CellSet& cells, Workers* workers, KnownLevels* known)
     : grid_(lattice, model, cells, workers, known),
       displacements_(grid_),
       constraints_(grid_),

@@ -27,7 +27,7 @@ class GridHierarchy {
  public:
   // As CompositeGrid.
   GridHierarchy(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, const KnownLevels* known = nullptr);
+                Workers* workers, KnownLevels* known = nullptr);
   GridHierarchy(const GridHierarchy&) = delete;
   GridHierarchy& operator=(const GridHierarchy&) = delete;
 
@@ -35,6 +35,8 @@ class GridHierarchy {
   bool open(const GridBox& box, int layers, const std::vector<Vec3>& displacement);
 
   const CompositeGrid<Real>& grid() const { return grid_; }
+  // As CompositeGrid; the levels are good for nothing then.
+  std::vector<LevelSource> takeSources() { return grid_.takeSources(); }
   bool isWhole() const { return grid_.isWhole(); }
   GridLevel<Real>& finest() { return grid_.finest(); }
   const GridLevel<Real>& finest() const { return grid_.finest(); }

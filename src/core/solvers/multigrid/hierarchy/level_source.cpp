@@ -213,7 +213,7 @@ std::vector<LevelCell> LevelSource::uncutIn(const GridBox& points, const LevelGr
 }
 
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
-                                      const CellSet& cells, double modulus, int fewest) {
+                                      double modulus, int fewest) {
   if (!isBlock(lattice, model)) return {};
   std::vector<LevelSource> sources(1);
   sources.front().size = lattice.size();
@@ -225,11 +225,6 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
     sources.front().stiffening.push_back(moduli.stiffening);
   }
   lessen(sources.front());
-  const GridBox cut = cutBox(lattice, cells);
-  if (!cut.isEmpty()) {
-    const GridBox box = evenAround(cut, kBesideCut, sources.front().whole());
-    sources.front().listed = listedIn(box, lattice, model, cells, modulus);
-  }
   Held held;
   for (int node = 0; node < lattice.nodeCount(); ++node) held.push_back(lattice.isFixed(node));
   while (*std::max_element(sources.back().size.begin(), sources.back().size.end()) > fewest) {
@@ -237,10 +232,21 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
     coarse.rough = kNowhere;
     held = heldOn(coarse, sources.back(), held);
     lessen(coarse);
-    if (!sources.back().listed.isEmpty()) listCoarse(sources.back(), coarse);
     sources.push_back(std::move(coarse));
   }
   return sources;
+}
+
+void listCuts(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
+              double modulus, std::vector<LevelSource>& sources) {
+  for (LevelSource& source : sources) source.listed = ListedCells();
+  const GridBox cut = cutBox(lattice, cells);
+  if (sources.empty() || cut.isEmpty()) return;
+  const GridBox box = evenAround(cut, kBesideCut, sources.front().whole());
+  sources.front().listed = listedIn(box, lattice, model, cells, modulus);
+  for (std::size_t level = 1; level < sources.size(); ++level) {
+    listCoarse(sources[level - 1], sources[level]);
+  }
 }
 
 }  // namespace robot_tissue

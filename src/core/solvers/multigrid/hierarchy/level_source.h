@@ -39,10 +39,14 @@ struct LevelSource {
   }
 };
 
-// From the finest on, down to `fewest` points along the longest side. Empty where the tissue was no
-// block before cuts, or has a weight, which is no load of a part: then all levels are open as a
-// whole.
+// From the finest on, down to `fewest` points along the longest side, of the block as if nothing
+// was cut. Empty where the tissue was no block before cuts, or has a weight, which is no load of a
+// part: then all levels are open as a whole.
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
-                                      const CellSet& cells, double modulus, int fewest);
+                                      double modulus, int fewest);
+
+// Lists in each of them what is cut.
+void listCuts(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
+              double modulus, std::vector<LevelSource>& sources);
 
 }  // namespace robot_tissue
