@@ -88,8 +88,8 @@ constexpr double kLevel = 0.3;
 // where it is tilted by 35 degrees, and are there in full up to 15. More: they fade sooner. Chosen.
 constexpr double kTiltedFace = 0.819;
 constexpr double kFlatFace = 0.966;
-// Cosine of the angle between a face and where its link presses to, likewise: 20 and 8 degrees. A
-// tool that ploughs presses forwards, too, and tissue lies against its front. Chosen.
+// Cosine of the angle between a face and its link's force, likewise: 20 and 8 degrees. A tool that
+// ploughs presses forwards, too, and tissue lies against its front. Chosen.
 constexpr double kTiltedPush = 0.94;
 constexpr double kStraightPush = 0.99;
 // Of the spacing (1): the same of a face's width. Chosen: two columns of nodes in any place.

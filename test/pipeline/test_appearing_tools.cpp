@@ -8,7 +8,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kHair = 0.05 * kSpacing;  // deep in the surface shown (m)
+constexpr double kHair = 0.06 * kSpacing;  // deep in the surface shown (m), beside a rim, too
 
 // Where a tool appears, and the direction of the tissue's force on it when it came the short way.
 struct Appearance {

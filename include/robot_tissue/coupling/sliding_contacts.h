@@ -99,7 +99,8 @@ class SlidingContacts {
   const std::vector<ContactConstraint>& touches() const { return touches_; }
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
-  // Where the link pressed to at the last commit (unit, tissue frame); zero when it did not.
+  // Where the link pressed to at the last commit, friction included (unit, tissue frame); zero when
+  // it did not.
   Vec3 facing(int link, const Pose& tissue_T_link) const;
   // Of its touches, in their order.
   ContactSprings springsOf(int tool) const;
@@ -131,7 +132,7 @@ class SlidingContacts {
   PressGrowth growth_;
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
-  std::vector<Vec3> facing_;                  // per link, of its normal forces (N, link's frame)
+  std::vector<Vec3> facing_;                  // per link, of its forces (N, link's frame)
   std::vector<Pose> since_links_;             // at the last commit
   Tissue::Displacements since_displacement_;  // likewise (m)
 };
