@@ -1,18 +1,24 @@
 // What a change of topology costs beside an ordinary update. Not a test: nothing here passes or
 // fails.
 //
-//   cut_updates                       the two studies below
+//   cut_updates                       the first two studies below
 //   cut_updates pressing N            blocks of 2N x 2N x N cells pressed by a sphere, a cut now
-//   and then cut_updates tools CUTS [BUDGET]   so many cuts under two moving tools at 4,851 nodes;
-//   a call
+//                                     and then
+//   cut_updates tools CUTS [BUDGET]   so many cuts under two moving tools at 4,851 nodes; a call
 //                                     may take so many ms, then it is LATE
+//   cut_updates memory UPDATES        what is allocated as a tool goes round and round, and a cut
+//                                     is made and taken back every four updates
 //
-// Times are the wall's (ms). doc/surgery.md has them.
+// Times are the processor's (ms), so that work beside it counts little; budgets are the wall's.
+// doc/surgery.md and doc/node_speed.md have them.
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <vector>
 
 #include "../random_polygons.h"
@@ -21,6 +27,9 @@
 
 namespace robot_tissue {
 namespace {
+
+// Of all threads (ms).
+double processorTime() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 constexpr double kWidth = 0.1, kHeight = 0.05, kRadius = 0.01;  // m
 
@@ -69,17 +78,17 @@ void cutWhilePressing(int cells_high) {
   const Vec3 over(0.051, 0.0493, kHeight + kRadius);
   Times times;
   for (int update = 0; update < 40; ++update) {
-    auto start = Clock::now();
+    double start = processorTime();
     pipeline.step(posesAt({over - Vec3(0.0, 0.0, 2.5e-4 * (update + 1))}));
-    if (update >= 4) times.moves.push_back(millisecondsSince(start));
+    if (update >= 4) times.moves.push_back(processorTime() - start);
     times.note(pipeline.tissue());
     if (update % 4 != 3) continue;
     const double turn = 0.7 * update;
     const Vec3 out(std::cos(turn), std::sin(turn), 0.0);
     const Vec3 middle = Vec3(over.x(), over.y(), kHeight) + 0.02 * out;
-    start = Clock::now();
+    start = processorTime();
     pipeline.cut(slit(middle, Vec3(-out.y(), out.x(), 0.0), 0.015, 0.01));
-    times.cuts.push_back(millisecondsSince(start));
+    times.cuts.push_back(processorTime() - start);
     times.note(pipeline.tissue());
   }
   times.tell("pressing", pipeline.tissue().lattice().nodeCount());
@@ -95,19 +104,37 @@ void cutUnderTwoTools(int cuts, double budget) {
     const double turn = 0.05 * cut;
     const Vec3 round = 0.01 * Vec3(std::cos(turn), std::sin(turn), 0.0);
     const double z = kHeight + kRadius - std::min(2.5e-4 * cut, 0.004);
-    auto start = Clock::now();
+    double start = processorTime();
     pipeline.step(posesAt({Vec3(0.03, 0.05, z) + round, Vec3(0.07, 0.05, z) - round}));
-    times.moves.push_back(millisecondsSince(start));
+    times.moves.push_back(processorTime() - start);
     times.note(pipeline.tissue());
     const Vec3 middle(numbers.between(0.01, 0.09), numbers.between(0.01, 0.09), kHeight);
     const double way = numbers.between(0.0, 3.14159);
-    start = Clock::now();
+    start = processorTime();
     pipeline.cut(slit(middle, Vec3(std::cos(way), std::sin(way), 0.0), 0.02, 0.012));
-    times.cuts.push_back(millisecondsSince(start));
+    times.cuts.push_back(processorTime() - start);
     times.note(pipeline.tissue());
   }
   times.tell(budget > 0.0 ? "two tools, bounded" : "two tools",
              pipeline.tissue().lattice().nodeCount());
+}
+
+void watchMemory(int updates) {
+  Pipeline pipeline = blockUnder(10, {sphere("sphere")});
+  std::printf("updates,in_use_mb,heap_mb\n");
+  for (int update = 0; update < updates; ++update) {
+    const double turn = 0.05 * update;
+    const Vec3 round = 0.01 * Vec3(std::cos(turn), std::sin(turn), 0.0);
+    pipeline.step(posesAt({Vec3(0.05, 0.05, kHeight + kRadius - 0.003) + round}));
+    if (update % 4 == 1)
+      pipeline.cut(slit(Vec3(0.0525, 0.03, kHeight), Vec3::UnitY(), 0.02, 0.015));
+    if (update % 4 == 3) pipeline.undo(1);
+    if ((update + 1) % (updates / 10) != 0) continue;
+    const struct mallinfo2 info = mallinfo2();
+    std::printf("%d,%.3g,%.3g\n", update + 1, 1e-6 * static_cast<double>(info.uordblks),
+                1e-6 * static_cast<double>(info.arena + info.hblkhd));
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace
@@ -115,6 +142,10 @@ void cutUnderTwoTools(int cuts, double budget) {
 
 int main(int argc, char** argv) {
   using namespace robot_tissue;
+  if (argc == 3 && std::strcmp(argv[1], "memory") == 0) {
+    watchMemory(std::max(10, std::atoi(argv[2])));
+    return 0;
+  }
   std::printf(
       "study,nodes,moves,move_ms,move_ms_99,move_ms_worst,cuts,cut_ms,cut_ms_99,cut_ms_worst,"
       "late,not_ok\n");
@@ -127,7 +158,9 @@ int main(int argc, char** argv) {
     cutUnderTwoTools(200, 0.0);
     cutUnderTwoTools(200, 40.0);
   } else {
-    std::fprintf(stderr, "usage: cut_updates [pressing CELLS_HIGH | tools CUTS [BUDGET]]\n");
+    std::fprintf(
+        stderr,
+        "usage: cut_updates [pressing CELLS_HIGH | tools CUTS [BUDGET] | memory UPDATES]\n");
     return 2;
   }
   return 0;
