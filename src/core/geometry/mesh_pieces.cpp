@@ -6,20 +6,13 @@
 namespace robot_tissue {
 namespace {
 
-// Spacings (1): so near a plane a point is on it; and steps of the search for it. Rounding.
-constexpr double kOnPlane = 1e-13;
-constexpr int kMostSteps = 60;
-
 int next(int axis) { return (axis + 1) % 3; }
 int afterNext(int axis) { return (axis + 2) % 3; }
 
 }  // namespace
 
-MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells,
-                       const BentGrid& grid)
-    : grid_(grid), places_(std::move(vertices)) {
-  vertices_.reserve(places_.size());
-  for (const Vec3& place : places_) vertices_.push_back(grid_.straightened(place));
+MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells)
+    : vertices_(std::move(vertices)) {
   for (std::size_t axis = 0; axis < 3; ++axis) octants_[axis] = 2 * cells[axis];
 }
 
@@ -27,20 +20,15 @@ void MeshPieces::add(const MeshTriangle& triangle, bool keep_pieces) {
   cutAlong(0, {{triangle[0], -1}, {triangle[1], -1}, {triangle[2], -1}}, keep_pieces);
 }
 
-int MeshPieces::addVertex(const Vec3& straight, const Vec3& place) {
-  vertices_.push_back(straight);
-  places_.push_back(place);
+int MeshPieces::addVertex(const Vec3& place) {
+  vertices_.push_back(place);
   return static_cast<int>(vertices_.size()) - 1;
 }
 
 int MeshPieces::addMiddle(const std::vector<int>& points) {
-  Vec3 straight = Vec3::Zero(), place = Vec3::Zero();
-  for (const int point : points) {
-    straight += vertices_[at(point)];
-    place += places_[at(point)];
-  }
-  const double count = static_cast<double>(points.size());
-  return addVertex(straight / count, place / count);
+  Vec3 sum = Vec3::Zero();
+  for (const int point : points) sum += vertices_[at(point)];
+  return addVertex(sum / static_cast<double>(points.size()));
 }
 
 // The border planes of the grid cut nothing: what stands out there belongs to the octants inside.
@@ -58,47 +46,22 @@ bool MeshPieces::isAbove(int vertex, int axis, int plane) const {
   return vertices_[at(vertex)][axis] >= 0.5 * plane;
 }
 
-// How far along the edge it meets the plane, of its length (1). Planes of nodes are straight; a
-// bent plane is found by false position (Illinois: Dowell and Jarratt 1971).
-double MeshPieces::alongEdge(int from, int to, int axis, int plane) const {
-  const double height = 0.5 * plane;
-  const Vec3 &a = places_[at(from)], &b = places_[at(to)];
-  if (plane % 2 == 0) return (height - a[axis]) / (b[axis] - a[axis]);
-  double low = 0.0, high = 1.0;
-  double at_low = vertices_[at(from)][axis] - height, at_high = vertices_[at(to)][axis] - height;
-  double along = at_low / (at_low - at_high);
-  for (int step = 0; step < kMostSteps; ++step) {
-    const double above = grid_.straightened(a + along * (b - a))[axis] - height;
-    if (std::abs(above) < kOnPlane) break;
-    const bool is_low = (above < 0.0) == (at_low < 0.0);
-    (is_low ? low : high) = along;
-    (is_low ? at_low : at_high) = above;
-    (is_low ? at_high : at_low) *= 0.5;
-    along = low + at_low / (at_low - at_high) * (high - low);
-  }
-  return along;
-}
-
 // Along the axes before this one the edge has been cut already: the point is in its octant there.
 int MeshPieces::crossing(int from, int to, int axis, int plane) {
   const auto [low, high] = std::minmax(from, to);
   const auto [known, is_new] = crossings_.try_emplace({low, high, axis, plane}, 0);
   if (is_new) {
-    const Vec3 a = places_[at(low)], b = places_[at(high)];
-    Vec3 place = a + alongEdge(low, high, axis, plane) * (b - a);
+    const Vec3 a = vertices_[at(low)], b = vertices_[at(high)];
+    Vec3 place = a + (0.5 * plane - a[axis]) / (b[axis] - a[axis]) * (b - a);
     place = place.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
-    if (plane % 2 == 0) place[axis] = 0.5 * plane;
-    Vec3 straight = grid_.straightened(place);
-    for (int other = 0; other < 3; ++other) {
-      const double from_end = vertices_[at(low)][other], to_end = vertices_[at(high)][other];
-      if (from_end == to_end) straight[other] = from_end;  // in a plane
-      if (from_end == to_end || other > axis) continue;
-      const double octant = std::floor(2.0 * std::min(from_end, to_end));  // that the edge is in
+    for (int other = 0; other < axis; ++other) {
+      if (a[other] == b[other]) continue;                                    // in a plane
+      const double octant = std::floor(2.0 * std::min(a[other], b[other]));  // that the edge is in
       const double end = 0.5 * (octant + 1.0);
-      straight[other] = std::clamp(straight[other], 0.5 * octant, std::nextafter(end, 0.0));
+      place[other] = std::clamp(place[other], 0.5 * octant, std::nextafter(end, 0.0));
     }
-    straight[axis] = 0.5 * plane;
-    known->second = addVertex(straight, place);
+    place[axis] = 0.5 * plane;
+    known->second = addVertex(place);
   }
   return known->second;
 }
@@ -209,7 +172,7 @@ void MeshPieces::keepPiece(const Polygon& piece) {
 int MeshPieces::gridPoint(const HalfIndex& point) {
   const auto [place, is_new] = grid_points_.try_emplace(point, 0);
   if (is_new) {
-    place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]), grid_.placeOf(point));
+    place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]));
   }
   return place->second;
 }

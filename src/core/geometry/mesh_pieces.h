@@ -5,11 +5,6 @@
 // All decisions hang on which side of a plane a vertex is, which is the same for all pieces that
 // have it; points that planes cut out of a common edge are common. So where the mesh is closed, the
 // pieces of one octant and the lids on its faces are closed to the last bit, whatever the rounding.
-//
-// Planes half way between nodes may be bent (BentGrid): then a vertex has a place, and straight
-// coordinates, which its place would have if the planes were straight. Decisions hang on the
-// latter; points on edges are found where the edge meets the bent plane, so that all places are on
-// the mesh.
 #pragma once
 
 #include <array>
@@ -26,16 +21,6 @@ namespace robot_tissue {
 // Of an octant or of a point of the grid: indices along x, y, z in half spacings.
 using HalfIndex = std::array<int, 3>;
 
-// Planes of nodes are straight. Lengths in spacings, from the grid's lowest corner.
-class BentGrid {
- public:
-  virtual ~BentGrid() = default;
-  // Straight coordinates of a place; continuous, and one to one within each cell.
-  virtual Vec3 straightened(const Vec3& place) const = 0;
-  // Of a point of the half grid.
-  virtual Vec3 placeOf(const HalfIndex& point) const = 0;
-};
-
 class MeshPieces {
  public:
   struct Piece {
@@ -44,9 +29,8 @@ class MeshPieces {
   };
   using Segment = std::pair<int, int>;  // directed, between vertices
 
-  // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z. The
-  // grid must outlive this.
-  MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells, const BentGrid& grid);
+  // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z.
+  MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells);
 
   // Cuts a triangle. Its pieces are kept if asked for; where it crosses the grid's lines always is.
   void add(const MeshTriangle& triangle, bool keep_pieces);
@@ -56,8 +40,7 @@ class MeshPieces {
   int addMiddle(const std::vector<int>& points);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  const Vec3& vertex(int index) const { return vertices_[at(index)]; }  // straight coordinates
-  const Vec3& place(int index) const { return places_[at(index)]; }
+  const Vec3& vertex(int index) const { return vertices_[at(index)]; }
   HalfIndex octantOf(const Vec3& point) const;
 
   // Border of what the mesh encloses on the upper face of the octant along the axis, as seen from
@@ -83,8 +66,7 @@ class MeshPieces {
 
   enum class Direction { kForwards, kBackwards };  // along an axis
 
-  int addVertex(const Vec3& straight, const Vec3& place);
-  double alongEdge(int from, int to, int axis, int plane) const;
+  int addVertex(const Vec3& place);
   bool isAbove(int vertex, int axis, int plane) const;
   int crossing(int from, int to, int axis, int plane);
   void split(const Polygon& triangle, int axis, int plane, Polygon& below, Polygon& above);
@@ -95,11 +77,9 @@ class MeshPieces {
   int gridPoint(const HalfIndex& point);
   void addEdge(const HalfIndex& start, int axis, Direction direction, std::vector<Segment>& border);
 
-  const BentGrid& grid_;
-  std::vector<Vec3> places_;
-  std::vector<Vec3> vertices_;  // straight coordinates
-  HalfIndex octants_{};         // of the grid, along x, y, z
-  HalfIndex octant_{};          // that is being cut out
+  std::vector<Vec3> vertices_;
+  HalfIndex octants_{};  // of the grid, along x, y, z
+  HalfIndex octant_{};   // that is being cut out
   std::vector<Piece> pieces_;
   std::map<std::tuple<int, int, int, int>, int> crossings_;  // edge's ends, axis, plane
   std::map<LineKey, std::vector<Crossing>> lines_;

@@ -8,7 +8,6 @@
 
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
-#include "surface/divided_grid.h"
 #include "surface/hinges.h"
 #include "surface/octant_grid.h"
 
@@ -24,8 +23,7 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        grid_(lattice, lattice.restState()),
-        pieces_(inSpacings(), cells(), grid_) {
+        pieces_(inSpacings(), cells()) {
     findRegion();
   }
 
@@ -188,7 +186,7 @@ class CutMeshBuilder {
 
   // What holds a point, as the material in the octant has it.
   Hold holdOf(int point, const HalfIndex& octant) const {
-    const Vec3& place = pieces_.place(point);
+    const Vec3& place = pieces_.vertex(point);
     int cell = cellOf(octant);
     if (cell < 0 || !parts_.isOpen(cell)) {
       const int around = cellAround(lattice_, place);  // whichever octant asks
@@ -209,7 +207,7 @@ class CutMeshBuilder {
       known->second = static_cast<int>(surface_.rest.size());
       surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
                                   ? mesh_.vertices[at(point)]
-                                  : placed(pieces_.place(point)));
+                                  : placed(pieces_.vertex(point)));
       places_.push_back(2.0 * pieces_.vertex(point));
       surface_.carriers.push_back(parts_.withoutGhosts(hold.carriers));
       surface_.node.push_back(-1);
@@ -236,9 +234,8 @@ class CutMeshBuilder {
   const LatticeState& state_;
   CellParts parts_;
   const TriangleMesh& mesh_;
-  // Straight, as if no blade had passed: along bent planes, pieces of triangles that are larger
-  // than the bends come to cross each other.
-  DividedGrid grid_;
+  // Cut half way between nodes, not where the blade passed: along bent planes, pieces of triangles
+  // that are larger than the bends come to cross each other.
   MeshPieces pieces_;
   std::set<HalfIndex> region_;
   std::set<std::pair<int, int>> cut_edges_;
