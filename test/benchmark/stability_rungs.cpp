@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/mesh_fixtures.h"
 #include "reference_cases.h"
 
 namespace robot_tissue {
@@ -198,6 +199,49 @@ void addFreePieces(std::vector<Rung>& rungs) {
   rungs.push_back(sprung);
 }
 
+// Shapes by a mesh, whose cells at the surface are filled in part: held below `floor`, the nodes
+// over `top` within 12 mm of the z axis pressed down.
+Rung pressedMesh(const std::string& name, const TriangleMesh& mesh, double floor, double top,
+                 double way) {
+  TissueConfig tissue = blockOf();
+  tissue.mesh = std::make_shared<const TriangleMesh>(mesh);
+  tissue.fixed = {{Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, floor)}};
+  Rung rung = moved(name, "mesh", tissue, Vec3(0.0, 0.0, -way));
+  rung.patches = {{Vec3(-0.012, -0.012, top), Vec3(0.012, 0.012, 1.0)}};
+  return rung;
+}
+
+void addMeshes(std::vector<Rung>& rungs) {
+  const TriangleMesh ball = sphereMesh(0.03, 4);
+  for (const double mm : {5.0, 10.0, 20.0}) {
+    rungs.push_back(pressedMesh(numbered("mesh_ball", mm), ball, -0.015, 0.024, 1e-3 * mm));
+  }
+  for (const double mm : {2.0, 4.0, 8.0}) {  // of the wall
+    const TriangleMesh shell = joined(ball, insideOut(sphereMesh(0.03 - 1e-3 * mm, 4)));
+    rungs.push_back(pressedMesh(numbered("mesh_shell", mm), shell, -0.015, 0.024, 0.005));
+  }
+  // Turned by 30 degrees about an axis that is none of the grid's.
+  Pose aslant = Pose::Identity();
+  aslant.linear() =
+      Eigen::AngleAxisd(M_PI / 6.0, Vec3(1.0, 2.0, 0.5).normalized()).toRotationMatrix();
+  const TriangleMesh slab =
+      robot_tissue::moved(boxMesh(Vec3(-0.04, -0.03, -0.015), Vec3(0.04, 0.03, 0.015)), aslant);
+  rungs.push_back(pressedMesh("mesh_aslant", slab, -0.012, 0.01, 0.005));
+  // Its sides reach into the outer cells by a hundredth.
+  const Vec3 half = 0.5 * kSpacing * Vec3(10.02, 10.02, 8.02);
+  rungs.push_back(pressedMesh("mesh_grazed", boxMesh(-half, half), -0.018, 0.019, 0.005));
+  for (const double ratio : {10.0, 1000.0}) {
+    Rung rung = pressedMesh(numbered("mesh_tumor", ratio), ball, -0.015, 0.024, 0.005);
+    Region region;
+    region.mesh = std::make_shared<const TriangleMesh>(
+        robot_tissue::moved(sphereMesh(0.011, 3), Vec3(0.003, 0.002, 0.006)));
+    region.material = rung.tissue.material;
+    region.material.young_modulus *= ratio;
+    rung.tissue.regions.push_back(region);
+    rungs.push_back(rung);
+  }
+}
+
 }  // namespace
 
 std::vector<Rung> makeRungs() {
@@ -212,6 +256,7 @@ std::vector<Rung> makeRungs() {
   addSpacings(rungs);
   addSlivers(rungs);
   addFreePieces(rungs);
+  addMeshes(rungs);
   return rungs;
 }
 
