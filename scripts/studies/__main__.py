@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
-STUDIES = ["rooms", "grasp", "liver", "walls", "paper", "motion", "swing", "time_stability", "stiffening", "economy",
-           "fidelity", "growth", "threads", "stages", "speed", "node", "still_node", "shape_topics",
+STUDIES = ["rooms", "grasp", "dent_folds", "liver", "walls", "paper", "motion", "swing", "time_stability",
+           "stiffening", "economy", "fidelity", "growth", "threads", "stages", "speed", "node", "still_node", "shape_topics",
            "screens", "soak", "contact_search", "contact", "accuracy", "stability", "speed_accuracy"]
 
 
