@@ -119,5 +119,21 @@ TEST(Retune, LoadsOfASavedStateAreOfItsMaterial) {
   EXPECT_EQ(tissue.stateHash(), before);
 }
 
+TEST(Retune, LoadsOfASavedStateAreOfItsRegionsMesh) {
+  TissueConfig config = blockWith(1e4), other = config;
+  config.regions[0].mesh =
+      std::make_shared<const TriangleMesh>(moved(sphereMesh(0.017, 2), Vec3(0.028, 0.023, 0.019)));
+  other.regions[0].mesh =
+      std::make_shared<const TriangleMesh>(moved(sphereMesh(0.016, 2), Vec3(0.028, 0.023, 0.019)));
+  Tissue tissue(config, exactSolver()), same(config, exactSolver()),
+      elsewhere(other, exactSolver());
+  tissue.load(press(config));
+  const std::string saved = tissue.savedState();
+  same.loadState(*same.readState(saved));
+  EXPECT_EQ(same.stateHash(), tissue.stateHash());
+  const std::string refusal = inputErrorOf([&] { elsewhere.readState(saved); });
+  EXPECT_TRUE(mentions(refusal, "regions")) << refusal;
+}
+
 }  // namespace
 }  // namespace robot_tissue
