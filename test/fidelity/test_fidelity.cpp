@@ -147,6 +147,11 @@ TEST(WithRung, MeshesAreFoundFromAnotherFolder) {
   const std::string text = "tissue: {spacing: 1, shape: {resource: meshes/a.stl}}\n";
   const YAML::Node root = YAML::Load(withRung(text, kRung, "/a/b", "/a/c"));
   EXPECT_EQ(root["tissue"]["shape"]["resource"].as<std::string>(), "../b/meshes/a.stl");
+  const std::string region =
+      "tissue: {spacing: 1, regions: [{shape: {type: mesh, resource: meshes/a.stl}}]}\n";
+  const YAML::Node with_region = YAML::Load(withRung(region, kRung, "/a/b", "/a/c"));
+  EXPECT_EQ(with_region["tissue"]["regions"][0]["shape"]["resource"].as<std::string>(),
+            "../b/meshes/a.stl");
   const std::string package = "tissue: {spacing: 1, shape: {resource: 'package://p/a.stl'}}\n";
   EXPECT_NE(withRung(package, kRung, "/a/b", "/a/c").find("package://p/a.stl"), std::string::npos);
 }
