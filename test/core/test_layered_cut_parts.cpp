@@ -93,6 +93,20 @@ TEST_P(LayeredCutParts, HaveGhostsThatMove) {
   EXPECT_GT(apart, 1e-4);
 }
 
+// A state that is loaded brings other cells, and a tool in the air nothing to solve for.
+TEST_P(LayeredCutParts, BearThatNothingActs) {
+  LayeredBlock block(config(), within(kTolerance));
+  block.solve({punch(block, Vec3(0, 0, -0.002))});
+  block.state = block.lattice.restState();
+  cut(block);
+  EXPECT_EQ(block.solve({}).status, SolveStatus::kOk);
+  for (const Vec3& moved : block.state.displacement) EXPECT_EQ(moved, Vec3(Vec3::Zero()));
+  EXPECT_EQ(block.solve({punch(block, Vec3(0, 0, -0.002))}).status, SolveStatus::kOk);
+  block.state = block.lattice.restState();  // as after an undo
+  EXPECT_EQ(block.solve({}).status, SolveStatus::kOk);
+  EXPECT_EQ(block.solve({punch(block, Vec3(0, 0, -0.002))}).status, SolveStatus::kOk);
+}
+
 TEST(LevelSource, ListsWhatIsCutAndNoMore) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(32, 32, 16, 0.3));
   LayeredBlock block(config);

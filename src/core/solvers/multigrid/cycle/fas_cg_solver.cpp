@@ -50,7 +50,7 @@ template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state) {
   if (cells_ == state.cells) return;
   const bool is_measured =
-      measured_ != nullptr &&
+      measured_ != nullptr && !part_.isEmpty() &&
       changedCells(lattice_, *measured_, *state.cells).share <= tuning::kMeasuredAgain;
   KnownLevels known;
   if (is_measured) {
