@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "robot_tissue/core/body_load.h"
 #include "robot_tissue/core/deadline.h"
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/scene/memory.h"
@@ -79,7 +80,7 @@ TrialPress pressOnce(const Scene& scene, double most_seconds) {
   Pipeline pipeline(scene.tissue, scene.solver, {sphereOf(press.radius_m, scene)}, scene.supports);
   const Deadline deadline(most_seconds);
   pipeline.setEnd(deadline);
-  if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline.settle();
+  if (hasBodyLoad(scene.tissue) || !scene.supports.empty()) pipeline.settle();
   press.nodes = pipeline.tissue().lattice().nodeCount();
   const Place place = placeOn(pipeline.tissue());
   pipeline.step(poseAt(place, press.radius_m, -0.1 * kDepth));

@@ -14,7 +14,7 @@ robot_tissue_room(geometry
     tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC removed_space.h scene.h suture.h tool_role.h
+  PUBLIC body_load.h removed_space.h scene.h suture.h tool_role.h
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
@@ -32,8 +32,13 @@ robot_tissue_room(surface
   FILES cell_parts.cpp cell_parts.h cut_mesh_surface.cpp cut_mesh_surface.h
     hinges.cpp hinges.h mesh_surface.cpp mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h
     surface.cpp)
+robot_tissue_room(membrane
+  USES base geometry config surface
+  FILES hinge.cpp hinge.h membrane.cpp membrane.h membrane_plan.cpp membrane_plan.h node_blocks.cpp
+    node_blocks.h pressed_triangle.cpp pressed_triangle.h sheet_law.cpp sheet_law.h
+    stretched_triangle.cpp stretched_triangle.h)
 robot_tissue_room(material
-  USES base config lattice
+  USES base config lattice membrane
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
     elastic_model.cpp elastic_model.h energy_model.h fill_law.cpp fill_law.h inertial_term.h six_spring_model.cpp
     six_spring_model.h tissue_model.h)
@@ -51,9 +56,10 @@ robot_tissue_room(solvers
   USES base lattice loads
   FILES solver_method.h)
 robot_tissue_room(solvers/multigrid/level
-  USES base simd lattice material loads
+  USES base simd lattice membrane material loads
   FILES cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h
     constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
+    level_membrane.cpp level_membrane.h
     skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
     woodbury_update.h)
 robot_tissue_room(solvers/multigrid/hierarchy
@@ -72,7 +78,7 @@ robot_tissue_room(solvers/multigrid/cycle
     open_part.h patch_answers.cpp patch_answers.h solve_context.h solve_progress.cpp
     solve_progress.h trial_at_rest.cpp trial_at_rest.h tuning.h warm_start.cpp warm_start.h)
 robot_tissue_room(solvers/newton
-  USES lattice material loads solvers
+  USES lattice membrane material loads solvers
   FILES dof_map.cpp dof_map.h equilibrium.cpp equilibrium.h newton_method.cpp newton_method.h
     sparse_factor.cpp sparse_factor.h tuning.h)
 robot_tissue_room(solvers/paper
@@ -88,7 +94,8 @@ robot_tissue_room(solvers/baselines
     relaxation_method.h relaxation_waves.cpp soa_field.cpp soa_field.h soa_sweeps.cpp tuning.h
     vbd_method.cpp vbd_method.h xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue
-  USES base config lattice cutting surface material loads saving solvers solvers/multigrid/cycle
+  USES base config lattice cutting surface membrane material loads saving solvers
+    solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h tissue.h
   FILES history.cpp history.h load_ramp.h load_stepping.cpp registry.cpp registry.h round_gain.h

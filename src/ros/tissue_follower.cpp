@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "robot_tissue/core/body_load.h"
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
@@ -17,7 +18,7 @@ TissueFollower::TissueFollower(const NodeParameters& parameters, Pipeline& pipel
 
 void TissueFollower::settleFromRest() {
   const Scene& scene = parameters_.scene;
-  if (scene.tissue.gravity != Vec3::Zero() || !scene.supports.empty()) pipeline_.settle();
+  if (hasBodyLoad(scene.tissue) || !scene.supports.empty()) pipeline_.settle();
 }
 
 std::string TissueFollower::waitsAfterJump(const PoseLookUp& look_up) {

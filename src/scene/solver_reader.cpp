@@ -20,6 +20,12 @@ void requireFit(const Entry& entry, const std::string& method, const std::string
              " does not fit this model");
 }
 
+void requireMembranes(const Entry& entry, const std::string& method) {
+  if (traitsOf(method).takes_membranes) return;
+  entry.fail("with tissue.membranes must be " + methodsWithMembranes() + ": " + method +
+             " knows no membranes");
+}
+
 struct SolverReading {
   const TissueConfig& tissue;
   const SolverOverrides& overrides;
@@ -32,6 +38,7 @@ void readMethod(const Entry& entry, SolverReading& reading) {
   if (!method.given()) return;
   reading.solver.method = method.choice(methodNames(), {});
   requireFit(method, reading.solver.method, reading.tissue.model);
+  if (!reading.tissue.membranes.empty()) requireMembranes(method, reading.solver.method);
 }
 
 void readTolerance(const Entry& entry, SolverReading& reading) {

@@ -274,6 +274,10 @@ const KeyTable<TissueReading> kBodyKeys = {
 const KeyTable<TissueReading> kGridKeys = {
     {"regions", readRegions},
     {"fixed", readFixed},
+    {"membranes",
+     [](const Entry& entry, TissueReading& reading) {
+       reading.tissue.membranes = readMembranes(entry, reading.tissue);
+     }},
     {"gravity", readGravity},
 };
 

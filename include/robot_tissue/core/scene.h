@@ -41,6 +41,20 @@ struct Region {
   bool own_modulus = false;                  // its young_modulus is such an entry
 };
 
+// A wall too thin for the lattice, on the surface or a part of it: stretches, bends, and may have a
+// pressure inside (doc/model.md, "Membranes").
+struct MembraneConfig {
+  enum class Side { kAll, kOuter, kInner };
+
+  std::string name;
+  double thickness = 0.0;       // m
+  double young_modulus = 0.0;   // Pa, at small strain
+  double poisson_ratio = 0.45;  // 0 .. 0.5
+  Side side = Side::kAll;       // of the surface: around the tissue, or around its cavities
+  std::vector<Box> boxes;       // at rest; none: everywhere on that side
+  double pressure = 0.0;        // Pa, of what that side encloses over what is around the tissue
+};
+
 // The tissue moves in time, by its mass; in its stress the rate of strain counts, too:
 // stress = elastic + damping_time * rate of it.
 struct TimeConfig {
@@ -59,6 +73,7 @@ struct TissueConfig {
   Material material;
   std::vector<Region> regions;     // a later one wins where two overlap
   std::vector<Box> fixed;          // nodes in these never move; none: the block floats in space
+  std::vector<MembraneConfig> membranes;
   Vec3 gravity = Vec3::Zero();     // m/s^2
   std::optional<TimeConfig> time;  // empty: every shape is an equilibrium
   FreePieces free_pieces = FreePieces::kStay;

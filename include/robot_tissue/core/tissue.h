@@ -24,6 +24,7 @@
 namespace robot_tissue {
 
 class History;
+class MembranePlan;
 class PieceNumbers;
 class SolverMethod;
 class TimeIntegrator;
@@ -323,6 +324,7 @@ class Tissue {
   SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
   SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
   Vec3 patchForce(const LoadingPatch& patch) const;
+  void planMembranes(const TissueConfig& tissue);
   void rebuildSurface();
 
   Lattice lattice_;
@@ -349,7 +351,8 @@ class Tissue {
   std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
   double rest_volume_ = 0.0;                         // m^3
   Vec3 weight_ = Vec3::Zero();                       // N
-  bool has_gravity_ = false;
+  std::unique_ptr<const MembranePlan> membranes_;  // null: none
+  bool has_body_load_ = false;  // gravity, or a pressure: the rest shape is not in balance
   Vec3 gravity_ = Vec3::Zero();  // m/s^2
   std::vector<Vec3> vertices_;   // deformed, of the surface
   Box bounds_;                   // of them

@@ -18,7 +18,7 @@ class TissueFollower {
   // The arguments must outlive it.
   TissueFollower(const NodeParameters& parameters, Pipeline& pipeline);
 
-  // Balances the tissue under what acts without tools: gravity and the supports.
+  // Balances the tissue under what acts without tools: gravity, pressure and supports.
   void settleFromRest();
   // A good pose that tools jumped to, farther than is followed, may be a wrong one: while tools
   // touch, it has to last before the good shape is given up for it. What is said then; empty: the

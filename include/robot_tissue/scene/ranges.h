@@ -18,6 +18,9 @@ inline Range direction() { return {-1e6, 1e6, ""}; }
 inline Range youngModulus() { return {1e-3, 1e13, "Pa"}; }
 inline Range springStiffness() { return {1e-6, 1e12, "N/m"}; }
 inline Range poissonRatio() { return {0.25, 0.49, ""}; }
+inline Range membraneThickness() { return {1e-9, 1e3, "m"}; }
+inline Range membranePoissonRatio() { return {0.0, 0.5, ""}; }
+inline Range pressure() { return {-1e9, 1e9, "Pa"}; }
 inline Range stiffening() { return {0.0, 1e3, ""}; }  // 0: neo-Hookean
 inline Range density() { return {1e-3, 1e6, "kg/m^3"}; }
 inline Range gravity() { return {-1e4, 1e4, "m/s^2"}; }
@@ -42,6 +45,7 @@ constexpr double kLeastForce = 1e-9;      // N, of one that is not zero
 constexpr double kLeastGravity = 1e-6;    // m/s^2, likewise
 constexpr double kLeastDirection = 1e-6;  // of a vector that has a direction
 constexpr double kMostContrast = 1e6;     // of a region's stiffness and the tissue's
+constexpr double kMostMembraneContrast = 1e7;  // of E t and the tissue's E h
 constexpr double kFarthestCell = 1e6;     // spacings from the origin to the tissue's far end
 
 }  // namespace ranges

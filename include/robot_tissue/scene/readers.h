@@ -28,6 +28,8 @@ inline bool hardPatchesOnly(const std::string& model) {
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,
                         Remarks& remarks);
 
+std::vector<MembraneConfig> readMembranes(const Entry& entry, const TissueConfig& tissue);
+
 // Refuses a lattice that the memory which is free does not hold with this method.
 void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::string& method);
 

@@ -7,6 +7,7 @@
 #include "config/material.h"
 #include "material/cell_modes.h"
 #include "material/elastic_law.h"
+#include "membrane/membrane.h"
 
 namespace robot_tissue {
 namespace {
@@ -27,7 +28,7 @@ ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
 }  // namespace
 
 ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
-    : lattice_(lattice), moves_in_time_(config.time.has_value()) {
+    : lattice_(lattice), moves_in_time_(config.time.has_value()), has_membranes_(!config.membranes.empty()) {
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
   for (const Composition& composition : lattice.compositions()) {
     std::vector<std::pair<Moduli, double>> parts;
@@ -94,10 +95,12 @@ void ElasticModel::addInertia(const Cell& cell, CellHessian& hessian) const {
   }
 }
 
-double ElasticModel::inertialForceNorm(const LatticeState& state) const {
-  if (inertia_ == nullptr) return 0.0;
+double ElasticModel::freeForceNorm(const LatticeState& state) const {
+  const double pressed =
+      membrane_ ? membrane_->pressureNorm(membrane_->ofNodes(state.displacement)) : 0.0;
+  if (inertia_ == nullptr) return pressed;
   const std::vector<double> masses = nodeMasses(*state.cells);
-  double squared = 0.0;
+  double squared = pressed * pressed;
   for (std::size_t node = 0; node < masses.size(); ++node) {
     const Vec3 held = inertia_->per_mass * masses[node] * state.displacement[node];
     squared += (inertia_->force[node] - held).squaredNorm();
@@ -122,6 +125,7 @@ Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
     force += cornerWeight(cell, corner) - shaped(state, cell).gradient(corner) -
              cornerInertia(cell, corner) * state.displacement[at(node)];
   }
+  if (membrane_) force += membrane_->force(state.displacement, node);
   return force;
 }
 
@@ -150,6 +154,7 @@ Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
     }
     stiffness += lattice_.spacing() * (moduli.shear * invariant + (moduli.bulk + third) * widest);
   }
+  if (membrane_) stiffness += membrane_->restStiffness(node);
   return Vec3::Constant(stiffness);
 }
 
@@ -187,6 +192,7 @@ double ElasticModel::energy(const LatticeState& state) const {
                 cornerWeight(cell, corner).dot(moved);
     }
   }
+  if (membrane_) energy += membrane_->energy(membrane_->ofNodes(state.displacement));
   if (inertia_ == nullptr) return energy;
   for (std::size_t node = 0; node < inertia_->force.size(); ++node) {
     energy -= inertia_->force[node].dot(state.displacement[node]);
@@ -204,6 +210,11 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
       forces[node] += cornerWeight(cell, corner) - shape.gradient(corner) -
                       cornerInertia(cell, corner) * state.displacement[node];
     }
+  }
+  if (!membrane_) return forces;
+  const std::vector<Vec3> of_membrane = membrane_->forces(membrane_->ofNodes(state.displacement));
+  for (std::size_t i = 0; i < of_membrane.size(); ++i) {
+    forces[at(membrane_->nodes()[i])] += of_membrane[i];
   }
   return forces;
 }

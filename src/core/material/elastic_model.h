@@ -1,11 +1,14 @@
 // Model `elastic`: an isotropic material with moduli in Pa, a cell of the lattice at a time
 // (core/material/elastic_cell.h, doc/model.md).
 //
-// Cells are LatticeState::cells; ghosts are nodes like others.
+// Cells are LatticeState::cells; ghosts are nodes like others. Membranes have their share in all
+// that is of nodes; what is of cells is without them.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "material/elastic_cell.h"
@@ -36,9 +39,13 @@ class ElasticModel : public EnergyModel {
                         std::vector<Vec3>& forces) const;
   CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
-  double inertialForceNorm(const LatticeState& state) const override;
+  double freeForceNorm(const LatticeState& state) const override;
   int cellsBeyondLaw(const LatticeState& state) const override;
   void setInertia(const InertialTerm* inertia) override { inertia_ = inertia; }
+  void setMembrane(std::shared_ptr<const Membrane> membrane) override {
+    membrane_ = std::move(membrane);
+  }
+  std::shared_ptr<const Membrane> membrane() const override { return membrane_; }
 
   // Second derivative of the energy in this node alone (N/m).
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
@@ -50,6 +57,7 @@ class ElasticModel : public EnergyModel {
   double cornerMass(const Cell& cell, int corner) const;
   std::vector<Vec3> cellForces(const LatticeState& state) const;  // no gravity, no time step (N)
   std::vector<double> nodeMasses(const CellSet& cells) const;     // ghosts last (kg)
+  bool hasMembranes() const { return has_membranes_; }            // the scene has, at least
   bool movesInTime() const { return moves_in_time_; }       // solves may have an inertial term
   const InertialTerm* inertia() const { return inertia_; }  // null: none
 
@@ -71,7 +79,9 @@ class ElasticModel : public EnergyModel {
   const Lattice& lattice_;
   bool moves_in_time_;
   const InertialTerm* inertia_ = nullptr;
-  std::vector<Substance> substances_;  // per composition of the lattice
+  bool has_membranes_;
+  std::shared_ptr<const Membrane> membrane_;  // null: none
+  std::vector<Substance> substances_;         // per composition of the lattice
 };
 
 }  // namespace robot_tissue

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "material/tissue_model.h"
@@ -28,8 +29,12 @@ class EnergyModel : public TissueModel {
   // nodeForce of every node at once (N): minus the energy's gradient.
   virtual std::vector<Vec3> nodeForces(const LatticeState& state) const = 0;
 
-  // Length of the vector of all nodes' forces of inertia and viscosity (N); 0 without a time step.
-  virtual double inertialForceNorm(const LatticeState&) const { return 0.0; }
+  // Length of the vector of all nodes' forces that hold on to nothing (N): of inertia and viscosity
+  // in a time step, of a pressure inside.
+  virtual double freeForceNorm(const LatticeState&) const { return 0.0; }
+
+  // Part of the energy beside the cells; null: none.
+  virtual std::shared_ptr<const Membrane> membrane() const { return nullptr; }
 
   virtual NodeBalance nodeBalance(const LatticeState& state, int node) const = 0;
 
@@ -41,7 +46,7 @@ class EnergyModel : public TissueModel {
   virtual CellHessian cellHessian(const LatticeState& state, int cell) const = 0;
 
   // Calls `visit` with the corners and the second derivative of every cell that has energy, in a
-  // fixed order. Their sum is the energy's second derivative.
+  // fixed order. Their sum is the energy's second derivative, but for the membrane's.
   using VisitHessian =
       std::function<void(const std::array<int, kCorners>& corners, const CellHessian& hessian)>;
   virtual void visitHessians(const LatticeState& state, const VisitHessian& visit) const = 0;

@@ -2,12 +2,15 @@
 // constant after construction, but for the time step; the shape is an argument.
 #pragma once
 
+#include <memory>
+
 #include "config/material.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
 
+class Membrane;
 struct InertialTerm;
 
 class TissueModel {
@@ -41,6 +44,9 @@ class TissueModel {
   // Energy and forces are those of a time step from now on; null: of the shape alone. The term must
   // live so long.
   virtual void setInertia(const InertialTerm*) {}
+
+  // Energy and forces have those of these membranes, too, from now on; null: none.
+  virtual void setMembrane(std::shared_ptr<const Membrane>) {}
 };
 
 }  // namespace robot_tissue

@@ -49,8 +49,13 @@ const EnergyModel& requireEnergy(const TissueModel& model, const std::string& me
                    "allowed: paper, or tissue.model elastic");
 }
 
+// For methods that know its cells, and nothing besides.
 const ElasticModel& requireElastic(const TissueModel& model, const std::string& method) {
-  if (const auto* elastic = dynamic_cast<const ElasticModel*>(&model)) return *elastic;
+  if (const auto* elastic = dynamic_cast<const ElasticModel*>(&model)) {
+    if (!elastic->hasMembranes()) return *elastic;
+    throw InputError("solver.method: '" + method + "' knows no membranes; allowed with " +
+                     "tissue.membranes: " + methodsWithMembranes());
+  }
   throw InputError("solver.method: '" + method +
                    "' knows the cells of tissue.model elastic alone; allowed: paper, or "
                    "tissue.model elastic");
@@ -117,7 +122,7 @@ struct MethodEntry {
 
 const std::vector<ModelEntry>& models() {
   static const std::vector<ModelEntry> all = {
-      {"elastic", makeElastic, {true, false, false, true}},
+      {"elastic", makeElastic, {true, false, false, true, true}},
       {"six_spring", makeSixSpring, {false, true, true, false}},
   };
   return all;
@@ -128,9 +133,9 @@ const std::vector<ModelEntry>& models() {
 // reach the ghosts that cuts give the cells.
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> all = {
-      {"layered", makeLayered, {"elastic"}, {true, true, true, 0.0}},
-      {"newton", makeNewton, {"elastic"}, {false, false, true, tuning::kFactorBytes}},
-      {"paper", makePaper, {"six_spring"}, {true, false, false, 0.0}},
+      {"layered", makeLayered, {"elastic"}, {true, true, true, true, 0.0}},
+      {"newton", makeNewton, {"elastic"}, {false, false, true, true, tuning::kFactorBytes}},
+      {"paper", makePaper, {"six_spring"}, {true, false, false, false, 0.0}},
       {"vbd", makeVbd, {"elastic"}, {}},
       {"xpbd", makeXpbd, {"elastic"}, {}},
       {"explicit", makeExplicit, {"elastic"}, {}},
@@ -180,6 +185,14 @@ std::string modelsWith(bool ModelTraits::*trait) {
 
 const MethodTraits& traitsOf(const std::string& method) {
   return named(method, "solver.method", methods()).traits;
+}
+
+std::string methodsWithMembranes() {
+  std::vector<std::string> names;
+  for (const MethodEntry& method : methods()) {
+    if (method.traits.takes_membranes) names.emplace_back(method.name);
+  }
+  return listed(names);
 }
 
 std::vector<std::string> methodsFor(const std::string& model) {

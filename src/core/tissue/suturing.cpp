@@ -155,7 +155,7 @@ SolveReport Tissue::drawThreadsIn() {
 SolveReport Tissue::settleFromRest() {
   SolveReport report;
   threads_->loosen(state_.displacement);
-  if (has_gravity_) report = settle();
+  if (has_body_load_) report = settle();
   return threads_->anyWhole() ? drawThreadsIn() : report;
 }
 

@@ -9,6 +9,8 @@
 #include "cutting/split_cells.h"
 #include "cutting/tear.h"
 #include "lattice/piece_numbers.h"
+#include "membrane/membrane_plan.h"
+#include "robot_tissue/core/body_load.h"
 #include "robot_tissue/core/cells.h"
 #include "surface/mesh_surface.h"
 #include "tissue/history.h"
@@ -40,11 +42,10 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
       model_(makeModel(tissue, lattice_)),
       solver_(solver),
       balance_fingerprint_(balanceFingerprint(tissue, solver)),
-      method_(makeMethod(solver, lattice_, *model_)),
       history_(std::make_unique<History>()),
       threads_(std::make_unique<Threads>()),
       drops_free_(tissue.free_pieces == FreePieces::kDrop),
-      has_gravity_(!tissue.gravity.isZero()),
+      has_body_load_(hasBodyLoad(tissue)),
       gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
   if (tissue.time) {
@@ -54,6 +55,8 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   tear_strains_ = tearStrains(lattice_, tissue);
   if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
   rebuildSurface();
+  planMembranes(tissue);
+  method_ = makeMethod(solver, lattice_, *model_);
   weight_ = model_->weight(state_);
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
 }
@@ -320,7 +323,7 @@ SolveReport Tissue::solveFromRest() {
   std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
   SolveReport report;
   const bool sutured = threads_->anyWhole();
-  if (has_gravity_ || sutured) {
+  if (has_body_load_ || sutured) {
     const std::size_t named = std::exchange(named_patches_, 0);
     patches_.clear();
     report = settleFromRest();
@@ -336,7 +339,7 @@ SolveReport Tissue::solveFromRest() {
   }
   if (!ramps.empty()) {
     report = stepLoadsByItself(ramps, {});
-  } else if (!has_gravity_ && !sutured) {
+  } else if (!has_body_load_ && !sutured) {
     describeShape(report);
     report.volume_ratio = volumeRatio();
     last_report_ = report;

@@ -5,6 +5,7 @@
 
 #include "lattice/piece_numbers.h"
 #include "material/tissue_model.h"
+#include "membrane/membrane_plan.h"
 #include "robot_tissue/core/tissue.h"
 #include "saving/bytes.h"
 #include "saving/saved_state.h"
@@ -37,6 +38,18 @@ void add(const Region& region, ByteWriter& out) {
   add(region.material, out);
 }
 
+void add(const MembraneConfig& membrane, ByteWriter& out) {
+  out.f64(membrane.thickness);
+  out.f64(membrane.young_modulus);
+  out.f64(membrane.poisson_ratio);
+  out.f64(membrane.pressure);
+  out.u32(static_cast<std::uint32_t>(membrane.side));
+  for (const Box& box : membrane.boxes) {
+    out.vec3(box.min());
+    out.vec3(box.max());
+  }
+}
+
 // Rim springs are as stiff as the shear modulus at their nodes (loads/patch_rim.h); exact where all
 // cells at a node have one Poisson's ratio.
 void scaleRim(const LatticeState& state, const TissueModel& earlier, const TissueModel& now,
@@ -54,6 +67,7 @@ std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig&
   out.text(tissue.model);
   add(tissue.material, out);
   for (const Region& region : tissue.regions) add(region, out);
+  for (const MembraneConfig& membrane : tissue.membranes) add(membrane, out);
   out.vec3(tissue.gravity);
   if (tissue.time) out.f64(tissue.time->damping_time);
   out.text(solver.method);
@@ -73,6 +87,11 @@ bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   lattice_.weigh(tissue);
   method_.reset();  // it refers to the model
   const std::unique_ptr<TissueModel> earlier = std::exchange(model_, makeModel(tissue, lattice_));
+  if (membranes_) {
+    membranes_ = std::make_unique<MembranePlan>(tissue.membranes, membranes_->asMade(),
+                                                tissue.spacing);
+    model_->setMembrane(membranes_->on(surface_));
+  }
   method_ = makeMethod(solver, lattice_, *model_);
   for (auto* patches : {&patches_, &due_}) {
     for (LoadingPatch& patch : *patches) scaleRim(state_, *earlier, *model_, patch);

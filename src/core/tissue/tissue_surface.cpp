@@ -3,6 +3,9 @@
 #include <atomic>
 #include <utility>
 
+#include "material/tissue_model.h"
+#include "membrane/membrane_plan.h"
+#include "robot_tissue/core/method_names.h"
 #include "robot_tissue/core/tissue.h"
 #include "surface/mesh_surface.h"
 
@@ -54,6 +57,17 @@ void Tissue::deformSurface() {
   std::for_each(own.rbegin(), own.rend(), exchange);
 }
 
+// On the surface as it was made.
+void Tissue::planMembranes(const TissueConfig& tissue) {
+  if (tissue.membranes.empty()) return;
+  if (!traitsOfModel(tissue.model).has_membranes || tissue.time) {
+    throw InputError("tissue.membranes: allowed with tissue.model " +
+                     modelsWith(&ModelTraits::has_membranes) + ", without tissue.time");
+  }
+  membranes_ = std::make_unique<MembranePlan>(tissue.membranes, surface_, tissue.spacing);
+  model_->setMembrane(membranes_->on(surface_));
+}
+
 void Tissue::rebuildSurface() {
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);
@@ -61,6 +75,7 @@ void Tissue::rebuildSurface() {
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
+  if (membranes_) model_->setMembrane(membranes_->on(surface_));
   rebindThreads();
 }
 

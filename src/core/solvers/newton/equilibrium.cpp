@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "membrane/membrane.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -27,6 +29,7 @@ class Assembly {
     TangentStiffness curvature;
     curvature.carried = Eigen::VectorXd::Zero(unknowns_.count());
     addCells(moved, convex, curvature.carried);
+    if (model_.membrane() != nullptr) addMembrane(moved, convex, curvature.carried);
     for (std::size_t patch = 0; patch < shape_.patches.size(); ++patch) {
       for (const RimSpring& spring : shape_.patches[patch].rim) addSpring(patch, spring, convex);
       for (const ContactSpring& spring : shape_.patches[patch].contacts) addContact(spring);
@@ -85,6 +88,26 @@ class Assembly {
         }
       }
     });
+  }
+
+  void addMembrane(const std::vector<Vec3>& moved, bool convex, Eigen::VectorXd& carried) {
+    const Membrane& membrane = *model_.membrane();
+    NodeBlocks stiffness = membrane.stiffnessPattern();
+    membrane.findStiffness(membrane.ofNodes(shape_.state.displacement),
+                           convex ? Curvature::kConvex : Curvature::kExact, stiffness);
+    const std::vector<Vec3> force = stiffness.times(membrane.ofNodes(moved));
+    std::vector<std::array<Shares, 3>> shares;
+    for (const int node : membrane.nodes()) shares.push_back(sharesOf(node));
+    for (int row = 0; row < stiffness.rows(); ++row) {
+      for (int i = stiffness.first(row); i < stiffness.last(row); ++i) {
+        add(shares[at(row)], shares[at(stiffness.column(i))], stiffness.block(i));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const Share& share : shares[at(row)][at(axis)]) {
+          carried[share.unknown] += share.weight * force[at(row)][axis];
+        }
+      }
+    }
   }
 
   // A rim spring: energy 1/2 (a - x).K(a - x) of the node's displacement x and the patch's end a.
@@ -211,7 +234,7 @@ Balance balanceOf(const EnergyModel& model, const DofMap& unknowns, const Constr
   }
   balance.unbalanced = unknowns.gather(shape, forces) + on_patches;
   balance.holding =
-      std::max({std::sqrt(held_squared), pushed, model.inertialForceNorm(shape.state)});
+      std::max({std::sqrt(held_squared), pushed, model.freeForceNorm(shape.state)});
   return balance;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "membrane/membrane.h"
 #include "solvers/newton/tuning.h"
 
 namespace robot_tissue {
@@ -13,6 +14,12 @@ NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
   const LatticeState rest = lattice.restState();
   for (int node = 0; node < lattice.nodeCount(); ++node) {
     stiffness_ += model.nodeStiffness(rest, node).mean() / lattice.nodeCount();
+  }
+  hold_ = stiffness_;
+  if (model.membrane() == nullptr) return;
+  // Where cells are much softer than membranes, what holds pieces must not hold back cells.
+  for (const int node : model.membrane()->nodes()) {
+    hold_ -= model.membrane()->restStiffness(node) / lattice.nodeCount();
   }
 }
 
@@ -106,7 +113,7 @@ bool NewtonMethod::factorize(const ConstrainedState& shape, const std::vector<Ve
     matrix_ = std::move(curvature.matrix);
     carried_ = std::move(curvature.carried);
     diagonal_shift_ = 0.0;
-    diagonalShift(tuning::kHold * stiffness_);
+    diagonalShift(tuning::kHold * hold_);
     if (!analyzed_) factor_->analyze(matrix_);
     analyzed_ = true;
     if (factor_->factorize(matrix_)) return true;

@@ -59,6 +59,7 @@ class NewtonMethod : public SolverMethod {
   const EnergyModel& model_;
   NewtonOptions options_;
   double stiffness_ = 0.0;  // mean over the nodes at rest (N/m)
+  double hold_ = 0.0;       // likewise, of cells alone
   DofMap unknowns_;
   std::vector<int> rims_;  // nodes of rims and contacts at the matrix's last analysis
   std::shared_ptr<const CellSet> cells_;  // likewise

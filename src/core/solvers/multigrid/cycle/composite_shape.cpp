@@ -115,6 +115,11 @@ void CompositeShape<Real>::correctAndSmooth(double alpha, int smoother_steps) {
 }
 
 template <typename Real>
+void CompositeShape<Real>::renewMembranes() {
+  if (levels_->renewMembranes()) finest().findForces();
+}
+
+template <typename Real>
 double CompositeShape<Real>::workOfForces(const Vector& step) {
   return workOfForcesInPart(step) +
          UncoveredPart<Real>::workOf(levels_->uncovered().findForces(), step.uncovered);

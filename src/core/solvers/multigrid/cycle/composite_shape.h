@@ -53,6 +53,9 @@ class CompositeShape {
   // (1 or less), then steps of the smoother.
   void correctAndSmooth(double alpha, int smoother_steps);
 
+  // Membranes are as stiff as this shape makes them, for the coarse levels and the smoother.
+  void renewMembranes();
+
   // Work in a step by the forces as they are now; and what the open part has in it.
   double workOfForces(const Vector& step);
   double workOfForcesInPart(const Vector& step) const;

@@ -8,6 +8,8 @@ namespace {
 
 namespace tuning = cycle_tuning;
 
+bool isPowerOfTwo(int number) { return (number & (number - 1)) == 0; }
+
 }  // namespace
 
 template <typename Real>
@@ -38,6 +40,7 @@ SolveStatus FasCgIteration<Real>::run(SolveContext& solve) {
     if (solve.cycles > 0 && solve.budget.isSpent()) break;
     makeCycle(solve);
     ++solve.cycles;
+    if (isPowerOfTwo(solve.cycles)) shape_.renewMembranes();
   }
   if (status == SolveStatus::kLate) finishLate(solve);
   // What is in balance stays, bit for bit.

@@ -34,6 +34,7 @@ void FasCgSolver<Real>::forget() {
   part_.forget();
   warm_start_.forget();
   forces_.noteHeld(0.0);
+  if (shape_.exists()) shape_.levels().forgetMembranes();
 }
 
 template <typename Real>
@@ -151,6 +152,7 @@ void FasCgSolver<Real>::prepare(const SolveContext& solve) {
   takeTimeStep(solve);
   shape_.levels().constraints().bind(solve.shape, solve.hold);
   shape_.levels().displacements().take(displacement, solve.hold.dirichletMask());
+  shape_.levels().renewMembranes();
   limits_.begin(displacement);
   warm_start_.noteStart();
   shape_.finest().findForces();
@@ -218,7 +220,8 @@ void FasCgSolver<Real>::answer(const SolveContext& solve, SolveReport& report) {
 }
 
 Precision precisionFor(const ElasticModel& model, const LayeredOptions& options) {
-  const bool suffices = options.tolerance >= tuning::kSinglePrecision && !model.movesInTime();
+  const bool suffices = options.tolerance >= tuning::kSinglePrecision && !model.movesInTime() &&
+                        !model.hasMembranes();
   return suffices ? Precision::kSingle : Precision::kDouble;
 }
 

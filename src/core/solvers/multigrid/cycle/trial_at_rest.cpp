@@ -41,6 +41,8 @@ double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
   const Field<Real> weight = shape.finest().right_hand_side;
   shape.finest().clearRightHandSide();
   levels.displacements().take(rest.state.displacement, fixed.dirichletMask());
+  levels.renewMembranes();
+  levels.forgetMembranes();
   shape.finest().findForces();
   double least = 1.0;
   const int cycles = levels.isWhole() ? tuning::kTrialCycles : tuning::kTrialCyclesInPart;

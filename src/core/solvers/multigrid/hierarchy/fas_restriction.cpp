@@ -32,6 +32,7 @@ void FasRestriction<Real>::restrictTo(std::size_t index) {
   fine.hideInterface();
   transfer.restrictDisplacement(fine.displacement, coarse.part().covered, coarse.displacement);
   to.start = coarse.displacement;
+  coarse.startMembrane();
   for (GroupVector& vector : coarse.constrained.motion) vector.setZero();
   restrictSprings(index);
   to.residual_of_groups = fine.constrained.force;

@@ -44,6 +44,10 @@ class GridHierarchy {
   // As CompositeGrid::takeTimeStep.
   void takeTimeStep(const InertialTerm* inertia) { grid_.takeTimeStep(inertia); }
 
+  // As CompositeGrid::renewMembranes; when what holds the nodes is bound.
+  bool renewMembranes() { return grid_.renewMembranes(); }
+  void forgetMembranes() { grid_.forgetMembranes(); }
+
   LevelConstraints<Real>& constraints() { return constraints_; }
   NodeDisplacements<Real>& displacements() { return displacements_; }
   const NodeDisplacements<Real>& displacements() const { return displacements_; }

@@ -35,6 +35,12 @@ constexpr double kMostOpen = 0.6;
 constexpr int kAroundMiddle = 8;
 constexpr int kLayersAroundMiddle = 6;
 
+// --- Membranes
+
+// Spacings: their stiffness is found anew where a node of theirs has moved farther (chosen). Up: it
+// is found less often, and fits worse.
+constexpr double kSameMembrane = 0.02;
+
 // --- Rounding and measuring
 
 // Relative: a displacement in spacings that was written in meters and read back may differ by so

@@ -85,6 +85,7 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
   for (const LevelGroup& group : groups) {
     nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
   }
+  for (const OwnStiffness& own : own_stiffness) nodes.push_back(own.node);
   for (std::size_t node = 0; node < held.size(); ++node) {
     if (held[node] != 0 && held[node] != kAllAxes) nodes.push_back(static_cast<int>(node));
   }
@@ -99,6 +100,7 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
     for (LevelSpring::Carrier& carrier : spring.carriers)
       carrier.constrained = indexOf(carrier.node);
   }
+  for (OwnStiffness& own : own_stiffness) own.constrained = indexOf(own.node);
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
       ConstrainedNode& constrained = all_[at(indexOf(groups[group].nodes[i]))];
@@ -231,6 +233,9 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
   force = right_hand_side;
   contact_force_.setZero();
   if (what == Find::kForcesAndStiffness) {
+    for (const OwnStiffness& own : own_stiffness) {
+      all_[at(own.constrained)].stiffness += own.stiffness;
+    }
     group_stiffness_.assign(groups.size(), Matrix6::Zero());
     joining_.clear();
   }

@@ -1,5 +1,5 @@
-// Nodes of a level that do not move like the others: those with springs, held in part, or hard in a
-// patch that a force moves (own). They are few; forces and steps in double precision.
+// Nodes of a level that do not move like the others: those with springs, held in part, on a
+// membrane, or hard in a patch that a force moves (own). Forces and steps in double precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +30,13 @@ struct LevelSpring {
   const ContactSpring* contact = nullptr;               // whose law it has instead
 };
 
+// Of a node beside its cells', in the directions that it has (membranes).
+struct OwnStiffness {
+  int node = 0;
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  int constrained = 0;  // set by ConstrainedNodes
+};
+
 // Nodes that move as one hard body: a shift and, where it turns, a turn about the center.
 struct LevelGroup {
   std::vector<int> nodes;
@@ -49,6 +56,7 @@ class ConstrainedNodes {
  public:
   std::vector<LevelSpring> springs;          // `bind` after a change of nodes
   std::vector<LevelGroup> groups;            // likewise
+  std::vector<OwnStiffness> own_stiffness;   // likewise
   std::vector<GroupVector> right_hand_side;  // on groups, besides
   std::vector<GroupVector> force;            // on groups, unbalanced
   std::vector<GroupVector> motion;           // of groups, since it was last set to zero

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simd/field_kernel.h"
 #include "solvers/multigrid/level/tuning.h"
@@ -74,6 +75,41 @@ void GridLevel<Real>::measureSteps() {
 }
 
 template <typename Real>
+void GridLevel<Real>::setMembrane(LevelMembrane<Real> membrane) {
+  membrane_ = std::move(membrane);
+  for (const int entry : membrane_->entries()) {
+    constrained.own_stiffness.emplace_back();
+    constrained.own_stiffness.back().node = entry;
+  }
+  bind();
+}
+
+template <typename Real>
+void GridLevel<Real>::renewMembrane() {
+  membrane_->renew(displacement);
+  takeStiffnessOfMembrane();
+}
+
+template <typename Real>
+void GridLevel<Real>::renewMembrane(const GridLevel& fine) {
+  membrane_->renew(*fine.membrane_, fine.held_);
+  takeStiffnessOfMembrane();
+}
+
+template <typename Real>
+void GridLevel<Real>::takeStiffnessOfMembrane() {
+  const std::vector<Eigen::Matrix3d> diagonal = membrane_->diagonal(greatestStiffness());
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    constrained.own_stiffness[i].stiffness = diagonal[i];
+  }
+}
+
+template <typename Real>
+void GridLevel<Real>::startMembrane() {
+  if (membrane_) membrane_->startAt(displacement);
+}
+
+template <typename Real>
 void GridLevel<Real>::freeAll() {
   std::fill(held_.begin(), held_.end(), std::uint8_t{0});
   constrained.springs.clear();
@@ -131,6 +167,7 @@ void GridLevel<Real>::findForces() {
 template <typename Real>
 void GridLevel<Real>::findForces(Find what) {
   cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, what);
+  if (membrane_) membrane_->addForces(displacement, cells_.whole);
   constrained.findForces(cells_, displacement, what, force);
 }
 

@@ -7,12 +7,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
 #include "solvers/multigrid/level/cell_operator.h"
 #include "solvers/multigrid/level/constrained_nodes.h"
+#include "solvers/multigrid/level/level_membrane.h"
 
 namespace robot_tissue {
 
@@ -34,9 +36,19 @@ class GridLevel {
   // What holds the nodes: first nothing does, then `hold` one by one, then `bind`. Bits of axes.
   void freeAll();
   void hold(int node, unsigned axes) { held_[at(node)] |= static_cast<std::uint8_t>(axes); }
+  const std::vector<std::uint8_t>& dirichletMask() const { return held_; }
   unsigned dirichletAxes(int node) const { return held_[at(node)]; }
   ConstrainedNodes<Real> constrained;  // with springs and groups
   void bind();
+
+  // Membranes act from now on; to be bound, and renewed, anew.
+  void setMembrane(LevelMembrane<Real> membrane);
+  const std::optional<LevelMembrane<Real>>& membrane() const { return membrane_; }
+  // Their stiffness as the shape is now; on a coarse level, as the finer one's is.
+  void renewMembrane();
+  void renewMembrane(const GridLevel& fine);
+  // The displacement is where the level starts from.
+  void startMembrane();
 
   const LevelPart& part() const { return cells_.part(); }
   // Nodes next to free ones that only the next coarser level moves.
@@ -49,7 +61,7 @@ class GridLevel {
 
   // Per entry, stiffness of the nodes' inertia in a time step; empty: none. Forces are stale then.
   void setInertia(std::vector<Real> stiffness) { cells_.inertia = std::move(stiffness); }
-  // Of cells and the right-hand side alone, as last found.
+  // Of cells, membranes and the right-hand side alone, as last found.
   Vec3 forceOfCells(int node) const { return vectorAt(cells_.whole, node); }
 
   // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
@@ -80,6 +92,7 @@ class GridLevel {
  private:
   void findForces(Find what);
   void measureSteps();
+  void takeStiffnessOfMembrane();
   void findFree();
 
   void clearStep();
@@ -88,6 +101,7 @@ class GridLevel {
                                         const std::vector<GroupVector>& residual_of_groups);
 
   CellOperator<Real> cells_;
+  std::optional<LevelMembrane<Real>> membrane_;  // none: no membranes
   std::vector<std::uint8_t> held_;
   std::vector<Real> rest_stiffness_;
   double step_ = 0.5;       // one over greatestStiffness()

@@ -10,6 +10,8 @@ namespace robot_tissue::level_tuning {
 // (chosen). Up: slower to build; nearer to the greatest stiffness.
 constexpr int kPowerSteps = 20;
 constexpr double kPowerMotion = 1e-3;
+// Steps where a motion is known that was the stiffest of a shape before (chosen). Likewise.
+constexpr int kPowerStepsAgain = 4;
 // Times what it found, as it finds no more than there is (chosen). Up: shorter, surer steps of the
 // smoother.
 constexpr double kStiffnessMargin = 1.1;

@@ -1,0 +1,317 @@
+#include "membrane/membrane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace robot_tissue {
+namespace {
+
+// Of the mean area of a membrane's triangles (1): what cuts leave that is smaller counts for
+// nothing, and its shape is rounding.
+constexpr double kNoArea = 1e-7;
+
+template <typename Law>
+typename Law::Corners placesAt(const std::array<int, 4>& vertices,
+                               const std::vector<Vec3>& places) {
+  typename Law::Corners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = places[at(vertices[i])];
+  return corners;
+}
+
+// Where the corners are that an element with this law has.
+template <typename Law>
+typename Law::Corners cornersOf(const Law&, const std::array<int, 4>& vertices,
+                                const std::vector<Vec3>& places) {
+  return placesAt<Law>(vertices, places);
+}
+
+template <typename Law>
+constexpr std::size_t countOf(const Law&) {
+  return std::tuple_size<typename Law::Corners>::value;
+}
+
+double areaOf(const TissueSurface& surface, int triangle) {
+  const MeshTriangle& corners = surface.triangles[at(triangle)];
+  const Vec3& first = surface.rest[at(corners[0])];
+  return 0.5 *
+         (surface.rest[at(corners[1])] - first).cross(surface.rest[at(corners[2])] - first).norm();
+}
+
+// Those with an area.
+std::vector<int> sheetOf(const TissueSurface& surface, const MembranePart& part) {
+  double area = 0.0;
+  for (const int triangle : part.triangles) area += areaOf(surface, triangle);
+  const double least = kNoArea * area / static_cast<double>(part.triangles.size());
+  std::vector<int> sheet;
+  for (const int triangle : part.triangles) {
+    if (areaOf(surface, triangle) > least) sheet.push_back(triangle);
+  }
+  return sheet;
+}
+
+}  // namespace
+
+Membrane::Membrane(const TissueSurface& surface, const std::vector<MembranePart>& parts) {
+  take(surface, parts);
+  bindNodes(surface);
+  makePatterns();
+  const std::vector<Vec3> rest = placesOf(std::vector<Vec3>(nodes_.size(), Vec3::Zero()));
+  rounding_.assign(vertices_.size(), Vec3::Zero());
+  addForces(rest, false, rounding_);
+  NodeBlocks stiffness = pattern_;
+  findStiffness(std::vector<Vec3>(nodes_.size(), Vec3::Zero()), Curvature::kConvex, stiffness);
+  for (int row = 0; row < stiffness.rows(); ++row) {
+    rest_stiffness_.push_back(stiffness.diagonal(row).trace() / 3.0);
+  }
+}
+
+// Elements with the surface's vertices, which are then numbered anew.
+void Membrane::take(const TissueSurface& surface, const std::vector<MembranePart>& parts) {
+  for (const MembranePart& part : parts) {
+    addSheet(surface, part);
+    addHinges(surface, part);
+    for (const int triangle : part.pressed) {
+      const MeshTriangle& corners = surface.triangles[at(triangle)];
+      const Vec3& origin = surface.rest[at(surface.triangles[at(part.pressed.front())][0])];
+      elements_.push_back(
+          {PressedTriangle(part.pressure, origin), {corners[0], corners[1], corners[2], -1}});
+    }
+  }
+  std::vector<int> number(surface.rest.size(), -1);
+  for (Element& element : elements_) {
+    for (int& vertex : element.vertices) {
+      if (vertex < 0) continue;
+      if (number[at(vertex)] < 0) {
+        number[at(vertex)] = static_cast<int>(vertices_.size());
+        vertices_.push_back({surface.rest[at(vertex)], {}});
+        vertex_of_surface_.push_back(vertex);
+      }
+      vertex = number[at(vertex)];
+    }
+  }
+}
+
+void Membrane::addSheet(const TissueSurface& surface, const MembranePart& part) {
+  for (const int triangle : sheetOf(surface, part)) {
+    const MeshTriangle& corners = surface.triangles[at(triangle)];
+    const StretchedTriangle law(
+        part.law,
+        {surface.rest[at(corners[0])], surface.rest[at(corners[1])], surface.rest[at(corners[2])]});
+    elements_.push_back({law, {corners[0], corners[1], corners[2], -1}});
+  }
+}
+
+// Where two triangles of the membrane run along an edge, one each way.
+void Membrane::addHinges(const TissueSurface& surface, const MembranePart& part) {
+  std::map<std::pair<int, int>, int> opposite;  // of a directed edge: the triangle's other corner
+  for (const int triangle : sheetOf(surface, part)) {
+    const MeshTriangle& corners = surface.triangles[at(triangle)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      opposite[{corners[i], corners[(i + 1) % 3]}] = corners[(i + 2) % 3];
+    }
+  }
+  for (const auto& [edge, corner] : opposite) {
+    const auto other = opposite.find({edge.second, edge.first});
+    if (edge.first > edge.second || other == opposite.end()) continue;
+    const std::array<int, 4> corners = {edge.first, edge.second, corner, other->second};
+    const Hinge law(part.law.bending, placesAt<Hinge>(corners, surface.rest));
+    elements_.push_back({law, corners});
+  }
+}
+
+void Membrane::bindNodes(const TissueSurface& surface) {
+  for (const int vertex : vertex_of_surface_) {
+    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) nodes_.push_back(carrier.node);
+  }
+  std::sort(nodes_.begin(), nodes_.end());
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+    for (const NodeWeight& carrier : surface.carriers[at(vertex_of_surface_[vertex])]) {
+      const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), carrier.node);
+      vertices_[vertex].carriers.push_back(
+          {static_cast<int>(found - nodes_.begin()), carrier.weight});
+    }
+  }
+  elements_at_.resize(nodes_.size());
+  for (std::size_t element = 0; element < elements_.size(); ++element) {
+    for (const int vertex : elements_[element].vertices) {
+      if (vertex < 0) continue;
+      for (const NodeWeight& carrier : vertices_[at(vertex)].carriers) {
+        std::vector<int>& there = elements_at_[at(carrier.node)];
+        const int number = static_cast<int>(element);
+        if (there.empty() || there.back() != number) there.push_back(number);
+      }
+    }
+  }
+}
+
+void Membrane::makePatterns() {
+  std::vector<std::pair<int, int>> pairs;
+  for (const Element& element : elements_) {
+    for (const int row : element.vertices) {
+      for (const int column : element.vertices) {
+        if (row >= 0 && column >= 0) pairs.emplace_back(row, column);
+      }
+    }
+  }
+  vertex_pattern_ = NodeBlocks(static_cast<int>(vertices_.size()), std::move(pairs));
+  pairs.clear();
+  const auto for_carriers = [this](auto visit) {
+    for (int row = 0; row < vertex_pattern_.rows(); ++row) {
+      for (int i = vertex_pattern_.first(row); i < vertex_pattern_.last(row); ++i) {
+        for (const NodeWeight& one : vertices_[at(row)].carriers) {
+          for (const NodeWeight& other : vertices_[at(vertex_pattern_.column(i))].carriers) {
+            visit(one.node, other.node);
+          }
+        }
+      }
+    }
+  };
+  for_carriers([&](int row, int column) { pairs.emplace_back(row, column); });
+  pattern_ = NodeBlocks(static_cast<int>(nodes_.size()), std::move(pairs));
+  for_carriers([&](int row, int column) { places_.push_back(pattern_.place(row, column)); });
+}
+
+std::vector<Vec3> Membrane::ofNodes(const std::vector<Vec3>& displacement) const {
+  std::vector<Vec3> moved;
+  moved.reserve(nodes_.size());
+  for (const int node : nodes_) moved.push_back(displacement[at(node)]);
+  return moved;
+}
+
+std::vector<Vec3> Membrane::placesOf(const std::vector<Vec3>& moved) const {
+  std::vector<Vec3> places;
+  places.reserve(vertices_.size());
+  for (const Vertex& vertex : vertices_) {
+    places.push_back(vertex.rest);
+    for (const NodeWeight& carrier : vertex.carriers) {
+      places.back() += carrier.weight * moved[at(carrier.node)];
+    }
+  }
+  return places;
+}
+
+std::vector<Vec3> Membrane::toNodes(const std::vector<Vec3>& on_vertices) const {
+  std::vector<Vec3> on_nodes(nodes_.size(), Vec3::Zero());
+  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+    for (const NodeWeight& carrier : vertices_[vertex].carriers) {
+      on_nodes[at(carrier.node)] += carrier.weight * on_vertices[vertex];
+    }
+  }
+  return on_nodes;
+}
+
+double Membrane::energy(const std::vector<Vec3>& moved) const {
+  const std::vector<Vec3> places = placesOf(moved);
+  double energy = 0.0;
+  for (const Element& element : elements_) {
+    energy += std::visit(
+        [&](const auto& law) { return law.energy(cornersOf(law, element.vertices, places)); },
+        element.law);
+  }
+  return energy;
+}
+
+// Of pressures, or of all else.
+void Membrane::addForces(const std::vector<Vec3>& places, bool of_pressure,
+                         std::vector<Vec3>& on_vertices) const {
+  for (const Element& element : elements_) {
+    if (std::holds_alternative<PressedTriangle>(element.law) != of_pressure) continue;
+    std::visit(
+        [&](const auto& law) {
+          const auto gradient = law.gradient(cornersOf(law, element.vertices, places));
+          for (std::size_t i = 0; i < gradient.size(); ++i) {
+            on_vertices[at(element.vertices[i])] -= gradient[i];
+          }
+        },
+        element.law);
+  }
+}
+
+// At rest, without a pressure, there is none, to the last bit: methods see that nothing is to do.
+std::vector<Vec3> Membrane::forces(const std::vector<Vec3>& moved) const {
+  const std::vector<Vec3> places = placesOf(moved);
+  std::vector<Vec3> on_vertices(vertices_.size(), Vec3::Zero());
+  addForces(places, false, on_vertices);
+  for (std::size_t i = 0; i < rounding_.size(); ++i) on_vertices[i] -= rounding_[i];
+  addForces(places, true, on_vertices);
+  return toNodes(on_vertices);
+}
+
+Vec3 Membrane::force(const std::vector<Vec3>& displacement, int node) const {
+  Vec3 force = Vec3::Zero();
+  const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), node);
+  if (found == nodes_.end() || *found != node) return force;
+  const int own = static_cast<int>(found - nodes_.begin());
+  std::vector<Vec3> places(4);
+  for (const int number : elements_at_[at(own)]) {
+    const Element& element = elements_[at(number)];
+    std::visit(
+        [&](const auto& law) {
+          for (std::size_t i = 0; i < countOf(law); ++i) {
+            const Vertex& vertex = vertices_[at(element.vertices[i])];
+            places[i] = vertex.rest;
+            for (const NodeWeight& carrier : vertex.carriers) {
+              places[i] += carrier.weight * displacement[at(nodes_[at(carrier.node)])];
+            }
+          }
+          const auto gradient = law.gradient(cornersOf(law, {0, 1, 2, 3}, places));
+          for (std::size_t i = 0; i < countOf(law); ++i) {
+            for (const NodeWeight& carrier : vertices_[at(element.vertices[i])].carriers) {
+              if (carrier.node == own) force -= carrier.weight * gradient[i];
+            }
+          }
+        },
+        element.law);
+  }
+  return force;
+}
+
+double Membrane::pressureNorm(const std::vector<Vec3>& moved) const {
+  std::vector<Vec3> on_vertices(vertices_.size(), Vec3::Zero());
+  addForces(placesOf(moved), true, on_vertices);
+  double squared = 0.0;
+  for (const Vec3& force : toNodes(on_vertices)) squared += force.squaredNorm();
+  return std::sqrt(squared);
+}
+
+void Membrane::findStiffness(const std::vector<Vec3>& moved, Curvature curvature,
+                             NodeBlocks& stiffness) const {
+  const std::vector<Vec3> places = placesOf(moved);
+  NodeBlocks of_vertices = vertex_pattern_;
+  for (const Element& element : elements_) {
+    std::visit(
+        [&](const auto& law) {
+          const auto hessian = law.hessian(cornersOf(law, element.vertices, places), curvature);
+          const int count = static_cast<int>(countOf(law));
+          for (int i = 0; i < count; ++i) {
+            for (int j = 0; j < count; ++j) {
+              const int place = of_vertices.place(element.vertices[at(i)], element.vertices[at(j)]);
+              of_vertices.block(place) += hessian.template block<3, 3>(3 * i, 3 * j);
+            }
+          }
+        },
+        element.law);
+  }
+  stiffness.clear();
+  auto place = places_.begin();
+  for (int row = 0; row < of_vertices.rows(); ++row) {
+    for (int i = of_vertices.first(row); i < of_vertices.last(row); ++i) {
+      for (const NodeWeight& one : vertices_[at(row)].carriers) {
+        for (const NodeWeight& other : vertices_[at(of_vertices.column(i))].carriers) {
+          stiffness.block(*place++) += one.weight * other.weight * of_vertices.block(i);
+        }
+      }
+    }
+  }
+}
+
+double Membrane::restStiffness(int node) const {
+  const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), node);
+  const bool is_there = found != nodes_.end() && *found == node;
+  return is_there ? rest_stiffness_[static_cast<std::size_t>(found - nodes_.begin())] : 0.0;
+}
+
+}  // namespace robot_tissue
