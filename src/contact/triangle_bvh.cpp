@@ -79,21 +79,22 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
   nodes_ = &model_->getBV(0);
   corners_.resize(triangles.size());
   slots_.resize(triangles.size());
-  findParts();
+  findParts(vertices.size());
   places_.assign(vertices_.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   moveTo(vertices);
 }
 
-void TriangleBvh::findParts() {
+void TriangleBvh::findParts(std::size_t vertex_count) {
   part_at_.assign(at(model_->getNumBVs()), -1);
   const int most =
       std::max(tuning::kTrianglesOfPart, static_cast<int>(triangles_.size()) / tuning::kParts);
+  std::vector<int> last_slots(vertex_count, -1);  // per vertex
   std::vector<int> waiting = {0};
   while (!waiting.empty()) {
     const int number = waiting.back();
     waiting.pop_back();
     if (nodes_[number].num_primitives <= most) {
-      part_at_[at(number)] = addPart(number);
+      part_at_[at(number)] = addPart(number, last_slots);
       continue;
     }
     above_.push_back(number);
@@ -102,37 +103,33 @@ void TriangleBvh::findParts() {
   }
 }
 
-int TriangleBvh::addPart(int root) {
+int TriangleBvh::addPart(int root, std::vector<int>& last_slots) {
   Part part;
   part.root = root;
   part.first = isLeaf(nodes_[root]) ? root + 1 : nodes_[root].first_child;
   part.end = part.first + 2 * (nodes_[root].num_primitives - 1);
-  addSlots(part);
+  addSlots(part, last_slots);
   parts_.push_back(part);
   return static_cast<int>(parts_.size()) - 1;
 }
 
-void TriangleBvh::addSlots(Part& part) {
-  std::vector<int> triangles, vertices;
+// A vertex of several parts has a slot in each; in one part's, in the order of its leaves.
+void TriangleBvh::addSlots(Part& part, std::vector<int>& last_slots) {
+  part.first_slot = static_cast<int>(vertices_.size());
   for (int number = part.root; number < part.end; ++number) {
     const bool is_of_part = number == part.root || number >= part.first;
-    if (is_of_part && isLeaf(nodes_[number])) triangles.push_back(triangleOf(nodes_[number]));
-  }
-  for (const int triangle : triangles) {
-    const MeshTriangle& corners = triangles_[at(triangle)];
-    vertices.insert(vertices.end(), corners.begin(), corners.end());
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  part.first_slot = static_cast<int>(vertices_.size());
-  for (const int triangle : triangles) {
+    if (!is_of_part || !isLeaf(nodes_[number])) continue;
+    const std::size_t triangle = at(triangleOf(nodes_[number]));
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto found =
-          std::lower_bound(vertices.begin(), vertices.end(), triangles_[at(triangle)][k]);
-      slots_[at(triangle)][k] = part.first_slot + static_cast<int>(found - vertices.begin());
+      const int vertex = triangles_[triangle][k];
+      int& slot = last_slots[at(vertex)];
+      if (slot < part.first_slot) {
+        slot = static_cast<int>(vertices_.size());
+        vertices_.push_back(vertex);
+      }
+      slots_[triangle][k] = slot;
     }
   }
-  vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
   part.end_slot = static_cast<int>(vertices_.size());
 }
 

@@ -87,9 +87,9 @@ class TriangleBvh {
   void searchBelow(int number, Search& search) const;
   void searchTriangle(int triangle, Search& search) const;
   int crossingsBelow(int number, const Vec3& point) const;
-  void findParts();
-  int addPart(int root);
-  void addSlots(Part& part);
+  void findParts(std::size_t vertex_count);
+  int addPart(int root, std::vector<int>& last_slots);
+  void addSlots(Part& part, std::vector<int>& last_slots);
   bool movePart(Part& part, const std::vector<Vec3>& vertices);
   void refit(Part& part) const;
   void fit(int number) const;
