@@ -103,7 +103,8 @@ class NodeTest : public ::testing::Test {
       if (before && wrench_->header.stamp == before->header.stamp) return false;
       const bool stands = before && wrench_->wrench == before->wrench;
       before = wrench_;
-      return stands && state_ && state_->status != "TOO_FAST";
+      // A state of before the move would say nothing of it.
+      return stands && state_ && state_->header.stamp > moved && state_->status != "TOO_FAST";
     })) << "the node says "
         << (state_ ? state_->status + ": " + state_->message : std::string("nothing"));
     return wrench_ ? *wrench_ : geometry_msgs::WrenchStamped();

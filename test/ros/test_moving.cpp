@@ -13,6 +13,15 @@ class MovingTissue : public NodeTest {
     ASSERT_TRUE(ros::service::waitForService("/tissue/reset", ros::Duration(kDeadline)));
     depth_ = -0.05;  // m: away from the tissue
   }
+
+  // What the probe is pressed with (N). Tissue that it hits leaps off it, and comes back.
+  double forceAtRest() {
+    double force = 0.0;
+    for (int look = 0; look < 20 && force == 0.0; ++look) {
+      force = std::abs(follow().wrench.force.z);
+    }
+    return force;
+  }
 };
 
 TEST(TissueClock, GoesOnByTheStampsAndStandsStillInASilence) {
@@ -55,14 +64,16 @@ TEST_F(MovingTissue, RestsBesideAToolThatIsAway) {
 // A robot that presses, falls silent, goes on and lets go. Poses come when they come.
 TEST_F(MovingTissue, IsPressedThroughASilenceAndLetGo) {
   ASSERT_TRUE(waitFor([this] { return state_ && state_->status == "OK" && wrench_; }));
-  const double pressed = std::abs(press(0.004).wrench.force.z);
+  depth_ = 0.004;
+  const double pressed = forceAtRest();
   EXPECT_GT(pressed, 0.4);
   publishes_transform_ = false;
   const ros::WallTime silent = ros::WallTime::now();
   waitFor([&] { return ros::WallTime::now() - silent > kSilence; });
   publishes_transform_ = true;
-  EXPECT_NEAR(std::abs(follow().wrench.force.z), pressed, 0.02 * pressed);
-  EXPECT_NEAR(kTop - lowestOfTop(), 0.004, 0.001);
+  EXPECT_NEAR(forceAtRest(), pressed, 0.02 * pressed);
+  // A vertex beneath the probe is as deep as it, or deeper in a ring of triangles that bear it.
+  EXPECT_TRUE(waitForMarkers([this] { return std::abs(kTop - lowestOfTop() - 0.004) < 0.0015; }));
   EXPECT_EQ(press(-0.05).wrench.force.z, 0.0);
   EXPECT_TRUE(waitForMarkers([this] { return std::abs(lowestOfTop() - kTop) < 1e-5; }));
 }
