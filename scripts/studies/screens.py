@@ -111,6 +111,8 @@ def save(screen, name, folder):
 @contextlib.contextmanager
 def shown(launch, view, *arguments):
     """What the launch file starts, and the view of it in all of the display."""
+    if rospy.has_param("robot_description"):
+        rospy.delete_param("robot_description")  # of an earlier one: rviz would show that robot
     with moved_node.running(["roslaunch", "robot_tissue", launch, *arguments]), \
             moved_node.running(["rviz", "--fullscreen", "-d", str(PACKAGE / "config" / view)]):
         yield
