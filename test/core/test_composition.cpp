@@ -60,6 +60,16 @@ double volumeOf(const TissueConfig& config, int region) {
   return volume;
 }
 
+LoadStep pressed(double depth) {
+  PatchConfig patch;
+  patch.name = "punch";
+  patch.box = {kH * Vec3(3, 3, 6), kH * Vec3(5, 5, 6)};
+  patch.displacement = {0.0, 0.0, -depth};
+  LoadStep step;
+  step.patches = {patch};
+  return step;
+}
+
 TEST(Composition, OfABoxAsAMeshIsItsOverlapWithEachCell) {
   TissueConfig config = cube();
   const Vec3 low(1.3, 2.2, 1.9), high(4.6, 5.25, 3.1);
@@ -144,12 +154,7 @@ TEST(Composition, ABoxThatFitsTheGridIsTheSameAsAMesh) {
   TissueConfig by_mesh = config;
   config.regions = {hardBox(config, box)};
   by_mesh.regions = {hard(config, boxMesh(box.min(), box.max()))};
-  PatchConfig patch;
-  patch.name = "punch";
-  patch.box = {kH * Vec3(3, 3, 6), kH * Vec3(5, 5, 6)};
-  patch.displacement = {0.0, 0.0, -0.3 * kH};
-  LoadStep step;
-  step.patches = {patch};
+  const LoadStep step = pressed(0.3 * kH);
   Tissue first(config, SolverConfig()), second(by_mesh, SolverConfig());
   first.load(step);
   second.load(step);
@@ -166,12 +171,7 @@ TEST(Composition, MethodsAgreeOnCellsOfTwoMaterials) {
   TissueConfig config = cube();
   config.fixed = {{Vec3(0, 0, 0), Vec3(1, 1, 0)}};
   config.regions = {hard(config, ball(1.7, {4.2, 3.3, 3.6}))};
-  PatchConfig patch;
-  patch.name = "punch";
-  patch.box = {kH * Vec3(3, 3, 6), kH * Vec3(5, 5, 6)};
-  patch.displacement = {0.0, 0.0, -0.2 * kH};
-  LoadStep step;
-  step.patches = {patch};
+  const LoadStep step = pressed(0.2 * kH);
   const auto force = [&](const std::string& method, double tolerance) {
     SolverConfig solver;
     solver.method = method;

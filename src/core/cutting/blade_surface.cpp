@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "cutting/cell_division.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -204,16 +206,9 @@ std::vector<Crossing> BladeSurface::crossings(const Lattice& lattice,
 double newSurface(const Lattice& lattice, const std::vector<Crossing>& crossings) {
   double surface = 0.0;
   for (const Crossing& each : crossings) {
-    const Spring spring = lattice.springs()[at(each.spring)];
     double filled = 0.0;
-    for (const int u : {0, 1}) {
-      for (const int v : {0, 1}) {
-        std::array<int, 3> index = lattice.gridIndex(spring.a);
-        index[at((spring.axis + 1) % 3)] -= u;
-        index[at((spring.axis + 2) % 3)] -= v;
-        const int cell = lattice.cellAt(index);
-        if (cell >= 0) filled += lattice.cells()[at(cell)].share();
-      }
+    for (const int cell : cellsAround(lattice, lattice.springs()[at(each.spring)])) {
+      if (cell >= 0) filled += lattice.cells()[at(cell)].share();
     }
     surface += each.cosine * filled / 4.0 * lattice.spacing() * lattice.spacing();
   }

@@ -84,17 +84,22 @@ std::vector<HalfSpace> boxOf(const CellFill& fill) {
 
 }  // namespace
 
+std::array<int, 4> cellsAround(const Lattice& lattice, const Spring& spring) {
+  std::array<int, 4> cells{};
+  for (int side = 0; side < 4; ++side) {
+    std::array<int, 3> lowest = lattice.gridIndex(spring.a);
+    lowest[at((spring.axis + 1) % 3)] -= side >> 1;
+    lowest[at((spring.axis + 2) % 3)] -= side & 1;
+    cells[at(side)] = lattice.cellAt(lowest);
+  }
+  return cells;
+}
+
 std::vector<char> cellsWithSevered(const Lattice& lattice, const LatticeState& state) {
   std::vector<char> has(lattice.cells().size(), 0);
   for (std::size_t index = 0; index < state.severed.size(); ++index) {
     if (state.severed[index] == 0) continue;
-    const Spring spring = lattice.springs()[index];
-    const std::size_t u = at((spring.axis + 1) % 3), v = at((spring.axis + 2) % 3);
-    for (int around = 0; around < 4; ++around) {
-      std::array<int, 3> lowest = lattice.gridIndex(spring.a);
-      lowest[u] -= around & 1;
-      lowest[v] -= around >> 1;
-      const int cell = lattice.cellAt(lowest);
+    for (const int cell : cellsAround(lattice, lattice.springs()[index])) {
       if (cell >= 0) has[at(cell)] = 1;
     }
   }

@@ -30,6 +30,9 @@ namespace robot_tissue {
 // 2, edges a 1, faces two.
 using CellPoint = std::array<int, 3>;
 
+// The lattice's cells that have the spring as an edge; -1: there is none.
+std::array<int, 4> cellsAround(const Lattice& lattice, const Spring& spring);
+
 // Per cell of the lattice, 1: one of its springs is severed.
 std::vector<char> cellsWithSevered(const Lattice& lattice, const LatticeState& state);
 

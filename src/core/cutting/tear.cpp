@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "config/material.h"
+#include "cutting/cell_division.h"
 
 namespace robot_tissue {
 namespace {
@@ -108,11 +109,7 @@ std::vector<double> loadsOf(const Lattice& lattice, const LatticeState& state,
 // Of the tissue in the cells around the spring, what is the region's (1).
 double shareAround(const Lattice& lattice, const Spring& spring, int region) {
   double all = 0.0, of_region = 0.0;
-  for (int side = 0; side < 4; ++side) {
-    std::array<int, 3> index = lattice.gridIndex(spring.a);
-    index[at((spring.axis + 1) % 3)] -= side & 1;
-    index[at((spring.axis + 2) % 3)] -= side >> 1;
-    const int number = lattice.cellAt(index);
+  for (const int number : cellsAround(lattice, spring)) {
     if (number < 0) continue;
     const Cell& cell = lattice.cells()[at(number)];
     all += cell.share();
