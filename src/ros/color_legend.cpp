@@ -35,14 +35,14 @@ std::string numberWith(double number, const char* unit) { return numberText(numb
 
 }  // namespace
 
-void drawLegend(const Drawn& drawn, Marker marker, MarkerArray& array) {
+void drawLegend(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
   const bool shown = !drawn.values.empty();
   const ColorMeaning& meaning = meaningOf(drawn.style.color);
   const double diagonal = drawn.diagonal();
   const double height = tuning::kLegendHeight * diagonal, letters = tuning::kTextHeight * diagonal;
   const Vec3 foot =
       drawn.tissue().lattice().bounds().min() - Vec3(tuning::kLegendGap * diagonal, 0.0, 0.0);
-  Marker column = marker;
+  Marker column = blank;
   column.type = Marker::TRIANGLE_LIST;
   if (shown) drawColumn(foot, tuning::kLegendWidth * diagonal, height, column);
   add(std::move(column), array);
@@ -52,7 +52,7 @@ void drawLegend(const Drawn& drawn, Marker marker, MarkerArray& array) {
       {numberWith(drawn.scale, meaning.unit), height + letters},
       {meaning.title, height + 2.5 * letters}};
   for (int i = 0; i < 3; ++i) {
-    Marker line = marker;
+    Marker line = blank;
     line.id = i + 1;
     line.scale.x = line.scale.y = 0.0;
     line.scale.z = letters;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/ros/markers.h"
+#include "robot_tissue/ros/reached_tools.h"
 
 namespace robot_tissue {
 
@@ -25,7 +26,8 @@ struct ForceArrow {
 
 // Per tool; empty where there is no force.
 using ForceArrows = std::vector<std::optional<ForceArrow>>;
-ForceArrows forceArrows(const Pipeline& pipeline, double force_scale);  // m/N
+ForceArrows forceArrows(const Pipeline& pipeline, const ReachedTools& tools,
+                        double force_scale);  // m/N
 
 struct Drawn {
   const Pipeline& pipeline;
@@ -35,7 +37,9 @@ struct Drawn {
   const MarkerStyle& style;
   const std::vector<double>& values;  // of the surface's color; empty: it has none
   double scale;                       // its upper end, in the unit of the values
+  const ReachedTools& tools;
   const ForceArrows& arrows;
+  bool is_behind;  // the tools are no more where those are of
 
   const Tissue& tissue() const { return pipeline.tissue(); }
   double spacing() const { return tissue().lattice().spacing(); }
@@ -50,18 +54,18 @@ inline void add(visualization_msgs::Marker marker, visualization_msgs::MarkerArr
   array.markers.push_back(std::move(marker));
 }
 
-// Each takes a marker with all but its places and sizes.
-void drawNormals(const Drawn& drawn, visualization_msgs::Marker marker,
+// Each takes a marker with all but its places and sizes, and adds such with them.
+void drawNormals(const Drawn& drawn, const visualization_msgs::Marker& blank,
                  visualization_msgs::MarkerArray& array);
-void drawForces(const Drawn& drawn, visualization_msgs::Marker marker,
+void drawForces(const Drawn& drawn, const visualization_msgs::Marker& blank,
                 visualization_msgs::MarkerArray& array);
-void drawForceLabels(const Drawn& drawn, visualization_msgs::Marker marker,
+void drawForceLabels(const Drawn& drawn, const visualization_msgs::Marker& blank,
                      visualization_msgs::MarkerArray& array);
-void drawForceList(const Drawn& drawn, visualization_msgs::Marker marker,
+void drawForceList(const Drawn& drawn, const visualization_msgs::Marker& blank,
                    visualization_msgs::MarkerArray& array);
-void drawEdges(const Drawn& drawn, visualization_msgs::Marker marker,
+void drawEdges(const Drawn& drawn, const visualization_msgs::Marker& blank,
                visualization_msgs::MarkerArray& array);
-void drawLegend(const Drawn& drawn, visualization_msgs::Marker marker,
+void drawLegend(const Drawn& drawn, const visualization_msgs::Marker& blank,
                 visualization_msgs::MarkerArray& array);
 
 }  // namespace robot_tissue

@@ -9,7 +9,6 @@
 
 #include "drawn_state.h"
 #include "robot_tissue/ros/conversions.h"
-#include "robot_tissue/ros/tool_forces.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -21,9 +20,9 @@ using Points = std::vector<geometry_msgs::Point>;
 
 // An arrow a tool, along what `ends` gives: its start and its tip, or nothing.
 template <class Ends>
-void drawArrows(const Drawn& drawn, const Marker& marker, MarkerArray& array, const Ends& ends) {
+void drawArrows(const Drawn& drawn, const Marker& blank, MarkerArray& array, const Ends& ends) {
   for (std::size_t tool = 0; tool < drawn.pipeline.tools().size(); ++tool) {
-    Marker arrow = marker;
+    Marker arrow = blank;
     arrow.id = static_cast<int>(tool);
     arrow.scale.x = tuning::kShaftDiameter * drawn.spacing();
     arrow.scale.y = 2.0 * tuning::kShaftDiameter * drawn.spacing();
@@ -31,12 +30,6 @@ void drawArrows(const Drawn& drawn, const Marker& marker, MarkerArray& array, co
     arrow.points = ends(tool);
     add(std::move(arrow), array);
   }
-}
-
-// Where the tissue acts on the tool: amid its touches; on a blade, which has none, at its origin.
-Vec3 placeOf(const Pipeline& pipeline, std::size_t tool) {
-  const ToolReport& report = pipeline.report().tools[tool];
-  return report.contacts > 0 ? report.point : Vec3(poseOf(pipeline, tool).translation());
 }
 
 // An arrow along the force that is seen from outside the tools: on its own line, from where that
@@ -63,54 +56,53 @@ ForceArrow arrowAlong(const Pipeline& pipeline, const Vec3& place, const Vec3& f
   return {start, start + force_scale * force, away, force.norm()};
 }
 
-std::string newtons(double force) {
+// In parentheses where the tool is no more where it was.
+std::string newtons(const Drawn& drawn, double force) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(2) << force << " N";
-  return text.str();
+  return drawn.is_behind ? "(" + text.str() + ")" : text.str();
 }
 
 }  // namespace
 
-ForceArrows forceArrows(const Pipeline& pipeline, double force_scale) {
+ForceArrows forceArrows(const Pipeline& pipeline, const ReachedTools& tools, double force_scale) {
   ForceArrows arrows(pipeline.tools().size());
-  if (!pipeline.pose()) return arrows;
-  const std::size_t count = std::min(arrows.size(), pipeline.report().tools.size());
+  const std::size_t count = std::min(arrows.size(), tools.forces.size());
   for (std::size_t tool = 0; tool < count; ++tool) {
-    const Vec3 force = -forceOnTissue(pipeline, tool);
-    if (force.norm() <= tuning::kSmallestForce) continue;
-    arrows[tool] = arrowAlong(pipeline, placeOf(pipeline, tool), force, force_scale);
+    const ReachedTools::Force& on_tool = tools.forces[tool];
+    if (on_tool.force.norm() <= tuning::kSmallestForce) continue;
+    arrows[tool] = arrowAlong(pipeline, on_tool.place, on_tool.force, force_scale);
   }
   return arrows;
 }
 
-void drawNormals(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  drawArrows(drawn, marker, array, [&](std::size_t tool) {
-    const std::vector<ToolReport>& tools = drawn.pipeline.report().tools;
-    if (tool >= tools.size() || tools[tool].contacts == 0 || tools[tool].normal.isZero()) {
-      return Points();
-    }
-    const Vec3 way = tuning::kNormalLength * drawn.spacing() * tools[tool].normal;
-    return Points{toPoint(tools[tool].point - way), toPoint(tools[tool].point)};
+void drawNormals(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  drawArrows(drawn, blank, array, [&](std::size_t tool) {
+    if (tool >= drawn.tools.forces.size()) return Points();
+    const ReachedTools::Force& on_tool = drawn.tools.forces[tool];
+    if (on_tool.normal.isZero()) return Points();
+    const Vec3 way = tuning::kNormalLength * drawn.spacing() * on_tool.normal;
+    return Points{toPoint(on_tool.place - way), toPoint(on_tool.place)};
   });
 }
 
-void drawForces(const Drawn& drawn, Marker marker, MarkerArray& array) {
-  drawArrows(drawn, marker, array, [&](std::size_t tool) {
+void drawForces(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  drawArrows(drawn, blank, array, [&](std::size_t tool) {
     const std::optional<ForceArrow>& arrow = drawn.arrows[tool];
     return arrow ? Points{toPoint(arrow->start), toPoint(arrow->tip)} : Points();
   });
 }
 
-void drawForceLabels(const Drawn& drawn, Marker marker, MarkerArray& array) {
+void drawForceLabels(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
   const double height = tuning::kTextHeight * drawn.diagonal();
   for (std::size_t tool = 0; tool < drawn.pipeline.tools().size(); ++tool) {
-    Marker label = marker;
+    Marker label = blank;
     label.id = static_cast<int>(tool);
     label.scale.x = label.scale.y = 0.0;
     label.scale.z = height;
     if (const std::optional<ForceArrow>& arrow = drawn.arrows[tool]) {
-      label.text = newtons(arrow->force);
+      label.text = newtons(drawn, arrow->force);
       label.pose.position = toPoint(arrow->tip + tuning::kLabelGap * height * arrow->away);
     }
     add(std::move(label), array);
@@ -118,22 +110,26 @@ void drawForceLabels(const Drawn& drawn, Marker marker, MarkerArray& array) {
 }
 
 // Who pushes whom, a line a tool, at the foot of the tissue's front.
-void drawForceList(const Drawn& drawn, Marker marker, MarkerArray& array) {
+void drawForceList(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker list = blank;
   const double height = tuning::kTextHeight * drawn.diagonal();
   std::string lines;
   for (std::size_t tool = 0; tool < drawn.pipeline.tools().size(); ++tool) {
     if (const std::optional<ForceArrow>& arrow = drawn.arrows[tool]) {
-      lines += "\n" + newtons(arrow->force) + " on " + drawn.pipeline.tools()[tool].name;
+      lines += "\n" + newtons(drawn, arrow->force) + " on " + drawn.pipeline.tools()[tool].name;
     }
   }
-  if (!lines.empty()) marker.text = "force by the tissue" + lines;
-  marker.scale.x = marker.scale.y = 0.0;
-  marker.scale.z = height;
+  const std::string title = "force by the tissue";
+  if (!lines.empty()) {
+    list.text = title + (drawn.is_behind ? ", at an earlier pose" : "") + lines;
+  }
+  list.scale.x = list.scale.y = 0.0;
+  list.scale.z = height;
   const Box bounds = drawn.tissue().lattice().bounds();
-  marker.pose.position =
+  list.pose.position =
       toPoint(Vec3(bounds.center().x(), bounds.min().y() - tuning::kLegendGap * drawn.diagonal(),
                    bounds.min().z() + tuning::kListHeight * height));
-  add(std::move(marker), array);
+  add(std::move(list), array);
 }
 
 }  // namespace robot_tissue

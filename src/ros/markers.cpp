@@ -1,5 +1,6 @@
 #include "robot_tissue/ros/markers.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "drawn_state.h"
@@ -19,15 +20,17 @@ geometry_msgs::Vector3 sphereScale(double diameter) { return toVector3(Vec3::Con
 // is the same in all of these.
 bool looksAlike(const Marker& a, const Marker& b) {
   return a.ns == b.ns && a.id == b.id && a.action == b.action && a.scale == b.scale &&
-         a.pose == b.pose && a.points == b.points && a.colors == b.colors && a.text == b.text;
+         a.pose == b.pose && a.points == b.points && a.color == b.color && a.colors == b.colors &&
+         a.text == b.text;
 }
 
 // Each takes a marker with all but its places and sizes.
-using Draw = void (*)(const Drawn& drawn, Marker marker, MarkerArray& array);
+using Draw = void (*)(const Drawn& drawn, const Marker& blank, MarkerArray& array);
 
 // What a cut opened keeps its own color, so that a wound is always told from the skin.
 template <bool opened>
-void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
+void drawSurface(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker marker = blank;
   DrawnTriangles triangles;
   const bool colored = !opened && !drawn.values.empty();
   drawn.display.draw(opened, colored ? &drawn.values : nullptr, triangles);
@@ -39,7 +42,8 @@ void drawSurface(const Drawn& drawn, Marker marker, MarkerArray& array) {
   add(std::move(marker), array);
 }
 
-void drawWireframe(const Drawn& drawn, Marker wires, MarkerArray& array) {
+void drawWireframe(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker wires = blank;
   const Tissue& tissue = drawn.tissue();
   wires.scale.x = tuning::kWireWidth;
   std::vector<Vec3> ends;
@@ -57,7 +61,8 @@ void drawWireframe(const Drawn& drawn, Marker wires, MarkerArray& array) {
   add(std::move(wires), array);
 }
 
-void drawLips(const Drawn& drawn, Marker lips, MarkerArray& array) {
+void drawLips(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker lips = blank;
   lips.scale.x = tuning::kLipWidth;
   std::vector<Vec3> ends;
   drawn.display.drawLips(ends);
@@ -65,7 +70,8 @@ void drawLips(const Drawn& drawn, Marker lips, MarkerArray& array) {
   add(std::move(lips), array);
 }
 
-void drawFixedNodes(const Drawn& drawn, Marker fixed, MarkerArray& array) {
+void drawFixedNodes(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker fixed = blank;
   const Tissue& tissue = drawn.tissue();
   fixed.scale = sphereScale(tuning::kNodeDiameter * drawn.spacing());
   for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
@@ -75,7 +81,8 @@ void drawFixedNodes(const Drawn& drawn, Marker fixed, MarkerArray& array) {
   add(std::move(fixed), array);
 }
 
-void drawLoadedNodes(const Drawn& drawn, Marker loaded, MarkerArray& array) {
+void drawLoadedNodes(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker loaded = blank;
   const Tissue& tissue = drawn.tissue();
   loaded.scale = sphereScale(2.0 * tuning::kNodeDiameter * drawn.spacing());
   const auto addNodes = [&](const std::vector<int>& nodes) {
@@ -88,14 +95,15 @@ void drawLoadedNodes(const Drawn& drawn, Marker loaded, MarkerArray& array) {
   add(std::move(loaded), array);
 }
 
-void drawSutures(const Drawn& drawn, Marker threads, MarkerArray& array) {
+void drawSutures(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
+  Marker threads = blank;
   threads.scale.x = tuning::kThreadWidth;
   threads.points = toPoints(threadLines(drawn.tissue()));
   add(std::move(threads), array);
 }
 
 // Markers of the supports, which never move; a plane is a box as long as the tissue's diagonal.
-void drawSupports(const Drawn& drawn, Marker marker, MarkerArray& array) {
+void drawSupports(const Drawn& drawn, const Marker& blank, MarkerArray& array) {
   const Lattice& lattice = drawn.tissue().lattice();
   const Box bounds = lattice.bounds();
   for (std::size_t i = 0; i < drawn.supports.size(); ++i) {
@@ -109,7 +117,7 @@ void drawSupports(const Drawn& drawn, Marker marker, MarkerArray& array) {
       in_plane.z() = -0.5 * size.z();
       center = shape.pose * in_plane;
     }
-    Marker support = marker;
+    Marker support = blank;
     support.id = static_cast<int>(i);
     const Eigen::Quaterniond turn(shape.pose.linear());
     support.pose.position = toPoint(center);
@@ -126,32 +134,32 @@ struct Color {
   double red, green, blue;
 };
 
-// kForces: with the time of the pose that the forces are of.
-enum class Stamp { kShape, kForces };
+// What it shows: the shape as it is, or the tools where the tissue reached them.
+enum class Of { kShape, kTools };
 
 struct Namespace {
   const char* name;
   int type;
   Color color;
-  Stamp stamp;
+  Of of;
   Draw draw;
 };
 
 const Namespace kNamespaces[] = {
-    {"surface", Marker::TRIANGLE_LIST, {0.85, 0.47, 0.43}, Stamp::kShape, drawSurface<false>},
-    {"cut_faces", Marker::TRIANGLE_LIST, {0.55, 0.06, 0.10}, Stamp::kShape, drawSurface<true>},
-    {"cut_edges", Marker::LINE_LIST, {0.35, 0.0, 0.04}, Stamp::kShape, drawLips},
-    {"wireframe", Marker::LINE_LIST, {0.30, 0.13, 0.12}, Stamp::kShape, drawWireframe},
-    {"fixed_nodes", Marker::SPHERE_LIST, {0.25, 0.25, 0.30}, Stamp::kShape, drawFixedNodes},
-    {"loading_patches", Marker::SPHERE_LIST, {1.0, 0.80, 0.10}, Stamp::kShape, drawLoadedNodes},
-    {"sutures", Marker::LINE_LIST, {0.95, 0.95, 0.90}, Stamp::kShape, drawSutures},
-    {"contact_normals", Marker::ARROW, {0.10, 0.45, 0.85}, Stamp::kForces, drawNormals},
-    {"contact_forces", Marker::ARROW, {0.20, 0.85, 0.35}, Stamp::kForces, drawForces},
-    {"force_labels", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceLabels},
-    {"force_list", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Stamp::kForces, drawForceList},
-    {"tool_edges", Marker::LINE_LIST, {1.0, 1.0, 1.0}, Stamp::kForces, drawEdges},
-    {"legend", Marker::TEXT_VIEW_FACING, {0.95, 0.95, 0.95}, Stamp::kShape, drawLegend},
-    {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Stamp::kShape, drawSupports},
+    {"surface", Marker::TRIANGLE_LIST, {0.85, 0.47, 0.43}, Of::kShape, drawSurface<false>},
+    {"cut_faces", Marker::TRIANGLE_LIST, {0.55, 0.06, 0.10}, Of::kShape, drawSurface<true>},
+    {"cut_edges", Marker::LINE_LIST, {0.35, 0.0, 0.04}, Of::kShape, drawLips},
+    {"wireframe", Marker::LINE_LIST, {0.30, 0.13, 0.12}, Of::kShape, drawWireframe},
+    {"fixed_nodes", Marker::SPHERE_LIST, {0.25, 0.25, 0.30}, Of::kShape, drawFixedNodes},
+    {"loading_patches", Marker::SPHERE_LIST, {1.0, 0.80, 0.10}, Of::kShape, drawLoadedNodes},
+    {"sutures", Marker::LINE_LIST, {0.95, 0.95, 0.90}, Of::kShape, drawSutures},
+    {"contact_normals", Marker::ARROW, {0.10, 0.45, 0.85}, Of::kTools, drawNormals},
+    {"contact_forces", Marker::ARROW, {0.20, 0.85, 0.35}, Of::kTools, drawForces},
+    {"force_labels", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Of::kTools, drawForceLabels},
+    {"force_list", Marker::TEXT_VIEW_FACING, {0.65, 1.0, 0.70}, Of::kTools, drawForceList},
+    {"tool_edges", Marker::LINE_LIST, {1.0, 1.0, 1.0}, Of::kTools, drawEdges},
+    {"legend", Marker::TEXT_VIEW_FACING, {0.95, 0.95, 0.95}, Of::kShape, drawLegend},
+    {"supports", Marker::CUBE, {0.45, 0.50, 0.55}, Of::kShape, drawSupports},
 };
 
 Marker blankOf(const Namespace& of, const std::string& frame_id, const ros::Time& stamp) {
@@ -170,6 +178,12 @@ Marker blankOf(const Namespace& of, const std::string& frame_id, const ros::Time
   return marker;
 }
 
+// Of a tool that is no more there.
+void dim(Marker& marker) {
+  marker.color.r = marker.color.g = marker.color.b = tuning::kGrayOfBehind;
+  marker.color.a = tuning::kOpacityOfBehind;
+}
+
 }  // namespace
 
 MarkerBuilder::MarkerBuilder(std::string frame_id, const MarkerStyle& style,
@@ -181,37 +195,80 @@ void MarkerBuilder::setStyle(const MarkerStyle& style) {
   style_ = style;
 }
 
-MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp,
-                                 const ros::Time& reached) {
+MarkerBuilder::News MarkerBuilder::reach(const Pipeline& pipeline, const ros::Time& stamp) {
+  const ReachedTools before = std::exchange(tools_, reachedTools(pipeline, stamp));
+  const bool was_behind = std::exchange(is_behind_, false);
+  return {before.forces != tools_.forces, was_behind || before.edges != tools_.edges};
+}
+
+bool MarkerBuilder::fallBehind(const Pipeline& pipeline) {
+  if (!pipeline.pose() && !tools_.forces.empty()) {  // they were told to stand nowhere
+    forgetTools();
+    return true;
+  }
+  return !tools_.forces.empty() && !std::exchange(is_behind_, true);
+}
+
+void MarkerBuilder::forgetTools() {
+  tools_ = ReachedTools();
+  is_behind_ = false;
+}
+
+MarkerArray MarkerBuilder::build(const Pipeline& pipeline, const ros::Time& stamp) {
+  MarkerArray all;
+  for (const MarkerArray& each : draw(pipeline, stamp, What::kAll)) {
+    all.markers.insert(all.markers.end(), each.markers.begin(), each.markers.end());
+  }
+  return all;
+}
+
+MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
+                                        What what) {
+  std::vector<MarkerArray> all = draw(pipeline, stamp, what);
+  MarkerArray changed;
+  told_.resize(all.size());
+  for (std::size_t of = 0; of < all.size(); ++of) {
+    told_[of].resize(std::max(told_[of].size(), all[of].markers.size()));
+    for (std::size_t i = 0; i < all[of].markers.size(); ++i) {
+      if (looksAlike(all[of].markers[i], told_[of][i])) continue;
+      changed.markers.push_back(all[of].markers[i]);
+      told_[of][i] = std::move(all[of].markers[i]);
+    }
+  }
+  return changed;
+}
+
+// By the table's rows; empty where that is not of what is asked for.
+std::vector<MarkerArray> MarkerBuilder::draw(const Pipeline& pipeline, const ros::Time& stamp,
+                                             What what) {
+  std::vector<double> values;
+  if (what == What::kAll) values = followShape(pipeline);
+  const ForceArrows arrows = forceArrows(pipeline, tools_, style_.force_scale);
+  const Drawn drawn{pipeline, supports_, display_, wires_, style_,
+                    values,   scale_,    tools_,   arrows, is_behind_};
+  std::vector<MarkerArray> arrays;
+  for (const Namespace& each : kNamespaces) {
+    MarkerArray& array = arrays.emplace_back();
+    const bool of_tools = each.of == Of::kTools;
+    if (what == What::kTools && !of_tools) continue;
+    Marker blank = blankOf(each, frame_id_, of_tools ? tools_.stamp : stamp);
+    if (of_tools && is_behind_) dim(blank);
+    each.draw(drawn, blank, array);
+  }
+  return arrays;
+}
+
+// Returns what colors the surface.
+std::vector<double> MarkerBuilder::followShape(const Pipeline& pipeline) {
   const Tissue& tissue = pipeline.tissue();
   if (springs_revision_ != tissue.surface().revision) {
     display_.bind(tissue.surface());
     findWires(tissue);
   }
   display_.fit(tissue.vertices());
-  const std::vector<double> values = surfaceValues(style_.color, pipeline);
+  std::vector<double> values = surfaceValues(style_.color, pipeline);
   scale_ = scaleFor(values, scale_);
-  const ForceArrows arrows = forceArrows(pipeline, style_.force_scale);
-  const Drawn drawn{pipeline, supports_, display_, wires_, style_, values, scale_, arrows};
-  MarkerArray array;
-  for (const Namespace& each : kNamespaces) {
-    const ros::Time& time = each.stamp == Stamp::kForces ? reached : stamp;
-    each.draw(drawn, blankOf(each, frame_id_, time), array);
-  }
-  return array;
-}
-
-MarkerArray MarkerBuilder::buildChanged(const Pipeline& pipeline, const ros::Time& stamp,
-                                        const ros::Time& reached) {
-  MarkerArray all = build(pipeline, stamp, reached);
-  MarkerArray changed;
-  told_.resize(all.markers.size());
-  for (std::size_t i = 0; i < all.markers.size(); ++i) {
-    if (looksAlike(all.markers[i], told_[i])) continue;
-    changed.markers.push_back(all.markers[i]);
-    told_[i] = std::move(all.markers[i]);
-  }
-  return changed;
+  return values;
 }
 
 void MarkerBuilder::findWires(const Tissue& tissue) {

@@ -57,22 +57,40 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
 
 void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& stamp,
                                     const NodeStatus& status) {
-  if (pipeline.hasArrived()) reached_ = stamp;
+  followTools(pipeline, stamp);
   publishContacts(pipeline, stamp);
   publishMarkers(pipeline, stamp);
   shape_.publish(pipeline.tissue(), stamp);
   publishState(pipeline, stamp, status);
 }
 
+// Forces and edges change without the shape, too, as where a blade stops to cut.
+void TissuePublisher::followTools(const Pipeline& pipeline, const ros::Time& stamp) {
+  if (pipeline.hasArrived()) {
+    const MarkerBuilder::News news = marker_builder_.reach(pipeline, stamp);
+    if (news.any()) toolsChanged();
+    contacts_due_ = contacts_due_ || news.forces;
+    return;
+  }
+  const bool long_since = (stamp - marker_builder_.reachedAt()).toSec() > tuning::kOldForce;
+  if (long_since && marker_builder_.fallBehind(pipeline)) toolsChanged();
+}
+
+void TissuePublisher::toolsChanged() {
+  if (markers_due_ == MarkersDue::kNone) markers_due_ = MarkersDue::kTools;
+}
+
 void TissuePublisher::timeWentBack() {
   wrenches_.forget();
-  reached_ = last_contacts_ = ros::Time();
+  marker_builder_.forgetTools();
+  last_contacts_ = ros::Time();
   shapeChanged();
 }
 
 bool TissuePublisher::isUpToDate() const {
   return !last_state_.isZero() && (!contacts_due_ || contacts_.getNumSubscribers() == 0) &&
-         ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted()) && shape_.isUpToDate();
+         ((markers_due_ == MarkersDue::kNone && whole_array_is_out_) || !areMarkersWanted()) &&
+         shape_.isUpToDate();
 }
 
 // The topic is latched: a first array goes out without a listener, for who comes later.
@@ -83,6 +101,7 @@ bool TissuePublisher::areMarkersWanted() const {
 void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Time& now,
                                          const NodeStatus& status) {
   wrenches_.fallSilent();
+  if (marker_builder_.fallBehind(pipeline)) toolsChanged();
   publishMarkers(pipeline, now);
   shape_.publish(pipeline.tissue(), now);
   publishState(pipeline, now, status);
@@ -107,15 +126,17 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
 void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {
   const double now = ros::Time::now().toSec();
   const bool too_soon = !marker_pace_.isDue(now);
-  if ((!markers_due_ && whole_array_is_out_) || !areMarkersWanted() || too_soon) return;
-  const bool whole = !markers_due_ || !latched_markers_are_out_;
+  const bool any_due = markers_due_ != MarkersDue::kNone || !whole_array_is_out_;
+  if (!any_due || !areMarkersWanted() || too_soon) return;
+  const bool whole = markers_due_ == MarkersDue::kNone || !latched_markers_are_out_;
   if (whole) marker_builder_.tellAll();
-  const visualization_msgs::MarkerArray array =
-      marker_builder_.buildChanged(pipeline, stamp, reached_);
+  const bool of_tools = !whole && markers_due_ == MarkersDue::kTools;
+  const visualization_msgs::MarkerArray array = marker_builder_.buildChanged(
+      pipeline, stamp, of_tools ? MarkerBuilder::What::kTools : MarkerBuilder::What::kAll);
   if (!array.markers.empty()) markers_.publish(array);
   whole_array_is_out_ = whole;
   latched_markers_are_out_ = true;
-  markers_due_ = false;
+  markers_due_ = MarkersDue::kNone;
   marker_pace_.take(now);
 }
 

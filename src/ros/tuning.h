@@ -99,6 +99,12 @@ constexpr double kDarkest = 0.55;
 constexpr double kFarthestArrow = 0.25;
 // 1: a way out of the tool is taken for another when it is shorter by more.
 constexpr double kClearlyLess = 0.9;
+// s: forces of a pose so long ago are drawn as such. More: a tool that has left shows its last
+// force for longer; less: they flicker where every other update is late. Chosen.
+constexpr double kOldForce = 0.1;
+// 1: of what is drawn then, its gray and its opacity.
+constexpr float kGrayOfBehind = 0.6F;
+constexpr float kOpacityOfBehind = 0.5F;
 
 // m: arm of a turn in the prediction of wrenches. More: turns teach and foretell less. Chosen, as
 // long as tips of instruments are.

@@ -38,11 +38,12 @@ void press(Pipeline& pipeline) {
 
 void tell(const Pipeline& pipeline, ColorBy color) {
   MarkerBuilder builder("tissue", {0.02, color}, {});
+  builder.reach(pipeline, ros::Time(1.0));
   std::vector<double> times;
   std::size_t bytes = 0;
   for (int frame = 0; frame < kFrames; ++frame) {
     const auto start = Clock::now();
-    const auto array = builder.build(pipeline, ros::Time(1.0), ros::Time(1.0));
+    const auto array = builder.build(pipeline, ros::Time(1.0));
     times.push_back(millisecondsSince(start));
     bytes = ros::serialization::serializationLength(array);
   }

@@ -9,7 +9,8 @@ namespace {
 
 visualization_msgs::Marker edgesOf(const Pipeline& pipeline) {
   MarkerBuilder builder("tissue", {0.1, ColorBy::kNone}, {});
-  for (const auto& marker : builder.build(pipeline, ros::Time(1.0), ros::Time(1.0)).markers) {
+  builder.reach(pipeline, ros::Time(1.0));
+  for (const auto& marker : builder.build(pipeline, ros::Time(1.0)).markers) {
     if (marker.ns == "tool_edges") return marker;
   }
   ADD_FAILURE() << "no marker";

@@ -23,6 +23,14 @@ class Stamps : public NodeTest {
           for (const TissueContact& contact : array->contacts) force += std::abs(contact.force.z);
           isTold(array->header.stamp, force, arrays_);
         }));
+    subscribers_.push_back(node_.subscribe<visualization_msgs::MarkerArray>(
+        "/tissue/markers", 5000, [this](const visualization_msgs::MarkerArrayConstPtr& array) {
+          for (const auto& marker : array->markers) {
+            if (marker.ns != "force_labels" || marker.text.empty()) continue;
+            isTold(marker.header.stamp,
+                   std::stod(marker.text.substr(marker.text.find_first_not_of('('))), labels_);
+          }
+        }));
     publishes_transform_ = false;
   }
 
@@ -66,7 +74,7 @@ class Stamps : public NodeTest {
 
   std::map<ros::Time, double> depths_;  // of the probe (m), by stamps of the poses sent
   ros::Time last_told_;
-  int wrenches_ = 0, arrays_ = 0;
+  int wrenches_ = 0, arrays_ = 0, labels_ = 0;
 };
 
 TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
@@ -85,6 +93,7 @@ TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
   EXPECT_EQ(wrench_->wrench.force.z, 0.0);
   EXPECT_GT(wrenches_, 2);
   EXPECT_GT(arrays_, 0);
+  EXPECT_GT(labels_, 0);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ geometry_msgs::Vector3 vector(double x, double y, double z) {
 
 class Tools : public NodeTest {
  protected:
-  Tools() : places_{{"probe", kParked}, {"slick", kParked}, {"fork", kParked}} {
+  Tools() : places_{{"probe", kParked}, {"slick", kParked}, {"fork", kParked}, {"knife", kParked}} {
     subscribe<geometry_msgs::WrenchStamped>("slick/measured_cf", slick_);
     subscribe<geometry_msgs::WrenchStamped>("fork/measured_cf", fork_);
   }
@@ -41,6 +41,7 @@ class Tools : public NodeTest {
     };
     add("probe", places_.at("probe"));
     add("slick", places_.at("slick"));
+    add("knife", places_.at("knife"));
     add("fork_base", places_.at("fork") + Eigen::Vector3d(0.0, 0.0, 0.1));
     add("tine", places_.at("fork"));
     return all;
@@ -206,6 +207,23 @@ TEST_F(Tools, OnlyGraspersGrasp) {
   EXPECT_NE(unknown.message.find("probe, slick, fork"), std::string::npos) << unknown.message;
   EXPECT_FALSE(ask("release", "probe").success);
   EXPECT_LT(ask("grasp", std::string(1000000, 'x')).message.size(), 300U);
+}
+
+// A blade without sides bends nothing: its force and its edge change, and the shape does not.
+TEST_F(Tools, WhatIsShownOfABladeGoesWithIt) {
+  bool any_force = false;
+  for (double y = -0.01; y < 0.09; y += 0.005) {
+    places_["knife"] = Eigen::Vector3d(0.033, y, 0.02);
+    follow();
+    any_force = any_force || !markers_["force_labels3"].text.empty();
+  }
+  EXPECT_TRUE(any_force);
+  EXPECT_TRUE(waitFor([this] { return markers_["force_labels3"].text.empty(); }))
+      << "it has left, and " << markers_["force_labels3"].text << " is shown";
+  EXPECT_TRUE(waitFor([this] {
+    const Points& edge = markers_["tool_edges"].points;
+    return !edge.empty() && std::abs(edge.front().y - places_["knife"].y()) < 1e-9;
+  }));
 }
 
 TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {

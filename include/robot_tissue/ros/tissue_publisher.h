@@ -2,7 +2,8 @@
 // listens, at most at their own rate: those that changed, and all of them when somebody came and
 // when the shape has come to rest, so that the latched array is whole and nothing that a slow
 // listener lost stays lost. Contacts go out when they changed, and as often as the state. While the
-// tissue is behind the tools, wrenches and contacts are those of the last pose that it reached.
+// tissue is behind the tools, wrenches and contacts are those of the last pose that it reached; so
+// are the forces in the markers, dimmed.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -50,12 +51,17 @@ class TissuePublisher {
 
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {
-    markers_due_ = contacts_due_ = true;
+    markers_due_ = MarkersDue::kAll;
+    contacts_due_ = true;
     shape_.shapeChanged();
     last_state_ = ros::Time();
   }
 
  private:
+  enum class MarkersDue { kNone, kTools, kAll };  // kTools: those of the tools alone
+
+  void followTools(const Pipeline& pipeline, const ros::Time& stamp);
+  void toolsChanged();
   bool areMarkersWanted() const;
   void publishMarkers(const Pipeline& pipeline, const ros::Time& stamp);
   void publishContacts(const Pipeline& pipeline, const ros::Time& stamp);
@@ -65,11 +71,10 @@ class TissuePublisher {
   std::string frame_id_;
   MarkerBuilder marker_builder_;
   UpdatePace marker_pace_;
-  bool markers_due_ = true;
+  MarkersDue markers_due_ = MarkersDue::kAll;
   bool whole_array_is_out_ = false;  // with nothing changed since
   bool contacts_due_ = true;
   ros::Time last_contacts_;
-  ros::Time reached_;  // stamp of the last pose that the tissue reached
   bool latched_markers_are_out_ = false;
   NodeStatus last_status_;
   ros::Time last_state_;
