@@ -12,7 +12,7 @@ from geometry_msgs.msg import WrenchStamped
 from tf2_msgs.msg import TFMessage
 
 from studies import moved_node
-from studies.common import DATA, progress, write_rows
+from studies.common import DATA, program, progress, write_rows
 
 TABLE = DATA / "still_node.csv"
 COLUMNS = ["case", "percent_median", "least", "greatest", "wrenches_per_s"]
@@ -78,7 +78,7 @@ def node_of(case):
     """As a running process, and its name."""
     _, kind, _, _ = case
     if isinstance(kind, tuple):
-        return moved_node.running(["rosrun", "robot_tissue", "empty_node", *kind]), "/empty_node"
+        return moved_node.running([program("empty_node"), *kind]), "/empty_node"
     return moved_node.tissue_node(rate=200, marker_rate=30, wrench_rate=kind), "/robot_tissue"
 
 
