@@ -9,8 +9,9 @@ from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
 STUDIES = ["rooms", "grasp", "dent_folds", "liver", "walls", "paper", "motion", "swing", "time_stability",
-           "stiffening", "economy", "fidelity", "growth", "threads", "stages", "speed", "node", "still_node", "shape_topics", "replay_live",
-           "screens", "soak", "contact_search", "contact", "accuracy", "stability", "speed_accuracy"]
+           "stiffening", "economy", "fidelity", "growth", "threads", "stages", "speed", "node", "still_node",
+           "shape_topics", "replay_live", "screens", "soak", "contact_search", "contact", "accuracy", "stability",
+           "speed_accuracy"]
 
 
 def title_of(name):
@@ -26,7 +27,8 @@ def parser_of(modules):
     parser.add_argument("--list", action="store_true", help="names the studies, a line each")
     studies = parser.add_subparsers(dest="study", metavar="STUDY")
     for name in STUDIES:
-        own = studies.add_parser(name, help=title_of(name),
+        title = title_of(name).replace("%", "%%")  # argparse formats it
+        own = studies.add_parser(name, help=title,
                                  formatter_class=argparse.RawDescriptionHelpFormatter)
         if name in modules:
             own.description = modules[name].__doc__
