@@ -57,16 +57,19 @@ configure() {
     { tail -n 30 "$build/configure.log" >&2; give_up "scripts: configuring failed"; }
 }
 
-prepare() {
+get_packages() {
   if ros_is_sourced; then
     say "using the sourced ROS $ROS_DISTRO"
   else
     install_packages
     prefer_debian_python
   fi
+}
+
+build_all() {
   say "building in $build"
   configure "$@"
-  cmake --build "$build" -- -j"$(nproc)"
+  cmake --build "$build" -- -j"$(nproc)" || give_up "scripts: building failed"
   # Setup files of catkin read variables that are not set.
   set +u
   # shellcheck disable=SC1091
@@ -76,4 +79,9 @@ prepare() {
   if [[ -z "${ROS_HOSTNAME:-}${ROS_IP:-}" ]] && ! getent hosts "$(uname -n)" >/dev/null; then
     export ROS_HOSTNAME=localhost
   fi
+}
+
+prepare() {
+  get_packages
+  build_all "$@"
 }

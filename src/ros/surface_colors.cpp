@@ -155,6 +155,7 @@ std::optional<ColorBy> colorByName(const std::string& name) {
 
 std::vector<std::string> colorNames() {
   std::vector<std::string> names;
+  names.reserve(kMeanings.size());
   for (const ColorMeaning& each : kMeanings) names.emplace_back(each.name);
   return names;
 }

@@ -128,7 +128,7 @@ ReleaseStep readRelease(const Entry& entry, Program& program) {
 }
 
 Step readReset(const Entry& entry, Program& program) {
-  MapReader(entry, {});
+  const MapReader without_keys(entry, {});
   program.patches.clear();
   program.patches_are_known = true;
   program.placed_tools.clear();

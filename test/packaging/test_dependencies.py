@@ -42,10 +42,11 @@ class Dependencies(unittest.TestCase):
         self.assertEqual(installed, sorted(set(installed)))
         self.assertEqual(installed, sorted(set(packages_of(table()))))
 
-    def test_studies_do_not_burden_the_users_of_the_node(self):
-        studies = lines_of(SOURCE / "scripts/study_packages")
-        self.assertEqual(studies, sorted(set(studies)))
-        self.assertFalse(set(studies) & set(packages_of(table())))
+    def test_studies_and_nightly_do_not_burden_the_users_of_the_node(self):
+        for name in ("study_packages", "nightly_packages"):
+            packages = lines_of(SOURCE / "scripts" / name)
+            self.assertEqual(packages, sorted(set(packages)))
+            self.assertFalse(set(packages) & set(packages_of(table())))
 
     def test_package_says_who_and_where(self):
         root = ElementTree.parse(SOURCE / "package.xml").getroot()
