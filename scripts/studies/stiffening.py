@@ -1,7 +1,7 @@
 """Measures the law fung: a press by 30 % of the height, by every method against a fine lattice.
 
-A patch of 20 x 20 mm presses a block of 100 x 100 x 50 mm by 15 mm, with several exponents. Forces at 10 and 5 mm are held
-against those of `newton` at 10/3 mm. Out: doc/data/stiffening.csv.
+A patch of 20 x 20 mm presses a block of 100 x 100 x 50 mm by 15 mm, with several exponents. Forces at 10 and 5 mm are
+held against those of `newton` at 10/3 mm. Out: doc/data/stiffening.csv.
 """
 
 import subprocess

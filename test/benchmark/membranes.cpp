@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/membrane_fixtures.h"
 #include "core/mesh_fixtures.h"
 #include "robot_tissue/core/tissue.h"
 
@@ -18,14 +19,6 @@ namespace {
 constexpr double kRadius = 0.03;   // m
 constexpr double kModulus = 1e5;   // Pa
 constexpr double kFilling = 1e-2;  // Pa; contrast to the membranes below: 1e6 to 2e6
-
-MembraneConfig skin(double thickness, double ratio) {
-  MembraneConfig membrane;
-  membrane.thickness = thickness;
-  membrane.young_modulus = kModulus;
-  membrane.poisson_ratio = ratio;
-  return membrane;
-}
 
 // `rounds` of sphereMesh: edges of about 1.5 R / 2^rounds, in the lattice at most a spacing.
 TissueConfig ball(double spacing, int rounds) {
@@ -39,10 +32,6 @@ TissueConfig ball(double spacing, int rounds) {
   return config;
 }
 
-double radiusOf(const Tissue& tissue) {
-  return std::cbrt(3.0 / (4.0 * M_PI) * enclosedVolume(tissue.surface(), tissue.vertices()));
-}
-
 const char* nameOf(SolveStatus status) {
   return status == SolveStatus::kOk ? "OK" : status == SolveStatus::kLate ? "LATE" : "UNCONVERGED";
 }
@@ -52,7 +41,7 @@ const char* nameOf(SolveStatus status) {
 void blow(double spacing, double ratio, double pressure) {
   constexpr double kThickness = 1e-3;
   TissueConfig config = ball(spacing, 4);
-  config.membranes = {skin(kThickness, ratio)};
+  config.membranes = {skin(kThickness, kModulus, ratio)};
   config.membranes[0].pressure = pressure;
   SolverConfig solver;
   solver.method = "newton";
@@ -73,7 +62,7 @@ void blow(double spacing, double ratio, double pressure) {
 void pinch(double spacing, int rounds, double thickness) {
   constexpr double kRatio = 0.3;
   TissueConfig config = ball(spacing, rounds);
-  config.membranes = {skin(thickness, kRatio)};
+  config.membranes = {skin(thickness, kModulus, kRatio)};
   SolverConfig solver;
   solver.method = "newton";
   Tissue tissue(config, solver);
@@ -104,7 +93,7 @@ void press(const char* method, double contrast) {
   config.material.young_modulus = 1e4;
   config.fixed = {{Vec3(-1, -1, -1), Vec3(1, 1, 1e-6)}};
   if (contrast > 0.0) {
-    config.membranes = {skin(1e-3, 0.45)};
+    config.membranes = {skin(1e-3, kModulus)};
     config.membranes[0].young_modulus = contrast * 1e4 * config.spacing / 1e-3;
   }
   SolverConfig solver;

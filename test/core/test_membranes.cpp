@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "membrane_fixtures.h"
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
@@ -10,14 +11,6 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kRadius = 0.03;  // m
-
-MembraneConfig skin(double thickness, double young_modulus, double ratio = 0.45) {
-  MembraneConfig membrane;
-  membrane.thickness = thickness;
-  membrane.young_modulus = young_modulus;
-  membrane.poisson_ratio = ratio;
-  return membrane;
-}
 
 SolverConfig solverOf(const std::string& method, double tolerance = 1e-3) {
   SolverConfig solver;
@@ -51,11 +44,6 @@ TissueConfig shell(double pressure) {
   config.membranes[0].side = MembraneConfig::Side::kInner;
   config.fixed = {{Vec3(-1, -1, -1), Vec3(1, 1, -0.02)}};
   return config;
-}
-
-// Of a sphere with the volume that the surface encloses (m).
-double radiusOf(const Tissue& tissue) {
-  return std::cbrt(3.0 / (4.0 * M_PI) * enclosedVolume(tissue.surface(), tissue.vertices()));
 }
 
 double stretchOf(TissueConfig config, const std::string& method) {
