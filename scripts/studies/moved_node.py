@@ -15,6 +15,7 @@ from geometry_msgs.msg import TransformStamped
 from tf2_msgs.msg import TFMessage
 
 LAUNCH_FILE = Path(__file__).resolve().parent.parent.parent / "test/benchmark/node.launch"
+PATIENCE = 20.0                 # s, until a process has ended by itself
 TOP, RADIUS = 0.05, 0.01        # m, of the block and of the sphere
 PRESS, ROUND = 0.005, 0.010     # m: depth, and radius of its way
 
@@ -81,7 +82,11 @@ def running(command):
         yield
     finally:
         process.send_signal(signal.SIGINT)
-        process.wait()
+        try:
+            process.wait(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:   # what a shell starts in the background may ignore that signal
+            process.terminate()
+            process.wait()
 
 
 @contextlib.contextmanager
