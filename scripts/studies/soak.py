@@ -24,8 +24,9 @@ from studies.common import DATA, IMAGES, add_plot, numbers, percentile, pyplot, 
 
 TABLE, CHART = DATA / "soak.csv", IMAGES / "soak.png"
 COLUMNS = ["time_s", "memory_MB", "node_percent_of_a_core", "poses_hz", "transforms_hz", "wrenches_hz", "states_hz",
-           "surface_hz", "contacts_hz", "markers_hz", "calls", "refused", "missed", "slowest_reply_ms", "not_finite",
-           "fault"]
+           "surface_hz", "contacts_hz", "markers_hz", "due_hz", "contact_ms", "solve_ms", "publish_ms", "calls",
+           "refused", "missed", "slowest_reply_ms", "not_finite", "fault"]
+STAGES = ("contact_ms", "solve_ms", "publish_ms")   # means of an update that told its state
 ROLES = ("surgeon", "loader", "controller", "viewer")
 RATE = 200.0                            # Hz, of the poses
 PERIOD = 5.0                            # s, of a row
@@ -157,6 +158,9 @@ def row_of(seen, passed, arm, sent, memory, share):
     for column, topic in (("transforms_hz", "/tf"), ("wrenches_hz", "sphere/measured_cf"), ("states_hz", "state"),
                           ("surface_hz", "surface"), ("contacts_hz", "contacts"), ("markers_hz", "markers")):
         row[column] = f"{seen.get(topic, 0) / passed:.1f}"
+    row["due_hz"] = f"{seen.get('due', 0.0) / max(1, seen.get('/diagnostics', 0)):.1f}"
+    for stage in STAGES:
+        row[stage] = f"{seen.get(stage, 0.0) / max(1, seen.get('state', 0)):.2f}"
     return row
 
 
@@ -211,6 +215,10 @@ def findings_of(rows):
           f"followed in the first third, {100.0 * last:.0f} % in the last")
     if last < LEAST_HELD * first:
         findings.append("the rate fell")
+    due, share = (percentile(numbers(quiet, column), 50) for column in ("due_hz", "node_percent_of_a_core"))
+    print(f"of the poses {due:.0f} a second were due by the node's own count; an update's parts, mean: " + ", ".join(
+        f"{stage[:-3]} {percentile(numbers(quiet, stage), 50):.2f} ms" for stage in STAGES) +
+        f"; {share:.0f} % of a core")
     replies = numbers(rows, "slowest_reply_ms")
     print(f"{int(sum(numbers(rows, 'calls')))} calls, {int(sum(numbers(rows, 'refused')))} refused; slowest reply "
           f"{max(replies):.0f} ms, median of the slowest in 5 s {percentile(replies, 50):.0f} ms")

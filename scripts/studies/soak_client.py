@@ -10,6 +10,7 @@ import threading
 import time
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point, Vector3, WrenchStamped
 from robot_tissue.msg import ContactArray, Surface, TissueState
 from robot_tissue.srv import ApplyLoad, ApplyLoadRequest, Cut, CutRequest
@@ -58,8 +59,20 @@ def wrench_numbers(message):
     return force.x, force.y, force.z, torque.x, torque.y, torque.z
 
 
-def state_numbers(message):
+def stages(seen, message):
+    """Sums of what an update's parts took."""
+    for stage in ("contact_ms", "solve_ms", "publish_ms"):
+        seen.add(stage, getattr(message, stage))
     return message.residual, message.volume_ratio, message.unbalanced_force, *message.suture_tensions
+
+
+def due_poses(seen, message):
+    """What the node itself counts, once a second: poses that were due, followed or missed."""
+    for status in message.status:
+        for value in status.values:
+            if value.key == "poses (Hz)":
+                seen.add("due", float(value.value))
+    return ()
 
 
 def contact_numbers(message):
@@ -127,7 +140,8 @@ def loader(seen):
 def controller(seen):
     return [count(seen, "/tf", TFMessage, lambda message: ()),
             count(seen, "sphere/measured_cf", WrenchStamped, wrench_numbers),
-            count(seen, "state", TissueState, state_numbers)]
+            count(seen, "/diagnostics", DiagnosticArray, lambda message: due_poses(seen, message)),
+            count(seen, "state", TissueState, lambda message: stages(seen, message))]
 
 
 def viewer(seen):

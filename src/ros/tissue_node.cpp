@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/scene/memory.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -16,6 +17,7 @@ namespace {
 const ros::WallDuration kRobotLookUpPeriod(1.0);
 const ros::WallDuration kGrace(2.0);        // after a start or a jump of time
 const ros::WallDuration kClockPeriod(0.5);  // between looks at a clock that is told
+const ros::WallDuration kTidyPeriod(1.0);   // at least, between two times that memory is given back
 
 }  // namespace
 
@@ -118,6 +120,7 @@ bool TissueNode::timeWentBack() {
 
 void TissueNode::onTimer() {
   diagnostics_.update();
+  giveBackMemory();
   timeWentBack();
   if (!robotIsKnown()) {
     report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
@@ -211,6 +214,17 @@ bool TissueNode::robotIsKnown() {
   }
   robot_is_known_ = true;
   return true;
+}
+
+// Where the topology changed, cells, surface and levels were made anew among what stayed: without
+// this the heap grows by the gaps for hours.
+void TissueNode::giveBackMemory() {
+  const std::uint64_t revision = pipeline_.tissue().surface().revision;
+  const ros::WallTime now = ros::WallTime::now();
+  if (revision == tidy_revision_ || now - tidied_ < kTidyPeriod) return;
+  giveBackFreeMemory();
+  tidy_revision_ = revision;
+  tidied_ = now;
 }
 
 // The last good shape stays; what is wrong is said, but for what is so at every start.

@@ -1,5 +1,6 @@
 #include "robot_tissue/scene/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -113,6 +114,12 @@ double freeMemory(const std::string& root) {
 double residentMemory() {
   constexpr double kKilobyte = 1024.0;
   return namedNumberIn("/proc/self/status", "VmRSS:", 0.0) * kKilobyte;
+}
+
+void giveBackFreeMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 double memoryOf(double nodes, const std::string& method) {

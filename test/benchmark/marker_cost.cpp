@@ -1,6 +1,7 @@
 // What drawing for rviz costs an update that is drawn: a block under a sphere pressed 5 mm deep,
 // with a cut and two sutures, by what the surface's color tells. Not a test: nothing here passes or
-// fails. Prints CSV; times are the wall's, of 50 frames. doc/node_speed.md has them.
+// fails. Prints CSV; times are the wall's, of 50 frames; reach_us is what every update pays for the
+// drawn forces, without a listener, too. doc/node_speed.md has them.
 //
 //   marker_cost
 #include <ros/serialization.h>
@@ -16,7 +17,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kWidth = 0.1, kHeight = 0.05, kRadius = 0.01;  // m
-constexpr int kFrames = 50;
+constexpr int kFrames = 50, kReaches = 10000;
 
 void press(Pipeline& pipeline) {
   pipeline.cut({{0.031, -1, 0.03}, {0.031, 1, 0.03}, {0.031, 1, 1}, {0.031, -1, 1}});
@@ -36,9 +37,16 @@ void press(Pipeline& pipeline) {
   }
 }
 
+// Mean, of one.
+double reachMicroseconds(const Pipeline& pipeline, MarkerBuilder& builder) {
+  const auto start = Clock::now();
+  for (int i = 0; i < kReaches; ++i) builder.reach(pipeline, ros::Time(1.0 + 1e-3 * i));
+  return 1e3 * millisecondsSince(start) / kReaches;
+}
+
 void tell(const Pipeline& pipeline, ColorBy color) {
   MarkerBuilder builder("tissue", {0.02, color}, {});
-  builder.reach(pipeline, ros::Time(1.0));
+  const double reach_us = reachMicroseconds(pipeline, builder);
   std::vector<double> times;
   std::size_t bytes = 0;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -47,9 +55,9 @@ void tell(const Pipeline& pipeline, ColorBy color) {
     times.push_back(millisecondsSince(start));
     bytes = ros::serialization::serializationLength(array);
   }
-  std::printf("%d,%s,%.3g,%.3g,%.0f\n", pipeline.tissue().lattice().nodeCount(),
+  std::printf("%d,%s,%.3g,%.3g,%.0f,%.3g\n", pipeline.tissue().lattice().nodeCount(),
               meaningOf(color).name, quantile(times, 0.5), quantile(times, 0.99),
-              1e-3 * static_cast<double>(bytes));
+              1e-3 * static_cast<double>(bytes), reach_us);
 }
 
 }  // namespace
@@ -57,7 +65,7 @@ void tell(const Pipeline& pipeline, ColorBy color) {
 
 int main() {
   using namespace robot_tissue;
-  std::printf("nodes,color,median_ms,p99_ms,kB\n");
+  std::printf("nodes,color,median_ms,p99_ms,kB,reach_us\n");
   for (const int cells_high : {10, 20}) {
     Pipeline pipeline(blockOf(Vec3(kWidth, kWidth, kHeight), kHeight / cells_high), SolverConfig(),
                       {toolOf("sphere", sphereOf(kRadius), 0.3)});

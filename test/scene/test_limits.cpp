@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "../core/mesh_fixtures.h"
 #include "bad_scene.h"
@@ -177,6 +180,23 @@ TEST_F(MachineFiles, TellWhatAContainerOfVersionOneLeaves) {
   EXPECT_EQ(freeBytes(), 0.0);
   write("sys/fs/cgroup/memory/pod/memory.stat", "inactive_file 7\ntotal_inactive_file 4000000\n");
   EXPECT_EQ(freeBytes(), 3000000.0);
+}
+
+// As where surgery makes large things anew between small ones that stay.
+TEST(Memory, GapsOfTheHeapAreGivenBack) {
+  constexpr std::size_t kBlocks = 2000, kBytes = 20000;
+  std::vector<std::unique_ptr<std::string>> stay;
+  {
+    std::vector<std::unique_ptr<std::string>> go;
+    for (std::size_t i = 0; i < kBlocks; ++i) {
+      go.push_back(std::make_unique<std::string>(kBytes, 'a'));
+      stay.push_back(std::make_unique<std::string>(100, 'b'));
+    }
+  }
+  const double before = residentMemory();
+  giveBackFreeMemory();
+  EXPECT_LT(residentMemory(), before - 0.5 * kBlocks * kBytes);
+  EXPECT_EQ(*stay.back(), std::string(100, 'b'));
 }
 
 TEST(Memory, ALimitOfTheProcessCounts) {

@@ -11,6 +11,7 @@
 #include <ros/wall_timer.h>
 #include <tf2_ros/buffer.h>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -51,6 +52,7 @@ class TissueNode {
   void follow();
   bool robotIsKnown();
   void report(const NodeStatus& status);
+  void giveBackMemory();
   // node_status.cpp
   void remember(const std::vector<StepRemark>& remarks);
   void diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -76,6 +78,8 @@ class TissueNode {
   std::map<StepRemark::Kind, std::string> tools_said_;  // since the diagnostics were last told
   bool was_late_ = false;                               // likewise
   ros::WallTime rate_told_;
+  std::uint64_t tidy_revision_ = 0;  // of the surface, when memory was given back last
+  ros::WallTime tidied_;             // that time
   diagnostic_updater::Updater diagnostics_;
   std::unique_ptr<TissueServices> services_;
   std::unique_ptr<SurgeryServices> surgery_;

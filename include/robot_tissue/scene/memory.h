@@ -14,6 +14,9 @@ double freeMemory(const std::string& root = "");
 // Bytes that this process has in the machine's memory now.
 double residentMemory();
 
+// Whole pages of the heap that nothing is in go back to the system, also from between what stays.
+void giveBackFreeMemory();
+
 // Bytes that a lattice of so many nodes takes with its shape, surface and solver.
 double memoryOf(double nodes, const std::string& method);
 
