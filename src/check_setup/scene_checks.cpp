@@ -68,14 +68,12 @@ Findings checkWalls(const TissueConfig& tissue) {
 
 Findings checkForNode(const Scene& scene) {
   Findings findings;
+  const auto names_link = [](const ToolLink& link) { return !link.link.empty(); };
   for (const ToolConfig& tool : scene.tools) {
-    for (const ToolLink& link : tool.links) {
-      if (!link.link.empty()) continue;
-      findings.push_back({Finding::Level::kWarning,
-                          "tools: '" + tool.name + "' names no link: only simulate runs it",
-                          "link: a link of the robot's URDF"});
-      break;
-    }
+    if (std::any_of(tool.links.begin(), tool.links.end(), names_link)) continue;
+    findings.push_back({Finding::Level::kWarning,
+                        "tools: '" + tool.name + "' names no link: only simulate runs it",
+                        "link: a link of the robot's URDF"});
   }
   if (scene.tissue.fixed.empty() && scene.supports.empty()) {
     findings.push_back({Finding::Level::kWarning,

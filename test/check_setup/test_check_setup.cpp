@@ -152,6 +152,18 @@ TEST_F(CheckSetup, ToolWithoutALinkAndTissueThatNothingHoldsAreTold) {
   EXPECT_TRUE(says("'probe' names no link")) << out_;
 }
 
+TEST_F(CheckSetup, JawsAreLinksEnough) {
+  const std::string geometry =
+      "<collision><geometry><box size='0.02 0.004 0.02'/></geometry></collision>";
+  const std::string robot = "<robot name='r'><link name='left'>" + geometry +
+                            "</link><link name='right'>" + geometry +
+                            "</link><joint name='j' type='fixed'><parent link='left'/>"
+                            "<child link='right'/></joint></robot>";
+  const std::string tools = "tools: [{name: hand, role: grasper, jaws: [left, right]}]\n";
+  EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest + tools, robot), kFine)
+      << out_ << err_;
+}
+
 TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_EQ(check("tissue: {spacing: 0.01}"), kCannotRun);
   EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
