@@ -233,8 +233,7 @@ Balance balanceOf(const EnergyModel& model, const DofMap& unknowns, const Constr
     }
   }
   balance.unbalanced = unknowns.gather(shape, forces) + on_patches;
-  balance.holding =
-      std::max({std::sqrt(held_squared), pushed, model.freeForceNorm(shape.state)});
+  balance.holding = std::max({std::sqrt(held_squared), pushed, model.freeForceNorm(shape.state)});
   return balance;
 }
 
