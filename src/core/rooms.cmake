@@ -36,7 +36,7 @@ robot_tissue_room(membrane
   USES base geometry config surface
   FILES hinge.cpp hinge.h membrane.cpp membrane.h membrane_plan.cpp membrane_plan.h node_blocks.cpp
     node_blocks.h pressed_triangle.cpp pressed_triangle.h sheet_law.cpp sheet_law.h
-    stretched_triangle.cpp stretched_triangle.h)
+    stretched_triangle.cpp stretched_triangle.h vertex_carriers.cpp vertex_carriers.h)
 robot_tissue_room(material
   USES base config lattice membrane
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
@@ -67,7 +67,7 @@ robot_tissue_room(solvers/multigrid/hierarchy
   FILES coarse_correction.cpp coarse_correction.h composite_grid.cpp composite_grid.h
     fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
     grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
-    listed_cells.cpp listed_cells.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
+    listed_cells.cpp listed_cells.h membrane_levels.cpp membrane_levels.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
     uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy

@@ -1,7 +1,7 @@
 // A hollow sphere that is a membrane alone, on a filling as soft as allowed, against closed forms
 // (doc/accuracy.md, "Membranes"): blown up a little and far; pinched at two poles. And how many
-// cycles `layered` takes as a membrane gets stiffer.
-//   membranes blown|pinched|cycles
+// cycles `layered` takes as a membrane gets stiffer, on a block and around a ball.
+//   membranes blown|pinched|cycles|ball
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -114,6 +114,34 @@ void press(const char* method, double contrast) {
   std::fflush(stdout);
 }
 
+// A ball held at its bottom, its top pushed down, with a capsule of 1 mm off the grid.
+void push(const char* method, double contrast, double way) {
+  TissueConfig config = ball(0.004, 4);
+  config.material.young_modulus = 4e3;
+  config.material.poisson_ratio = 0.45;
+  config.fixed = {{Vec3(-1, -1, -1), Vec3(1, 1, -0.8 * kRadius)}};
+  constexpr double kThickness = 1e-3;
+  const double stiffness = contrast * config.material.young_modulus * config.spacing;
+  config.membranes = {skin(kThickness, stiffness / kThickness)};
+  SolverConfig solver;
+  solver.method = method;
+  solver.tolerance = 1e-3;
+  Tissue tissue(config, solver);
+  LoadStep step;
+  PatchConfig patch;
+  patch.name = "push";
+  patch.box = {Vec3(-1, -1, 0.9 * kRadius), Vec3(1, 1, 1)};
+  patch.displacement = {{0.0, 0.0, -way}};
+  step.increments = 1;
+  step.patches = {patch};
+  tissue.load(step);
+  const SolveReport& report = tissue.lastReport();
+  std::printf("ball,%s,%g,%g,%.6f,%s,%d,%.1f\n", method, contrast, way,
+              -report.patches[0].force.z(), nameOf(report.status), report.iterations,
+              report.wall_ms);
+  std::fflush(stdout);
+}
+
 bool isAsked(int count, char** words, const char* part) {
   return count < 2 || std::strcmp(words[1], part) == 0;
 }
@@ -141,6 +169,14 @@ int main(int count, char** words) {
     std::puts("# cycles,method,contrast,force,status,iterations,ms");
     for (const double contrast : {0.0, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
       for (const char* method : {"layered", "newton"}) press(method, contrast);
+    }
+  }
+  if (isAsked(count, words, "ball")) {
+    std::puts("# ball,method,contrast,way,force,status,iterations,ms");
+    for (const double way : {1e-5, 1e-4, 5e-4, 2e-3}) {
+      for (const double contrast : {0.1, 1.0, 10.0, 100.0}) {
+        for (const char* method : {"layered", "newton"}) push(method, contrast, way);
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <utility>
 
 #include "membrane/hinge.h"
 #include "membrane/membrane.h"
@@ -287,8 +288,9 @@ TEST(Membrane, HangsOnTheNodesThatCarryIt) {
   for (Vec3& motion : all) motion = random.offset(0.02);
   const std::vector<Vec3> moved = membrane.ofNodes(all);
   const std::vector<Vec3> forces = membrane.forces(moved);
-  NodeBlocks stiffness = membrane.stiffnessPattern();
-  membrane.findStiffness(moved, Curvature::kExact, stiffness);
+  NodeBlocks of_vertices = membrane.stiffnessPattern();
+  membrane.findStiffness(moved, Curvature::kExact, of_vertices);
+  const NodeBlocks stiffness = membrane.carriers().stiffness(of_vertices);
   double greatest = 0.0, stiffest = 0.0;
   for (int row = 0; row < stiffness.rows(); ++row) {
     greatest = std::max(greatest, forces[at(row)].norm());
@@ -313,6 +315,56 @@ TEST(Membrane, HangsOnTheNodesThatCarryIt) {
     }
   }
   EXPECT_GT(membrane.pressureNorm(moved), 0.0);
+}
+
+double weightOf(Random& random) { return random.offset(1.0).x(); }
+
+// Of a ring, in which each has something in common with the next.
+NodeBlocks randomBlocks(int rows, Random& random) {
+  std::vector<std::pair<int, int>> pairs;
+  for (int row = 0; row < rows; ++row) {
+    pairs.emplace_back(row, (row + 1) % rows);
+    pairs.emplace_back((row + 1) % rows, row);
+  }
+  NodeBlocks blocks(rows, std::move(pairs));
+  for (int i = 0; i < blocks.last(rows - 1); ++i) {
+    for (double& number : blocks.block(i).reshaped()) number = weightOf(random);
+  }
+  return blocks;
+}
+
+// What carries the carriers carries the vertices, but for one that stands; the stiffness need not
+// be written out.
+TEST(Membrane, CarriersOfCarriers) {
+  constexpr int kVertices = 12, kFine = 9, kCoarse = 5;
+  Random random;
+  std::vector<VertexCarriers::Shares> of_vertices(kVertices), of_fine(kFine);
+  for (int vertex = 0; vertex < kVertices; ++vertex) {
+    for (const int step : {4, 1, 7}) {
+      of_vertices[at(vertex)].push_back({(vertex + step) % kFine, weightOf(random)});
+    }
+  }
+  for (int i = 1; i < kFine; ++i) {
+    of_fine[at(i)] = {{i / 2, weightOf(random)}, {(i + 1) / 2, weightOf(random)}};
+  }
+  const VertexCarriers fine(kFine, of_vertices), coarse(fine, kCoarse, of_fine);
+  std::vector<Vec3> motion(kCoarse), of_carriers(kFine, Vec3::Zero());
+  for (Vec3& vector : motion) vector = random.offset(1.0);
+  for (int i = 0; i < kFine; ++i) {
+    for (const NodeWeight& share : of_fine[at(i)]) {
+      of_carriers[at(i)] += share.weight * motion[at(share.node)];
+    }
+  }
+  const std::vector<Vec3> means = fine.toVertices(of_carriers), same = coarse.toVertices(motion);
+  for (std::size_t i = 0; i < means.size(); ++i) EXPECT_LT((means[i] - same[i]).norm(), 1e-14);
+  const NodeBlocks blocks = randomBlocks(kVertices, random), written = coarse.stiffness(blocks);
+  const std::vector<Vec3> product = written.times(motion);
+  const std::vector<Vec3> unwritten = coarse.toCarriers(blocks.times(same));
+  const std::vector<Eigen::Matrix3d> diagonal = coarse.diagonal(blocks);
+  for (int row = 0; row < kCoarse; ++row) {
+    EXPECT_LT((product[at(row)] - unwritten[at(row)]).norm(), 1e-13);
+    EXPECT_LT((written.diagonal(row) - diagonal[at(row)]).norm(), 1e-13);
+  }
 }
 
 }  // namespace

@@ -56,14 +56,14 @@ std::vector<int> sheetOf(const TissueSurface& surface, const MembranePart& part)
 Membrane::Membrane(const TissueSurface& surface, const std::vector<MembranePart>& parts) {
   take(surface, parts);
   bindNodes(surface);
-  makePatterns();
+  makePattern();
   const std::vector<Vec3> rest = placesOf(std::vector<Vec3>(nodes_.size(), Vec3::Zero()));
-  rounding_.assign(vertices_.size(), Vec3::Zero());
+  rounding_.assign(rest_.size(), Vec3::Zero());
   addForces(rest, false, rounding_);
   NodeBlocks stiffness = pattern_;
   findStiffness(std::vector<Vec3>(nodes_.size(), Vec3::Zero()), Curvature::kConvex, stiffness);
-  for (int row = 0; row < stiffness.rows(); ++row) {
-    rest_stiffness_.push_back(stiffness.diagonal(row).trace() / 3.0);
+  for (const Eigen::Matrix3d& own : carriers_.diagonal(stiffness)) {
+    rest_stiffness_.push_back(own.trace() / 3.0);
   }
 }
 
@@ -84,8 +84,8 @@ void Membrane::take(const TissueSurface& surface, const std::vector<MembranePart
     for (int& vertex : element.vertices) {
       if (vertex < 0) continue;
       if (number[at(vertex)] < 0) {
-        number[at(vertex)] = static_cast<int>(vertices_.size());
-        vertices_.push_back({surface.rest[at(vertex)], {}});
+        number[at(vertex)] = static_cast<int>(rest_.size());
+        rest_.push_back(surface.rest[at(vertex)]);
         vertex_of_surface_.push_back(vertex);
       }
       vertex = number[at(vertex)];
@@ -127,19 +127,22 @@ void Membrane::bindNodes(const TissueSurface& surface) {
   }
   std::sort(nodes_.begin(), nodes_.end());
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
-    for (const NodeWeight& carrier : surface.carriers[at(vertex_of_surface_[vertex])]) {
+  std::vector<VertexCarriers::Shares> of_vertices;
+  for (const int vertex : vertex_of_surface_) {
+    of_vertices.push_back(surface.carriers[at(vertex)]);
+    for (NodeWeight& carrier : of_vertices.back()) {
       const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), carrier.node);
-      vertices_[vertex].carriers.push_back(
-          {static_cast<int>(found - nodes_.begin()), carrier.weight});
+      carrier.node = static_cast<int>(found - nodes_.begin());
     }
   }
+  carriers_ = VertexCarriers(static_cast<int>(nodes_.size()), of_vertices);
   elements_at_.resize(nodes_.size());
   for (std::size_t element = 0; element < elements_.size(); ++element) {
     for (const int vertex : elements_[element].vertices) {
       if (vertex < 0) continue;
-      for (const NodeWeight& carrier : vertices_[at(vertex)].carriers) {
-        std::vector<int>& there = elements_at_[at(carrier.node)];
+      for (const NodeWeight* share = carriers_.begin(vertex); share != carriers_.end(vertex);
+           ++share) {
+        std::vector<int>& there = elements_at_[at(share->node)];
         const int number = static_cast<int>(element);
         if (there.empty() || there.back() != number) there.push_back(number);
       }
@@ -147,7 +150,7 @@ void Membrane::bindNodes(const TissueSurface& surface) {
   }
 }
 
-void Membrane::makePatterns() {
+void Membrane::makePattern() {
   std::vector<std::pair<int, int>> pairs;
   for (const Element& element : elements_) {
     for (const int row : element.vertices) {
@@ -156,22 +159,7 @@ void Membrane::makePatterns() {
       }
     }
   }
-  vertex_pattern_ = NodeBlocks(static_cast<int>(vertices_.size()), std::move(pairs));
-  pairs.clear();
-  const auto for_carriers = [this](auto visit) {
-    for (int row = 0; row < vertex_pattern_.rows(); ++row) {
-      for (int i = vertex_pattern_.first(row); i < vertex_pattern_.last(row); ++i) {
-        for (const NodeWeight& one : vertices_[at(row)].carriers) {
-          for (const NodeWeight& other : vertices_[at(vertex_pattern_.column(i))].carriers) {
-            visit(one.node, other.node);
-          }
-        }
-      }
-    }
-  };
-  for_carriers([&](int row, int column) { pairs.emplace_back(row, column); });
-  pattern_ = NodeBlocks(static_cast<int>(nodes_.size()), std::move(pairs));
-  for_carriers([&](int row, int column) { places_.push_back(pattern_.place(row, column)); });
+  pattern_ = NodeBlocks(static_cast<int>(rest_.size()), std::move(pairs));
 }
 
 std::vector<Vec3> Membrane::ofNodes(const std::vector<Vec3>& displacement) const {
@@ -182,25 +170,9 @@ std::vector<Vec3> Membrane::ofNodes(const std::vector<Vec3>& displacement) const
 }
 
 std::vector<Vec3> Membrane::placesOf(const std::vector<Vec3>& moved) const {
-  std::vector<Vec3> places;
-  places.reserve(vertices_.size());
-  for (const Vertex& vertex : vertices_) {
-    places.push_back(vertex.rest);
-    for (const NodeWeight& carrier : vertex.carriers) {
-      places.back() += carrier.weight * moved[at(carrier.node)];
-    }
-  }
+  std::vector<Vec3> places = carriers_.toVertices(moved);
+  for (std::size_t vertex = 0; vertex < places.size(); ++vertex) places[vertex] += rest_[vertex];
   return places;
-}
-
-std::vector<Vec3> Membrane::toNodes(const std::vector<Vec3>& on_vertices) const {
-  std::vector<Vec3> on_nodes(nodes_.size(), Vec3::Zero());
-  for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
-    for (const NodeWeight& carrier : vertices_[vertex].carriers) {
-      on_nodes[at(carrier.node)] += carrier.weight * on_vertices[vertex];
-    }
-  }
-  return on_nodes;
 }
 
 double Membrane::energy(const std::vector<Vec3>& moved) const {
@@ -233,11 +205,11 @@ void Membrane::addForces(const std::vector<Vec3>& places, bool of_pressure,
 // At rest, without a pressure, there is none, to the last bit: methods see that nothing is to do.
 std::vector<Vec3> Membrane::forces(const std::vector<Vec3>& moved) const {
   const std::vector<Vec3> places = placesOf(moved);
-  std::vector<Vec3> on_vertices(vertices_.size(), Vec3::Zero());
+  std::vector<Vec3> on_vertices(rest_.size(), Vec3::Zero());
   addForces(places, false, on_vertices);
   for (std::size_t i = 0; i < rounding_.size(); ++i) on_vertices[i] -= rounding_[i];
   addForces(places, true, on_vertices);
-  return toNodes(on_vertices);
+  return carriers_.toCarriers(on_vertices);
 }
 
 Vec3 Membrane::force(const std::vector<Vec3>& displacement, int node) const {
@@ -251,17 +223,15 @@ Vec3 Membrane::force(const std::vector<Vec3>& displacement, int node) const {
     std::visit(
         [&](const auto& law) {
           for (std::size_t i = 0; i < countOf(law); ++i) {
-            const Vertex& vertex = vertices_[at(element.vertices[i])];
-            places[i] = vertex.rest;
-            for (const NodeWeight& carrier : vertex.carriers) {
-              places[i] += carrier.weight * displacement[at(nodes_[at(carrier.node)])];
+            places[i] = rest_[at(element.vertices[i])];
+            for (const NodeWeight* share = carriers_.begin(element.vertices[i]);
+                 share != carriers_.end(element.vertices[i]); ++share) {
+              places[i] += share->weight * displacement[at(nodes_[at(share->node)])];
             }
           }
           const auto gradient = law.gradient(cornersOf(law, {0, 1, 2, 3}, places));
           for (std::size_t i = 0; i < countOf(law); ++i) {
-            for (const NodeWeight& carrier : vertices_[at(element.vertices[i])].carriers) {
-              if (carrier.node == own) force -= carrier.weight * gradient[i];
-            }
+            force -= carriers_.weight(element.vertices[i], own) * gradient[i];
           }
         },
         element.law);
@@ -270,17 +240,17 @@ Vec3 Membrane::force(const std::vector<Vec3>& displacement, int node) const {
 }
 
 double Membrane::pressureNorm(const std::vector<Vec3>& moved) const {
-  std::vector<Vec3> on_vertices(vertices_.size(), Vec3::Zero());
+  std::vector<Vec3> on_vertices(rest_.size(), Vec3::Zero());
   addForces(placesOf(moved), true, on_vertices);
   double squared = 0.0;
-  for (const Vec3& force : toNodes(on_vertices)) squared += force.squaredNorm();
+  for (const Vec3& force : carriers_.toCarriers(on_vertices)) squared += force.squaredNorm();
   return std::sqrt(squared);
 }
 
 void Membrane::findStiffness(const std::vector<Vec3>& moved, Curvature curvature,
-                             NodeBlocks& stiffness) const {
+                             NodeBlocks& of_vertices) const {
   const std::vector<Vec3> places = placesOf(moved);
-  NodeBlocks of_vertices = vertex_pattern_;
+  of_vertices.clear();
   for (const Element& element : elements_) {
     std::visit(
         [&](const auto& law) {
@@ -294,17 +264,6 @@ void Membrane::findStiffness(const std::vector<Vec3>& moved, Curvature curvature
           }
         },
         element.law);
-  }
-  stiffness.clear();
-  auto place = places_.begin();
-  for (int row = 0; row < of_vertices.rows(); ++row) {
-    for (int i = of_vertices.first(row); i < of_vertices.last(row); ++i) {
-      for (const NodeWeight& one : vertices_[at(row)].carriers) {
-        for (const NodeWeight& other : vertices_[at(of_vertices.column(i))].carriers) {
-          stiffness.block(*place++) += one.weight * other.weight * of_vertices.block(i);
-        }
-      }
-    }
   }
 }
 

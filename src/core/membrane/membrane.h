@@ -13,6 +13,7 @@
 #include "membrane/pressed_triangle.h"
 #include "membrane/sheet_law.h"
 #include "membrane/stretched_triangle.h"
+#include "membrane/vertex_carriers.h"
 #include "robot_tissue/core/surface.h"
 
 namespace robot_tissue {
@@ -39,11 +40,13 @@ class Membrane {
   Vec3 force(const std::vector<Vec3>& displacement, int node) const;  // of all nodes; on this one
   double pressureNorm(const std::vector<Vec3>& moved) const;  // L2 of a pressure's forces (N)
 
-  // Zero, with the places that `findStiffness` fills.
+  // Of the vertices, by the nodes' order here.
+  const VertexCarriers& carriers() const { return carriers_; }
+  // Of the vertices: zero, with the places that `findStiffness` fills with the energy's second
+  // derivative K by where they are (N/m). By the nodes it is W^T K W.
   NodeBlocks stiffnessPattern() const { return pattern_; }
-  // The energy's second derivative (N/m).
   void findStiffness(const std::vector<Vec3>& moved, Curvature curvature,
-                     NodeBlocks& stiffness) const;
+                     NodeBlocks& of_vertices) const;
   // Mean over the axes of that against moving the node alone, at rest (N/m); 0 beside membranes.
   double restStiffness(int node) const;
 
@@ -52,28 +55,22 @@ class Membrane {
     std::variant<StretchedTriangle, Hinge, PressedTriangle> law;
     std::array<int, 4> vertices;  // the last one of hinges alone
   };
-  struct Vertex {
-    Vec3 rest = Vec3::Zero();          // m
-    std::vector<NodeWeight> carriers;  // by their order in nodes_
-  };
-
   void take(const TissueSurface& surface, const std::vector<MembranePart>& parts);
   void addSheet(const TissueSurface& surface, const MembranePart& part);
   void addHinges(const TissueSurface& surface, const MembranePart& part);
   void bindNodes(const TissueSurface& surface);
-  void makePatterns();
+  void makePattern();
   void addForces(const std::vector<Vec3>& places, bool of_pressure,
                  std::vector<Vec3>& on_vertices) const;
   std::vector<Vec3> placesOf(const std::vector<Vec3>& moved) const;  // of vertices (m)
-  std::vector<Vec3> toNodes(const std::vector<Vec3>& on_vertices) const;
 
   std::vector<Element> elements_;
-  std::vector<Vertex> vertices_;
+  std::vector<Vec3> rest_;              // of vertices (m)
   std::vector<int> vertex_of_surface_;  // per vertex here: that of the surface
   std::vector<int> nodes_;
   std::vector<std::vector<int>> elements_at_;  // per node
-  NodeBlocks vertex_pattern_, pattern_;
-  std::vector<int> places_;  // in pattern_: per block of vertex_pattern_, per pair of carriers
+  VertexCarriers carriers_;
+  NodeBlocks pattern_;
   std::vector<double> rest_stiffness_;
   std::vector<Vec3> rounding_;  // of forces at rest, on vertices, pressure left out (N)
 };

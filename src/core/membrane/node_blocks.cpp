@@ -26,6 +26,15 @@ NodeBlocks::NodeBlocks(int rows, std::vector<std::pair<int, int>> pairs) {
   clear();
 }
 
+void NodeBlocks::addRow(const std::vector<int>& columns,
+                        const std::vector<Eigen::Matrix3d>& blocks) {
+  for (const int column : columns) {
+    column_.push_back(column);
+    blocks_.push_back(blocks[at(column)]);
+  }
+  first_.push_back(static_cast<int>(column_.size()));
+}
+
 void NodeBlocks::clear() { blocks_.assign(column_.size(), Eigen::Matrix3d::Zero()); }
 
 void NodeBlocks::operator*=(double factor) {
@@ -47,20 +56,20 @@ std::vector<Vec3> NodeBlocks::times(const std::vector<Vec3>& vectors) const {
   return product;
 }
 
-double greatestOverDiagonal(const NodeBlocks& matrix, int steps, std::vector<Vec3>& start) {
-  std::vector<Eigen::Matrix3d> diagonal, inverse;
-  for (int row = 0; row < matrix.rows(); ++row) {
-    const Eigen::Matrix3d& own = matrix.diagonal(row);
+double greatestOverDiagonal(const TimesVectors& times, const std::vector<Eigen::Matrix3d>& diagonal,
+                            int steps, std::vector<Vec3>& start) {
+  std::vector<Eigen::Matrix3d> regular, inverse;
+  for (const Eigen::Matrix3d& own : diagonal) {
     const double some = own.trace() > 0.0 ? kSomeStiffness * own.trace() : 1.0;
-    diagonal.emplace_back(own + some * Eigen::Matrix3d::Identity());
-    inverse.emplace_back(diagonal.back().inverse());
+    regular.emplace_back(own + some * Eigen::Matrix3d::Identity());
+    inverse.emplace_back(regular.back().inverse());
   }
   double greatest = 0.0;
   for (int step = 0; step < steps; ++step) {
-    const std::vector<Vec3> product = matrix.times(start);
+    const std::vector<Vec3> product = times(start);
     double length = 0.0, work = 0.0;
     for (std::size_t row = 0; row < start.size(); ++row) {
-      length += start[row].dot(diagonal[row] * start[row]);
+      length += start[row].dot(regular[row] * start[row]);
       work += start[row].dot(product[row]);
       start[row] = inverse[row] * product[row];
     }

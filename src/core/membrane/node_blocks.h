@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,9 @@ class NodeBlocks {
   NodeBlocks() = default;
   // Zero, with a place for each of these pairs (row, column), in any order, and for (i, i).
   NodeBlocks(int rows, std::vector<std::pair<int, int>> pairs);
+
+  // Below the rows that there are, one with these columns, ascending, and what `blocks` has there.
+  void addRow(const std::vector<int>& columns, const std::vector<Eigen::Matrix3d>& blocks);
 
   int rows() const { return static_cast<int>(first_.size()) - 1; }
   int first(int row) const { return first_[at(row)]; }  // place of the row's first block
@@ -36,6 +40,8 @@ class NodeBlocks {
 
 // The greatest eigenvalue of D^-1 K, K the matrix and D its blocks on the diagonal, from below, by
 // so many steps of the power method from `start`, which is left at its eigenvector.
-double greatestOverDiagonal(const NodeBlocks& matrix, int steps, std::vector<Vec3>& start);
+using TimesVectors = std::function<std::vector<Vec3>(const std::vector<Vec3>&)>;
+double greatestOverDiagonal(const TimesVectors& times, const std::vector<Eigen::Matrix3d>& diagonal,
+                            int steps, std::vector<Vec3>& start);
 
 }  // namespace robot_tissue

@@ -92,9 +92,10 @@ class Assembly {
 
   void addMembrane(const std::vector<Vec3>& moved, bool convex, Eigen::VectorXd& carried) {
     const Membrane& membrane = *model_.membrane();
-    NodeBlocks stiffness = membrane.stiffnessPattern();
+    NodeBlocks of_vertices = membrane.stiffnessPattern();
     membrane.findStiffness(membrane.ofNodes(shape_.state.displacement),
-                           convex ? Curvature::kConvex : Curvature::kExact, stiffness);
+                           convex ? Curvature::kConvex : Curvature::kExact, of_vertices);
+    const NodeBlocks stiffness = membrane.carriers().stiffness(of_vertices);
     const std::vector<Vec3> force = stiffness.times(membrane.ofNodes(moved));
     std::vector<std::array<Shares, 3>> shares;
     for (const int node : membrane.nodes()) shares.push_back(sharesOf(node));

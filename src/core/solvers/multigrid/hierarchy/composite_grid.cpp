@@ -268,7 +268,9 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
     grid = coarse;
   }
   finest().constrained.setUnits(spacing_, modulus_);
-  if (model.membrane() != nullptr) addMembrane(model.membrane());
+  if (model.membrane() != nullptr) {
+    membranes_.add({model.membrane(), entries_, spacing_, modulus_}, transfers_, levels_);
+  }
   findWeight(model, cells);
   if (model.movesInTime()) findMasses(model, cells);
 }
@@ -292,43 +294,6 @@ void CompositeGrid<Real>::addLevel(const LevelGrid& grid, int beside,
                                    double greatest_stiffness) {
   levels_.emplace_back(grid, beside, cells, part, greatest_stiffness);
   if (workers_ != nullptr) levels_.back().share(*workers_);
-}
-
-template <typename Real>
-void CompositeGrid<Real>::addMembrane(const std::shared_ptr<const Membrane>& membrane) {
-  std::vector<int> entries;
-  for (const int node : membrane->nodes()) entries.push_back(entryOf(node));
-  finest().setMembrane({membrane, std::move(entries), spacing_, modulus_});
-  for (std::size_t level = 1; level < levels_.size(); ++level) {
-    std::vector<NodeShares> carriers(at(levels_[level - 1].count()));
-    for (const int entry : levels_[level - 1].membrane()->entries()) {
-      carriers[at(entry)] = transfers_[level - 1].carriersOf(entry);
-    }
-    levels_[level].setMembrane({*levels_[level - 1].membrane(), carriers});
-  }
-}
-
-template <typename Real>
-bool CompositeGrid<Real>::areMembranesNew() const {
-  if (membranes_at_.front().empty() || held_then_ != levels_.front().dirichletMask()) return false;
-  double farthest = 0.0;
-  for (const int entry : finest().membrane()->entries()) {
-    const Vec3 moved = vectorAt(finest().displacement, entry) - vectorAt(membranes_at_, entry);
-    farthest = std::max(farthest, moved.squaredNorm());
-  }
-  return farthest <= tuning::kSameMembrane * tuning::kSameMembrane;
-}
-
-template <typename Real>
-bool CompositeGrid<Real>::renewMembranes() {
-  if (!finest().membrane() || areMembranesNew()) return false;
-  finest().renewMembrane();
-  for (std::size_t level = 1; level < levels_.size(); ++level) {
-    levels_[level].renewMembrane(levels_[level - 1]);
-  }
-  membranes_at_ = finest().displacement;
-  held_then_ = finest().dirichletMask();
-  return true;
 }
 
 template <typename Real>

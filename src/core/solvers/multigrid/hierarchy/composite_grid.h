@@ -20,6 +20,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "solvers/multigrid/hierarchy/grid_transfer.h"
 #include "solvers/multigrid/hierarchy/level_source.h"
+#include "solvers/multigrid/hierarchy/membrane_levels.h"
 #include "solvers/multigrid/level/grid_level.h"
 
 namespace robot_tissue {
@@ -91,10 +92,9 @@ class CompositeGrid {
   // Of nodes (E0 h^2), with what acts on them in a time step besides; empty: no gravity, no step.
   const Field<Real>& weight() const { return is_in_step_ ? load_of_step_ : weight_; }
 
-  // On all levels, membranes become as stiff as the finest one's shape makes them; false: they are,
-  // nearly, and nothing changed.
-  bool renewMembranes();
-  void forgetMembranes() { membranes_at_ = Field<Real>(); }  // they are renewed, come what may
+  // As MembraneLevels.
+  bool renewMembranes() { return membranes_.renew(levels_); }
+  void forgetMembranes() { membranes_.forget(); }
 
   // Solves are of a time step from now on; null: they are not. What holds the nodes is to be bound
   // anew, forces are stale.
@@ -112,8 +112,6 @@ class CompositeGrid {
   std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);
-  void addMembrane(const std::shared_ptr<const Membrane>& membrane);
-  bool areMembranesNew() const;
   void findWeight(const ElasticModel& model, const CellSet& cells);
   void findMasses(const ElasticModel& model, const CellSet& cells);
 
@@ -133,9 +131,7 @@ class CompositeGrid {
   double scale_ = 1.0;
   bool is_in_step_ = false;
   Field<Real> load_of_step_;
-  // Displacement and what was held when membranes were renewed; empty: they are to be.
-  Field<Real> membranes_at_;
-  std::vector<std::uint8_t> held_then_;
+  MembraneLevels<Real> membranes_;
 };
 
 template <typename Real>

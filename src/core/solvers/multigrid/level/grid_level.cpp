@@ -85,19 +85,13 @@ void GridLevel<Real>::setMembrane(LevelMembrane<Real> membrane) {
 }
 
 template <typename Real>
+void GridLevel<Real>::bindMembrane(const GridLevel& fine) {
+  membrane_->bind(*fine.membrane_, fine.held_);
+}
+
+template <typename Real>
 void GridLevel<Real>::renewMembrane() {
   membrane_->renew(displacement);
-  takeStiffnessOfMembrane();
-}
-
-template <typename Real>
-void GridLevel<Real>::renewMembrane(const GridLevel& fine) {
-  membrane_->renew(*fine.membrane_, fine.held_);
-  takeStiffnessOfMembrane();
-}
-
-template <typename Real>
-void GridLevel<Real>::takeStiffnessOfMembrane() {
   const std::vector<Eigen::Matrix3d> diagonal = membrane_->diagonal(greatestStiffness());
   for (std::size_t i = 0; i < diagonal.size(); ++i) {
     constrained.own_stiffness[i].stiffness = diagonal[i];

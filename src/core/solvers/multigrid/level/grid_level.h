@@ -44,9 +44,10 @@ class GridLevel {
   // Membranes act from now on; to be bound, and renewed, anew.
   void setMembrane(LevelMembrane<Real> membrane);
   const std::optional<LevelMembrane<Real>>& membrane() const { return membrane_; }
-  // Their stiffness as the shape is now; on a coarse level, as the finer one's is.
+  // On a coarse level: as the finer one carries them, and as that is held.
+  void bindMembrane(const GridLevel& fine);
+  // From the finest level on: as stiff as the shape makes them now.
   void renewMembrane();
-  void renewMembrane(const GridLevel& fine);
   // The displacement is where the level starts from.
   void startMembrane();
 
@@ -92,7 +93,6 @@ class GridLevel {
  private:
   void findForces(Find what);
   void measureSteps();
-  void takeStiffnessOfMembrane();
   void findFree();
 
   void clearStep();

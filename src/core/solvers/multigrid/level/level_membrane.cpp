@@ -14,47 +14,34 @@ namespace tuning = level_tuning;
 
 template <typename Real>
 LevelMembrane<Real>::LevelMembrane(std::shared_ptr<const Membrane> membrane,
-                                   std::vector<int> entries, double spacing, double modulus)
+                                   const std::vector<int>& entries, double spacing, double modulus)
     : membrane_(std::move(membrane)),
       spacing_(spacing),
       modulus_(modulus),
-      entries_(std::move(entries)),
-      stiffness_(membrane_->stiffnessPattern()) {}
+      of_vertices_(std::make_shared<NodeBlocks>(membrane_->stiffnessPattern())),
+      carriers_(membrane_->carriers()) {
+  for (const int node : membrane_->nodes()) entries_.push_back(entries[at(node)]);
+}
 
 template <typename Real>
 LevelMembrane<Real>::LevelMembrane(const LevelMembrane& fine,
-                                   const std::vector<NodeShares>& carriers) {
-  const auto own = [this](int entry) {
-    return static_cast<int>(std::lower_bound(entries_.begin(), entries_.end(), entry) -
-                            entries_.begin());
-  };
+                                   const std::vector<NodeShares>& carriers)
+    : membrane_(fine.membrane_),
+      spacing_(2.0 * fine.spacing_),
+      modulus_(fine.modulus_),
+      of_vertices_(fine.of_vertices_) {
   for (const int entry : fine.entries_) {
     for (const NodeShare& share : carriers[at(entry)]) entries_.push_back(share.node);
   }
   std::sort(entries_.begin(), entries_.end());
   entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
-  const auto for_parts = [&](auto visit) {
-    for (int row = 0; row < fine.stiffness_.rows(); ++row) {
-      for (int i = fine.stiffness_.first(row); i < fine.stiffness_.last(row); ++i) {
-        for (const NodeShare& one : carriers[at(fine.entries_[at(row)])]) {
-          for (const NodeShare& other :
-               carriers[at(fine.entries_[at(fine.stiffness_.column(i))])]) {
-            visit(i, own(one.node), own(other.node), one.weight * other.weight);
-          }
-        }
-      }
+  for (const int entry : fine.entries_) {
+    shares_.emplace_back();
+    for (const NodeShare& share : carriers[at(entry)]) {
+      const auto own = std::lower_bound(entries_.begin(), entries_.end(), share.node);
+      shares_.back().push_back({static_cast<int>(own - entries_.begin()), share.weight});
     }
-  };
-  std::vector<std::pair<int, int>> pairs;
-  for_parts([&](int, int row, int column, double) { pairs.emplace_back(row, column); });
-  stiffness_ = NodeBlocks(static_cast<int>(entries_.size()), std::move(pairs));
-  for_parts([&](int fine_block, int row, int column, double weight) {
-    while (static_cast<int>(first_part_.size()) <= fine_block) {
-      first_part_.push_back(static_cast<int>(parts_.size()));
-    }
-    parts_.push_back({stiffness_.place(row, column), weight});
-  });
-  first_part_.push_back(static_cast<int>(parts_.size()));
+  }
   start_.assign(entries_.size(), Vec3::Zero());
 }
 
@@ -72,27 +59,19 @@ std::vector<Vec3> LevelMembrane<Real>::gather(const Field<Real>& displacement) c
 
 template <typename Real>
 void LevelMembrane<Real>::renew(const Field<Real>& displacement) {
+  if (!shares_.empty()) return;
   std::vector<Vec3> moved = gather(displacement);
   for (Vec3& motion : moved) motion *= spacing_;
-  membrane_->findStiffness(moved, Curvature::kConvex, stiffness_);
-  stiffness_ *= 1.0 / (modulus_ * spacing_);
+  membrane_->findStiffness(moved, Curvature::kConvex, *of_vertices_);
 }
 
-// In units of this level's E0 h: half the number.
 template <typename Real>
-void LevelMembrane<Real>::renew(const LevelMembrane& fine, const std::vector<std::uint8_t>& held) {
-  stiffness_.clear();
-  const NodeBlocks& of_fine = fine.stiffness_;
-  const auto stands = [&](int row) { return held[at(fine.entries_[at(row)])] == kAllAxes; };
-  for (int row = 0; row < of_fine.rows(); ++row) {
-    if (stands(row)) continue;
-    for (int i = of_fine.first(row); i < of_fine.last(row); ++i) {
-      if (stands(of_fine.column(i))) continue;
-      for (int part = first_part_[at(i)]; part < first_part_[at(i) + 1]; ++part) {
-        stiffness_.block(parts_[at(part)].to) += 0.5 * parts_[at(part)].weight * of_fine.block(i);
-      }
-    }
+void LevelMembrane<Real>::bind(const LevelMembrane& fine, const std::vector<std::uint8_t>& held) {
+  std::vector<VertexCarriers::Shares> free = shares_;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (held[at(fine.entries_[i])] == kAllAxes) free[i].clear();
   }
+  carriers_ = VertexCarriers(fine.carriers_, static_cast<int>(entries_.size()), free);
 }
 
 template <typename Real>
@@ -101,16 +80,24 @@ void LevelMembrane<Real>::startAt(const Field<Real>& displacement) {
 }
 
 template <typename Real>
+std::vector<Vec3> LevelMembrane<Real>::timesStiffness(const std::vector<Vec3>& motion) const {
+  std::vector<Vec3> product =
+      carriers_.toCarriers(of_vertices_->times(carriers_.toVertices(motion)));
+  for (Vec3& force : product) force /= modulus_ * spacing_;
+  return product;
+}
+
+template <typename Real>
 void LevelMembrane<Real>::addForces(const Field<Real>& displacement, Field<Real>& forces) const {
   std::vector<Vec3> moved = gather(displacement);
   double unit = -1.0;
-  if (membrane_ != nullptr) {
+  if (shares_.empty()) {
     for (Vec3& motion : moved) motion *= spacing_;
     moved = membrane_->forces(moved);
     unit = 1.0 / (modulus_ * spacing_ * spacing_);
   } else {
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= start_[i];
-    moved = stiffness_.times(moved);
+    moved = timesStiffness(moved);
   }
   for (std::size_t i = 0; i < moved.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -135,12 +122,12 @@ std::vector<Eigen::Matrix3d> LevelMembrane<Real>::diagonal(double greatest) {
       }
     }
   }
+  std::vector<Eigen::Matrix3d> diagonal = carriers_.diagonal(*of_vertices_);
+  for (Eigen::Matrix3d& own : diagonal) own /= modulus_ * spacing_;
+  const auto times = [this](const std::vector<Vec3>& motion) { return timesStiffness(motion); };
   const double found =
-      tuning::kStiffnessMargin * greatestOverDiagonal(stiffness_, steps, stiffest_);
-  std::vector<Eigen::Matrix3d> diagonal;
-  for (int row = 0; row < stiffness_.rows(); ++row) {
-    diagonal.emplace_back(std::max(1.0, found / greatest) * stiffness_.diagonal(row));
-  }
+      tuning::kStiffnessMargin * greatestOverDiagonal(times, diagonal, steps, stiffest_);
+  for (Eigen::Matrix3d& own : diagonal) own *= std::max(1.0, found / greatest);
   return diagonal;
 }
 
