@@ -20,7 +20,7 @@ struct MethodTraits {
   bool uses_threads = false;   // else one
   bool turns_patches = true;   // that a force moves
   bool takes_membranes = false;
-  double factor_bytes = 0.0;   // of memory for n nodes, over n^(4/3): of a sparse factor
+  double factor_bytes = 0.0;  // of memory for n nodes, over n^(4/3): of a sparse factor
 };
 
 const std::vector<std::string>& modelNames();

@@ -71,8 +71,8 @@ struct TissueConfig {
   double spacing = 0.0;
   std::string model = "elastic";
   Material material;
-  std::vector<Region> regions;     // a later one wins where two overlap
-  std::vector<Box> fixed;          // nodes in these never move; none: the block floats in space
+  std::vector<Region> regions;  // a later one wins where two overlap
+  std::vector<Box> fixed;       // nodes in these never move; none: the block floats in space
   std::vector<MembraneConfig> membranes;
   Vec3 gravity = Vec3::Zero();     // m/s^2
   std::optional<TimeConfig> time;  // empty: every shape is an equilibrium

@@ -351,8 +351,8 @@ class Tissue {
   std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
   double rest_volume_ = 0.0;                         // m^3
   Vec3 weight_ = Vec3::Zero();                       // N
-  std::unique_ptr<const MembranePlan> membranes_;  // null: none
-  bool has_body_load_ = false;  // gravity, or a pressure: the rest shape is not in balance
+  std::unique_ptr<const MembranePlan> membranes_;    // null: none
+  bool has_body_load_ = false;   // gravity, or a pressure: the rest shape is not in balance
   Vec3 gravity_ = Vec3::Zero();  // m/s^2
   std::vector<Vec3> vertices_;   // deformed, of the surface
   Box bounds_;                   // of them

@@ -41,12 +41,12 @@ inline Range budget() { return {0.0, 1e9, "ms"}; }  // 0: none
 
 constexpr double kLeastTearStretch = 1.001;  // of one that is not 0
 
-constexpr double kLeastForce = 1e-9;      // N, of one that is not zero
-constexpr double kLeastGravity = 1e-6;    // m/s^2, likewise
-constexpr double kLeastDirection = 1e-6;  // of a vector that has a direction
-constexpr double kMostContrast = 1e6;     // of a region's stiffness and the tissue's
+constexpr double kLeastForce = 1e-9;           // N, of one that is not zero
+constexpr double kLeastGravity = 1e-6;         // m/s^2, likewise
+constexpr double kLeastDirection = 1e-6;       // of a vector that has a direction
+constexpr double kMostContrast = 1e6;          // of a region's stiffness and the tissue's
 constexpr double kMostMembraneContrast = 1e7;  // of E t and the tissue's E h
-constexpr double kFarthestCell = 1e6;     // spacings from the origin to the tissue's far end
+constexpr double kFarthestCell = 1e6;          // spacings from the origin to the tissue's far end
 
 }  // namespace ranges
 

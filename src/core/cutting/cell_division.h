@@ -52,7 +52,7 @@ class CellDivision {
 
  private:
   static std::size_t indexOf(const CellPoint& point) {
-    return static_cast<std::size_t>(point[0] + 3 * point[1] + 9 * point[2]);
+    return robot_tissue::at(point[0] + 3 * point[1] + 9 * point[2]);
   }
   bool isParted(const CellPoint& edge) const { return parted_[indexOf(edge)]; }
   void placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell);

@@ -53,7 +53,7 @@ Vec3 doubleArea(const std::vector<Vec3>& vertices, const MeshTriangle& corners) 
 double enclosedVolume(const std::vector<Vec3>& vertices,
                       const std::vector<MeshTriangle>& triangles) {
   if (triangles.empty()) return 0.0;
-  const Vec3 origin = vertices[at(triangles.front()[0])];  // near, so that little cancels
+  const Vec3& origin = vertices[at(triangles.front()[0])];  // near, so that little cancels
   double six_volumes = 0.0;
   for (const MeshTriangle& triangle : triangles) {
     const Vec3 a = vertices[at(triangle[0])] - origin;

@@ -28,7 +28,9 @@ ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
 }  // namespace
 
 ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
-    : lattice_(lattice), moves_in_time_(config.time.has_value()), has_membranes_(!config.membranes.empty()) {
+    : lattice_(lattice),
+      moves_in_time_(config.time.has_value()),
+      has_membranes_(!config.membranes.empty()) {
   const double corner_volume = std::pow(lattice.spacing(), 3) / kCorners;
   for (const Composition& composition : lattice.compositions()) {
     std::vector<std::pair<Moduli, double>> parts;

@@ -46,7 +46,7 @@ class TissueModel {
   virtual void setInertia(const InertialTerm*) {}
 
   // Energy and forces have those of these membranes, too, from now on; null: none.
-  virtual void setMembrane(std::shared_ptr<const Membrane>) {}
+  virtual void setMembrane(std::shared_ptr<const Membrane>) {}  // NOLINT: kept by who overrides it
 };
 
 }  // namespace robot_tissue

@@ -88,8 +88,8 @@ bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   method_.reset();  // it refers to the model
   const std::unique_ptr<TissueModel> earlier = std::exchange(model_, makeModel(tissue, lattice_));
   if (membranes_) {
-    membranes_ = std::make_unique<MembranePlan>(tissue.membranes, membranes_->asMade(),
-                                                tissue.spacing);
+    membranes_ =
+        std::make_unique<MembranePlan>(tissue.membranes, membranes_->asMade(), tissue.spacing);
     model_->setMembrane(membranes_->on(surface_));
   }
   method_ = makeMethod(solver, lattice_, *model_);

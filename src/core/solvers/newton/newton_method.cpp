@@ -110,7 +110,7 @@ bool NewtonMethod::factorize(const ConstrainedState& shape, const std::vector<Ve
   factorized_ = true;
   for (const bool convex : {false, true}) {
     TangentStiffness curvature = tangentStiffnessOf(model_, unknowns_, shape, moved, convex);
-    matrix_ = std::move(curvature.matrix);
+    matrix_.swap(curvature.matrix);
     carried_ = std::move(curvature.carried);
     diagonal_shift_ = 0.0;
     diagonalShift(tuning::kHold * hold_);
