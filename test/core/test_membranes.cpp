@@ -111,6 +111,27 @@ TEST(Membranes, LayeredIsNewton) {
   }
 }
 
+// A capsule around a ball, off the grid, up to a thousand times as stiff as a layer of its cells.
+TEST(Membranes, StiffOnesAreBalancedInFewCycles) {
+  for (const double contrast : {100.0, 1000.0}) {
+    TissueConfig config = shell(0.0);
+    config.membranes[0].side = MembraneConfig::Side::kOuter;
+    config.membranes[0].young_modulus =
+        contrast * config.material.young_modulus * config.spacing / config.membranes[0].thickness;
+    const LoadStep push =
+        loadOf({displacedPatch("push", Box(Vec3(-1, -1, 0.9 * kRadius), Vec3(1, 1, 1)),
+                               Vec3(0, 0, -0.002 * config.spacing))});
+    Tissue exact(config, solverOf("newton")), tissue(config, solverOf("layered"));
+    exact.load(push);
+    tissue.load(push);
+    const Vec3 expected = exact.lastReport().patches.at(0).force;
+    const SolveReport& report = tissue.lastReport();
+    EXPECT_EQ(report.status, SolveStatus::kOk) << contrast;
+    EXPECT_LE(report.iterations, 16) << contrast;
+    EXPECT_LT((report.patches.at(0).force - expected).norm(), 2e-3 * expected.norm()) << contrast;
+  }
+}
+
 TEST(Membranes, AnyNumberOfThreadsFindsTheSame) {
   std::vector<Vec3> first;
   for (const int threads : {1, 2, 7}) {

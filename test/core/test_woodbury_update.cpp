@@ -88,6 +88,14 @@ TEST(WoodburyUpdate, MoveAsTheWholeMatrixSays) {
     for (int node = 0; node < kNodes; ++node) {
       EXPECT_LT((motions[at(node)] - exact.segment<3>(3 * node)).norm(), 1e-12 * exact.norm());
     }
+    std::vector<Vec3> balanced;
+    for (std::size_t node = 0; node < forces.size(); ++node) {
+      balanced.push_back(stiffness[node] * motions[node]);
+    }
+    joined.addForces(motions, balanced);
+    for (std::size_t node = 0; node < forces.size(); ++node) {
+      EXPECT_LT((balanced[node] - forces[node]).norm(), 1e-11);
+    }
   }
 }
 

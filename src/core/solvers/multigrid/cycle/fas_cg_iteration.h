@@ -42,6 +42,7 @@ class FasCgIteration {
 
  private:
   SolveStatus check(const SolveContext& solve);
+  bool areMembranesStiff(const SolveContext& solve) const;
   bool isBalanced(const SolveContext& solve) const;
   bool isHopeless(const SolveContext& solve) const;
   void makeCycle(const SolveContext& solve);

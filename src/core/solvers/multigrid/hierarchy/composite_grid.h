@@ -95,6 +95,7 @@ class CompositeGrid {
   // As MembraneLevels.
   bool renewMembranes() { return membranes_.renew(levels_); }
   void forgetMembranes() { membranes_.forget(); }
+  void coupleMembranes(bool together) { membranes_.couple(together, levels_); }
 
   // Solves are of a time step from now on; null: they are not. What holds the nodes is to be bound
   // anew, forces are stale.

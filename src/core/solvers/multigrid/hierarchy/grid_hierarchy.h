@@ -47,6 +47,7 @@ class GridHierarchy {
   // As CompositeGrid::renewMembranes; when what holds the nodes is bound.
   bool renewMembranes() { return grid_.renewMembranes(); }
   void forgetMembranes() { grid_.forgetMembranes(); }
+  void coupleMembranes(bool together) { grid_.coupleMembranes(together); }
 
   LevelConstraints<Real>& constraints() { return constraints_; }
   NodeDisplacements<Real>& displacements() { return displacements_; }

@@ -59,6 +59,11 @@ bool MembraneLevels<Real>::renew(Levels& levels) {
   return true;
 }
 
+template <typename Real>
+void MembraneLevels<Real>::couple(bool together, Levels& levels) const {
+  for (GridLevel<Real>& level : levels) level.coupleMembrane(together);
+}
+
 template class MembraneLevels<float>;
 template class MembraneLevels<double>;
 

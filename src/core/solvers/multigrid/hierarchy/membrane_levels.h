@@ -22,7 +22,8 @@ class MembraneLevels {
   // On all levels they become as stiff as the finest one's shape makes them; false: they are,
   // nearly, or there are none, and nothing changed.
   bool renew(Levels& levels);
-  void forget() { displacement_ = Field<Real>(); }  // they are renewed, come what may
+  void couple(bool together, Levels& levels) const;  // as GridLevel::coupleMembrane
+  void forget() { displacement_ = Field<Real>(); }   // they are renewed, come what may
 
  private:
   bool bind(Levels& levels);

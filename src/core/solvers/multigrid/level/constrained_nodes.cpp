@@ -293,20 +293,6 @@ void ConstrainedNodes<Real>::invertGroups() {
 }
 
 template <typename Real>
-const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
-  balancing_.clear();
-  for (const ConstrainedNode& constrained : all_) {
-    Vec3 free = constrained.force;
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((constrained.held >> axis & 1U) != 0) free[axis] = 0.0;
-    }
-    balancing_.push_back(constrained.inverse * free);
-  }
-  joined_.apply(balancing_);
-  return balancing_;
-}
-
-template <typename Real>
 void ConstrainedNodes<Real>::clearStep() {
   for (ConstrainedNode& constrained : all_) constrained.step.setZero();
   for (GroupVector& step : group_step_) step.setZero();
@@ -329,8 +315,11 @@ void ConstrainedNodes<Real>::step(double keep, double share, double longest,
       constrained.step = motionAt(groups[group], constrained.arm, group_step_[group]);
     } else {
       constrained.step = keep * constrained.step + share * motions[i];
-      cut(constrained.step, longest);
+      if (coupling_ == nullptr) cut(constrained.step, longest);
     }
+  }
+  if (coupling_ != nullptr) shortenTogether(longest);
+  for (const ConstrainedNode& constrained : all_) {
     for (int axis = 0; axis < 3; ++axis) {
       displacement[at(axis)][at(constrained.node)] += static_cast<Real>(constrained.step[axis]);
     }

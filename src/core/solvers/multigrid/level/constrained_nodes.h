@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/types.h"
 #include "solvers/multigrid/level/cell_operator.h"
+#include "solvers/multigrid/level/level_membrane.h"
 #include "solvers/multigrid/level/woodbury_update.h"
 
 namespace robot_tissue {
@@ -68,6 +70,9 @@ class ConstrainedNodes {
 
   // `held`: bits of axes, per node.
   void bind(const std::vector<std::uint8_t>& held);
+  // Nodes on the membrane, of which `own_stiffness` is, are balanced together from now on; null:
+  // each alone. `greatest`: as GridLevel::greatestStiffness.
+  void couple(std::shared_ptr<const LevelMembrane<Real>> membrane, double greatest);
   // Of the laws of contacts: the spacing (m) and E0 (Pa).
   void setUnits(double spacing, double modulus);
   std::vector<int> nodes() const;  // ascending
@@ -118,8 +123,14 @@ class ConstrainedNodes {
   void join(const LevelSpring& spring, const Vec3& point);
   void joinAlong(const LevelSpring& spring, const Vec3& direction, double stiffness);
   // D^-1 f of the nodes that are in no group, per entry of all_ (D with joining springs:
-  // WoodburyUpdate); the reference holds until the next call.
+  // WoodburyUpdate; with a membrane: constrained_balance.cpp); the reference holds until the next
+  // call.
   const std::vector<Vec3>& balancing() const;
+  std::vector<Vec3> freeForces() const;
+  void divide(std::vector<Vec3>& forces) const;
+  std::vector<Vec3> balancingTogether() const;
+  std::vector<Vec3> timesTogether(const std::vector<Vec3>& motions) const;
+  void shortenTogether(double longest);
   void invert(ConstrainedNode& constrained);
   void invertGroups();
 
@@ -129,6 +140,8 @@ class ConstrainedNodes {
   std::vector<WoodburyUpdate::Spring> joining_;  // of springs in contact, one a direction
   WoodburyUpdate joined_;
   mutable std::vector<Vec3> balancing_;
+  std::shared_ptr<const LevelMembrane<Real>> coupling_;  // null: each node alone
+  double greatest_ = 1.0;
   std::vector<Matrix6> group_stiffness_, group_inverse_;
   std::vector<GroupVector> group_step_;
 };

@@ -76,7 +76,7 @@ void GridLevel<Real>::measureSteps() {
 
 template <typename Real>
 void GridLevel<Real>::setMembrane(LevelMembrane<Real> membrane) {
-  membrane_ = std::move(membrane);
+  membrane_ = std::make_shared<LevelMembrane<Real>>(std::move(membrane));
   for (const int entry : membrane_->entries()) {
     constrained.own_stiffness.emplace_back();
     constrained.own_stiffness.back().node = entry;
@@ -96,6 +96,11 @@ void GridLevel<Real>::renewMembrane() {
   for (std::size_t i = 0; i < diagonal.size(); ++i) {
     constrained.own_stiffness[i].stiffness = diagonal[i];
   }
+}
+
+template <typename Real>
+void GridLevel<Real>::coupleMembrane(bool together) {
+  constrained.couple(together ? membrane_ : nullptr, greatestStiffness());
 }
 
 template <typename Real>

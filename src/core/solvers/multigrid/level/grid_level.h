@@ -7,7 +7,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -43,11 +43,13 @@ class GridLevel {
 
   // Membranes act from now on; to be bound, and renewed, anew.
   void setMembrane(LevelMembrane<Real> membrane);
-  const std::optional<LevelMembrane<Real>>& membrane() const { return membrane_; }
+  const std::shared_ptr<LevelMembrane<Real>>& membrane() const { return membrane_; }
   // On a coarse level: as the finer one carries them, and as that is held.
   void bindMembrane(const GridLevel& fine);
   // From the finest level on: as stiff as the shape makes them now.
   void renewMembrane();
+  // The smoother takes nodes on membranes together, or each alone, as from the first.
+  void coupleMembrane(bool together);
   // The displacement is where the level starts from.
   void startMembrane();
 
@@ -101,7 +103,7 @@ class GridLevel {
                                         const std::vector<GroupVector>& residual_of_groups);
 
   CellOperator<Real> cells_;
-  std::optional<LevelMembrane<Real>> membrane_;  // none: no membranes
+  std::shared_ptr<LevelMembrane<Real>> membrane_;  // null: no membranes
   std::vector<std::uint8_t> held_;
   std::vector<Real> rest_stiffness_;
   double step_ = 0.5;       // one over greatestStiffness()

@@ -32,13 +32,14 @@ class LevelMembrane {
   void startAt(const Field<Real>& displacement);
 
   void addForces(const Field<Real>& displacement, Field<Real>& forces) const;
+  // The stiffness times a motion of the entries (E0 h^2).
+  std::vector<Vec3> timesStiffness(const std::vector<Vec3>& motion) const;
   // Blocks on the diagonal of the stiffness, in the order of the entries, times what makes them at
   // least 1 / `greatest` of it in every motion.
   std::vector<Eigen::Matrix3d> diagonal(double greatest);
 
  private:
   std::vector<Vec3> gather(const Field<Real>& displacement) const;
-  std::vector<Vec3> timesStiffness(const std::vector<Vec3>& motion) const;  // E0 h^2
 
   std::shared_ptr<const Membrane> membrane_;
   double spacing_, modulus_;

@@ -77,4 +77,14 @@ void WoodburyUpdate::apply(std::vector<Vec3>& motions) const {
   }
 }
 
+void WoodburyUpdate::addForces(const std::vector<Vec3>& motions, std::vector<Vec3>& forces) const {
+  for (const Spring& spring : springs_) {
+    double along = 0.0;
+    for (const Part& part : spring.parts) along += part.along.dot(motions[at(part.node)]);
+    for (const Part& part : spring.parts) {
+      forces[at(part.node)] += spring.stiffness * along * part.along;
+    }
+  }
+}
+
 }  // namespace robot_tissue

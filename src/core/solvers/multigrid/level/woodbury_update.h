@@ -30,6 +30,8 @@ class WoodburyUpdate {
   void join(std::vector<Spring> springs, const std::vector<Eigen::Matrix3d>& inverses);
   // In place, from D^-1 f to (D + W K W^T)^-1 f.
   void apply(std::vector<Vec3>& motions) const;
+  // forces += W K W^T motions.
+  void addForces(const std::vector<Vec3>& motions, std::vector<Vec3>& forces) const;
 
  private:
   void findEnvelope();
