@@ -73,8 +73,8 @@ std::vector<Include> includesIn(const std::string& folder) {
 
 // The standard library's and the system's: no folder; <vector> or <unistd.h>.
 bool isStandard(const std::string& header) {
-  static const std::vector<std::string> c_headers = {"fcntl.h", "stdlib.h", "sys/resource.h",
-                                                     "sys/stat.h", "unistd.h"};
+  static const std::vector<std::string> c_headers = {"fcntl.h",        "malloc.h",   "stdlib.h",
+                                                     "sys/resource.h", "sys/stat.h", "unistd.h"};
   if (header.find('.') == std::string::npos && header.find('/') == std::string::npos) return true;
   return std::find(c_headers.begin(), c_headers.end(), header) != c_headers.end();
 }
