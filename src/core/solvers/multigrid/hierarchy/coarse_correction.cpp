@@ -24,6 +24,10 @@ void CoarseCorrection<Real>::reset() {
   for (std::size_t level = 0; level < motions_.size(); ++level) {
     for (auto& values : motions_[level]) values.assign(at(grid_.level(level).count()), Real(0));
   }
+  missing_.clear();
+  for (int entry = 0; entry < grid_.finest().count(); ++entry) {
+    if (!grid_.finest().exists(entry)) missing_.push_back(entry);
+  }
   group_motion_.clear();
   uncovered_motion_.clear();
 }
@@ -35,6 +39,9 @@ void CoarseCorrection<Real>::find() {
   restriction_.restrictTo(1);
   solve(1);
   grid_.transfer(0).prolong(grid_.level(1).displacement, restriction_.start(1), motions_.front());
+  for (auto& values : motions_.front()) {
+    for (const int entry : missing_) values[at(entry)] = Real(0);
+  }
   group_motion_ = prolongedGroupMotion(1);
   if (!grid_.isWhole()) takeUncoveredMotion();
   if (!isFinite()) clear();

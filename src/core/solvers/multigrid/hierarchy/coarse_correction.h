@@ -27,7 +27,7 @@ class CoarseCorrection {
   void find();
   void moveBy(double alpha);  // the shape += alpha * motion
 
-  // As found last, in spacings of the finest lattice.
+  // As found last, in spacings of the finest lattice; zero where no node is.
   const Field<Real>& motion() const { return motions_.front(); }  // of the finest level
   const std::vector<GroupVector>& groupMotion() const { return group_motion_; }
   double squaredUncovered() const;  // of the uncovered part
@@ -44,6 +44,7 @@ class CoarseCorrection {
   FasRestriction<Real>& restriction_;
   UncoveredPart<Real>& uncovered_;
   std::vector<Field<Real>> motions_;  // per level: P (u_c - R u)
+  std::vector<int> missing_;          // entries of the finest level that are no nodes
   std::vector<GroupVector> group_motion_;
   typename UncoveredPart<Real>::Vector uncovered_motion_;
 };
