@@ -27,8 +27,8 @@ constexpr double kLongestStep = 0.25;
 constexpr double kNoStiffness = 1e-12;
 
 // Nodes of a membrane that are taken together (ConstrainedNodes::couple): share of r . D^-1 r that
-// conjugate gradients leave, and their most steps. A ball whose capsule is 1000 times as stiff takes
-// 10 cycles so, 25 with three steps each (0.01 mm). Up: cheaper, more cycles; dearer, fewer.
+// conjugate gradients leave, and their most steps. A ball whose capsule is 1000 times as stiff
+// takes 10 cycles so, 25 with three steps each (0.01 mm). Up: cheaper, more cycles; dearer, fewer.
 constexpr double kTogetherShare = 0.01;
 constexpr int kMostTogether = 12;
 
