@@ -67,16 +67,18 @@ robot_tissue_room(solvers/multigrid/hierarchy
   FILES coarse_correction.cpp coarse_correction.h composite_grid.cpp composite_grid.h
     fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
     grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
-    listed_cells.cpp listed_cells.h membrane_levels.cpp membrane_levels.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h tuning.h
-    uncovered_part.cpp uncovered_part.h)
+    light_nodes.cpp light_nodes.h listed_cells.cpp listed_cells.h membrane_levels.cpp
+    membrane_levels.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h
+    tuning.h uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy
   FILES budget.h composite_shape.cpp composite_shape.h error_estimator.cpp error_estimator.h
     fas_cg_cycle.cpp fas_cg_cycle.h fas_cg_iteration.cpp fas_cg_iteration.h fas_cg_solver.cpp
     fas_cg_solver.h force_balance.cpp force_balance.h layered_method.cpp layered_method.h
-    line_search.cpp line_search.h motion_left.h multigrid_solver.h node_limits.h open_part.cpp
+    line_search.cpp line_search.h motion_left.h multigrid_solver.h open_part.cpp
     open_part.h patch_answers.cpp patch_answers.h solve_context.h solve_progress.cpp
-    solve_progress.h trial_at_rest.cpp trial_at_rest.h tuning.h warm_start.cpp warm_start.h)
+    solve_progress.h trial_at_rest.cpp trial_at_rest.h tuning.h warm_start.cpp warm_start.h
+    way_limits.h)
 robot_tissue_room(solvers/newton
   USES lattice membrane material loads solvers
   FILES dof_map.cpp dof_map.h equilibrium.cpp equilibrium.h newton_method.cpp newton_method.h

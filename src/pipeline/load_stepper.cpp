@@ -62,7 +62,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     }
     follow(std::move(patches));  // loading patches -> solve
     if (!world_.tools.anyRigid()) return settlesFrom(good, otherwise);
-    if (leaptFrom(good) || turnedOver(good)) return false;
+    if (leaptFrom(good) || turnedOver(good) || isRefused(otherwise)) return false;
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
     if (round == tuning::kRigidRounds) return deepest <= tuning::kThrough * spacing;
@@ -94,13 +94,17 @@ void LoadStepper::beginTimeStep(double duration, Touched touched) {
 // shape is lost, or did not converge where that is refused.
 bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
-    const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
-    if (isLost(good) || (!converged && otherwise == IfUnconverged::kRefuse)) return false;
+    if (isLost(good) || isRefused(otherwise)) return false;
     if (more == tuning::kMoreSolves || !isUnsettled()) return true;
     world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
   }
+}
+
+bool LoadStepper::isRefused(IfUnconverged otherwise) const {
+  return otherwise == IfUnconverged::kRefuse &&
+         world_.tissue.lastReport().status == SolveStatus::kUnconverged;
 }
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
@@ -111,7 +115,7 @@ void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   world_.report.changed = true;
 }
 
-// Whether a node of the surface went farther than kMostLeap spacings: no load step moves tissue
+// Whether a vertex of the surface went farther than kMostLeap spacings: no load step moves tissue
 // that tools hold so far, so the solve threw it away.
 bool LoadStepper::leaptFrom(const Checkpoint& good) const {
   if (world_.tissue.isUntouched()) return false;
@@ -119,10 +123,11 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
   const std::vector<Vec3>& before = *good.shape.displacement;
   double farthest = 0.0;
   for (const auto& carriers : world_.tissue.surface().carriers) {
+    Vec3 way = Vec3::Zero();
     for (const NodeWeight& carrier : carriers) {
-      const Vec3 way = now[at(carrier.node)] - before[at(carrier.node)];
-      farthest = std::max(farthest, way.squaredNorm());
+      way += carrier.weight * (now[at(carrier.node)] - before[at(carrier.node)]);
     }
+    farthest = std::max(farthest, way.squaredNorm());
   }
   const double leap = tuning::kMostLeap * world_.tissue.lattice().spacing();
   return farthest > leap * leap;

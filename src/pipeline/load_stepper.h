@@ -61,6 +61,7 @@ class LoadStepper {
   void follow(std::vector<LoadingPatch> patches);
   bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
+  bool isRefused(IfUnconverged otherwise) const;
   bool isLost(const Checkpoint& good) const;
   bool leaptFrom(const Checkpoint& good) const;
   bool turnedOver(const Checkpoint& good) const;

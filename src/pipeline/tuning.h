@@ -29,8 +29,8 @@ constexpr double kStandsStill = 1e-3;
 constexpr int kMostLateIterations = 1500;
 
 // Shapes that are taken.
-// Of the spacing (1): the farthest that a surface's node goes in a load step; beyond, the shape is
-// one that was thrown away. Less: real slips are refused. Chosen.
+// Of the spacing (1): the farthest that a vertex of the surface goes in a load step; beyond, the
+// shape is one that was thrown away. Less: real slips are refused. Chosen.
 constexpr double kMostLeap = 10.0;
 // Of the spacing and of the thickness (1), whichever is less: deeper in the surface, a link is on
 // its way through. More: thin tools get through; less: sharp edges are refused. Chosen.

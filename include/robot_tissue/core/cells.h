@@ -33,6 +33,10 @@ struct Cell {
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
   double share() const { return fill == nullptr ? 1.0 : fill->share; }  // of h^3, in (0, 1]
+  // What the corner carries of it, in eighths of a full cell.
+  double eighthsAt(int corner) const {
+    return fill == nullptr ? 1.0 : kCorners * fill->share * fill->cornerShare(corner);
+  }
 };
 
 // What becomes of cells that a cut has split: they go as a whole, or stay as parts with ghosts.

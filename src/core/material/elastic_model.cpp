@@ -12,11 +12,6 @@
 namespace robot_tissue {
 namespace {
 
-// Of a full cell's eighth (1).
-double eighthsAt(const Cell& cell, int corner) {
-  return cell.fill == nullptr ? 1.0 : kCorners * cell.share() * cell.fill->cornerShare(corner);
-}
-
 ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
   ElasticCell::Corners displacement;
   for (int corner = 0; corner < kCorners; ++corner) {
@@ -49,11 +44,11 @@ Moduli ElasticModel::cellModuli(const Cell& cell) const {
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell, int corner) const {
-  return eighthsAt(cell, corner) * substanceOf(cell).corner_weight;
+  return cell.eighthsAt(corner) * substanceOf(cell).corner_weight;
 }
 
 double ElasticModel::cornerMass(const Cell& cell, int corner) const {
-  return eighthsAt(cell, corner) * substanceOf(cell).corner_mass;
+  return cell.eighthsAt(corner) * substanceOf(cell).corner_mass;
 }
 
 std::vector<double> ElasticModel::nodeMasses(const CellSet& cells) const {
@@ -166,7 +161,7 @@ Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Cell& cell = cells.all()[at(met->cell)];
     const Moduli& full = substanceOf(cell).moduli;
-    const double eighths = eighthsAt(cell, static_cast<int>(met->corner));
+    const double eighths = cell.eighthsAt(static_cast<int>(met->corner));
     sum.shear += eighths * full.shear / 4.0;
     sum.bulk += eighths * full.bulk / 4.0;
   }

@@ -9,8 +9,15 @@
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/solve_report.h"
+#include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
+
+// How far a point that nodes carry may go in a solve (m), as sum of weight * displacement of node.
+struct WayLimit {
+  const std::vector<NodeWeight>* carriers = nullptr;
+  double longest = 0.0;
+};
 
 class SolverMethod {
  public:
@@ -22,9 +29,9 @@ class SolverMethod {
   // The solves that follow, up to the next call, are of one load step.
   virtual void beginStep(const LatticeState&) {}
 
-  // How far each node may go in the solves that follow (m); empty: as far as it balances. A solve
-  // in which one went farther may end there, unconverged.
-  virtual void limitWays(std::vector<double>) {}
+  // Of the solves up to the next call, which their carriers must outlive. A solve in which a point
+  // went farther than it may can end there, unconverged.
+  virtual void limitWays(std::vector<WayLimit>) {}
 
   // Time that each solve may take from here on (ms), in the place of the options' max_ms; 0: no
   // bound.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "cutting/removal.h"
@@ -244,21 +243,17 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   return report;
 }
 
-// A node may go as far as the vertices that it carries.
+// Of the surface's vertices: a ghost that carries little of one may go farther than it.
 void Tissue::limitWays() {
-  if (contact_update_ == nullptr) return;
-  const std::vector<double> of_vertices = contact_update_->longestWays();
-  std::vector<double> of_nodes;
-  if (!of_vertices.empty()) {
-    of_nodes.assign(state_.displacement.size(), std::numeric_limits<double>::infinity());
-  }
-  for (std::size_t vertex = 0; vertex < of_vertices.size(); ++vertex) {
-    for (const NodeWeight& carrier : surface_.carriers[vertex]) {
-      double& longest = of_nodes[at(carrier.node)];
-      longest = std::min(longest, of_vertices[vertex]);
+  std::vector<WayLimit> limits;
+  if (contact_update_ != nullptr) {
+    const std::vector<double> longest = contact_update_->longestWays();
+    for (std::size_t vertex = 0; vertex < longest.size(); ++vertex) {
+      if (!std::isfinite(longest[vertex])) continue;
+      limits.push_back({&surface_.carriers[vertex], longest[vertex]});
     }
   }
-  method_->limitWays(std::move(of_nodes));
+  method_->limitWays(std::move(limits));
 }
 
 // Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).

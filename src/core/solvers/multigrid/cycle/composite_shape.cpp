@@ -150,22 +150,20 @@ Vec3 CompositeShape<Real>::netForce() const {
 
 template <typename Real>
 double CompositeShape<Real>::distanceFrom(const Vector& places) const {
-  double squared = levels_->uncovered().squaredDistanceFrom(places.uncovered);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    squared += squaredDistance(finest().displacement[axis].data(), places.nodes[axis].data(),
-                               finest().count());
-  }
-  return std::sqrt(squared);
+  return std::sqrt(levels_->uncovered().squaredDistanceFrom(places.uncovered) +
+                   finest().squaredDistanceFrom(places.nodes));
 }
 
 template <typename Real>
 double CompositeShape<Real>::displacementNorm() const {
-  return std::sqrt(squared(finest().displacement) + levels_->uncovered().squaredDisplacement());
+  return std::sqrt(finest().squaredLength(finest().displacement) +
+                   levels_->uncovered().squaredDisplacement());
 }
 
 template <typename Real>
 double CompositeShape<Real>::correctionNorm() const {
-  return std::sqrt(finest().squaredLocalMotion() + squared(levels_->correction().motion()) +
+  return std::sqrt(finest().squaredLocalMotion() +
+                   finest().squaredLength(levels_->correction().motion()) +
                    levels_->correction().squaredUncovered() +
                    finest().constrained.squaredMotionOf(levels_->correction().groupMotion()));
 }
@@ -184,13 +182,6 @@ double CompositeShape<Real>::missedBeyond() const {
   if (levels_->isWhole()) return 0.0;
   const double moved = displacementNorm();
   return moved == 0.0 ? 0.0 : std::sqrt(levels_->uncovered().squaredRoughness()) / moved;
-}
-
-template <typename Real>
-double CompositeShape<Real>::squared(const Field<Real>& field) const {
-  double squared = 0.0;
-  for (const auto& values : field) squared += dot(values, values);
-  return squared;
 }
 
 template double workOf(const CompositeVector<float>&, const CompositeVector<float>&);

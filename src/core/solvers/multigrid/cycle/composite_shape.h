@@ -63,6 +63,7 @@ class CompositeShape {
   double greatestForce() const;  // on a node along an axis
   Vec3 netForce() const;         // sum over the open part's nodes
 
+  // Lengths, in which a node counts by the tissue that it carries (LightNode).
   double distanceFrom(const Vector& places) const;
   double displacementNorm() const;
   // Of the motion that the coarse levels, and each node alone, say is left: (|s|^2 + |d|^2)^1/2.
@@ -73,7 +74,6 @@ class CompositeShape {
 
  private:
   void placeAt(const Vector& places);
-  double squared(const Field<Real>& field) const;
 
   std::unique_ptr<GridHierarchy<Real>> levels_;
 };

@@ -4,9 +4,10 @@
 #include "solvers/multigrid/cycle/error_estimator.h"
 #include "solvers/multigrid/cycle/fas_cg_cycle.h"
 #include "solvers/multigrid/cycle/force_balance.h"
-#include "solvers/multigrid/cycle/node_limits.h"
+#include "solvers/multigrid/cycle/multigrid_solver.h"
 #include "solvers/multigrid/cycle/open_part.h"
 #include "solvers/multigrid/cycle/solve_progress.h"
+#include "solvers/multigrid/cycle/way_limits.h"
 
 namespace robot_tissue {
 
@@ -21,7 +22,7 @@ class FasCgIteration {
   struct On {
     CompositeShape<Real>& shape;
     const OpenPart& part;
-    const NodeLimits& limits;
+    const WayLimits& limits;
     const ForceBalance<Real>& forces;
   };
   FasCgIteration(const On& on, const LayeredOptions& options);
@@ -52,7 +53,7 @@ class FasCgIteration {
 
   CompositeShape<Real>& shape_;
   const OpenPart& part_;
-  const NodeLimits& limits_;
+  const WayLimits& limits_;
   const ForceBalance<Real>& forces_;
   LayeredOptions options_;
   FasCgCycle<Real> cycle_;

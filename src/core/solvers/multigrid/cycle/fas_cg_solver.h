@@ -29,7 +29,7 @@ class FasCgSolver : public MultigridSolver {
 
   SolveReport run(ConstrainedState& shape, const DofConstraints& hold,
                   const std::vector<int>& disturbed, const Budget& budget) override;
-  void limitWays(std::vector<NodeLimit> limits) override { limits_.set(std::move(limits)); }
+  void limitWays(std::vector<WayLimit> limits) override { limits_.set(std::move(limits)); }
   void beginStep() override { warm_start_.beginStep(); }
   Vec3 forceLeft() override;
   bool wantsDouble() const override { return wants_double_; }
@@ -56,7 +56,7 @@ class FasCgSolver : public MultigridSolver {
   std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of
   CompositeShape<Real> shape_;
   OpenPart part_;
-  NodeLimits limits_;
+  WayLimits limits_;
   ForceBalance<Real> forces_;
   WarmStart<Real> warm_start_;
   FasCgIteration<Real> iteration_;

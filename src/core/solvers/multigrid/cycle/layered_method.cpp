@@ -1,6 +1,5 @@
 #include "solvers/multigrid/cycle/layered_method.h"
 
-#include <cmath>
 #include <utility>
 
 namespace robot_tissue {
@@ -27,14 +26,6 @@ void LayeredMethod::forget() {
 }
 
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
-
-void LayeredMethod::limitWays(std::vector<double> longest) {
-  std::vector<MultigridSolver::NodeLimit> limits;
-  for (std::size_t node = 0; node < longest.size(); ++node) {
-    if (std::isfinite(longest[node])) limits.push_back({static_cast<int>(node), longest[node]});
-  }
-  solver_->limitWays(std::move(limits));
-}
 
 SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
                                  const std::vector<int>& disturbed, LatticeState& state) {

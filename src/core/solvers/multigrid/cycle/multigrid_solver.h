@@ -42,12 +42,7 @@ class MultigridSolver {
   // The last solve stopped at what single precision can tell, and the shape is as it was before: it
   // is to be solved for in double.
   virtual bool wantsDouble() const = 0;
-  // How far nodes may go from where a solve begins (m).
-  struct NodeLimit {
-    int node = 0;
-    double longest = 0.0;
-  };
-  virtual void limitWays(std::vector<NodeLimit> limits) = 0;
+  virtual void limitWays(std::vector<WayLimit> limits) = 0;  // as SolverMethod
   virtual void beginStep() = 0;
   virtual const GridBox* visited() const = 0;  // as SolverMethod
   virtual Vec3 forceLeft() = 0;                // likewise (N)

@@ -1,6 +1,7 @@
 #include "solvers/multigrid/hierarchy/composite_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -72,7 +73,8 @@ CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& m
     : lattice_(lattice),
       workers_(workers),
       spacing_(lattice.spacing()),
-      modulus_(greatestShear(model, lattice)) {
+      modulus_(greatestShear(model, lattice)),
+      light_nodes_(lightNodes(cells)) {
   if (known != nullptr) {
     sources_ = std::move(known->sources);
   } else if (!model.movesInTime() && model.membrane() == nullptr) {
@@ -199,6 +201,7 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
     nodes_.push_back(lattice_.nodeCount() + ghost);
     entries_.push_back(entryOf(nodes_.back()));
   }
+  weighNodes();
 }
 
 // From the coarsest level there is so far. A coarse node that stands one beyond the fine grid's end
@@ -268,6 +271,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
     grid = coarse;
   }
   finest().constrained.setUnits(spacing_, modulus_);
+  weighNodes();
   if (model.membrane() != nullptr) {
     membranes_.add({model.membrane(), entries_, spacing_, modulus_}, transfers_, levels_);
   }
@@ -294,6 +298,18 @@ void CompositeGrid<Real>::addLevel(const LevelGrid& grid, int beside,
                                    double greatest_stiffness) {
   levels_.emplace_back(grid, beside, cells, part, greatest_stiffness);
   if (workers_ != nullptr) levels_.back().share(*workers_);
+}
+
+// Full blocks go without: there each weight is 1.
+template <typename Real>
+void CompositeGrid<Real>::weighNodes() {
+  if (light_nodes_.empty()) return;
+  std::vector<Real> roots(at(finest().count()), Real(1));
+  for (const LightNode& light : light_nodes_) {
+    const int entry = entryOf(light.node);
+    if (entry >= 0) roots[at(entry)] = static_cast<Real>(std::sqrt(light.weight));
+  }
+  finest().setWeightRoots(std::move(roots));
 }
 
 template <typename Real>

@@ -20,6 +20,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "solvers/multigrid/hierarchy/grid_transfer.h"
 #include "solvers/multigrid/hierarchy/level_source.h"
+#include "solvers/multigrid/hierarchy/light_nodes.h"
 #include "solvers/multigrid/hierarchy/membrane_levels.h"
 #include "solvers/multigrid/level/grid_level.h"
 
@@ -113,6 +114,7 @@ class CompositeGrid {
   std::vector<LevelCell> finestCells(const ElasticModel& model, const CellSet& cells) const;
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);
+  void weighNodes();
   void findWeight(const ElasticModel& model, const CellSet& cells);
   void findMasses(const ElasticModel& model, const CellSet& cells);
 
@@ -127,6 +129,7 @@ class CompositeGrid {
   std::vector<GridTransfer<Real>> transfers_;  // from level i to i + 1
   std::vector<int> nodes_;
   std::vector<int> entries_;
+  std::vector<LightNode> light_nodes_;
   Field<Real> weight_;
   std::vector<std::vector<double>> masses_;  // of the nodes of each level (kg); empty: not needed
   double scale_ = 1.0;

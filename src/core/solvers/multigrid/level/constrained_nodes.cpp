@@ -347,11 +347,13 @@ void ConstrainedNodes<Real>::moveBy(const Field<Real>& of_nodes,
 }
 
 template <typename Real>
-double ConstrainedNodes<Real>::squaredLocalMotion() const {
+double ConstrainedNodes<Real>::squaredLocalMotion(const std::vector<Real>& weight_roots) const {
   double squared = 0.0;
   const std::vector<Vec3>& motions = balancing();
   for (std::size_t i = 0; i < all_.size(); ++i) {
-    if (all_[i].group < 0) squared += motions[i].squaredNorm();
+    if (all_[i].group >= 0) continue;
+    const double root = weight_roots.empty() ? 1.0 : double{weight_roots[at(all_[i].node)]};
+    squared += (root * motions[i]).squaredNorm();
   }
   std::vector<GroupVector> of_groups;
   for (std::size_t group = 0; group < groups.size(); ++group) {

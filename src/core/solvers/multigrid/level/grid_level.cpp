@@ -285,11 +285,55 @@ void GridLevel<Real>::moveBy(const Field<Real>& motion, const std::vector<GroupV
   constrained.moveBy(motion, of_groups, alpha, displacement);
 }
 
+// By their weights, of the motion that motionOf(axis, node) is.
+template <typename Real>
+template <typename MotionOf>
+double GridLevel<Real>::weightedSquares(MotionOf motionOf) const {
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t node = 0; node < weight_roots_.size(); ++node) {
+      const double motion = static_cast<double>(weight_roots_[node] * motionOf(axis, node));
+      squared += motion * motion;
+    }
+  }
+  return squared;
+}
+
 template <typename Real>
 double GridLevel<Real>::squaredLocalMotion() const {
-  double squared = constrained.squaredLocalMotion();
+  double squared = constrained.squaredLocalMotion(weight_roots_);
+  if (!weight_roots_.empty()) {
+    return squared + weightedSquares([this](std::size_t axis, std::size_t node) {
+             return inverse_[node] * force[axis][node];
+           });
+  }
   for (const auto& values : force) {
     squared += squaredProduct(inverse_.data(), values.data(), count());
+  }
+  return squared;
+}
+
+template <typename Real>
+double GridLevel<Real>::squaredLength(const Field<Real>& motion) const {
+  if (!weight_roots_.empty()) {
+    return weightedSquares(
+        [&motion](std::size_t axis, std::size_t node) { return motion[axis][node]; });
+  }
+  double squared = 0.0;
+  for (const auto& values : motion) squared += dotOf(values.data(), values.data(), count());
+  return squared;
+}
+
+template <typename Real>
+double GridLevel<Real>::squaredDistanceFrom(const Field<Real>& other) const {
+  if (!weight_roots_.empty()) {
+    return weightedSquares([this, &other](std::size_t axis, std::size_t node) {
+      return displacement[axis][node] - other[axis][node];
+    });
+  }
+  double squared = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    squared += squaredDistance(displacement[axis].data(), other[axis].data(), count());
   }
   return squared;
 }

@@ -33,6 +33,9 @@ class GridLevel {
   // Greatest eigenvalue of D^-1 K at rest, D the nodes' own stiffnesses, with a margin.
   double greatestStiffness() const { return 1.0 / step_; }
 
+  // Per entry, the root of the weight with which the node counts in lengths; empty: 1 each.
+  void setWeightRoots(std::vector<Real> roots) { weight_roots_ = std::move(roots); }
+
   // What holds the nodes: first nothing does, then `hold` one by one, then `bind`. Bits of axes.
   void freeAll();
   void hold(int node, unsigned axes) { held_[at(node)] |= static_cast<std::uint8_t>(axes); }
@@ -87,12 +90,17 @@ class GridLevel {
   Field<Real> right_hand_side;  // acts besides
   Field<Real> force;            // unbalanced, 0 in held components
 
-  // Motion that would balance each node alone, squared and summed.
+  // Of nodes' motions, squared and summed by their weights: what would balance each node alone, a
+  // field's, and the way from other displacements.
   double squaredLocalMotion() const;
+  double squaredLength(const Field<Real>& motion) const;
+  double squaredDistanceFrom(const Field<Real>& other) const;
   // Of all that acts on the node but holds: cells, load and springs (as of findForces).
   Vec3 wholeForce(int node) const;
 
  private:
+  template <typename MotionOf>
+  double weightedSquares(MotionOf motionOf) const;
   void findForces(Find what);
   void measureSteps();
   void findFree();
@@ -106,6 +114,7 @@ class GridLevel {
   std::shared_ptr<LevelMembrane<Real>> membrane_;  // null: no membranes
   std::vector<std::uint8_t> held_;
   std::vector<Real> rest_stiffness_;
+  std::vector<Real> weight_roots_;
   double step_ = 0.5;       // one over greatestStiffness()
   Field<Real> last_step_;   // of the smoother
   Field<Real> of_covered_;  // forces; empty where the covered part is the whole
