@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rim_touch.h"
+#include "touch_places.h"
 #include "touch_spring.h"
 #include "tuning.h"
 
@@ -28,6 +29,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
       since_displacement_->size() != tissue.state().displacement.size()) {
     commit(pose, tissue);
   }
+  is_settled_ = false;
   for (ContactConstraint& touch : touches_) {
     const Pose moved =
         pose.links[at(touch.contact.link)] * since_links_[at(touch.contact.link)].inverse();
@@ -94,8 +96,7 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
         pushing.count(touch.contact.link) != 0)
       continue;
     ContactSpring& spring = touch.spring;
-    const double stiffness =
-        tuning::kFrictionStiffness / tuning::kContactStiffness * touch.firm_stiffness;
+    const double stiffness = frictionStiffness(touch.firm_stiffness);
     spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
     spring.friction_bound = tuning::kMostForce * stiffness * tissue.lattice().spacing();
   }
@@ -107,18 +108,19 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
   const bool whole = shape == ContactUpdate::Shape::kSolved;
   cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
   const bool wavers = cut_rounds_ > tuning::kMostTurningRounds;
-  bool settled = whole && updateMultipliers(tissue);
+  for (ContactConstraint& touch : touches_) noteSolved(touch);
+  is_settled_ = whole && updateMultipliers(tissue);
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     if (wavers && touches_[i].found && tracked[i]) continue;
-    if (!track(tracked[i], pose, tissue, touches_[i])) settled = false;
+    if (!track(tracked[i], pose, tissue, touches_[i])) is_settled_ = false;
   }
   for (const Contact& contact : found.contacts) {
     if (!friction_[at(contact.tool)]) continue;
-    if (!take(contact, pose, tissue, held)) settled = false;
+    if (!take(contact, pose, tissue, held)) is_settled_ = false;
   }
   forgetLost(held);
-  return settled;
+  return is_settled_;
 }
 
 // Takes the plane that the touch's contact has in the present shape. In one load step its normal
@@ -130,7 +132,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   ContactSpring& spring = touch.spring;
   touch.found = contact.has_value();
   if (!contact) return spring.multiplier <= 0.0;
-  touch.contact = *contact;
+  putContact(*contact, tissue.surface(), touch);
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.contact.link)].linear() * touch.since_normal;
     spring.normal = turnedBy(since, contact->normal, tuning::kMostTurn);
@@ -208,8 +210,7 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
     const double fine = fineness(touch.contact.link, spacing);
-    const double soft =
-        tuning::kFrictionStiffness / tuning::kContactStiffness * touch.firm_stiffness;
+    const double soft = frictionStiffness(touch.firm_stiffness);
     const double stiffness =
         std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
                  friction_bound / (tuning::kElasticSlip * fine));
@@ -300,7 +301,7 @@ Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const 
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
-  touch.contact = contact;
+  putContact(contact, tissue.surface(), touch);
   touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
   touch.firm_stiffness = touch.spring.stiffness;
   touch.spring.normal = contact.normal;

@@ -17,6 +17,10 @@ double mostForceOf(const ContactSpring& spring, const Tissue& tissue) {
   return tuning::kMostForce * stiffness * tissue.lattice().spacing();
 }
 
+double frictionStiffness(double stiffness) {
+  return tuning::kFrictionStiffness / tuning::kContactStiffness * stiffness;
+}
+
 Vec3 planePointOf(const Contact& contact, const Tissue& tissue) {
   // What is at a rim is not to come out.
   const double most = contact.rim.edges.empty() ? tuning::kMostPush * tissue.lattice().spacing()

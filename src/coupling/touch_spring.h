@@ -13,6 +13,9 @@ namespace robot_tissue {
 // The greatest force that a touch's multiplier takes on (N).
 double mostForceOf(const ContactSpring& spring, const Tissue& tissue);
 
+// Of the friction of a touch whose spring has that stiffness, at most (N/m).
+double frictionStiffness(double stiffness);
+
 // A point of the plane that the touch is pushed out to: the tool's surface, or for a deep contact a
 // plane kMostPush spacings from the point, so that it comes out over several updates.
 Vec3 planePointOf(const Contact& contact, const Tissue& tissue);

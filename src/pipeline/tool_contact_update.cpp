@@ -112,7 +112,8 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
   const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
   surface_revision_ = world_.tissue.surface().revision;
-  if (new_surface) world_.sliding.clear();
+  const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);
+  if (new_surface) touch_finder_.beginStep();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   const ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
   left_inside_ = 0.0;
@@ -120,10 +121,10 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
     const double part = contact.rim.share > 0.0 ? touch_finder_.rims().partOfDepth(contact) : 0.0;
     left_inside_ = std::max(left_inside_, (1.0 - part) * contact.depth_m);
   }
-  if (new_surface) {
+  if (new_surface && !goes_on) {
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
-  } else {
+  } else if (!new_surface) {
     const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose), contacts,
                                                world_.pose, world_.tissue, held, shape);
     if (settled && (!world_.tissue.isUntouched() || world_.sliding.touches().empty())) return false;

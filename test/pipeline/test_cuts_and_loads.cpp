@@ -110,5 +110,24 @@ TEST(PressedElasticBlock, CutOpensUnderTheToolAndClosesAgain) {
   }
 }
 
+// Two springs at a corner of the block. A first cut there ends what the tool's last solve left.
+TEST(CutBesideATool, LeavesItsForceAsItWas) {
+  for (const double friction : {0.0, 0.3}) {
+    Pipeline pipeline(block(), methodOf("elastic"), {withFriction(friction, probe())});
+    walk(pipeline, -0.001, 0.004);
+    Vec3 before = Vec3::Zero();
+    for (const double low : {0.0375, 0.0275}) {
+      before = pipeline.report().tools.front().force_on_tool;
+      const double high = low + 0.01;
+      const CutReport cut = pipeline.cut({Vec3(0.0025, -1, low), Vec3(0.0025, 0.0075, low),
+                                          Vec3(0.0025, 0.0075, high), Vec3(0.0025, -1, high)});
+      EXPECT_GE(cut.springs_cut, 2);
+      EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
+    }
+    const Vec3 change = pipeline.report().tools.front().force_on_tool - before;
+    EXPECT_LT(change.norm(), 1e-3 * before.norm()) << friction;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue

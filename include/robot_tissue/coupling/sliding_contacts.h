@@ -25,6 +25,7 @@
 #include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
+#include "robot_tissue/core/triangle_point.h"
 #include "robot_tissue/coupling/press_growth.h"
 
 namespace robot_tissue {
@@ -42,10 +43,13 @@ class SlidingContacts {
 
   // What is kept of a contact from round to round, and from load step to load step.
   struct ContactConstraint {
-    Contact contact;              // as it was seen in the last update
-    int vertex = -1;              // of the surface; -1: a point of a triangle
-    ContactSpring spring;         // as the next solve will have it
-    double firm_stiffness = 0.0;  // k, without its compliance (N/m)
+    Contact contact;                // as it was seen in the last update
+    int vertex = -1;                // of the surface; -1: a point of a triangle
+    Corners corners;                // of its triangle, at rest (m)
+    ContactSpring spring;           // as the next solve will have it
+    ContactSpring solved;           // as the last one had it; without carriers: it had none
+    Vec3 solved_at = Vec3::Zero();  // where in the triangle that was, by weights
+    double firm_stiffness = 0.0;    // k, without its compliance (N/m)
     TouchCompliance compliance;
     Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
@@ -68,6 +72,11 @@ class SlidingContacts {
   // The links go to where they are now, and planes and anchors with them; forces go on as they
   // went.
   void ride(const RobotPose& pose, const Tissue& tissue);
+
+  // The tissue has another surface: touches go on where that is as it was, and are forgotten where
+  // it is not. From here on tissue and links stick, or slip anew. True: contacts were settled, and
+  // all that push go on as the last solve had them; else the links are to be met anew.
+  bool takeSurface(const RobotPose& pose, const Tissue& tissue);
 
   // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
   // kGrasped: a tool has it, and what hangs on such a node is not pushed.
@@ -122,6 +131,7 @@ class SlidingContacts {
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);
+  void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
   Vec3 frictionRatioAround(const ContactConstraint& touch) const;
@@ -130,6 +140,7 @@ class SlidingContacts {
   std::vector<double> thickness_;
   std::vector<double> pressed_;  // per tool: its normal forces in the last update (N)
   PressGrowth growth_;
+  bool is_settled_ = false;                   // since the last update
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
   std::vector<Vec3> facing_;                  // per link, of its forces (N, link's frame)
