@@ -13,6 +13,7 @@ namespace {
 using Type = ToolShape::Type;
 using Met = fcl::CollisionObjectd;
 
+// Of meshes the box around them.
 std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const CollisionShape& shape) {
   const ToolShape& measures = shape.measures();
   switch (measures.type) {
@@ -23,7 +24,7 @@ std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const CollisionShape& shape)
     case Type::kCylinder:
       return std::make_shared<fcl::Cylinderd>(measures.radius, measures.length);
     case Type::kMesh:
-      return shape.mesh().tree().model();
+      return std::make_shared<fcl::Boxd>(Vec3(shape.mesh().bounds().sizes()));
     case Type::kPlane:
       break;
   }
@@ -40,7 +41,7 @@ bool isAbove(const PlacedShape& plane, const Box& box, double margin) {
 }  // namespace
 
 // A shape as FCL's broad phase has it, with our own box in the place of FCL's: FCL's is around a
-// ball around the turned mesh, and wider.
+// ball around the turned shape, and wider.
 class BroadPhase::Object : public fcl::CollisionObjectd {
  public:
   using fcl::CollisionObjectd::CollisionObjectd;

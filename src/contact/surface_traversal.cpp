@@ -16,8 +16,8 @@ struct CenteredBox {
   Vec3 center = Vec3::Zero(), half = Vec3::Zero();  // m
 };
 
-CenteredBox centered(const fcl::AABBd& box) {
-  return {0.5 * (box.min_ + box.max_), 0.5 * (box.max_ - box.min_)};
+CenteredBox centered(const TriangleBvh::Node& node) {
+  return {0.5 * (node.low + node.high), 0.5 * (node.high - node.low)};
 }
 
 // Around the box as seen from another frame.
@@ -59,7 +59,7 @@ class BesideShape : public SurfaceTraversal {
   // distance from the box's center with the radius of the ball around the box or, of a mesh, boxes
   // in its frame.
   bool BVTesting(int b, int) const override {
-    const CenteredBox box = centered(surface_.node(b).bv);
+    const CenteredBox box = centered(surface_.node(b));
     if (areApart(box, shape_.bounds.min(), shape_.bounds.max(), margin_)) return true;
     if (!shape_.shape->isMesh()) {
       const double distance = shape_.shape->distance(shape_.shape_T_tissue * box.center).value;
@@ -90,18 +90,21 @@ class BesideMesh : public SurfaceTraversal {
         pairs_(pairs) {}
 
   bool isSecondNodeLeaf(int b) const override { return TriangleBvh::isLeaf(faces_.node(b)); }
-  int getSecondLeftChild(int b) const override { return faces_.node(b).first_child; }
+  int getSecondLeftChild(int b) const override {
+    faces_.open(b);
+    return faces_.node(b).first_child;
+  }
   int getSecondRightChild(int b) const override { return faces_.node(b).first_child + 1; }
   bool firstOverSecond(int first, int second) const override {
     if (isSecondNodeLeaf(second)) return true;
-    const fcl::AABBd &one = surface_.node(first).bv, &other = faces_.node(second).bv;
+    const TriangleBvh::Node &one = surface_.node(first), &other = faces_.node(second);
     return !isFirstNodeLeaf(first) &&
-           (one.max_ - one.min_).squaredNorm() > (other.max_ - other.min_).squaredNorm();
+           (one.high - one.low).squaredNorm() > (other.high - other.low).squaredNorm();
   }
   bool BVTesting(int first, int second) const override {
     if (first != seen_) see(first);
-    const fcl::AABBd& box = faces_.node(second).bv;
-    return areApart(box_, box.min_, box.max_, reach_);
+    const TriangleBvh::Node& face = faces_.node(second);
+    return areApart(box_, face.low, face.high, reach_);
   }
   void leafTesting(int first, int second) const override {
     pairs_.emplace_back(TriangleBvh::triangleOf(surface_.node(first)),
@@ -113,7 +116,7 @@ class BesideMesh : public SurfaceTraversal {
     seen_ = first;
     const auto& node = surface_.node(first);
     if (!TriangleBvh::isLeaf(node)) {
-      box_ = seenFrom(mesh_T_tissue_, centered(node.bv));
+      box_ = seenFrom(mesh_T_tissue_, centered(node));
       return;
     }
     Box box;

@@ -1,6 +1,7 @@
 #include "triangle_bvh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,17 +16,17 @@ constexpr double kRayX = 0.41421356;
 constexpr double kRayY = 0.23606798;
 constexpr double kRaySlack = 1e-9;  // of the ray's parameter (m), for rounding
 
-double squaredDistance(const fcl::AABBd& box, const Vec3& point) {
-  return (box.min_ - point).cwiseMax(point - box.max_).cwiseMax(0.0).squaredNorm();
+double squaredDistance(const TriangleBvh::Node& node, const Vec3& point) {
+  return (node.low - point).cwiseMax(point - node.high).cwiseMax(0.0).squaredNorm();
 }
 
-bool rayMeets(const fcl::AABBd& box, const Vec3& from) {
+bool rayMeets(const TriangleBvh::Node& node, const Vec3& from) {
   double near = 0.0;
   double far = std::numeric_limits<double>::infinity();
   const double direction[3] = {kRayX, kRayY, 1.0};
   for (int k = 0; k < 3; ++k) {
-    near = std::max(near, (box.min_[k] - from[k]) / direction[k] - kRaySlack);
-    far = std::min(far, (box.max_[k] - from[k]) / direction[k] + kRaySlack);
+    near = std::max(near, (node.low[k] - from[k]) / direction[k] - kRaySlack);
+    far = std::min(far, (node.high[k] - from[k]) / direction[k] + kRaySlack);
   }
   return near <= far;
 }
@@ -65,61 +66,60 @@ int crossingOf(const MeshTriangle& triangle, const Corners& corners, const Vec3&
 
 TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
                          const std::vector<MeshTriangle>& triangles)
-    : triangles_(triangles) {
+    : triangles_(triangles), splitter_(vertices, triangles) {
   if (triangles.empty()) return;
-  model_ = std::make_shared<Model>();
-  model_->bv_splitter =
-      std::make_shared<fcl::detail::BVSplitter<fcl::AABBd>>(fcl::detail::SPLIT_METHOD_BV_CENTER);
-  std::vector<fcl::Triangle> indices;
-  indices.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) indices.emplace_back(at(a), at(b), at(c));
-  model_->beginModel(static_cast<int>(indices.size()), static_cast<int>(vertices.size()));
-  model_->addSubModel(vertices, indices);
-  model_->endModel();
-  nodes_ = &model_->getBV(0);
+  nodes_.resize(2 * triangles.size() - 1);
   corners_.resize(triangles.size());
   slots_.resize(triangles.size());
-  findParts(vertices.size());
+  findParts();
+  std::vector<int> last_slots(vertices.size(), -1);
+  for (Part& part : parts_) addSlots(part, last_slots);
   places_.assign(vertices_.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   moveTo(vertices);
 }
 
-void TriangleBvh::findParts(std::size_t vertex_count) {
-  part_at_.assign(at(model_->getNumBVs()), -1);
-  const int most =
-      std::max(tuning::kTrianglesOfPart, static_cast<int>(triangles_.size()) / tuning::kParts);
-  std::vector<int> last_slots(vertex_count, -1);  // per vertex
-  std::vector<int> waiting = {0};
+// Splits nodes down to the parts' roots.
+void TriangleBvh::findParts() {
+  const int all = static_cast<int>(triangles_.size());
+  const int most = std::max(tuning::kTrianglesOfPart, all / tuning::kParts);
+  nodes_.front().triangles = all;
+  first_within_ = 1;
+  std::vector<int> waiting = {0}, roots;
   while (!waiting.empty()) {
     const int number = waiting.back();
     waiting.pop_back();
-    if (nodes_[number].num_primitives <= most) {
-      part_at_[at(number)] = addPart(number, last_slots);
+    if (nodes_[at(number)].triangles <= most) {
+      roots.push_back(number);
       continue;
     }
+    splitNode(number, first_within_);
     above_.push_back(number);
-    waiting.push_back(nodes_[number].first_child + 1);
-    waiting.push_back(nodes_[number].first_child);
+    waiting.push_back(first_within_ + 1);
+    waiting.push_back(first_within_);
+    first_within_ += 2;
   }
+  part_at_.assign(at(first_within_), -1);
+  for (const int root : roots) addPart(root);
 }
 
-int TriangleBvh::addPart(int root, std::vector<int>& last_slots) {
+void TriangleBvh::addPart(int root) {
+  Node& node = nodes_[at(root)];
   Part part;
   part.root = root;
-  part.first = isLeaf(nodes_[root]) ? root + 1 : nodes_[root].first_child;
-  part.end = part.first + 2 * (nodes_[root].num_primitives - 1);
-  addSlots(part, last_slots);
+  part.first = parts_.empty() ? first_within_ : parts_.back().end;
+  part.end = part.first + 2 * (node.triangles - 1);
+  part.is_split = node.triangles == 1;
+  node.first_child = part.is_split ? -1 - splitter_.triangleAt(node.first_triangle) : part.first;
+  part_at_[at(root)] = static_cast<int>(parts_.size());
   parts_.push_back(part);
-  return static_cast<int>(parts_.size()) - 1;
 }
 
-// A vertex of several parts has a slot in each; in one part's, in the order of its leaves.
+// A vertex of several parts has a slot in each.
 void TriangleBvh::addSlots(Part& part, std::vector<int>& last_slots) {
   part.first_slot = static_cast<int>(vertices_.size());
-  for (int number = part.root; number < part.end; ++number) {
-    const bool is_of_part = number == part.root || number >= part.first;
-    if (!is_of_part || !isLeaf(nodes_[number])) continue;
-    const std::size_t triangle = at(triangleOf(nodes_[number]));
+  const Node& root = nodes_[at(part.root)];
+  for (int place = root.first_triangle; place < root.first_triangle + root.triangles; ++place) {
+    const std::size_t triangle = at(splitter_.triangleAt(place));
     for (std::size_t k = 0; k < 3; ++k) {
       const int vertex = triangles_[triangle][k];
       int& slot = last_slots[at(vertex)];
@@ -131,6 +131,38 @@ void TriangleBvh::addSlots(Part& part, std::vector<int>& last_slots) {
     }
   }
   part.end_slot = static_cast<int>(vertices_.size());
+}
+
+void TriangleBvh::splitNode(int number, int first_child) const {
+  Node& node = nodes_[at(number)];
+  node.first_child = first_child;
+  const int of_first = splitter_.split(node.first_triangle, node.triangles);
+  const std::array<int, 2> counts = {of_first, node.triangles - of_first};
+  for (const int second : {0, 1}) {
+    Node& child = nodes_[at(first_child + second)];
+    child.first_triangle = node.first_triangle + second * of_first;
+    child.triangles = counts[at(second)];
+    child.first_child = -1 - splitter_.triangleAt(child.first_triangle);  // until it is split
+  }
+}
+
+void TriangleBvh::splitPart(Part& part) const {
+  part.is_split = true;
+  splitNode(part.root, part.first);
+  int next = part.first + 2;
+  for (int number = part.first; number < part.end; ++number) {
+    if (nodes_[at(number)].triangles == 1) continue;
+    splitNode(number, next);
+    next += 2;
+  }
+}
+
+void TriangleBvh::openPart(int number) const {
+  Part& part = parts_[at(number)];
+  if (!part.is_stale) return;
+  if (!part.is_split) splitPart(part);
+  refit(part);
+  part.is_stale = false;
 }
 
 bool TriangleBvh::moveTo(const std::vector<Vec3>& vertices) {
@@ -151,28 +183,28 @@ bool TriangleBvh::movePart(Part& part, const std::vector<Vec3>& vertices) {
     bounds.add(now);
   }
   if (is_same) return false;
+  Node& root = nodes_[at(part.root)];
   const Box box = bounds.box();
-  nodes_[part.root].bv.min_ = box.min();
-  nodes_[part.root].bv.max_ = box.max();
+  root.low = box.min();
+  root.high = box.max();
   part.is_stale = true;
-  if (isLeaf(nodes_[part.root])) refit(part);
+  if (isLeaf(root)) openPart(part_at_[at(part.root)]);
   return true;
 }
 
-void TriangleBvh::refit(Part& part) const {
+void TriangleBvh::refit(const Part& part) const {
   for (int number = part.end; number-- > part.first;) fit(number);
   fit(part.root);
-  part.is_stale = false;
 }
 
 // The node's box, around its triangle or around its children's boxes.
 void TriangleBvh::fit(int number) const {
-  Node& node = nodes_[number];
+  Node& node = nodes_[at(number)];
   if (!isLeaf(node)) {
-    const fcl::AABBd& left = nodes_[node.first_child].bv;
-    const fcl::AABBd& right = nodes_[node.first_child + 1].bv;
-    node.bv.min_ = left.min_.cwiseMin(right.min_);
-    node.bv.max_ = left.max_.cwiseMax(right.max_);
+    const Node& left = nodes_[at(node.first_child)];
+    const Node& right = nodes_[at(node.first_child + 1)];
+    node.low = left.low.cwiseMin(right.low);
+    node.high = left.high.cwiseMax(right.high);
     return;
   }
   Corners& here = corners_[at(triangleOf(node))];
@@ -182,13 +214,13 @@ void TriangleBvh::fit(int number) const {
   if ((here[0] + here[1] + here[2]).allFinite()) {
     for (const Vec3& corner : here) box.extend(corner);
   }
-  node.bv.min_ = box.min();
-  node.bv.max_ = box.max();
+  node.low = box.min();
+  node.high = box.max();
 }
 
 Box TriangleBvh::bounds() const {
   if (isEmpty()) return Box();
-  return {nodes_[0].bv.min_, nodes_[0].bv.max_};
+  return {nodes_.front().low, nodes_.front().high};
 }
 
 std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, double reach,
@@ -196,7 +228,7 @@ std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, doub
   if (isEmpty()) return std::nullopt;
   Search search{point, reach * reach, enough * enough, {}};
   // False for a point that is not finite: it has no nearest triangle.
-  if (squaredDistance(nodes_[0].bv, point) < search.best) searchBelow(0, search);
+  if (squaredDistance(nodes_.front(), point) < search.best) searchBelow(0, search);
   if (search.found.triangle < 0) return std::nullopt;
   search.found.distance = std::sqrt(search.best);
   return search.found;
@@ -204,12 +236,12 @@ std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, doub
 
 // Looks into the nearer child first, so that the other can more often be left out.
 void TriangleBvh::searchBelow(int number, Search& search) const {
-  const Node& node = nodes_[number];
+  const Node& node = nodes_[at(number)];
   if (isLeaf(node)) return searchTriangle(triangleOf(node), search);
   open(number);
   int near = node.first_child, far = node.first_child + 1;
-  double to_near = squaredDistance(nodes_[near].bv, search.point);
-  double to_far = squaredDistance(nodes_[far].bv, search.point);
+  double to_near = squaredDistance(nodes_[at(near)], search.point);
+  double to_far = squaredDistance(nodes_[at(far)], search.point);
   if (to_far < to_near) {
     std::swap(near, far);
     std::swap(to_near, to_far);
@@ -237,8 +269,8 @@ bool TriangleBvh::isInside(const Vec3& point) const {
 // Sum of crossingOf over the triangles below: how often the surface leads out along the ray, less
 // how often in. Of a closed surface it is how often it goes around the point.
 int TriangleBvh::crossingsBelow(int number, const Vec3& point) const {
-  const Node& node = nodes_[number];
-  if (!rayMeets(node.bv, point)) return 0;
+  const Node& node = nodes_[at(number)];
+  if (!rayMeets(node, point)) return 0;
   if (isLeaf(node)) {
     const int triangle = triangleOf(node);
     return crossingOf(triangles_[at(triangle)], corners_[at(triangle)], point);

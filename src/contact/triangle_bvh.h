@@ -1,30 +1,31 @@
-// FCL's tree of boxes over the triangles of a closed surface, refitted as they move, and what FCL
-// does not tell reliably of it: nearest point, inside or outside.
+// A tree of boxes over the triangles of a closed surface, refitted as they move: for FCL's
+// traversals, and for what FCL does not tell reliably, nearest point, inside or outside.
 //
 // The tree is in parts of some dozen triangles. When the surface moves, the box of each part that
 // moved is made anew, and those above the parts; the boxes within a part only when a search comes
-// there (open). So a move costs a comparison of each vertex with where it was, and no more where no
-// tool is.
+// there (open), and a part is split up when the first one does. So a new surface, and a move, cost
+// little more than a look at each vertex where no tool is.
 #pragma once
-
-#include <fcl/geometry/bvh/BVH_model.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/core/triangle_point.h"
 #include "robot_tissue/core/types.h"
+#include "triangle_splitter.h"
 
 namespace robot_tissue {
 
 class TriangleBvh {
  public:
-  using Model = fcl::BVHModel<fcl::AABBd>;
-  using Node = fcl::BVNode<fcl::AABBd>;
+  struct Node {
+    Vec3 low, high;                         // of its box (m)
+    int first_child = 0;                    // the second follows it; of a leaf -1 - its triangle
+    int first_triangle = 0, triangles = 0;  // places in the splitter
+  };
 
   struct Nearest {
     int triangle = -1;
@@ -55,14 +56,12 @@ class TriangleBvh {
   Box bounds() const;  // empty (min > max) without triangles
   const std::vector<MeshTriangle>& triangles() const { return triangles_; }
 
-  // For FCL's traversals: numbers of nodes as FCL's, 0 the root.
-  bool isEmpty() const { return nodes_ == nullptr; }
-  const std::shared_ptr<Model>& model() const { return model_; }
-  // A node's box is up to date once the nodes above it are open.
-  const Node& node(int number) const { return nodes_[number]; }
+  // For traversals: 0 is the root.
+  bool isEmpty() const { return triangles_.empty(); }
+  // A node is there, and its box up to date, once the nodes above it are open.
+  const Node& node(int number) const { return nodes_[at(number)]; }
   void open(int number) const {
-    const int part = part_at_[at(number)];
-    if (part >= 0 && parts_[at(part)].is_stale) refit(parts_[at(part)]);
+    if (number < first_within_ && part_at_[at(number)] >= 0) openPart(part_at_[at(number)]);
   }
   static bool isLeaf(const Node& node) { return node.first_child < 0; }
   static int triangleOf(const Node& leaf) { return -leaf.first_child - 1; }
@@ -76,6 +75,7 @@ class TriangleBvh {
     int root = 0, first = 0, end = 0;
     int first_slot = 0, end_slot = 0;
     bool is_stale = true;
+    bool is_split = false;
   };
 
   struct Search {
@@ -87,22 +87,26 @@ class TriangleBvh {
   void searchBelow(int number, Search& search) const;
   void searchTriangle(int triangle, Search& search) const;
   int crossingsBelow(int number, const Vec3& point) const;
-  void findParts(std::size_t vertex_count);
-  int addPart(int root, std::vector<int>& last_slots);
+  void findParts();
+  void addPart(int root);
   void addSlots(Part& part, std::vector<int>& last_slots);
   bool movePart(Part& part, const std::vector<Vec3>& vertices);
-  void refit(Part& part) const;
+  void openPart(int number) const;
+  void splitNode(int number, int first_child) const;
+  void splitPart(Part& part) const;
+  void refit(const Part& part) const;
   void fit(int number) const;
 
   std::vector<MeshTriangle> triangles_;
   std::vector<int> vertices_;        // per slot: the vertex whose place it keeps
   std::vector<Vec3> places_;         // per slot: where that is (m)
   std::vector<MeshTriangle> slots_;  // per triangle: those of its corners
-  std::shared_ptr<Model> model_;
-  Node* nodes_ = nullptr;                 // the model's
+  mutable TriangleSplitter splitter_;
+  mutable std::vector<Node> nodes_;       // down to the parts' roots, then those within the parts
   mutable std::vector<Corners> corners_;  // per triangle
   mutable std::vector<Part> parts_;
-  std::vector<int> part_at_;  // per node: the part whose root it is, or -1
+  int first_within_ = 0;      // the first node that is within a part
+  std::vector<int> part_at_;  // per node before: the part whose root it is, or -1
   std::vector<int> above_;    // nodes above the parts, parents first
 };
 

@@ -65,6 +65,26 @@ TEST(TriangleBvh, FindsTheNearestOfAllTrianglesWhereverTheyMove) {
   }
 }
 
+// Parts of the tree are split up when a search first comes there, by the shape that it was made of.
+TEST(TriangleBvh, IsTheSameWhereverTheFirstSearchCame) {
+  std::mt19937 random(6);
+  const Sheet block = makeBlock(kCells, kCell);
+  TriangleBvh early(block.vertices, block.surface.triangles);
+  for (int i = 0; i < 60; ++i) early.nearest(somewhere(random, -0.04, 0.07), 1.0);
+  TriangleBvh late(block.vertices, block.surface.triangles);
+  const std::vector<Vec3> vertices = shaken(block.vertices, random);
+  EXPECT_TRUE(early.moveTo(vertices));
+  EXPECT_TRUE(late.moveTo(vertices));
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 point = somewhere(random, -0.04, 0.07);
+    const auto one = early.nearest(point, 1.0), other = late.nearest(point, 1.0);
+    ASSERT_TRUE(one && other);
+    EXPECT_EQ(one->triangle, other->triangle);
+    EXPECT_EQ(one->distance, other->distance);
+    EXPECT_EQ(early.isInside(point), late.isInside(point));
+  }
+}
+
 TEST(TriangleBvh, TellsWhetherAnythingMoved) {
   std::mt19937 random(2);
   const Sheet block = makeBlock(kCells, kCell);

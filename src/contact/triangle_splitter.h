@@ -1,0 +1,30 @@
+// Parts triangles in two, over and over, for a tree of boxes over them: by the middle of their box
+// along its longest side, as FCL's SPLIT_METHOD_BV_CENTER.
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/core/types.h"
+
+namespace robot_tissue {
+
+class TriangleSplitter {
+ public:
+  TriangleSplitter(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles);
+
+  // Numbers of the triangles; those of a node of the tree follow each other.
+  int triangleAt(int place) const { return order_[at(place)]; }
+  // Parts those at so many places from the first on; at least two. Returns how many are in the
+  // first part.
+  int split(int first, int count);
+
+ private:
+  Box boundsOf(int first, int count) const;
+
+  std::vector<int> order_;
+  std::vector<Box> boxes_;     // of the triangles
+  std::vector<Vec3> centers_;  // means of their corners
+};
+
+}  // namespace robot_tissue
