@@ -26,6 +26,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
   if (!followTools(pose, good, otherwise)) {
+    ran_out_of_time_ = isOutOfTime();
     goBackTo(good);
     return false;
   }
@@ -66,7 +67,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
     if (round == tuning::kRigidRounds) return deepest <= tuning::kThrough * spacing;
-    world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
+    world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
   }
 }
@@ -96,7 +97,7 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
     if (isLost(good) || isRefused(otherwise)) return false;
     if (more == tuning::kMoreSolves || !isUnsettled()) return true;
-    world_.unfinished = !world_.tissue.isInTimeStep() && world_.deadline.isOver();
+    world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
   }
@@ -171,6 +172,12 @@ bool LoadStepper::isUnsettled() const {
   if (world_.tissue.lastReport().status != SolveStatus::kUnconverged) return false;
   const ForceBalance forces = forceBalanceOf(world_);
   return forces.unbalanced().norm() > tuning::kMostUnbalanced * forces.tools.norm();
+}
+
+// Also where there was none for another solve.
+bool LoadStepper::isOutOfTime() const {
+  const bool is_bounded = std::isfinite(world_.deadline.leftMs());
+  return is_bounded && (world_.deadline.isOver() || world_.tissue.isLate());
 }
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.

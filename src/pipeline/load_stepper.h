@@ -48,6 +48,8 @@ class LoadStepper {
   // Of solves that did not converge, since it was set to 0.
   int cyclesInVain() const { return cycles_in_vain_; }
   void forgetCyclesInVain() { cycles_in_vain_ = 0; }
+  // As the last load step that no shape followed ended.
+  bool ranOutOfTime() const { return ran_out_of_time_; }
   double throughAt(std::size_t link) const;
 
  private:
@@ -67,6 +69,7 @@ class LoadStepper {
   bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
   bool isUnsettled() const;
+  bool isOutOfTime() const;
   void endOverpulled();
   bool takesOut(std::size_t tool);
   Checkpoint toolsCheckpoint() const;  // without the shape
@@ -76,6 +79,7 @@ class LoadStepper {
   ToolContactUpdate& contact_update_;
   Grasping& grasping_;
   int cycles_in_vain_ = 0;
+  bool ran_out_of_time_ = false;
 };
 
 }  // namespace robot_tissue

@@ -62,7 +62,7 @@ double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const Robo
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double load_steps = ways_.stepsBetween(start, pose);
   const double steps = stepsOf(load_steps, start, pose);
-  double gone = 0.0, longest = 1.0;
+  double gone = 0.0, longest = std::exchange(begins_short_, false) ? tuning::kShortestStep : 1.0;
   load_step_.forgetCyclesInVain();
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
@@ -91,6 +91,9 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       return came();
     }
     longest = tuning::kShortestStep;
+    if (!load_step_.ranOutOfTime()) continue;
+    begins_short_ = world_.report.too_fast = true;
+    return came();
   }
   if (steps == 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
   if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);

@@ -60,6 +60,7 @@ class ToolMotion {
   Grasping& grasping_;
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;
+  bool begins_short_ = false;  // no shape followed the last load step, and time was over
 };
 
 }  // namespace robot_tissue

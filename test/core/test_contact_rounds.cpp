@@ -1,6 +1,8 @@
 // Solves while tools touch: the rounds end where they no longer gain.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
 #include <vector>
 
 #include "robot_tissue/core/contact_update.h"
@@ -25,17 +27,55 @@ class NeverContent : public ContactUpdate {
   int rounds_ = 0;
 };
 
-TEST(ContactRounds, EndWhereTheyLeadNeitherNearerNorFarther) {
+// Takes its time to look at the contacts, and wants another solve each time.
+class SlowLook : public ContactUpdate {
+ public:
+  explicit SlowLook(std::chrono::milliseconds look) : look_(look) {}
+  std::vector<double> longestWays() override { return {}; }
+  double shareOfWay(const std::vector<Vec3>&) override { return 1.0; }
+  bool renew(std::vector<LoadingPatch>&, Shape, Round) override {
+    std::this_thread::sleep_for(look_);
+    ++looks_;
+    return true;
+  }
+  int looks() const { return looks_; }
+
+ private:
+  std::chrono::milliseconds look_;
+  int looks_ = 0;
+};
+
+TissueConfig smallBlock() {
   TissueConfig config;
   config.shape.max() = Vec3(0.04, 0.04, 0.02);
   config.spacing = 0.01;
   config.material.young_modulus = 1e4;
   config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
-  Tissue tissue(config, {});
+  return config;
+}
+
+LoadStep punched(double depth) {
+  const Box punch{Vec3(0.01, 0.01, 0.02), Vec3(0.03, 0.03, 0.02)};
+  return loadOf({displacedPatch("punch", punch, Vec3(0.0, 0.0, -depth))}, 1);
+}
+
+// After a look at the unloaded shape and one at the first solve's, 50 ms are left: the last look is
+// at the shape that there is.
+TEST(ContactRounds, BeginNoSolveThatWouldEndAfterTheDeadline) {
+  Tissue tissue(smallBlock(), {});
+  SlowLook contacts(std::chrono::milliseconds(100));
+  tissue.setContactUpdate(&contacts);
+  tissue.setDeadline(Deadline(0.25));
+  tissue.load(punched(0.001));
+  EXPECT_LE(contacts.looks(), 3);
+  EXPECT_TRUE(tissue.isLate());
+}
+
+TEST(ContactRounds, EndWhereTheyLeadNeitherNearerNorFarther) {
+  Tissue tissue(smallBlock(), {});
   NeverContent contacts;
   tissue.setContactUpdate(&contacts);
-  const Box punch{Vec3(0.01, 0.01, 0.02), Vec3(0.03, 0.03, 0.02)};
-  tissue.load(loadOf({displacedPatch("punch", punch, Vec3(0.0, 0.0, -0.001))}, 1));
+  tissue.load(punched(0.001));
   EXPECT_GT(contacts.rounds(), 1);
   EXPECT_LT(contacts.rounds(), 40);
 }

@@ -345,5 +345,31 @@ TEST(SplitCells, PiecesAreNumberedWithTheirGhosts) {
   EXPECT_EQ(number_of.size(), 4U);
 }
 
+// A cut looks at the cells beside its springs alone.
+TEST(SplitCells, ThoseOfEarlierCutsAreAsIfAllWereFoundAnew) {
+  ElasticBlock block(elasticBlockOf(5, 5, 5, 0.45));
+  for (const auto& [axis, height] : {std::pair(0, 2.3), {1, 1.9995}, {2, 3.4}, {0, 3.7}}) {
+    const LatticeState before = block.state;
+    cut(block, across(axis, height, 1.5));
+    LatticeState anew = block.state;
+    anew.cells = before.cells;
+    const auto expected = cellsLeft(block.lattice, anew, SplitCells::kParted);
+    const CellSet& found = *block.state.cells;
+    ASSERT_EQ(found.all().size(), expected->all().size());
+    ASSERT_EQ(found.nodeCount(), expected->nodeCount());
+    for (std::size_t i = 0; i < found.all().size(); ++i) {
+      const Cell &one = found.all()[i], &other = expected->all()[i];
+      EXPECT_EQ(one.place, other.place);
+      EXPECT_EQ(one.own, other.own);
+      EXPECT_EQ(one.nodes, other.nodes);
+      ASSERT_EQ(one.fill == nullptr, other.fill == nullptr);
+      if (one.fill == nullptr) continue;
+      EXPECT_EQ(one.fill->share, other.fill->share);
+      EXPECT_EQ(one.fill->products, other.fill->products);
+      EXPECT_EQ(one.fill->spread, other.fill->spread);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -153,8 +152,8 @@ void CellDivision::placeFace(int across, int side) {
   CellPoint middle = {1, 1, 1};
   middle[robot_tissue::at(across)] = 2 * side;
   std::array<double, 2> along_u{}, along_v{};  // of the edges along u, at both ends of v
-  Points parted;
-  int count_u = 0;
+  std::array<Vec3, 4> parted;
+  int count = 0, count_u = 0;
   for (const int end : {0, 1}) {
     CellPoint edge_u = middle, edge_v = middle;
     edge_u[robot_tissue::at(v)] = edge_v[robot_tissue::at(u)] = 2 * end;
@@ -162,17 +161,17 @@ void CellDivision::placeFace(int across, int side) {
     along_v[robot_tissue::at(end)] = at(edge_v)[v];
     count_u += isParted(edge_u) ? 1 : 0;
     for (const CellPoint& edge : {edge_u, edge_v}) {
-      if (isParted(edge)) parted.push_back(at(edge));
+      if (isParted(edge)) parted[robot_tissue::at(count++)] = at(edge);
     }
   }
-  if (parted.size() < 2) return;
+  if (count < 2) return;
   Vec3& point = points_[indexOf(middle)];
-  if (parted.size() == 2) {
+  if (count == 2) {
     point = 0.5 * (parted[0] + parted[1]);
     return;
   }
   // Of three, the odd one goes on straight to the line between the two others.
-  if (parted.size() == 3) {
+  if (count == 3) {
     auto& odd = count_u == 1 ? along_u : along_v;
     CellPoint first = middle;
     first[robot_tissue::at(count_u == 1 ? v : u)] = 0;
@@ -196,36 +195,52 @@ int CellDivision::partedEdges(const CellPoint& face, int across) const {
   return count;
 }
 
-void CellDivision::placeInside() {
+std::vector<CellDivision::PartedEdge> CellDivision::edgesBetweenParts() const {
   DisjointSets parts(kCorners);
   for (int corner = 0; corner < kCorners; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!isParted(edgeOf(corner, axis))) parts.join(corner, corner ^ 1 << axis);
     }
   }
-  Points all;
-  std::map<std::pair<int, int>, Points> between;  // two parts
+  std::vector<PartedEdge> edges;
   for (int corner = 0; corner < kCorners; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       if (corner >> axis & 1) continue;
       const int part = parts.lowest(corner), other = parts.lowest(corner | 1 << axis);
-      if (part == other) continue;
-      const CellPoint edge = edgeOf(corner, axis);
-      all.push_back(at(edge));
-      Points& points = between[std::minmax(part, other)];
-      points.push_back(at(edge));
-      for (const int across : {(axis + 1) % 3, (axis + 2) % 3}) {
-        CellPoint face = edge;
-        face[robot_tissue::at(3 - axis - across)] = 1;
-        if (partedEdges(face, across) > 1) points.push_back(at(face));
-      }
+      if (part != other) edges.push_back({edgeOf(corner, axis), axis, std::minmax(part, other)});
     }
   }
-  if (all.empty()) return;
+  return edges;
+}
+
+void CellDivision::placeInside() {
+  const std::vector<PartedEdge> edges = edgesBetweenParts();
+  if (edges.empty()) return;
+  Points all;
+  for (const PartedEdge& edge : edges) all.push_back(at(edge.middle));
   Vec3& point = points_[indexOf({1, 1, 1})];
   point = meanOf(all);
-  if (between.size() > 1) point = nearestToPlanes(between, point);
+  const bool are_two = std::all_of(edges.begin(), edges.end(), [&](const PartedEdge& edge) {
+    return edge.parts == edges.front().parts;
+  });
+  if (!are_two) point = nearestToPlanes(pointsBetween(edges), point);
   for (int axis = 0; axis < 3; ++axis) point[axis] = inside(point[axis]);
+}
+
+// Of each two parts: of the edges between them, and of the faces that have another parted edge.
+std::map<std::pair<int, int>, std::vector<Vec3>> CellDivision::pointsBetween(
+    const std::vector<PartedEdge>& edges) const {
+  std::map<std::pair<int, int>, Points> between;
+  for (const PartedEdge& edge : edges) {
+    Points& points = between[edge.parts];
+    points.push_back(at(edge.middle));
+    for (const int across : {(edge.axis + 1) % 3, (edge.axis + 2) % 3}) {
+      CellPoint face = edge.middle;
+      face[robot_tissue::at(3 - edge.axis - across)] = 1;
+      if (partedEdges(face, across) > 1) points.push_back(at(face));
+    }
+  }
+  return between;
 }
 
 std::array<Tetrahedron, 6> CellDivision::aroundCorner(int corner) const {

@@ -18,6 +18,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "geometry/tetrahedron.h"
@@ -59,6 +61,16 @@ class CellDivision {
   void placeFace(int across, int side);
   int partedEdges(const CellPoint& face, int across) const;
   void placeInside();
+
+  // Between two parts of the cell, lower number first.
+  struct PartedEdge {
+    CellPoint middle{};
+    int axis = 0;
+    std::pair<int, int> parts;
+  };
+  std::vector<PartedEdge> edgesBetweenParts() const;
+  std::map<std::pair<int, int>, std::vector<Vec3>> pointsBetween(
+      const std::vector<PartedEdge>& edges) const;
 
   std::array<Vec3, 27> points_;
   std::array<bool, 27> parted_{};  // edges

@@ -133,7 +133,7 @@ void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, Latti
   std::vector<int> springs;
   for (const Crossing& crossing : crossings) springs.push_back(crossing.spring);
   if (!holdTogether(lattice, state, springs)) state.pieces = countPieces(lattice, state);
-  const auto left = cellsLeft(lattice, state, split);
+  const auto left = cellsLeft(lattice, state, split, springs);
   state.displacement = carriedOver(*state.cells, state.displacement, *left);
   state.cells = left;
 }

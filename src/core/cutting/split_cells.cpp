@@ -180,30 +180,74 @@ std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& 
   return parts;
 }
 
+namespace {
+
+// What springs that may be severed leave of the lattice's cell, on its nodes.
+void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split, const Cell& cell,
+             std::vector<Cell>& left) {
+  const Parts parts = cellParts(lattice, state, cell.nodes);
+  if (isWhole(parts)) {
+    if (takenOf(state, cell.place) == 0) left.push_back(cell);
+    return;
+  }
+  if (split == SplitCells::kLost) return;
+  const PartFills fills = partFills(lattice, state, cell, parts);
+  for (int part = 0; part < kCorners; ++part) {
+    if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
+    Cell parted = cell;
+    parted.own = 0;
+    for (int corner = part; corner < kCorners; ++corner) {
+      if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
+    }
+    parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
+    left.push_back(parted);
+  }
+}
+
+// A part of the cell as it was made: without its ghosts, and no sliver yet.
+Cell asMade(const Cell& cell, const Cell& part) {
+  Cell made = cell;
+  if (!part.isPart()) return made;
+  made.own = part.own;
+  made.fill = unraised(part.fill);
+  return made;
+}
+
+}  // namespace
+
 std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
                                          SplitCells split) {
   const std::vector<char> has_severed = cellsWithSevered(lattice, state);
   std::vector<Cell> left;
   left.reserve(state.cells->all().size());
   for (const Cell& cell : lattice.cells()) {
-    const Parts parts =
-        has_severed[at(cell.place)] != 0 ? cellParts(lattice, state, cell.nodes) : Parts{};
-    if (isWhole(parts)) {
-      if (takenOf(state, cell.place) == 0) left.push_back(cell);
-      continue;
+    if (has_severed[at(cell.place)] != 0) {
+      addLeft(lattice, state, split, cell, left);
+    } else if (takenOf(state, cell.place) == 0) {
+      left.push_back(cell);
     }
-    if (split == SplitCells::kLost) continue;
-    const PartFills fills = partFills(lattice, state, cell, parts);
-    for (int part = 0; part < kCorners; ++part) {
-      if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
-      Cell parted = cell;
-      parted.own = 0;
-      for (int corner = part; corner < kCorners; ++corner) {
-        if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
-      }
-      parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
-      left.push_back(parted);
+  }
+  return GhostMaker(lattice, *state.cells, std::move(left)).make();
+}
+
+std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
+                                         SplitCells split, const std::vector<int>& severed) {
+  std::vector<char> has_severed(lattice.cells().size(), 0);
+  for (const int spring : severed) {
+    for (const int cell : cellsAround(lattice, lattice.springs()[at(spring)])) {
+      if (cell >= 0) has_severed[at(cell)] = 1;
     }
+  }
+  std::vector<Cell> left;
+  left.reserve(state.cells->all().size() + kCorners * severed.size());
+  auto known = state.cells->all().begin();
+  const auto end = state.cells->all().end();
+  for (const Cell& cell : lattice.cells()) {
+    const bool is_cut = has_severed[at(cell.place)] != 0;
+    for (; known != end && known->place == cell.place; ++known) {
+      if (!is_cut) left.push_back(asMade(cell, *known));
+    }
+    if (is_cut) addLeft(lattice, state, split, cell, left);
   }
   return GhostMaker(lattice, *state.cells, std::move(left)).make();
 }

@@ -32,6 +32,10 @@ std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& 
 // state.cells keep their numbers.
 std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
                                          SplitCells split);
+// The same where state.cells are what there was before these springs were severed, and nothing else
+// has changed since: the parts of cells beside none of them are known.
+std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
+                                         SplitCells split, const std::vector<int>& severed);
 
 // Displacements (m) for the nodes of `to`, from those for `from`, an earlier or later set of the
 // same lattice. A new ghost starts where the node was that stood there before the cut: every part

@@ -1,7 +1,7 @@
 #include "lattice/slivers.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <memory>
 #include <numeric>
 
 namespace robot_tissue {
@@ -67,6 +67,15 @@ void stiffenSlivers(std::vector<Cell>& cells, int node_count) {
     raised.spread = raised.spread.cwiseMax(spreads[index]);
     cells[index].fill = std::make_shared<const CellFill>(raised);
   }
+}
+
+std::shared_ptr<const CellFill> unraised(const std::shared_ptr<const CellFill>& fill) {
+  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+  const Vec3 spread = Solver(fill->covariance(), Eigen::EigenvaluesOnly).eigenvalues();
+  if (spread == fill->spread) return fill;
+  CellFill before = *fill;
+  before.spread = spread;
+  return std::make_shared<const CellFill>(before);
 }
 
 }  // namespace robot_tissue

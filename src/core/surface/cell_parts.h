@@ -23,11 +23,17 @@ class CellParts {
   }
   // The part that has the eighth at the corner; null where it was removed.
   const Cell* owner(int place, int corner) const {
-    for (int part = first_at_[at(place)]; part < first_at_[at(place) + 1]; ++part) {
-      if (cells_->all()[at(part)].owns(corner)) return &cells_->all()[at(part)];
-    }
-    return nullptr;
+    const int part = ownerAt(place, corner);
+    return part < 0 ? nullptr : &cells_->all()[at(part)];
   }
+  // Its number, -1: none.
+  int ownerAt(int place, int corner) const {
+    for (int part = first_at_[at(place)]; part < first_at_[at(place) + 1]; ++part) {
+      if (cells_->all()[at(part)].owns(corner)) return part;
+    }
+    return -1;
+  }
+  std::size_t count() const { return cells_->all().size(); }
 
   std::vector<NodeWeight> withoutGhosts(std::vector<NodeWeight> carriers) const;
 

@@ -90,11 +90,16 @@ Octant OctantGrid::beyond(const Octant& octant, int side) const {
   return octantAt(lowest);
 }
 
-// From the cell's lowest corner, in spacings.
-Vec3 OctantGrid::inCell(const Octant& octant, const HalfPoint& point) const {
-  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+CellPoint OctantGrid::inCell(int cell, const HalfPoint& point) const {
+  const auto& low = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
   CellPoint from_low{};
   for (std::size_t axis = 0; axis < 3; ++axis) from_low[axis] = point[axis] - 2 * low[axis];
+  return from_low;
+}
+
+// From the cell's lowest corner, in spacings.
+Vec3 OctantGrid::placeInCell(const Octant& octant, const HalfPoint& point) const {
+  const CellPoint from_low = inCell(octant.cell, point);
   const int division = division_of_.empty() ? -1 : division_of_[at(octant.cell)];
   if (division >= 0) return divisions_[at(division)].at(from_low);
   return 0.5 * Vec3(from_low[0], from_low[1], from_low[2]);
@@ -117,7 +122,7 @@ Hold OctantGrid::holdOf(const Octant& octant, const HalfPoint& point) const {
     hold.add(part.nodes[at(cornerAt(octant, point))], 1.0);
     return hold;
   }
-  const Vec3 place = inCell(octant, point);
+  const Vec3 place = placeInCell(octant, point);
   for (int corner = 0; corner < kCorners; ++corner) {
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -134,18 +139,14 @@ bool OctantGrid::isJoined(const Octant& octant, int side) const {
   const Octant other = beyond(octant, side);
   if (!isThere(octant) || !isThere(other)) return false;
   if (other.cell != octant.cell) return true;  // of one node
-  if (parts_.owner(octant.cell, octant.corner) == parts_.owner(other.cell, other.corner)) {
-    return true;
-  }
-  const auto corners = cornersOfSide(lowestOf(octant), side, 1);
-  return std::all_of(corners.begin(), corners.end(), [&](const HalfPoint& point) {
-    return holdTheSame(holdOf(octant, point), holdOf(other, point));
-  });
+  // The cell's inside point is a corner of the side, and hangs on all of a part's nodes.
+  return parts_.owner(octant.cell, octant.corner)->nodes ==
+         parts_.owner(other.cell, other.corner)->nodes;
 }
 
 Vec3 OctantGrid::placeOf(const Octant& octant, const HalfPoint& point) const {
   const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
-  const Vec3 place = Vec3(low[0], low[1], low[2]) + inCell(octant, point);
+  const Vec3 place = Vec3(low[0], low[1], low[2]) + placeInCell(octant, point);
   return lattice_.bounds().min() + lattice_.spacing() * place;
 }
 

@@ -52,7 +52,11 @@ class OctantGrid {
     return octant.cell >= 0 && !isTaken(state_, octant.cell, octant.corner);
   }
   int nodeOf(const Octant& octant) const;
+  // Number of the part that has the octant, of as many as there are.
+  int partOf(const Octant& octant) const { return parts_.ownerAt(octant.cell, octant.corner); }
+  std::size_t partCount() const { return parts_.count(); }
   HalfPoint lowestOf(const Octant& octant) const;
+  CellPoint inCell(int cell, const HalfPoint& point) const;
   Octant octantAt(const HalfPoint& lowest) const;
   // Across the side of the octant: 2 * axis, + 1 the upper one.
   Octant beyond(const Octant& octant, int side) const;
@@ -70,7 +74,7 @@ class OctantGrid {
  private:
   void placeCells();
   void divide();
-  Vec3 inCell(const Octant& octant, const HalfPoint& point) const;
+  Vec3 placeInCell(const Octant& octant, const HalfPoint& point) const;
   int cornerAt(const Octant& octant, const HalfPoint& node) const;
 
   const Lattice& lattice_;

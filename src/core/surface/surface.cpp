@@ -38,6 +38,7 @@ class SurfaceBuilder {
   SurfaceBuilder(const Lattice& lattice, const LatticeState& state)
       : lattice_(lattice),
         octants_(lattice, state),
+        place_of_part_(octants_.partCount(), -1),
         vertices_at_(lattice.size(), -1),
         is_fine_(lattice.size(), 0) {}
 
@@ -162,14 +163,38 @@ class SurfaceBuilder {
 
   // Where the point hangs on the same nodes it is the same vertex.
   int vertex(const Octant& octant, const HalfPoint& point) {
+    if (!octants_.isOpen(octant.cell)) return vertexAt(octant, point);
+    int& known = vertexOfPart(octant, point);
+    if (known < 0) return known = vertexAt(octant, point);
+    const bool is_node = (point[0] & 1) + (point[1] & 1) + (point[2] & 1) == 0;
+    if (!is_node) standBeside(octants_.nodeOf(octant), known);
+    return known;
+  }
+
+  // -1: it was not asked for.
+  int& vertexOfPart(const Octant& octant, const HalfPoint& point) {
+    int& place = place_of_part_[at(octants_.partOf(octant))];
+    if (place < 0) {
+      place = static_cast<int>(vertices_of_parts_.size());
+      vertices_of_parts_.emplace_back().fill(-1);
+    }
+    const CellPoint in_cell = octants_.inCell(octant.cell, point);
+    return vertices_of_parts_[at(place)][at(in_cell[0] + 3 * in_cell[1] + 9 * in_cell[2])];
+  }
+
+  void standBeside(int node, int vertex) {
+    int& known = surface_.node[at(vertex)];
+    if (known != node) known = -1;
+  }
+
+  int vertexAt(const Octant& octant, const HalfPoint& point) {
     const Hold hold = octants_.holdOf(octant, point);
     const int next = static_cast<int>(surface_.rest.size());
     int& last_there = vertices_at_[point];
     const int first_there = last_there;
     for (int vertex = first_there; vertex >= 0; vertex = next_there_[at(vertex)]) {
       if (!holdTheSame(holds_[at(vertex)], hold)) continue;
-      int& node = surface_.node[at(vertex)];
-      if (node != octants_.nodeOf(octant) && hold.count > 1) node = -1;
+      if (hold.count > 1) standBeside(octants_.nodeOf(octant), vertex);
       return vertex;
     }
     last_there = next;
@@ -188,10 +213,12 @@ class SurfaceBuilder {
   std::vector<Octant> owners_;  // per triangle
   std::vector<Vec3> places_;    // per vertex, in the half grid
   std::vector<WholeSide> whole_sides_;
-  std::vector<Hold> holds_;      // per vertex
-  OnHalfGrid<int> vertices_at_;  // the last one made there
-  std::vector<int> next_there_;  // per vertex; -1: none
-  OnHalfGrid<char> is_fine_;     // in the middle of springs
+  std::vector<Hold> holds_;                             // per vertex
+  std::vector<int> place_of_part_;                      // of an open cell, in the next; -1: not yet
+  std::vector<std::array<int, 27>> vertices_of_parts_;  // by CellPoint, x running fastest
+  OnHalfGrid<int> vertices_at_;                         // the last one made there
+  std::vector<int> next_there_;                         // per vertex; -1: none
+  OnHalfGrid<char> is_fine_;                            // in the middle of springs
 };
 
 }  // namespace

@@ -33,6 +33,9 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
          });
 }
 
+// The least that another solve would take, about.
+double cycleMs(const SolveReport& solve) { return solve.wall_ms / std::max(1, solve.iterations); }
+
 }  // namespace
 
 Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
@@ -211,8 +214,10 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   SolveReport report = solveOnce(disturbed);
   SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;
+  double look_ms = 0.0;  // what the last round took besides its solve
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
-    const bool late = isBounded() && deadline_->isOver();
+    const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
+    const bool late = isBounded() && left_ms <= 2.0 * look_ms + cycleMs(of_round);
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(*before) && solved;
@@ -232,6 +237,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     }
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
+    look_ms = isBounded() ? left_ms - deadline_->leftMs() : 0.0;
     before.reset();  // so that the next line's copy can take its memory
     before = displacements();
     const SolveReport earlier = report;
