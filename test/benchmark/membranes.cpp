@@ -83,6 +83,24 @@ void pinch(double spacing, int rounds, double thickness) {
   std::fflush(stdout);
 }
 
+// In one increment, at a tolerance of 1e-3.
+SolveReport pushedDown(const TissueConfig& config, const char* method, const Box& patch_box,
+                       double way) {
+  SolverConfig solver;
+  solver.method = method;
+  solver.tolerance = 1e-3;
+  Tissue tissue(config, solver);
+  LoadStep step;
+  PatchConfig patch;
+  patch.name = "push";
+  patch.box = patch_box;
+  patch.displacement = {{0.0, 0.0, -way}};
+  step.increments = 1;
+  step.patches = {patch};
+  tissue.load(step);
+  return tissue.lastReport();
+}
+
 // A block pressed at its top, 1/12 of its width wide, with a capsule of so many times the stiffness
 // of a layer of its cells.
 void press(const char* method, double contrast) {
@@ -96,19 +114,8 @@ void press(const char* method, double contrast) {
     config.membranes = {skin(1e-3, kModulus)};
     config.membranes[0].young_modulus = contrast * 1e4 * config.spacing / 1e-3;
   }
-  SolverConfig solver;
-  solver.method = method;
-  solver.tolerance = 1e-3;
-  Tissue tissue(config, solver);
-  LoadStep step;
-  PatchConfig patch;
-  patch.name = "press";
-  patch.box = {Vec3(0.04, 0.04, 0.045), Vec3(0.05, 0.05, 0.045)};
-  patch.displacement = {{0.0, 0.0, -0.002}};
-  step.increments = 1;
-  step.patches = {patch};
-  tissue.load(step);
-  const SolveReport& report = tissue.lastReport();
+  const Box at_top = {Vec3(0.04, 0.04, 0.045), Vec3(0.05, 0.05, 0.045)};
+  const SolveReport report = pushedDown(config, method, at_top, 0.002);
   std::printf("cycles,%s,%g,%.5f,%s,%d,%.1f\n", method, contrast, -report.patches[0].force.z(),
               nameOf(report.status), report.iterations, report.wall_ms);
   std::fflush(stdout);
@@ -123,19 +130,8 @@ void push(const char* method, double contrast, double way) {
   constexpr double kThickness = 1e-3;
   const double stiffness = contrast * config.material.young_modulus * config.spacing;
   config.membranes = {skin(kThickness, stiffness / kThickness)};
-  SolverConfig solver;
-  solver.method = method;
-  solver.tolerance = 1e-3;
-  Tissue tissue(config, solver);
-  LoadStep step;
-  PatchConfig patch;
-  patch.name = "push";
-  patch.box = {Vec3(-1, -1, 0.9 * kRadius), Vec3(1, 1, 1)};
-  patch.displacement = {{0.0, 0.0, -way}};
-  step.increments = 1;
-  step.patches = {patch};
-  tissue.load(step);
-  const SolveReport& report = tissue.lastReport();
+  const Box at_top = {Vec3(-1, -1, 0.9 * kRadius), Vec3(1, 1, 1)};
+  const SolveReport report = pushedDown(config, method, at_top, way);
   std::printf("ball,%s,%g,%g,%.6f,%s,%d,%.1f\n", method, contrast, way,
               -report.patches[0].force.z(), nameOf(report.status), report.iterations,
               report.wall_ms);
