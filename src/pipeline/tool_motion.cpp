@@ -127,7 +127,7 @@ void ToolMotion::startAnew(RobotPose& pose) {
     if (waitsOutside(tool, tool > 0 ? Others::kCame : Others::kNone, pose)) {
       world_.last_pose = world_.tools.withTool(tool, pose, *world_.last_pose);
     } else {
-      drawOut(tool, *world_.last_pose);
+      resolveOverlap(tool, *world_.last_pose);
     }
   }
   // Nothing sticks to where they were before.
@@ -136,7 +136,7 @@ void ToolMotion::startAnew(RobotPose& pose) {
 }
 
 // A tool that is in the tissue there is outside of it in the pose, and told to have been inside.
-void ToolMotion::drawOut(std::size_t tool, RobotPose& pose) {
+void ToolMotion::resolveOverlap(std::size_t tool, RobotPose& pose) {
   if (overlap_.resolveOverlap(tool, pose)) addOnce(tool, world_.report.were_inside);
 }
 
@@ -156,7 +156,7 @@ void ToolMotion::comeAndGo(RobotPose& pose) {
     if (!ToolSet::isAway(pose.links[first])) came = Others::kCame;
     from = world_.tools.withTool(tool, pose, from);
     letGoOf(tool);
-    drawOut(tool, from);
+    resolveOverlap(tool, from);
   }
   if (!any) return;
   world_.last_pose = from;

@@ -49,7 +49,7 @@ class ToolMotion {
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);
   bool isHooked(std::size_t tool) const;
-  void drawOut(std::size_t tool, RobotPose& pose);
+  void resolveOverlap(std::size_t tool, RobotPose& pose);
   void letGoOf(std::size_t tool);
   void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
   bool waitsOutside(std::size_t tool, Others others, RobotPose& pose);

@@ -151,6 +151,7 @@ void TissueServices::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Res
     response.message = "released" + solved(pipeline_.tissue().lastReport(), pipeline_.isLate());
     return;
   }
+  requireBox(request);
   SolveReport last;
   LoadStep step;
   step.patches.push_back(patchOf(request));

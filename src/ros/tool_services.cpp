@@ -41,6 +41,15 @@ std::size_t TissueServices::toolIndex(const std::string& name) const {
                    parameters_.robot_description_param + "' is set");
 }
 
+// A request without a box is meant for a tool: a patch of the nodes at the frame's origin alone is
+// hardly ever.
+void TissueServices::requireBox(const ApplyLoad::Request& request) const {
+  if (!toVec3(request.min).isZero(0.0) || !toVec3(request.max).isZero(0.0)) return;
+  throw InputError("name: " + inQuotes(request.name) +
+                   " is no tool, and min and max give no box; allowed: a tool (" +
+                   listed(parameters_.scene.tools) + "), or a box for a patch of that name");
+}
+
 bool TissueServices::onGrasp(Tool::Request& request, Tool::Response& response) {
   try {
     const std::size_t tool = toolIndex(request.tool);

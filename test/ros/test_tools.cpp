@@ -196,6 +196,19 @@ TEST_F(Tools, PushesThatAreNoneAreRefusedWithALine) {
   }
 }
 
+TEST_F(Tools, ForceOnAnUnknownToolIsRefusedByThatName) {
+  ApplyLoad::Request moved;
+  moved.name = "prope";
+  moved.displacement = {vector(0.0, 0.0, -0.001)};
+  for (const auto& refused : {push("prope", {vector(0.0, 0.0, -0.1)}), applyLoad(moved)}) {
+    EXPECT_FALSE(refused.success);
+    EXPECT_EQ(refused.message.find("name: 'prope' is no tool"), 0U) << refused.message;
+    EXPECT_NE(refused.message.find("probe, slick, fork"), std::string::npos) << refused.message;
+    EXPECT_EQ(refused.message.find('\n'), std::string::npos);
+  }
+  EXPECT_LT(push(std::string(1000, 'x'), {vector(0.0, 0.0, -0.1)}).message.size(), 300U);
+}
+
 TEST_F(Tools, OnlyGraspersGrasp) {
   const auto grasp = ask("grasp", "probe");
   EXPECT_FALSE(grasp.success);

@@ -41,6 +41,7 @@ class TissueServices {
   bool onApplyLoad(ApplyLoad::Request& request, ApplyLoad::Response& response);
   void loadPatch(const ApplyLoad::Request& request, ApplyLoad::Response& response);
   // tool_services.cpp
+  void requireBox(const ApplyLoad::Request& request) const;
   bool onGrasp(Tool::Request& request, Tool::Response& response);
   bool onRelease(Tool::Request& request, Tool::Response& response);
   void pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response);

@@ -142,14 +142,14 @@ struct Bounds {
 };
 
 // The triangles' boxes, halved again and again along the longest side of what holds them.
-class BoxTree {
+class AabbTree {
  public:
   struct Item {
     Bounds bounds;
     int triangle = 0;
   };
 
-  explicit BoxTree(std::vector<Item> items) : items_(std::move(items)) {
+  explicit AabbTree(std::vector<Item> items) : items_(std::move(items)) {
     if (!items_.empty()) build(0, static_cast<int>(items_.size()));
   }
 
@@ -215,12 +215,12 @@ std::vector<std::pair<int, int>> intersectingTriangles(const TriangleMesh& mesh)
   std::vector<std::pair<int, int>> pairs;
   if (mesh.triangles.empty()) return pairs;
   const IntersectionTest test(mesh);
-  std::vector<BoxTree::Item> items;
+  std::vector<AabbTree::Item> items;
   for (int triangle = 0; triangle < static_cast<int>(mesh.triangles.size()); ++triangle) {
     const ExactTriangle corners = test.corners(triangle);
     if (hasArea(corners)) items.push_back({Bounds(corners), triangle});
   }
-  BoxTree(std::move(items)).visitPairs([&](int one, int other) {
+  AabbTree(std::move(items)).visitPairs([&](int one, int other) {
     if (test.intersect(one, other)) pairs.push_back(std::minmax({one, other}));
   });
   std::sort(pairs.begin(), pairs.end());

@@ -61,7 +61,7 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   fresh_ = false;
   slope_before_ = own_slope;
   std::swap(force_before_, force_);
-  if (own_slope > 0.0 && searchAlong(slope)) {
+  if (own_slope > 0.0 && stepByLineSearch(slope)) {
     std::swap(direction_before_, direction_);
   } else {
     smoothFrom(start_);
@@ -113,7 +113,7 @@ double FasCgCycle<Real>::joinLastDirection(double own_slope) {
 
 // False: it leads nowhere.
 template <typename Real>
-bool FasCgCycle<Real>::searchAlong(double slope) {
+bool FasCgCycle<Real>::stepByLineSearch(double slope) {
   return searchLine(slope, shape_.workOfForces(direction_), [this](double length) {
     shape_.moveFrom(start_, direction_, length);
     return shape_.workOfForces(direction_);

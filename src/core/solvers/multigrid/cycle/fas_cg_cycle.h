@@ -47,7 +47,7 @@ class FasCgCycle {
   void goFurther(int steps);
   bool isSteady(const SolveContext& solve, const MotionLeft& left) const;
   double joinLastDirection(double own_slope);
-  bool searchAlong(double slope);
+  bool stepByLineSearch(double slope);
 
   CompositeShape<Real>& shape_;
   double longest_step_;

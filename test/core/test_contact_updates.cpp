@@ -61,7 +61,7 @@ LoadStep punched(double depth) {
 
 // After a look at the unloaded shape and one at the first solve's, 50 ms are left: the last look is
 // at the shape that there is.
-TEST(ContactRounds, BeginNoSolveThatWouldEndAfterTheDeadline) {
+TEST(ContactUpdates, BeginNoSolveThatWouldEndAfterTheDeadline) {
   Tissue tissue(smallBlock(), {});
   SlowLook contacts(std::chrono::milliseconds(100));
   tissue.setContactUpdate(&contacts);
@@ -71,7 +71,7 @@ TEST(ContactRounds, BeginNoSolveThatWouldEndAfterTheDeadline) {
   EXPECT_TRUE(tissue.isLate());
 }
 
-TEST(ContactRounds, EndWhereTheyLeadNeitherNearerNorFarther) {
+TEST(ContactUpdates, EndWhereTheyLeadNeitherNearerNorFarther) {
   Tissue tissue(smallBlock(), {});
   NeverContent contacts;
   tissue.setContactUpdate(&contacts);
