@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""A client of the soak, a process of its own: soak_client.py ROLE. Each line that it prints is one of
+"""A client of the soak, a process of its own: soak_client.py ROLE NODE_PID. Each line that it prints is one of
 JSON: what it saw since the line before. It goes with its input."""
 
 import json
 import math
+import os
 import random
 import sys
 import threading
 import time
+from pathlib import Path
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -19,7 +21,14 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 LONGEST = 5.0      # s: a reply that takes longer is missed
+TIDY = 2.0         # s after a reset: the node has given back what it does not use
 NODE = "/robot_tissue/"
+
+
+def memory_of(pid):
+    """MB that it has in memory."""
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return 1e-6 * pages * os.sysconf("SC_PAGE_SIZE")
 
 
 class Seen:
@@ -110,8 +119,8 @@ def cut_request(rng):
     return CutRequest(corners=[Point(*corner) for corner in corners])
 
 
-def surgeon(seen):
-    """Cuts and takes back, and all anew once a minute or so."""
+def surgeon(seen, node_pid):
+    """Cuts and takes back, and all anew once a minute or so, when it looks at the node's memory."""
     rng = random.Random(22)
     for turn in range(10 ** 9):
         for _ in range(2):
@@ -122,9 +131,11 @@ def surgeon(seen):
             time.sleep(2.0)
         if turn % 8 == 7:
             called(seen, "reset", Trigger, None)
+            time.sleep(TIDY)
+            seen.most("rest_memory_MB", memory_of(node_pid))
 
 
-def loader(seen):
+def loader(seen, _):
     """Pulls at a corner and lets go, once a second."""
     def request(depth):
         wanted = ApplyLoadRequest(name="corner", min=Point(-1, -1, 0.05), max=Point(0.012, 0.012, 0.05))
@@ -151,13 +162,13 @@ def viewer(seen):
 
 
 def main():
-    role = sys.argv[1]
+    role, node_pid = sys.argv[1], int(sys.argv[2])
     rospy.init_node("soak_" + role, disable_signals=True)
     seen = Seen()
     if role in ("surgeon", "loader"):
         work = {"surgeon": surgeon, "loader": loader}[role]
         rospy.wait_for_service(NODE + "reset")
-        threading.Thread(target=work, args=(seen,), daemon=True).start()
+        threading.Thread(target=work, args=(seen, node_pid), daemon=True).start()
     else:
         kept = {"controller": controller, "viewer": viewer}[role](seen)
         assert kept
