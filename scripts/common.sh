@@ -4,6 +4,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build="$root/build"
 package_lists=("$root/scripts/debian_packages")
+targets=(all)   # what build_all builds
 
 say() { printf '== %s\n' "$*"; }
 give_up() { printf '%s\n' "$*" >&2; exit 1; }
@@ -69,7 +70,7 @@ get_packages() {
 build_all() {
   say "building in $build"
   configure "$@"
-  cmake --build "$build" -- -j"$(nproc)" || give_up "scripts: building failed"
+  cmake --build "$build" --target "${targets[@]}" -- -j"$(nproc)" || give_up "scripts: building failed"
   # Setup files of catkin read variables that are not set.
   set +u
   # shellcheck disable=SC1091

@@ -27,8 +27,9 @@ from studies.common import DATA, IMAGES, add_plot, numbers, percentile, program,
 
 TABLE, CHART = DATA / "soak.csv", IMAGES / "soak.png"
 COLUMNS = ["time_s", "memory_MB", "memory_after_reset_MB", "listener_memory_MB", "node_percent_of_a_core", "poses_hz",
-           "transforms_hz", "wrenches_hz", "states_hz", "surface_hz", "contacts_hz", "markers_hz", "due_hz", "contact_ms",
-           "solve_ms", "publish_ms", "calls", "refused", "missed", "slowest_reply_ms", "not_finite", "fault"]
+           "transforms_hz", "wrenches_hz", "states_hz", "surface_hz", "contacts_hz", "markers_hz", "due_hz",
+           "contact_ms", "solve_ms", "publish_ms", "calls", "refused", "missed", "slowest_reply_ms", "not_finite",
+           "fault"]
 STAGES = ("contact_ms", "solve_ms", "publish_ms")   # means of an update that told its state
 ROLES = ("surgeon", "loader", "controller", "viewer")
 RATE = 200.0                            # Hz, of the poses
