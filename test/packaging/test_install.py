@@ -82,7 +82,7 @@ class InstallSpace(unittest.TestCase):
         headers = set(files_in(prefix() / "include/robot_tissue"))
         self.assertLessEqual(set(files_in(SOURCE / "include/robot_tissue")), headers)
         for program in ("robot_tissue_node", "simulate", "fidelity", "check_setup", "replay",
-                        "demo_player", "play"):
+                        "admittance", "demo_player", "play"):
             self.assertTrue(os.access(self.programs / program, os.X_OK), program)
         self.assertTrue((self.programs / "play_markers.py").is_file())
         self.assertEqual(output_of("rospack find robot_tissue").strip(), str(self.share))
