@@ -1,17 +1,19 @@
-"""Takes the pictures of rviz: the demo, still and moving, play.launch, colors.
+"""Takes the pictures of rviz: the demo, still and moving, play.launch, colors, the rim of a dragged dent.
 
 On a display of its own, without a monitor, drawn by the processor. Needs the build's devel/setup.bash.
-Out: doc/images/demo.gif, demo.png, play.png, color.png.
+Out: doc/images/demo.gif, demo.png, play.png, color.png, dent.png.
 """
 
 import contextlib
 import math
 import os
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import rospy
+import yaml
 from geometry_msgs.msg import Point, Quaternion
 from PIL import Image
 from sensor_msgs.msg import JointState
@@ -34,6 +36,9 @@ DEMO_STILL = 25.2
 DEMO_PARTS = [(3.5, 6.0), (11.5, 17.0), (23.0, 27.0)]
 CORNERS = {"corner_1": (0.0525, -0.012, 0.06), "corner_2": (0.0525, 0.03, 0.06),
            "corner_3": (0.0525, -0.012, 0.025)}
+DENT = {"Distance": 0.13, "Pitch": 0.55, "Focal Point": {"X": 0.055, "Y": 0.045, "Z": 0.05}}  # of the view, m, rad
+DRAGGED = [(0.035 + 5e-4 * step, 0.045, 0.046) for step in range(61)]  # m, middle of the sphere: 14 mm deep
+STEP = 0.05                     # s, between two of these places
 PRESSED = (0.035, 0.045, 0.052)  # m, middle of the sphere: 8 mm deep
 
 
@@ -110,7 +115,7 @@ def save(screen, name, folder):
 
 @contextlib.contextmanager
 def shown(launch, view, *arguments):
-    """What the launch file starts, and the view of it in all of the display."""
+    """What the launch file starts, and the view of it (a path, or a file in config) in all of the display."""
     if rospy.has_param("robot_description"):
         rospy.delete_param("robot_description")  # of an earlier one: rviz would show that robot
     with moved_node.running(["roslaunch", "robot_tissue", launch, *arguments]), \
@@ -132,6 +137,29 @@ def take_color(screen, folder):
         press(Mouse())
         time.sleep(DRAWN)
         save(screen, "color.png", folder)
+
+
+def near_view(folder):
+    """That of play, from nearby and without the mouse's markers; its path."""
+    view = yaml.safe_load((PACKAGE / "config/play.rviz").read_text())
+    manager = view["Visualization Manager"]
+    manager["Views"]["Current"].update(DENT)
+    manager["Displays"] = [display for display in manager["Displays"] if display["Class"] != "rviz/InteractiveMarkers"]
+    path = Path(folder) / "dent.rviz"
+    path.write_text(yaml.safe_dump(view))
+    return path
+
+
+def take_dent(screen, folder):
+    with tempfile.TemporaryDirectory() as place, shown("play.launch", near_view(place), "rviz:=false"):
+        mouse = Mouse()
+        press(mouse)
+        for at in DRAGGED:
+            mouse.move("tool", at)
+            time.sleep(STEP)
+        time.sleep(DRAWN)
+        save(screen, "dent.png", folder)
+        print("force: " + mouse.note("force"))
 
 
 class Demo:
@@ -174,7 +202,7 @@ def take_demo(screen, folder):
     print(folder / "demo.gif", (folder / "demo.gif").stat().st_size // 1000, "kB", flush=True)
 
 
-TAKES = {"play": take_play, "color": take_color, "demo": take_demo}
+TAKES = {"play": take_play, "color": take_color, "dent": take_dent, "demo": take_demo}
 
 
 def add_arguments(parser):
