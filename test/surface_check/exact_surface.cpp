@@ -8,6 +8,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/box_intersection_d.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace robot_tissue {
@@ -58,6 +60,18 @@ bool crosses(const Corners& a, const Corners& b) {
   return common && boost::get<Exact::Segment_3>(&*common) != nullptr;
 }
 
+// How far the corners of `a` are off the plane of `b` on the side where they are less.
+double depthIn(const Corners& a, const Corners& b) {
+  const auto normal = CGAL::cross_product(b[1] - b[0], b[2] - b[0]);
+  double above = 0.0, below = 0.0;
+  for (const Kernel::Point_3& corner : a) {
+    const double off = normal * (corner - b[0]) / std::sqrt(normal.squared_length());
+    above = std::max(above, off);
+    below = std::max(below, -off);
+  }
+  return std::min(above, below);
+}
+
 }  // namespace
 
 bool isClosedAndManifold(const std::vector<Vec3>& vertices,
@@ -80,7 +94,8 @@ double volumeInside(const std::vector<Vec3>& vertices, const std::vector<MeshTri
   return pmp::volume(mesh);
 }
 
-int countCrossings(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles) {
+Crossings crossingsOf(const std::vector<Vec3>& vertices,
+                      const std::vector<MeshTriangle>& triangles) {
   using BoxOfTriangle = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::size_t>;
   std::vector<Corners> all;
   std::vector<BoxOfTriangle> boxes;
@@ -92,10 +107,14 @@ int countCrossings(const std::vector<Vec3>& vertices, const std::vector<MeshTria
     const CGAL::Bbox_3 box = corners[0].bbox() + corners[1].bbox() + corners[2].bbox();
     boxes.emplace_back(box, all.size() - 1);
   }
-  int crossings = 0;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const auto& a, const auto& b) {
-    crossings += crosses(all[a.info()], all[b.info()]) ? 1 : 0;
-  });
+  Crossings crossings;
+  CGAL::box_self_intersection_d(
+      boxes.begin(), boxes.end(), [&](const auto& first, const auto& second) {
+        const Corners &a = all[first.info()], &b = all[second.info()];
+        if (!crosses(a, b)) return;
+        ++crossings.pairs;
+        crossings.depth = std::max(crossings.depth, std::min(depthIn(a, b), depthIn(b, a)));
+      });
   return crossings;
 }
 

@@ -18,7 +18,13 @@ bool isClosedAndManifold(const std::vector<Vec3>& vertices,
 
 double volumeInside(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles);
 
-// Pairs of triangles that cross.
-int countCrossings(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles);
+// Pairs of triangles that cross, and how far at most each of two has corners on both sides of the
+// other's plane (m; not exact).
+struct Crossings {
+  int pairs = 0;
+  double depth = 0.0;
+};
+Crossings crossingsOf(const std::vector<Vec3>& vertices,
+                      const std::vector<MeshTriangle>& triangles);
 
 }  // namespace robot_tissue
