@@ -22,6 +22,15 @@ void SkylineCholesky::reset(std::vector<int> first) {
   values_.assign(static_cast<std::size_t>(end), 0.0);
 }
 
+double SkylineCholesky::workOf(const std::vector<int>& first) {
+  double work = 0.0;
+  for (std::size_t row = 0; row < first.size(); ++row) {
+    const double length = static_cast<double>(row) + 1.0 - first[row];
+    work += length * length;
+  }
+  return work;
+}
+
 const double* SkylineCholesky::rowOf(int row) const {
   const auto index = static_cast<std::size_t>(row);
   return values_.data() + start_[index] - first_[index];

@@ -12,6 +12,8 @@ class SkylineCholesky {
  public:
   // Zero, with rows that begin at such columns, at most their own.
   void reset(std::vector<int> first);
+  // Multiplications that `factorize` takes with such rows, to compare by.
+  static double workOf(const std::vector<int>& first);
   int rows() const { return static_cast<int>(first_.size()); }
 
   // Of the lower triangle, in the envelope; until `factorize`.

@@ -5,6 +5,13 @@
 // column of W per spring, its weights times its direction,
 //
 //   (D + W K W^T)^-1 = D^-1 - D^-1 W (K^-1 + W^T D^-1 W)^-1 W^T D^-1
+//
+// Where many springs share few nodes, as those of a fine tool on a coarse lattice do, a matrix of
+// their nodes is smaller than that of the springs. With D^-1 = L L^T, node by node, and B = L^T W,
+//
+//   (D + W K W^T)^-1 = D^-1 - L (I + B K B^T)^-1 B K W^T D^-1
+//
+// The one whose envelope takes less work is factorized.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,14 +41,23 @@ class WoodburyUpdate {
   void addForces(const std::vector<Vec3>& motions, std::vector<Vec3>& forces) const;
 
  private:
-  void findEnvelope();
-  void fillMatrix();
+  std::vector<int> envelopeOfSprings() const;
+  std::vector<int> envelopeOfNodes();
+  void fillForSprings(const std::vector<Eigen::Matrix3d>& inverses);
+  void fillForNodes(const std::vector<Eigen::Matrix3d>& inverses);
+  double lengthening(const Spring& spring, const std::vector<Vec3>& motions) const;
+  void applyBySprings(std::vector<Vec3>& motions) const;
+  void applyByNodes(std::vector<Vec3>& motions) const;
 
   std::vector<Spring> springs_;
-  std::vector<std::vector<Vec3>> answers_;    // D^-1 W: per spring and part
   std::vector<std::vector<int>> springs_at_;  // per node
-  SkylineCholesky matrix_;                    // K^-1 + W^T D^-1 W
-  mutable Eigen::VectorXd forces_;            // of the springs; room that `apply` needs
+  std::vector<int> joined_;                   // nodes with springs
+  std::vector<int> row_of_;                   // per node: its first row, where nodes are solved for
+  bool by_nodes_ = false;
+  std::vector<std::vector<Vec3>> columns_;  // D^-1 W; by nodes B: per spring and part
+  std::vector<Eigen::Matrix3d> roots_;      // L, per joined node
+  SkylineCholesky matrix_;                  // K^-1 + W^T D^-1 W; by nodes I + B K B^T
+  mutable Eigen::VectorXd unknowns_;        // room that `apply` needs
 };
 
 }  // namespace robot_tissue
