@@ -1,10 +1,12 @@
 // Pieces keep their numbers, and those that nothing holds stay or are dropped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "elastic_fixtures.h"
+#include "lattice/connectivity.h"
 #include "suture_fixtures.h"
 #include "tissue_fixtures.h"
 
@@ -139,6 +141,14 @@ TEST(FreePiece, IsDroppedInTheCutThatFreesIt) {
   tissue.undo(1);
   EXPECT_EQ(tissue.savedState(), before);
   EXPECT_TRUE(tissue.droppedPieces().empty());
+}
+
+// Ghosts of the cells that were cut through lose their nodes with the piece.
+TEST(FreePiece, LeavesNoNodeOfAPieceThatIsNotThere) {
+  Tissue tissue(block(FreePieces::kDrop), {});
+  tissue.cut(level(0.025));
+  const std::vector<int> pieces = pieceOfNodes(tissue.lattice(), tissue.state());
+  EXPECT_EQ(*std::max_element(pieces.begin(), pieces.end()), tissue.state().pieces - 1);
 }
 
 TEST(FreePiece, StaysWhereTheSceneDoesNotDropIt) {

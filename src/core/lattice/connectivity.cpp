@@ -104,6 +104,8 @@ std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state)
   for (int node = 0; node < cells.nodeCount(); ++node) {
     if (!cells.isGhost(node) && isRemoved(state, node)) continue;
     const int lowest = nodes.lowest(node);
+    // Ghosts come last: one that is joined to no node is of a part that lost its nodes.
+    if (cells.isGhost(lowest)) continue;
     piece[at(node)] = lowest == node ? pieces++ : piece[at(lowest)];
   }
   return piece;

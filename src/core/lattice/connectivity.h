@@ -17,7 +17,8 @@ bool holdTogether(const Lattice& lattice, const LatticeState& state,
                   const std::vector<int>& severed);
 
 // Of each node, the ghosts last: the number of its part, from 0 on, in the order of the parts'
-// lowest nodes; -1: it was removed. A ghost is of the part whose cell has it.
+// lowest nodes; -1: it was removed. A ghost is of the part whose cell has it, -1 where that lost
+// its nodes.
 std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state);
 
 }  // namespace robot_tissue
