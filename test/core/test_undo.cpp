@@ -41,6 +41,19 @@ std::vector<CutTriangle> sweptAt(double x, double from, double to) {
   return {{a, b, c}, {a, c, d}};
 }
 
+TEST(Undo, OfACutThatWasCutShortIsBitForBit) {
+  const TissueConfig config = block();
+  Tissue tissue(config, {});
+  tissue.load(pressOn(config));
+  const std::string before = tissue.savedState();
+  tissue.setDeadline(Deadline(0.0));
+  ASSERT_EQ(tissue.cut(acrossX(0.035)).solve.status, SolveStatus::kLate);
+  tissue.setDeadline(std::nullopt);
+  EXPECT_EQ(tissue.undo(1).status, SolveStatus::kOk);
+  EXPECT_EQ(tissue.savedState(), before);
+  EXPECT_FALSE(tissue.isLate());
+}
+
 TEST(Undo, OfManyRandomCutsIsBitForBit) {
   const TissueConfig config = block();
   Tissue tissue(config, {});

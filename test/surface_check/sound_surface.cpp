@@ -1,5 +1,6 @@
 #include "sound_surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -22,6 +23,16 @@ std::map<int, std::vector<MeshTriangle>> trianglesOfPieces(const Tissue& tissue)
   return of_pieces;
 }
 
+// Of pieces without a triangle (cells): the greatest volume.
+double greatestUnshown(const Tissue& tissue, const std::vector<TissuePiece>& pieces,
+                       const std::map<int, std::vector<MeshTriangle>>& of_pieces) {
+  double greatest = 0.0;
+  for (const TissuePiece& piece : pieces) {
+    if (of_pieces.count(piece.number) == 0) greatest = std::max(greatest, piece.volume);
+  }
+  return greatest / std::pow(tissue.lattice().spacing(), 3);
+}
+
 }  // namespace
 
 double volumeOf(const Tissue& tissue) {
@@ -34,7 +45,9 @@ std::string faultOf(const Tissue& tissue, double volume, double rounding) {
   std::ostringstream fault;
   const std::vector<TissuePiece> pieces = tissue.pieces();
   if (of_pieces.size() != pieces.size()) {
-    fault << of_pieces.size() << " pieces are shown, there are " << pieces.size() << "; ";
+    fault << of_pieces.size() << " pieces are shown, there are " << pieces.size()
+          << ", the others have up to " << greatestUnshown(tissue, pieces, of_pieces)
+          << " of a cell; ";
   }
   double inside = 0.0;
   for (const TissuePiece& piece : pieces) {

@@ -155,7 +155,8 @@ SolveReport Tissue::undo(int count) {
   const History::Entry entry = history_->before(target);
   const bool same_loads = history_->hasLoadsSince(target, namedLoads());
   std::shared_ptr<const SavedState> saved;
-  if (isUntouched() && !isLate() && same_loads) saved = entry.state;
+  // What is late of the change itself goes with it.
+  if (isUntouched() && !isLoading() && same_loads) saved = entry.state;
   if (saved && saved->in_balance) {
     History kept = *history_;
     kept.dropFrom(target);
