@@ -21,7 +21,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 LONGEST = 5.0      # s: a reply that takes longer is missed
-TIDY = 2.0         # s after a reset: the node has given back what it does not use
+TIDY = 2.5         # s after a reset: the node has given back what it does not use, and told its heap since
+HEAP, DUE = "heap in use (MB)", "poses (Hz)"    # keys of the node's diagnostics
 NODE = "/robot_tissue/"
 
 
@@ -75,12 +76,14 @@ def stages(seen, message):
     return message.residual, message.volume_ratio, message.unbalanced_force, *message.suture_tensions
 
 
+def diagnosed(message, key):
+    """Numbers of that key; the node tells them once a second."""
+    return [float(value.value) for status in message.status for value in status.values if value.key == key]
+
+
 def due_poses(seen, message):
-    """What the node itself counts, once a second: poses that were due, followed or missed."""
-    for status in message.status:
-        for value in status.values:
-            if value.key == "poses (Hz)":
-                seen.add("due", float(value.value))
+    """What the node itself counts: poses that were due, followed or missed."""
+    seen.add("due", sum(diagnosed(message, DUE)))
     return ()
 
 
@@ -122,6 +125,9 @@ def cut_request(rng):
 def surgeon(seen, node_pid):
     """Cuts and takes back, and all anew once a minute or so, when it looks at the node's memory."""
     rng = random.Random(22)
+    heap = []
+    kept = rospy.Subscriber("/diagnostics", DiagnosticArray, lambda message: heap.extend(diagnosed(message, HEAP)))
+    assert kept
     for turn in range(10 ** 9):
         for _ in range(2):
             called(seen, "cut", Cut, cut_request(rng))
@@ -133,6 +139,8 @@ def surgeon(seen, node_pid):
             called(seen, "reset", Trigger, None)
             time.sleep(TIDY)
             seen.most("rest_memory_MB", memory_of(node_pid))
+            seen.most("rest_heap_MB", heap[-1])
+            heap.clear()
 
 
 def loader(seen, _):

@@ -139,6 +139,7 @@ void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.add("nodes", pipeline_.tissue().lattice().nodeCount());
   status.add("pieces", pipeline_.tissue().state().pieces);
   status.addf("memory of the process (MB)", "%.1f", 1e-6 * residentMemory());
+  status.addf("heap in use (MB)", "%.3f", 1e-6 * heapInUse());
 }
 
 }  // namespace robot_tissue

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "robot_tissue/core/compat.h"
 #include "robot_tissue/core/grid.h"
 #include "robot_tissue/core/method_names.h"
 #include "tuning.h"
@@ -115,6 +116,8 @@ double residentMemory() {
   constexpr double kKilobyte = 1024.0;
   return namedNumberIn("/proc/self/status", "VmRSS:", 0.0) * kKilobyte;
 }
+
+double heapInUse() { return compat::heapInUse(); }
 
 void giveBackFreeMemory() {
 #ifdef __GLIBC__

@@ -261,6 +261,8 @@ TEST_F(RunningNode, DiagnosticsTellPiecesAndMemoryOfWhatRuns) {
   EXPECT_EQ(diagnostics_["tissue: solver"].hardware_id, "elastic layered: 4851 nodes");
   EXPECT_EQ(told("nodes"), "4851");
   EXPECT_GT(std::stod(told("memory of the process (MB)")), 1.0);
+  EXPECT_GT(std::stod(told("heap in use (MB)")), 1.0);
+  EXPECT_LT(std::stod(told("heap in use (MB)")), std::stod(told("memory of the process (MB)")));
   cut({{0.0525, -0.1, -0.1}, {0.0525, 0.2, -0.1}, {0.0525, 0.2, 0.2}, {0.0525, -0.1, 0.2}});
   EXPECT_TRUE(waitFor([&] { return told("pieces") == "2"; }));
   ASSERT_TRUE(reset());

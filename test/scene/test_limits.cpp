@@ -199,6 +199,21 @@ TEST(Memory, GapsOfTheHeapAreGivenBack) {
   EXPECT_EQ(*stay.back(), std::string(100, 'b'));
 }
 
+TEST(Memory, HeapInUseIsWhatSomebodyHolds) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer has a heap of its own";
+#endif
+  constexpr double kBlocks = 1000.0, kBytes = 20000.0;
+  const double before = heapInUse();
+  {
+    std::vector<std::string> held;
+    for (double i = 0.0; i < kBlocks; ++i) held.emplace_back(static_cast<std::size_t>(kBytes), 'a');
+    EXPECT_GE(heapInUse(), before + kBlocks * kBytes);
+    EXPECT_LT(heapInUse(), before + 1.05 * kBlocks * kBytes);
+  }
+  EXPECT_NEAR(heapInUse(), before, 1000.0);
+}
+
 TEST(Memory, ALimitOfTheProcessCounts) {
   const auto limited = [](auto resource) {
     constexpr rlim_t kMost = rlim_t{1} << 30;

@@ -3,6 +3,8 @@
 // there.
 #pragma once
 
+#include <malloc.h>
+
 #include <charconv>
 #include <locale>
 #include <sstream>
@@ -24,7 +26,28 @@
 #define ROBOT_TISSUE_HAS_FLOAT_FROM_CHARS 0
 #endif
 
+// mallinfo2, whose numbers are not int: glibc 2.33 and later.
+#if defined(__GLIBC__) && defined(__GLIBC_PREREQ)
+#if __GLIBC_PREREQ(2, 33)
+#define ROBOT_TISSUE_HAS_MALLINFO2 1
+#endif
+#endif
+
 namespace robot_tissue::compat {
+
+// Bytes that were allocated and not freed, of all threads; 0: the C library does not tell.
+inline double heapInUse() {
+#if defined(ROBOT_TISSUE_HAS_MALLINFO2)
+  const struct mallinfo2 heap = mallinfo2();
+  return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
+#elif defined(__GLIBC__)
+  const struct mallinfo heap = mallinfo();  // up to 4 GB
+  return static_cast<double>(static_cast<unsigned>(heap.uordblks)) +
+         static_cast<double>(static_cast<unsigned>(heap.hblkhd));
+#else
+  return 0.0;
+#endif
+}
 
 // The whole word is a number, written as in C; false: it is none, or out of range. In any locale.
 inline bool parsedByStream(std::string_view word, double& value) {
