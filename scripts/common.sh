@@ -67,10 +67,13 @@ get_packages() {
   fi
 }
 
+compile() { cmake --build "$build" --target "$@" -- -j"$(nproc)" 2>&1 | tee -a "$build/build.log"; }
+
 build_all() {
   say "building in $build"
   configure "$@"
-  cmake --build "$build" --target "${targets[@]}" -- -j"$(nproc)" || give_up "scripts: building failed"
+  : >"$build/build.log"
+  compile "${targets[@]}" || give_up "scripts: building failed"
   # Setup files of catkin read variables that are not set.
   set +u
   # shellcheck disable=SC1091

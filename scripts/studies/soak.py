@@ -225,8 +225,9 @@ def findings_of_memory(rows):
     for column, what in (("heap_after_reset_MB", "heap after resets"), ("memory_MB", "memory at any time")):
         values = [float(row[column]) for row in rows if row[column]]
         middle, least = growth(rows, column)
-        print(f"{what}: {min(values):.2f} to {max(values):.2f} MB, in the first third {thirds_of(values)[0]:.2f}, in the "
-              f"last {thirds_of(values)[1]:.2f} (medians); {1e3 * middle:+.0f} kB an hour, surely {1e3 * least:+.0f}")
+        first, last = thirds_of(values)
+        print(f"{what}: {min(values):.2f} to {max(values):.2f} MB, in the first third {first:.2f}, in the "
+              f"last {last:.2f} (medians); {1e3 * middle:+.0f} kB an hour, surely {1e3 * least:+.0f}")
         if least - max(0.0, listener) > MOST_GROWTH:
             findings.append(f"{what} grows")
     return findings

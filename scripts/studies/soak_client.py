@@ -143,16 +143,19 @@ def surgeon(seen, node_pid):
             heap.clear()
 
 
+def load_request(depth):
+    """Pulls at a corner; without a depth lets go."""
+    wanted = ApplyLoadRequest(name="corner", min=Point(-1, -1, 0.05), max=Point(0.012, 0.012, 0.05))
+    if depth:
+        wanted.displacement = [Vector3(0, 0, depth)]
+    return wanted
+
+
 def loader(seen, _):
-    """Pulls at a corner and lets go, once a second."""
-    def request(depth):
-        wanted = ApplyLoadRequest(name="corner", min=Point(-1, -1, 0.05), max=Point(0.012, 0.012, 0.05))
-        if depth:
-            wanted.displacement = [Vector3(0, 0, depth)]
-        return wanted
+    """Pulls and lets go, once a second."""
     while True:
         for depth in (0.002, 0.0):
-            called(seen, "apply_load", ApplyLoad, request(depth))
+            called(seen, "apply_load", ApplyLoad, load_request(depth))
             time.sleep(1.0)
 
 

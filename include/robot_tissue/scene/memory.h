@@ -14,8 +14,9 @@ double freeMemory(const std::string& root = "");
 // Bytes that this process has in the machine's memory now.
 double residentMemory();
 
-// Bytes of it that the heap's users hold: what grows for hours is kept by somebody. Pages with gaps,
-// and pages that the heap keeps for later, are in the memory of the process only. 0: not known.
+// Bytes of it that the heap's users hold: what grows for hours is kept by somebody. Pages with
+// gaps, and pages that the heap keeps for later, are in the memory of the process only. 0: not
+// known.
 double heapInUse();
 
 // Whole pages of the heap that nothing is in go back to the system, also from between what stays.
