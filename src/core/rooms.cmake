@@ -24,8 +24,8 @@ robot_tissue_room(lattice
     piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
   USES base geometry config lattice
-  FILES blade_surface.cpp blade_surface.h cell_division.cpp cell_division.h cut.cpp cut.h
-    removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
+  FILES blade_surface.cpp blade_surface.h cell_division.cpp cell_division.h crumbs.cpp crumbs.h
+    cut.cpp cut.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC surface.h

@@ -2,18 +2,18 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
 #include <random>
 
+#include "../mutated_states.h"
 #include "elastic_fixtures.h"
-#include "saving/bytes.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue {
 namespace {
 
 constexpr double kSpacing = 0.01;
-constexpr std::size_t kHeaderBytes = 56;
-constexpr std::size_t kVersionAt = 8, kSizeAt = 16, kBodyHashAt = 24, kHeaderHashAt = 48;
 
 TissueConfig blockFor(const std::string& model) {
   TissueConfig config = withFixedBottom(blockOf(6, 5, 4, kSpacing));
@@ -42,18 +42,6 @@ void loadInto(Tissue& tissue, const std::string& bytes) {
 
 std::string refusalOf(const Tissue& tissue, const std::string& bytes) {
   return inputErrorOf([&] { tissue.readState(bytes); });
-}
-
-void putNumber(std::string& bytes, std::size_t place, std::uint64_t value) {
-  for (std::size_t i = 0; i < 8; ++i) bytes[place + i] = static_cast<char>(value >> 8 * i);
-}
-
-// So that the content is looked at, too.
-std::string withChecksums(std::string bytes) {
-  putNumber(bytes, kSizeAt, bytes.size() - kHeaderBytes);
-  putNumber(bytes, kBodyHashAt, hashOf(std::string_view(bytes).substr(kHeaderBytes)));
-  putNumber(bytes, kHeaderHashAt, hashOf(std::string_view(bytes).substr(0, kHeaderHashAt)));
-  return bytes;
 }
 
 class SavedStateOf : public ::testing::TestWithParam<std::string> {
@@ -135,6 +123,24 @@ TEST_P(SavedStateOf, TruncatedForeignAndNewerOnesAreRefused) {
   expectUnchanged(tissue, before);
 }
 
+TEST_P(SavedStateOf, ThoseWithANumberThatIsNoneAreRefused) {
+  Tissue tissue(config_, solver_);
+  const std::string good = tissue.savedState();
+  const std::size_t nodes = at(tissue.lattice().nodeCount());
+  const std::size_t after_springs = kHeaderBytes + 8 + (tissue.state().severed.size() + 7) / 8;
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (std::size_t component = 0; component < 3; ++component) {
+      std::string bytes = good;
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &value, sizeof(bits));
+      // After the count of nodes that cuts added: the last node's.
+      putNumber(bytes, after_springs + 4 + 8 * (3 * (nodes - 1) + component), bits);
+      EXPECT_TRUE(mentions(refusalOf(tissue, withChecksums(bytes)), "beyond all bounds"));
+    }
+  }
+}
+
 TEST_P(SavedStateOf, ThoseOfOtherLatticesAreRefused) {
   const std::string bytes = Tissue(config_, solver_).savedState();
   TissueConfig other = config_;
@@ -148,30 +154,15 @@ TEST_P(SavedStateOf, ThoseOfOtherLatticesAreRefused) {
   EXPECT_TRUE(mentions(refusalOf(Tissue(other, solver_), bytes), "another lattice"));
 }
 
-// With checksums that fit: nothing but what is read stands between the bytes and the tissue.
 TEST_P(SavedStateOf, ThousandsOfChangedOnesAreRefusedOrLoaded) {
   Tissue tissue(config_, solver_);
   tissue.load(pressOn(config_));
   tissue.cut(cutAt(0.035, 0.015));
   tissue.remove(Sphere{config_.shape.max(), 0.015});
-  const std::string good = tissue.savedState();
-  std::mt19937 random(7);
-  const auto below = [&](std::size_t most) {
-    return std::uniform_int_distribution<std::size_t>(0, most - 1)(random);
-  };
+  MutatedStates changed(tissue.savedState(), 7);
   int refused = 0, loaded = 0;
   for (int i = 0; i < 4000; ++i) {
-    std::string bytes = good;
-    for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
-      // Half of them where counts and indices are, before and after the displacements.
-      const std::size_t place = below(2) == 0 ? kHeaderBytes + below(400)
-                                              : kHeaderBytes + below(bytes.size() - kHeaderBytes);
-      bytes[place] = static_cast<char>(below(256));
-    }
-    if (below(8) == 0) bytes.resize(kHeaderBytes + below(bytes.size() - kHeaderBytes));
-    if (below(8) == 0)
-      bytes.insert(std::min(bytes.size(), kHeaderBytes + below(300)), below(9), '\x7f');
-    const std::string line = refusalOf(tissue, below(4) == 0 ? bytes : withChecksums(bytes));
+    const std::string line = refusalOf(tissue, changed.next());
     EXPECT_TRUE(line.empty() || isOneLine(line)) << line;
     ++(line.empty() ? loaded : refused);
   }

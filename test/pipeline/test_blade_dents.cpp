@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "material/elastic_model.h"
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue {
@@ -50,6 +51,11 @@ Led lead(Pipeline& pipeline, const Vec3& from, const Vec3& to, int updates) {
   return led;
 }
 
+// Of the block, whatever was cut of it (J).
+double storedEnergy(const Tissue& tissue) {
+  return ElasticModel(tissue.lattice(), block()).energy(tissue.state());
+}
+
 TEST(BladeDents, ATouchDentsAndComesBack) {
   Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.0, lyingKnife())});
   const Led in = lead(pipeline, over(0.002), over(-0.003), 50);
@@ -58,7 +64,7 @@ TEST(BladeDents, ATouchDentsAndComesBack) {
   const ToolReport& knife = pipeline.report().tools.front();
   EXPECT_GT(knife.force_on_tool.z(), 0.5);
   EXPECT_LT(knife.max_penetration, 0.1 * kSpacing);
-  EXPECT_GT(in.work, 0.0);
+  EXPECT_NEAR(in.work, storedEnergy(pipeline.tissue()), 0.05 * in.work);
   const Led out = lead(pipeline, over(-0.003), over(0.002), 50);
   EXPECT_EQ(pipeline.tissue().state().springs_cut, 0);
   EXPECT_NEAR(in.work + out.work, 0.0, 0.05 * in.work);  // stored, and given back
@@ -97,6 +103,22 @@ TEST(BladeDents, WorkIsResistanceTimesNewSurface) {
   EXPECT_NEAR(down.area, kWidth * 6.5 * kSpacing, 1e-9);             // half a layer at the top
   EXPECT_EQ(up.area, 0.0);
   EXPECT_NEAR(down.work + up.work, 20.0 * down.area, 0.05 * 20.0 * down.area);
+}
+
+// Down, aside against a lip, and along its edge, where it cuts nothing and pays for the last of it.
+TEST(BladeDents, WorkIsResistanceTimesNewSurfaceAndWhatIsStored) {
+  const double resistance = 20.0;
+  Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.0, flatKnife(resistance))});
+  const Vec3 aside = over(-0.015, 0.0383), along(0.0, 0.0055, 0.0);
+  const Led down = lead(pipeline, over(0.002), over(-0.015), 340);
+  const Led across = lead(pipeline, over(-0.015), aside, 140);
+  const Led on = lead(pipeline, aside, aside + along, 110);
+  const double work = down.work + across.work + on.work;
+  const double area = down.area + across.area + on.area;
+  const double stored = storedEnergy(pipeline.tissue());
+  EXPECT_GT(stored, 0.1 * work);
+  EXPECT_NEAR(work, resistance * area + stored, 0.05 * work);
+  RecordProperty("work_over_balance", std::to_string(work / (resistance * area + stored)));
 }
 
 TEST(BladeDents, SameSpringsInOneTenAndAHundredUpdates) {

@@ -106,6 +106,26 @@ TEST(Blade, SameSpringsInTissueThatGivesWay) {
   EXPECT_EQ(severed[2], severed[0]);
 }
 
+// A pose every 10 ms, of tissue without and with time.
+TEST(Blade, SameSpringsAtAnySpeed) {
+  for (const bool has_time : {false, true}) {
+    TissueConfig tissue = block();
+    if (has_time) tissue.time = TimeConfig{0.02};
+    std::vector<std::vector<std::uint8_t>> severed;
+    for (const double speed : {0.01, 0.1, 1.0}) {
+      Pipeline pipeline(tissue, methodOf("elastic"), {knife(0.0225)});
+      const double seconds = (kBeyond - kBefore).norm() / speed;
+      std::vector<RobotPose> way =
+          straight(kBefore, kBeyond, static_cast<int>(std::ceil(100.0 * seconds)));
+      for (std::size_t i = 0; i < way.size(); ++i) way[i].stamp_s = 0.01 * static_cast<double>(i);
+      severed.push_back(cutAlong(pipeline, way).severed);
+    }
+    EXPECT_GT(std::count(severed[0].begin(), severed[0].end(), 1), 20);
+    EXPECT_EQ(severed[1], severed[0]);
+    EXPECT_EQ(severed[2], severed[0]);
+  }
+}
+
 TEST(Blade, WorkIsResistanceTimesNewSurface) {
   Pipeline pipeline(block(), methodOf("elastic"), {knife(0.05)});
   const Way way = cutAlong(pipeline, straight(kBefore, kBeyond, 336));

@@ -95,6 +95,12 @@ class Lattice {
     return compositions_.of_cell[at(cell.place)];
   }
 
+  // There is tissue in the cell's eighth at the corner: a mesh may not reach all of a cell.
+  bool hasTissueAt(int place, int corner) const {
+    return isFull() || (eighths_[at(place)] >> corner & 1) != 0;
+  }
+  bool isFull() const { return eighths_.empty(); }  // there is in all of them
+
   SpringList springs() const { return SpringList(*this); }
   // Index of the spring in `direction`, -1 at the border.
   int springOf(int node, int direction) const { return springs_of_node_[at(node)][at(direction)]; }
@@ -116,6 +122,7 @@ class Lattice {
   Lattice(const TissueConfig& config, const FilledGrid& tissue);
   void placeNodes(const std::vector<double>& filled);
   void placeCells(const FilledGrid& tissue);
+  void placeEighths(const TissueConfig& config);
   void placeSprings();
   void fix(const std::vector<Box>& boxes);
 
@@ -123,6 +130,7 @@ class Lattice {
   std::vector<int> node_at_;                  // per grid point, -1 = none
   std::vector<std::array<int, 3>> index_of_;  // per node
   std::shared_ptr<const CellSet> cells_;
+  std::vector<std::uint8_t> eighths_;  // per cell, bit c: hasTissueAt; empty: all
   CellCompositions compositions_;
   std::vector<std::uint8_t> fixed_;
   std::vector<double> mass_;

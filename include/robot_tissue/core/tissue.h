@@ -274,7 +274,7 @@ class Tissue {
   class TopologyChange;
   SavedState stateNow() const;
   bool mayReach(const Box& bounds) const;
-  RemoveReport takeAway(const std::vector<std::uint8_t>& cells, Stroke stroke);
+  RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
   std::vector<std::string> dropLostLoads();
   // tissue_pieces.cpp
   void takePieces(std::shared_ptr<const PieceNumbers> numbers);

@@ -6,6 +6,8 @@
 
 #include "config/material.h"
 #include "cutting/cell_division.h"
+#include "cutting/crumbs.h"
+#include "cutting/cut.h"
 
 namespace robot_tissue {
 namespace {
@@ -181,6 +183,20 @@ std::vector<int> weakestSprings(const Lattice& lattice, const LatticeState& stat
   }
   std::sort(batch.begin(), batch.end());
   return batch;
+}
+
+std::vector<Crossing> tearingNext(const Lattice& lattice, const LatticeState& state,
+                                  const std::vector<double>& tear_strains) {
+  std::vector<int> weakest = weakestSprings(lattice, state, tear_strains);
+  std::vector<Crossing> torn = sparingCrumbs(lattice, state, halfWay(weakest));
+  if (torn.empty() == weakest.empty()) return torn;
+  std::vector<double> strains = tear_strains;
+  while (torn.empty() && !weakest.empty()) {
+    for (const int spring : weakest) strains[at(spring)] = 0.0;
+    weakest = weakestSprings(lattice, state, strains);
+    torn = sparingCrumbs(lattice, state, halfWay(weakest));
+  }
+  return torn;
 }
 
 }  // namespace robot_tissue

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cutting/blade_surface.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/scene.h"
@@ -26,5 +27,8 @@ std::vector<double> tearStrains(const Lattice& lattice, const TissueConfig& conf
 // one section goes. Empty when none is over.
 std::vector<int> weakestSprings(const Lattice& lattice, const LatticeState& state,
                                 const std::vector<double>& tear_strains);
+// The same where they part: those that would leave crumbs (crumbs.h) hold, whatever they bear.
+std::vector<Crossing> tearingNext(const Lattice& lattice, const LatticeState& state,
+                                  const std::vector<double>& tear_strains);
 
 }  // namespace robot_tissue

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/mesh_slicing.h"
 #include "lattice/connectivity.h"
 #include "lattice/slivers.h"
 
@@ -55,6 +56,7 @@ Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config
 Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
   placeNodes(tissue.filled);
   placeCells(tissue);
+  placeEighths(config);
   placeSprings();
   compositions_ = compositionsOf(config, tissue);
   weigh(config);
@@ -98,6 +100,25 @@ void Lattice::placeCells(const FilledGrid& tissue) {
   cells.shrink_to_fit();
   stiffenSlivers(cells, nodeCount());
   cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
+}
+
+// As the mesh reaches into cells of half the spacing.
+void Lattice::placeEighths(const TissueConfig& config) {
+  if (config.mesh == nullptr) return;
+  const Grid halves(grid_.shape(), 0.5 * spacing());
+  const std::vector<std::uint8_t> occupied = sliced(*config.mesh, halves).occupied;
+  const int row = halves.size()[0] - 1, plane = row * (halves.size()[1] - 1);
+  eighths_.assign(cells().size(), 0);
+  for (const Cell& cell : cells()) {
+    const std::array<int, 3>& lowest = gridIndex(cell.nodes.front());
+    unsigned bits = 0;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int half = 2 * lowest[0] + (corner & 1) + row * (2 * lowest[1] + (corner >> 1 & 1)) +
+                       plane * (2 * lowest[2] + (corner >> 2 & 1));
+      if (occupied[at(half)] != 0) bits |= 1U << corner;
+    }
+    eighths_[at(cell.place)] = static_cast<std::uint8_t>(bits);
+  }
 }
 
 // One along every edge of a cell.

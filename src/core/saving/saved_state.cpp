@@ -252,7 +252,7 @@ void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& i
   state.displacement.resize(at(state.cells->nodeCount()));
   for (int node = 0; node < state.cells->nodeCount(); ++node) {
     const Vec3 displacement = in.vec3();
-    if (!(displacement.cwiseAbs().maxCoeff() <= most)) {
+    if (!displacement.allFinite() || displacement.cwiseAbs().maxCoeff() > most) {
       throw InputError("is damaged: a displacement is beyond all bounds");
     }
     const bool is_gone = !state.cells->isGhost(node) && isRemoved(state, node);

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cutting/blade_surface.h"
+#include "cutting/crumbs.h"
 #include "cutting/cut.h"
 #include "cutting/tear.h"
 #include "material/tissue_model.h"
@@ -37,7 +38,8 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   report.solve = last_report_;
   const BladeSurface surface(swept, lattice_.spacing());
   if (!mayReach(surface.bounds())) return report;
-  const std::vector<Crossing> crossings = surface.crossings(lattice_, state_);
+  const std::vector<Crossing> crossings =
+      sparingCrumbs(lattice_, state_, surface.crossings(lattice_, state_));
   if (crossings.empty()) return report;
   for (const Crossing& crossing : crossings) {
     report.center += crossing.point / static_cast<double>(crossings.size());
@@ -63,10 +65,11 @@ bool Tissue::tearOut(const std::vector<int>& nodes) {
     const bool parts = goes[at(ends.a)] != goes[at(ends.b)] && state_.severed[spring] == 0;
     if (parts) around.push_back(static_cast<int>(spring));
   }
-  if (around.empty()) return false;
+  const std::vector<Crossing> crossings = sparingCrumbs(lattice_, state_, halfWay(around));
+  if (crossings.empty()) return false;
   const TopologyChange change(*this, History::Kind::kTear);
-  springs_torn_ += static_cast<int>(around.size());
-  severAndBalance(halfWay(around));
+  springs_torn_ += static_cast<int>(crossings.size());
+  severAndBalance(crossings);
   tear();
   return true;
 }
@@ -81,7 +84,7 @@ SolveReport Tissue::tear() {
   bool any = false;
   std::optional<TopologyChange> change;
   for (int round = 0; !isLate(); ++round) {
-    const std::vector<int> weakest = weakestSprings(lattice_, state_, tear_strains_);
+    const std::vector<Crossing> weakest = tearingNext(lattice_, state_, tear_strains_);
     if (weakest.empty()) break;
     if (round == tuning::kMostTearRounds || (any && deadline_ && deadline_->isOver())) {
       is_late_ = true;
@@ -91,7 +94,7 @@ SolveReport Tissue::tear() {
     if (!any) change.emplace(*this, History::Kind::kTear);
     any = true;
     springs_torn_ += static_cast<int>(weakest.size());
-    const SolveReport round_report = severAndBalance(halfWay(weakest));
+    const SolveReport round_report = severAndBalance(weakest);
     if (takesNoTime()) break;
     worst = std::max(worst, round_report.status);
     wall_ms += round_report.wall_ms;

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "cutting/crumbs.h"
 #include "cutting/cut.h"
 #include "cutting/removal.h"
 #include "cutting/split_cells.h"
@@ -66,7 +67,8 @@ SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
-  const std::vector<Crossing> crossing = springsAcross(lattice_, state_, corners);
+  const std::vector<Crossing> crossing =
+      sparingCrumbs(lattice_, state_, springsAcross(lattice_, state_, corners));
   CutReport report;
   report.springs_cut = static_cast<int>(crossing.size());
   report.pieces = state_.pieces;
@@ -95,11 +97,12 @@ RemoveReport Tissue::drill(const CoveredSpace& space, Stroke stroke) {
                   stroke);
 }
 
-RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& cells, Stroke stroke) {
+RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& within, Stroke stroke) {
   RemoveReport report;
   report.pieces = state_.pieces;
   report.solve = last_report_;
-  if (cells.empty()) return report;
+  if (within.empty()) return report;
+  const std::vector<std::uint8_t> cells = withCrumbs(lattice_, state_, within);
   const bool leaves_some =
       std::any_of(lattice_.cells().begin(), lattice_.cells().end(), [&](const Cell& cell) {
         return (takenOf(state_, cell.place) | cells[at(cell.place)]) < 0xff;

@@ -1,0 +1,146 @@
+#include "cutting/crumbs.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "cutting/removal.h"
+#include "robot_tissue/core/disjoint_sets.h"
+
+namespace robot_tissue {
+namespace {
+
+// In an eighth of a cell at the node there is some.
+bool hasTissue(const Lattice& lattice, const LatticeState& state, int node) {
+  for (int corner = 0; corner < kCorners; ++corner) {
+    std::array<int, 3> lowest = lattice.gridIndex(node);
+    for (int axis = 0; axis < 3; ++axis) lowest[at(axis)] -= corner >> axis & 1;
+    const int place = lattice.cellAt(lowest);
+    if (place < 0 || !lattice.hasTissueAt(place, corner)) continue;
+    if (!isTaken(state, place, corner)) return true;
+  }
+  return false;
+}
+
+// Goes from node to node over springs that are not severed, as far as there is no tissue.
+bool isCrumb(const Lattice& lattice, const LatticeState& state, int start) {
+  std::vector<int> reached = {start};
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    if (hasTissue(lattice, state, reached[next])) return false;
+    for (int direction = 0; direction < kNeighbors; ++direction) {
+      const int spring = lattice.springOf(reached[next], direction);
+      if (spring < 0 || state.severed[at(spring)] != 0) continue;
+      const int other = lattice.neighbor(reached[next], direction);
+      if (std::find(reached.begin(), reached.end(), other) == reached.end()) {
+        reached.push_back(other);
+      }
+    }
+  }
+  return true;
+}
+
+// What springs hold together, by the lowest node, and whether there is tissue in it.
+class Parts {
+ public:
+  Parts(const Lattice& lattice, const LatticeState& state)
+      : nodes_(at(lattice.nodeCount())), has_tissue_(at(lattice.nodeCount()), 0) {
+    for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
+      if (state.severed[spring] != 0) continue;
+      const Spring& ends = lattice.springs()[spring];
+      nodes_.join(ends.a, ends.b);
+    }
+    for (const Cell& cell : lattice.cells()) {
+      for (int corner = 0; corner < kCorners; ++corner) {
+        if (isTaken(state, cell.place, corner)) continue;
+        if (lattice.hasTissueAt(cell.place, corner)) has_tissue_[at(of(cell, corner))] = 1;
+      }
+    }
+  }
+
+  int of(int node) { return nodes_.lowest(node); }
+  int of(const Cell& cell, int corner) { return of(cell.nodes[at(corner)]); }
+  bool isCrumb(int part) const { return has_tissue_[at(part)] == 0; }
+  void join(int one, int other) {
+    nodes_.join(one, other);
+    has_tissue_[at(of(one))] |= has_tissue_[at(std::max(one, other))];
+  }
+
+ private:
+  DisjointSets nodes_;
+  std::vector<char> has_tissue_;  // per part
+};
+
+// A crumb and the part that it stays with.
+struct Bond {
+  int crumb = 0, part = 0;
+};
+
+// Of the crumb of the lowest number that these springs would part from anything.
+std::optional<Bond> nextBond(const Lattice& lattice, const std::vector<Crossing>& crossings,
+                             Parts& parts) {
+  std::map<int, std::map<int, int>> springs;  // per crumb and part beside it
+  for (const Crossing& crossing : crossings) {
+    const Spring& ends = lattice.springs()[at(crossing.spring)];
+    const int a = parts.of(ends.a), b = parts.of(ends.b);
+    if (a == b) continue;
+    if (parts.isCrumb(a)) ++springs[a][b];
+    if (parts.isCrumb(b)) ++springs[b][a];
+  }
+  if (springs.empty()) return std::nullopt;
+  const auto& [crumb, beside] = *springs.begin();
+  const auto most =
+      std::max_element(beside.begin(), beside.end(), [&parts](const auto& one, const auto& other) {
+        const bool is_crumb = parts.isCrumb(one.first), other_is = parts.isCrumb(other.first);
+        return is_crumb != other_is ? is_crumb : one.second < other.second;
+      });
+  return Bond{crumb, most->first};
+}
+
+}  // namespace
+
+std::vector<Crossing> sparingCrumbs(const Lattice& lattice, const LatticeState& state,
+                                    std::vector<Crossing> crossings) {
+  if (lattice.isFull()) return crossings;
+  LatticeState after;  // as far as it is looked at here
+  after.severed = state.severed;
+  after.taken = state.taken;
+  for (const Crossing& crossing : crossings) after.severed[at(crossing.spring)] = 1;
+  const bool leaves_any =
+      std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
+        const Spring& ends = lattice.springs()[at(crossing.spring)];
+        return isCrumb(lattice, after, ends.a) || isCrumb(lattice, after, ends.b);
+      });
+  if (!leaves_any) return crossings;
+  Parts parts(lattice, after);
+  while (const std::optional<Bond> bond = nextBond(lattice, crossings, parts)) {
+    const auto joins = [&](const Crossing& crossing) {
+      const Spring& ends = lattice.springs()[at(crossing.spring)];
+      const int a = parts.of(ends.a), b = parts.of(ends.b);
+      return (a == bond->crumb && b == bond->part) || (b == bond->crumb && a == bond->part);
+    };
+    crossings.erase(std::remove_if(crossings.begin(), crossings.end(), joins), crossings.end());
+    parts.join(bond->crumb, bond->part);
+  }
+  return crossings;
+}
+
+std::vector<std::uint8_t> withCrumbs(const Lattice& lattice, const LatticeState& state,
+                                     std::vector<std::uint8_t> cells) {
+  if (lattice.isFull()) return cells;
+  LatticeState after = state;
+  after.taken.resize(cells.size(), 0);
+  for (std::size_t place = 0; place < cells.size(); ++place) {
+    after.taken[place] = static_cast<std::uint8_t>(after.taken[place] | cells[place]);
+  }
+  noteTaken(lattice, after);
+  Parts parts(lattice, after);
+  for (const Cell& cell : lattice.cells()) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (isTaken(after, cell.place, corner) || !parts.isCrumb(parts.of(cell, corner))) continue;
+      cells[at(cell.place)] = static_cast<std::uint8_t>(cells[at(cell.place)] | 1U << corner);
+    }
+  }
+  return cells;
+}
+
+}  // namespace robot_tissue
