@@ -3,10 +3,13 @@
 The bag is the demo's robot over one round of its trajectory (it presses, drags, cuts and pulls), 200 transforms a
 second; --bag takes another of that robot. `replay` follows it without a master, at the scene's rate and at a tenth
 of it; then the node follows it live, by the bag's clock. At each pose that `replay` told of, too: the force on each
-tool, in shares of that tool's greatest, and the sum of all. doc/runner.md tells what may differ. Needs the build's
-devel/setup.bash. Out: doc/data/replay_live.csv.
+tool, in shares of that tool's greatest, and the sum of all. doc/runner.md tells what may differ.
+To tell whether it is only which poses were followed, `replay` follows a bag of these alone: how many wrenches are
+others, and how many of these were told before an update was late. Needs the build's devel/setup.bash.
+Out: doc/data/replay_live.csv.
 """
 import contextlib
+import math
 import os
 import subprocess
 import tempfile
@@ -24,8 +27,10 @@ from studies.common import DATA, PACKAGE, add_programs, percentile, program, wri
 
 TABLE = DATA / "replay_live.csv"
 COLUMNS = ["run", "max_ms", "poses", "not_ok_percent", "compared", "force_median_percent", "force_p99_percent",
-           "force_most_percent", "sum_p99_percent", "sum_most_percent", "springs_cut", "load_average"]
+           "force_most_percent", "sum_p99_percent", "sum_most_percent", "before_late", "others_before_late",
+           "others_after", "springs_cut", "load_average"]
 FEW = 10.0          # Hz: replay at a tenth of the rate
+ALL = 10000.0       # Hz: replay of every pose
 RUNS = [(1.0, 0.0), (5.0, 0.0), (5.0, 2.0)]     # times the bag's speed, solver.max_ms
 SCENE = PACKAGE / "config/demo_scene.yaml"
 ROBOT = PACKAGE / "config/demo_arm.urdf"
@@ -87,6 +92,27 @@ def replayed(bag, folder, replay, *options):
         for topic, message, _ in messages.read_messages(topics=list(topics())):
             told.take(topics()[topic][0], message)
     return told
+
+
+def only(stamps, bag, out):
+    """The bag without transforms of other stamps."""
+    with rosbag.Bag(str(bag)) as messages, rosbag.Bag(str(out), "w") as kept:
+        for topic, message, time_of_it in messages.read_messages():
+            if topic != "/tf" or message.transforms[0].header.stamp.to_nsec() in stamps:
+                kept.write(topic, message, time_of_it)
+    return out
+
+
+def compared_at_same_poses(told, bag, folder, replay):
+    """Wrenches before the first late update; of these, and after it, those that `replay` tells otherwise by a bit."""
+    followed = set().union(*told.forces.values())
+    same = replayed(only(followed, bag, folder / "followed.bag"), folder, replay, "--rate", f"{ALL:g}")
+    late = min((stamp for stamp, state in told.states.items() if state.status in ("LATE", "TOO_FAST")),
+               default=math.inf)
+    before = [stamp < late for forces in told.forces.values() for stamp in forces]
+    others = [stamp < late for tool, forces in told.forces.items() for stamp, force in forces.items()
+              if force != same.forces[tool].get(stamp)]
+    return {"before_late": sum(before), "others_before_late": sum(others), "others_after": len(others) - sum(others)}
 
 
 @contextlib.contextmanager
@@ -162,7 +188,9 @@ def run(options):
         few = replayed(bag, Path(folder), replay, "--rate", f"{FEW:g}")
         rows = [row_of("replay", 0.0, reference, reference), row_of(f"replay --rate {FEW:g}", 0.0, few, reference)]
         for speed, max_ms in RUNS:
-            rows.append(row_of(f"live, {speed:g} times", max_ms, live(bag, speed, max_ms), reference))
+            told = live(bag, speed, max_ms)
+            rows.append(row_of(f"live, {speed:g} times", max_ms, told, reference) |
+                        compared_at_same_poses(told, bag, Path(folder), replay))
     write_rows(options.table, COLUMNS, rows)
     for row in rows:
-        print(" ".join(f"{name}={row[name]}" for name in COLUMNS))
+        print(" ".join(f"{name}={row.get(name, '')}" for name in COLUMNS))

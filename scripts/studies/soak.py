@@ -272,7 +272,7 @@ def draw(rows, path):
     axes[0].plot(minutes, numbers(rows, "listener_memory_MB"), color="0.4", label="node that only listens to TF")
     axes[0].set_ylabel("memory (MB)")
     axes[0].set_ylim(bottom=0.0)
-    axes[0].legend(loc="center right")
+    axes[0].legend(loc="center right", ncol=2)
     axes[1].plot(minutes, numbers(rows, "transforms_hz"), color="0.6", label="poses")
     for column, label in (("wrenches_hz", "wrenches"), ("surface_hz", "surface")):
         axes[1].plot(minutes, numbers(rows, column), label=label, linewidth=1.0)
