@@ -73,6 +73,15 @@ TEST(CheckOfSurfaces, FindsWhatCrossesAndWhatIsOpen) {
   EXPECT_FALSE(isClosedAndManifold(corners, triangles));
 }
 
+TEST(CheckOfSurfaces, TellsCrossingsFromCommonCorners) {
+  const std::vector<Vec3> corners = {{0, 0, 0},         {1, 0, 0},         {0, 1, 0},
+                                     {0.4, 0.3, 0.5},   {0.4, 0.3, -0.5},  // through the first one
+                                     {-0.4, -0.3, 0.5}, {-0.4, -0.3, -0.5}};  // beside it
+  EXPECT_EQ(crossingsOf(corners, {{0, 1, 2}, {0, 3, 4}}).pairs, 1);
+  EXPECT_EQ(crossingsOf(corners, {{1, 2, 0}, {4, 0, 3}}).pairs, 1);
+  EXPECT_EQ(crossingsOf(corners, {{0, 1, 2}, {0, 5, 6}}).pairs, 0);
+}
+
 TEST(CutSurfaces, OfALoadedBlockCutAtRandomAreSound) {
   const TissueConfig config = block();
   Tissue tissue(config, {});
