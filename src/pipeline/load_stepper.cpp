@@ -25,7 +25,10 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  if (!followTools(pose, good, otherwise)) {
+  iterations_ = 0;
+  const bool follows = followTools(pose, good, otherwise);
+  patience_.note(iterations_, world_.tissue.usualIterations());
+  if (!follows) {
     ran_out_of_time_ = isOutOfTime();
     goBackTo(good);
     return false;
@@ -66,7 +69,8 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     if (leaptFrom(good) || turnedOver(good) || isRefused(otherwise)) return false;
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
-    if (round == tuning::kRigidRounds) return deepest <= tuning::kThrough * spacing;
+    const bool is_last = round == tuning::kRigidRounds || isOutOfPatience();
+    if (is_last) return deepest <= tuning::kThrough * spacing;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
   }
@@ -96,11 +100,15 @@ void LoadStepper::beginTimeStep(double duration, Touched touched) {
 bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
     if (isLost(good) || isRefused(otherwise)) return false;
-    if (more == tuning::kMoreSolves || !isUnsettled()) return true;
+    if (more == tuning::kMoreSolves || isOutOfPatience() || !isUnsettled()) return true;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
   }
+}
+
+bool LoadStepper::isOutOfPatience() const {
+  return patience_.isOver() && iterations_ > tuning::kLastIterations;
 }
 
 bool LoadStepper::isRefused(IfUnconverged otherwise) const {
@@ -110,8 +118,11 @@ bool LoadStepper::isRefused(IfUnconverged otherwise) const {
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(world_.report.solve_ms);
+  world_.tissue.limitIterations(patience_.isOver() ? std::optional(tuning::kLastIterations)
+                                                   : std::nullopt);
   const SolveReport solved =
       world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
+  iterations_ += solved.iterations;
   if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
   world_.report.changed = true;
 }

@@ -53,6 +53,8 @@ const std::optional<RobotPose>& Pipeline::pose() const { return world_.last_pose
 
 ForceBalance Pipeline::forceBalance() const { return forceBalanceOf(world_); }
 
+void Pipeline::limitPatience() { parts_->load_step.patience().limit(); }
+
 void Pipeline::setEnd(const Deadline& end) {
   end_ = end;
   world_.tissue.setDeadline(end_);
@@ -86,12 +88,14 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   }
   world_.report.late = isLate();
   world_.report.gave_up = gave_up_;
+  world_.report.hopeless = parts_->load_step.patience().isOver();
   return world_.report;
 }
 
 void Pipeline::beginReport() {
   world_.report.changed = touched_;
-  world_.report.too_fast = world_.report.lost = world_.report.late = false;
+  world_.report.too_fast = world_.report.lost = world_.report.hopeless = false;
+  world_.report.late = false;
   world_.report.gave_up = gave_up_;
   for (auto* tools : {&world_.report.behind, &world_.report.jumped, &world_.report.were_inside,
                       &world_.report.torn_off, &world_.report.torn_out}) {
@@ -244,6 +248,10 @@ double Pipeline::freeStepsTo(const RobotPose& pose) const {
                           : 0.0;
 }
 
+bool Pipeline::isInTissue(std::size_t tool, const RobotPose& pose) const {
+  return parts_->overlap.isInTissue(tool, world_.tools.complete(pose));
+}
+
 std::optional<StillPose> Pipeline::stillPose() const {
   const bool is_driven = parts_->drive.drivesAny();
   const bool stands = !touched_ && !isLate() && !is_driven && !world_.tissue.isMoving();
@@ -260,6 +268,7 @@ std::optional<StillPose> Pipeline::stillPose() const {
 
 void Pipeline::reset() {
   forgetTools();
+  parts_->load_step.patience().forget();
   world_.tissue.reset();
   world_.sliding.commit(world_.pose, world_.tissue);
   describeTools();

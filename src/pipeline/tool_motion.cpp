@@ -79,11 +79,12 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       gone = there;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
-      if (is_last || !world_.deadline.isOver()) continue;
-      world_.report.too_fast = true;
+      if (is_last || !(world_.deadline.isOver() || load_step_.patience().isOver())) continue;
+      (load_step_.patience().isOver() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
-    const bool is_hopeless = load_step_.cyclesInVain() > tuning::kMostCyclesInVain;
+    const bool is_hopeless =
+        load_step_.cyclesInVain() > tuning::kMostCyclesInVain || load_step_.patience().isOver();
     if (is_short || is_hopeless) {
       world_.report.lost = true;
       const double next = std::min(gone + tuning::kShortestStep, there);

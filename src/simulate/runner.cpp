@@ -60,6 +60,7 @@ Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
   for (const std::string& warning : pipeline_.toolWarnings()) result_.remarks.push_back(warning);
   pipeline_.startClock(time_);
   if (std::isfinite(deadline.leftMs())) pipeline_.setEnd(deadline);
+  pipeline_.limitPatience();
 }
 
 RunResult Runner::run() {

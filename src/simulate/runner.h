@@ -28,6 +28,7 @@ class Runner {
     double duration = 0.0;  // s; 0: no time goes by
     int steps = 1;
     int gone = 0;  // load steps that were walked
+    bool is_given_up = false;
   };
   // Whether there were updates of the tools since the last row, the worst status of them, and the
   // time of their solves.
@@ -73,6 +74,7 @@ class Runner {
   void moveInTime(const Way& way, int increments);
   int loadSteps(double steps) const;
   void walkTo(Way& way, double share);
+  void giveUp(Way& way, double share);
   void place(const Way& way, double share);
   void endPush(std::size_t tool);
   void follow();

@@ -32,6 +32,7 @@ void Runner::perform(const MoveStep& step) {
       place(way, share);
       follow();
     }
+    if (way.is_given_up) updates_ = {true, SolveStatus::kUnconverged, updates_.solve_ms};
     keep(SolveReport(), increment, increments);
     if (is_between) pipeline_.undoTrial();
   }
@@ -69,11 +70,31 @@ void Runner::walkTo(Way& way, double share) {
     const double free = std::min(pipeline_.freeStepsTo(tools_.pose()), tuning::kLongestFree);
     const int next = std::min(way.gone + std::max(1, static_cast<int>(free)), way.steps);
     const bool is_beyond = next > share * way.steps + tuning::kStepRounding;
+    const int gone = way.gone;
     if (!is_beyond) way.gone = next;
     place(way, static_cast<double>(way.gone) / way.steps);
     if (is_beyond) return;
+    const double before = static_cast<double>(gone) / way.steps;
     follow();
+    const StepReport& report = pipeline_.report();
+    if (report.hopeless && (report.lost || way.gone < way.steps)) giveUp(way, before);
   }
+}
+
+// The rest of the way. A tool whose way ends clear of the tissue lets go; else it stays where it
+// was followed to.
+void Runner::giveUp(Way& way, double share) {
+  way.gone = way.steps;
+  way.is_given_up = true;
+  remark("tool '" + tools_.name(way.tool) +
+         "' is followed no further on its way: load steps, as between tools that crush tissue, "
+         "take far too many iterations");
+  place(way, 1.0);
+  if (pipeline_.isInTissue(way.tool, tools_.pose())) return place(way, share);
+  tools_.takeAway(way.tool);
+  follow();
+  place(way, 1.0);
+  follow();
 }
 
 void Runner::place(const Way& way, double share) {

@@ -116,6 +116,11 @@ class Tissue {
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
+  // Iterations of a load step beyond which it is a hard one for the method.
+  int usualIterations() const;
+  // Iterations after which no further round of a load step begins, from here on; none: as many as
+  // ever.
+  void limitIterations(std::optional<int> most) { most_iterations_ = most; }
   // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
   const std::vector<LoadingPatch>& patches() const { return patches_; }
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
@@ -362,7 +367,8 @@ class Tissue {
   std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
   bool is_late_ = false;  // likewise
-  double max_ms_ = 0.0;   // of a solve without a deadline; 0: none
+  std::optional<int> most_iterations_;
+  double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
   ContactUpdate* contact_update_ = nullptr;
   std::unique_ptr<TimeIntegrator> time_;  // null: there is none

@@ -67,6 +67,8 @@ class Pipeline {
   std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
   // Load steps of the way to the pose before any tool on it can touch.
   double freeStepsTo(const RobotPose& pose) const;
+  // Whether the tool would be in the tissue there, in the shape as it is.
+  bool isInTissue(std::size_t tool, const RobotPose& pose) const;
   // Steps between these calls are undone: nothing that follows depends on them.
   void beginTrial();
   void undoTrial();
@@ -80,6 +82,9 @@ class Pipeline {
   const StepReport& carryOn();
   // The tools are where they were asked to be last, and the shape is the one there, in balance.
   bool hasArrived() const;
+  // From here on ways are given up (StepReport::hopeless) whose load steps take far too long again
+  // and again, counted by iterations over all steps since the last reset.
+  void limitPatience();
   // No call begins a solve after it; what a call leaves then it tells as late.
   void setEnd(const Deadline& end);
 

@@ -37,6 +37,7 @@ struct StepReport {
   bool changed = false;   // false: the shape is as it was
   bool too_fast = false;  // the tools moved further than could be followed in time
   bool lost = false;      // no shape could follow the tools: the last good one stays
+  bool hopeless = false;  // load steps take far too long again and again (limitPatience)
   bool late = false;      // it ran out of its time before the shape was in balance
   bool gave_up = false;   // late again and again where the tools stand: it ends
   // Where too_fast or lost: tools not yet at their pose. Those that are nowhere near the tissue on

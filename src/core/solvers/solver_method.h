@@ -3,6 +3,7 @@
 // out: the shape, its last value being the start. Out: what the solver says of itself.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "robot_tissue/core/grid_box.h"
@@ -66,6 +67,9 @@ class SolverMethod {
   // Whether it finds the equilibrium of an energy: then patches may turn and have springs, at their
   // rims and in contact; if not, all their nodes are hard.
   virtual bool findsEquilibrium() const { return false; }
+
+  // Iterations of one load step beyond which it is a hard one.
+  virtual int usualIterations() const { return std::numeric_limits<int>::max(); }
 
   // Longest motion of a patch in one solve that the method follows well (m).
   virtual double patchStep() const = 0;

@@ -70,6 +70,8 @@ double Tissue::stepLength() const {
   return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
 }
 
+int Tissue::usualIterations() const { return method_->usualIterations(); }
+
 Tissue::Displacements Tissue::displacements() const {
   if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
   return kept_;
@@ -223,10 +225,10 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
     gain.note(of_round, state_.displacement, whole);
-    const bool last = late || whole_rounds == tuning::kContactRounds ||
-                      rounds == tuning::kMostRounds ||
-                      report.iterations > tuning::kMostIterations || gain.isOver() ||
-                      (!solved && !hurried && rounds > 1 && state_.displacement == *before);
+    const bool last =
+        late || whole_rounds == tuning::kContactRounds || rounds == tuning::kMostRounds ||
+        report.iterations > most_iterations_.value_or(tuning::kMostIterations) || gain.isOver() ||
+        (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_update_->renew(
         of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
         last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "solvers/multigrid/cycle/tuning.h"
+
 namespace robot_tissue {
 
 LayeredMethod::LayeredMethod(const Lattice& lattice, const ElasticModel& model,
@@ -26,6 +28,8 @@ void LayeredMethod::forget() {
 }
 
 double LayeredMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
+
+int LayeredMethod::usualIterations() const { return cycle_tuning::kUsualCycles; }
 
 SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
                                  const std::vector<int>& disturbed, LatticeState& state) {

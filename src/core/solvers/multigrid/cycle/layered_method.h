@@ -30,6 +30,7 @@ class LayeredMethod : public SolverMethod {
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
+  int usualIterations() const override;
   std::vector<Vec3> cellForces(const LatticeState& shape) override {
     return solver_->cellForces(shape);
   }

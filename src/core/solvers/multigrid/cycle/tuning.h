@@ -128,6 +128,10 @@ constexpr double kMostAtRest = 8.0;
 constexpr double kFarther = 1.1;
 // Cycles without a gain in a part: then all is open (model.md). Up: later.
 constexpr int kPatienceInPart = 6;
+// Cycles of a load step in contact beyond which it is a hard one (chosen: nine in ten under the
+// tools of the contact study take up to 18, tissue that slips off an edge 100 to 800). Up: jams are
+// followed for longer.
+constexpr int kUsualCycles = 30;
 // Radians by which a patch by force turns to be solved for anew (model.md), and how often at most
 // (chosen). Up: less exact moments; longer solves.
 constexpr double kTurned = 1e-4;
