@@ -151,7 +151,7 @@ TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {
     ++scenes;
     const std::string name = entry.path().stem().string();
     const fs::path out = folder_ / name;
-    const int status = statusOf(start({entry.path().string(), "--out", out.string(), "--quiet"}));
+    const int status = statusOf(start({entry.path().string(), "--out", out.string()}));
     ASSERT_TRUE(WIFEXITED(status)) << entry.path() << ": signal " << WTERMSIG(status);
     const int code = WEXITSTATUS(status);
     EXPECT_TRUE(code == 0 || code == 2 || code == 3) << entry.path() << ": " << code << err();
