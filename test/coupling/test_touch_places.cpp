@@ -17,10 +17,7 @@ using Touch = SlidingContacts::ContactConstraint;
 
 class TouchedBlock : public ::testing::Test {
  protected:
-  TouchedBlock() : tissue_(softBlock(), newton()) {
-    pose_.links = {Pose::Identity()};
-    held_.assign(at(tissue_.lattice().nodeCount()), 0);
-  }
+  TouchedBlock() : tissue_(softBlock(), newton()) { pose_.links = {Pose::Identity()}; }
 
   static TissueConfig softBlock() {
     TissueConfig config = withFixedBottom(blockOf(4, 4, 3, kSpacing));
@@ -47,7 +44,8 @@ class TouchedBlock : public ::testing::Test {
           {0, 0, {static_cast<int>(i), barycentric}, point, -Vec3::UnitZ(), kDepth, {}});
     }
     contacts_.ride(pose_, tissue_);
-    contacts_.meet(set, pose_, tissue_, held_);
+    const std::vector<std::uint8_t> held(tissue_.state().displacement.size(), 0);  // ghosts, too
+    contacts_.meet(set, pose_, tissue_, held);
   }
 
   // Upright at that x, from side to side.
@@ -86,7 +84,6 @@ class TouchedBlock : public ::testing::Test {
   Tissue tissue_;
   SlidingContacts contacts_{{0.0}, {1.0}};
   RobotPose pose_;
-  std::vector<std::uint8_t> held_;
 };
 
 // The cells from x = 0 on are cut; those beside them have corners of triangles along them.
