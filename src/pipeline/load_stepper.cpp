@@ -118,10 +118,10 @@ bool LoadStepper::isRefused(IfUnconverged otherwise) const {
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(world_.report.solve_ms);
-  world_.tissue.limitIterations(patience_.isOver() ? std::optional(tuning::kLastIterations)
-                                                   : std::nullopt);
+  if (patience_.isOver()) world_.tissue.limitIterations(tuning::kLastIterations);
   const SolveReport solved =
       world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
+  world_.tissue.limitIterations(std::nullopt);
   iterations_ += solved.iterations;
   if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
   world_.report.changed = true;

@@ -20,7 +20,7 @@ constexpr double kShortestStep = 1.0 / 8.0;
 constexpr int kMostCyclesInVain = 3000;
 // Iterations beyond those usual in a load step, over all of a scene: then ways are given up whose
 // load steps go on to be hard. And what an easy one forgives of them. More: jams are followed for
-// longer. Chosen: the worst tool of the contact study spends 1,250 in 250 updates.
+// longer. Chosen.
 constexpr int kMostSpent = 2000;
 constexpr int kForgiven = 5;
 // Iterations of a load step after that, at most but for those of one solve: what lets go then may

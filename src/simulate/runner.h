@@ -74,7 +74,7 @@ class Runner {
   void moveInTime(const Way& way, int increments);
   int loadSteps(double steps) const;
   void walkTo(Way& way, double share);
-  void giveUp(Way& way, double share);
+  void giveUp(Way& way, int gone);
   void place(const Way& way, double share);
   void endPush(std::size_t tool);
   void follow();

@@ -74,23 +74,25 @@ void Runner::walkTo(Way& way, double share) {
     if (!is_beyond) way.gone = next;
     place(way, static_cast<double>(way.gone) / way.steps);
     if (is_beyond) return;
-    const double before = static_cast<double>(gone) / way.steps;
     follow();
     const StepReport& report = pipeline_.report();
-    if (report.hopeless && (report.lost || way.gone < way.steps)) giveUp(way, before);
+    if (!report.hopeless) continue;
+    if (report.lost || way.gone < way.steps) giveUp(way, report.lost ? gone : way.gone);
   }
 }
 
 // The rest of the way. A tool whose way ends clear of the tissue lets go; else it stays where it
-// was followed to.
-void Runner::giveUp(Way& way, double share) {
+// was followed to, so many load steps on its way.
+void Runner::giveUp(Way& way, int gone) {
   way.gone = way.steps;
   way.is_given_up = true;
   remark("tool '" + tools_.name(way.tool) +
          "' is followed no further on its way: load steps, as between tools that crush tissue, "
          "take far too many iterations");
   place(way, 1.0);
-  if (pipeline_.isInTissue(way.tool, tools_.pose())) return place(way, share);
+  if (pipeline_.isInTissue(way.tool, tools_.pose())) {
+    return place(way, static_cast<double>(gone) / way.steps);
+  }
   tools_.takeAway(way.tool);
   follow();
   place(way, 1.0);
