@@ -30,10 +30,10 @@ FRAMES_PER_S = 6
 LONGEST = 60.0                  # s, of one wait
 DRAWN = 3.0                     # s, that rviz gets to draw what has come
 SETTLED = 0.2                   # s, between looks at what moves
-# Of the demo's trajectory (s): it presses, cuts, and pulls beside the sutured cut.
-DEMO_PERIOD = 30.7
+# Of the demo's trajectory (s): it presses, cuts, pulls beside the sutured cut, and tears it on.
+DEMO_PERIOD = 40.9
 DEMO_STILL = 25.2
-DEMO_PARTS = [(3.5, 6.0), (11.5, 17.0), (23.0, 27.0)]
+DEMO_PARTS = [(3.5, 6.0), (11.5, 17.0), (23.0, 27.0), (33.0, 38.5)]
 CORNERS = {"corner_1": (0.0525, -0.012, 0.06), "corner_2": (0.0525, 0.03, 0.06),
            "corner_3": (0.0525, -0.012, 0.025)}
 DENT = {"Distance": 0.13, "Pitch": 0.55, "Focal Point": {"X": 0.055, "Y": 0.045, "Z": 0.05}}  # of the view, m, rad
