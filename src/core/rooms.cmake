@@ -8,7 +8,7 @@ robot_tissue_room(simd
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
-  FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp mesh_checks.cpp mesh_columns.cpp
+  FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
     mesh_columns.h mesh_pieces.cpp mesh_pieces.h
     mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h mesh_walls.cpp self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)

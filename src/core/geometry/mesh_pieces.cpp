@@ -9,6 +9,10 @@ namespace {
 int next(int axis) { return (axis + 1) % 3; }
 int afterNext(int axis) { return (axis + 2) % 3; }
 
+std::array<int, 4> seamOf(const HalfIndex& octant, int axis) {
+  return {octant[0], octant[1], octant[2], axis};
+}
+
 }  // namespace
 
 MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells)
@@ -49,7 +53,8 @@ bool MeshPieces::isAbove(int vertex, int axis, int plane) const {
 // Along the axes before this one the edge has been cut already: the point is in its octant there.
 int MeshPieces::crossing(int from, int to, int axis, int plane) {
   const auto [low, high] = std::minmax(from, to);
-  const auto [known, is_new] = crossings_.try_emplace({low, high, axis, plane}, 0);
+  const auto [known, is_new] =
+      crossings_.try_emplace(std::array<int, 4>{low, high, axis, plane}, 0);
   if (is_new) {
     const Vec3 a = vertices_[at(low)], b = vertices_[at(high)];
     Vec3 place = a + (0.5 * plane - a[axis]) / (b[axis] - a[axis]) * (b - a);
@@ -164,7 +169,8 @@ void MeshPieces::keepPiece(const Polygon& piece) {
     kept.outline.push_back(piece[i].vertex);
     const int face = piece[i].face;
     if (face < 0 || face % 2 == 0) continue;
-    seams_[{octant_, face / 2}].push_back({piece[i].vertex, piece[(i + 1) % piece.size()].vertex});
+    seams_[seamOf(octant_, face / 2)].push_back(
+        {piece[i].vertex, piece[(i + 1) % piece.size()].vertex});
   }
   pieces_.push_back(std::move(kept));
 }
@@ -221,7 +227,7 @@ std::vector<MeshPieces::Segment> MeshPieces::lid(const HalfIndex& octant, int ax
   addEdge(right, afterNext(axis), Direction::kForwards, border);
   addEdge(up, next(axis), Direction::kBackwards, border);
   addEdge(low, afterNext(axis), Direction::kBackwards, border);
-  const auto seam = seams_.find({octant, axis});
+  const auto seam = seams_.find(seamOf(octant, axis));
   if (seam == seams_.end()) return border;
   for (const auto& [from, to] : seam->second) border.push_back({to, from});
   return border;

@@ -9,11 +9,11 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "geometry/index_hash.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
@@ -81,10 +81,12 @@ class MeshPieces {
   HalfIndex octants_{};  // of the grid, along x, y, z
   HalfIndex octant_{};   // that is being cut out
   std::vector<Piece> pieces_;
-  std::map<std::tuple<int, int, int, int>, int> crossings_;  // edge's ends, axis, plane
-  std::map<LineKey, std::vector<Crossing>> lines_;
-  std::map<std::pair<HalfIndex, int>, std::vector<Segment>> seams_;  // octant, axis: upper face
-  std::map<HalfIndex, int> grid_points_;
+  template <std::size_t N, class Value>
+  using Table = std::unordered_map<std::array<int, N>, Value, IndexHash>;
+  Table<4, int> crossings_;  // edge's ends, axis, plane
+  Table<3, std::vector<Crossing>> lines_;
+  Table<4, std::vector<Segment>> seams_;  // octant, axis: upper face
+  Table<3, int> grid_points_;
 };
 
 }  // namespace robot_tissue

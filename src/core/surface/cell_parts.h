@@ -1,6 +1,7 @@
 // The parts of the lattice's cells, for surfaces along cuts.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <set>
 #include <vector>
@@ -9,6 +10,16 @@
 #include "robot_tissue/core/lattice_state.h"
 
 namespace robot_tissue {
+
+// What holds a point: the corners of a part of a cell that have a weight there.
+struct Hold {
+  std::array<NodeWeight, kCorners> carriers{};
+  int count = 0;
+
+  void add(int node, double weight) { carriers[at(count++)] = {node, weight}; }
+  const NodeWeight* begin() const { return carriers.data(); }
+  const NodeWeight* end() const { return carriers.data() + count; }
+};
 
 // With ghosts also for a model that has none (six_spring): there a ghost stands for the mean of the
 // own corners nearest to it, over the parts that have it.

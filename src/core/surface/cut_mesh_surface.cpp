@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
+#include "geometry/index_hash.h"
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
 #include "surface/hinges.h"
@@ -16,6 +17,8 @@ namespace {
 
 enum class Face { kOuter, kOpened };  // opened by a cut
 
+constexpr int kNotLookedFor = -2;  // a cell; -1: none
+
 class CutMeshBuilder {
  public:
   CutMeshBuilder(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh)
@@ -23,7 +26,9 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        pieces_(inSpacings(), cells()) {
+        pieces_(inSpacings(), cells()),
+        cell_of_(octantCount(), kNotLookedFor),
+        is_in_region_(octantCount(), 0) {
     findRegion();
   }
 
@@ -33,7 +38,7 @@ class CutMeshBuilder {
       pieces_.add(triangle, near);
       if (!near) continue;
       for (std::size_t i = 0; i < 3; ++i) {
-        cut_edges_.insert(std::minmax(triangle[i], triangle[(i + 1) % 3]));
+        cut_edges_.insert(edgeOf(triangle[i], triangle[(i + 1) % 3]));
       }
     }
     for (const MeshTriangle& triangle : mesh_.triangles) {
@@ -45,7 +50,7 @@ class CutMeshBuilder {
         add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, Face::kOuter);
       }
     }
-    for (const auto& octant : region_) {
+    for (const HalfIndex& octant : region_) {
       for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
     }
     separateHinges(OctantGrid(lattice_, state_), std::move(owners_), std::move(places_), surface_);
@@ -56,6 +61,21 @@ class CutMeshBuilder {
   std::array<int, 3> cells() const {
     const auto& size = lattice_.size();
     return {size[0] - 1, size[1] - 1, size[2] - 1};
+  }
+
+  std::size_t octantCount() const {
+    const auto along = cells();
+    return at(8 * along[0] * along[1] * along[2]);
+  }
+
+  // In a grid of all octants, in their order.
+  std::size_t numberOf(const HalfIndex& octant) const {
+    const auto along = cells();
+    return at((octant[0] * 2 * along[1] + octant[1]) * 2 * along[2] + octant[2]);
+  }
+
+  static std::array<int, 2> edgeOf(int from, int to) {
+    return {std::min(from, to), std::max(from, to)};
   }
 
   std::vector<Vec3> inSpacings() const {
@@ -78,10 +98,17 @@ class CutMeshBuilder {
       }
       for (int k = from[2]; k <= to[2]; ++k) {
         for (int j = from[1]; j <= to[1]; ++j) {
-          for (int i = from[0]; i <= to[0]; ++i) region_.insert({i, j, k});
+          for (int i = from[0]; i <= to[0]; ++i) addToRegion({i, j, k});
         }
       }
     }
+    std::sort(region_.begin(), region_.end());
+  }
+
+  void addToRegion(const HalfIndex& octant) {
+    char& is_in = is_in_region_[numberOf(octant)];
+    if (is_in == 0) region_.push_back(octant);
+    is_in = 1;
   }
 
   // Its box reaches into the region.
@@ -98,7 +125,7 @@ class CutMeshBuilder {
     for (int k = low[2]; k <= high[2]; ++k) {
       for (int j = low[1]; j <= high[1]; ++j) {
         for (int i = low[0]; i <= high[0]; ++i) {
-          if (region_.count({i, j, k}) != 0) return true;
+          if (is_in_region_[numberOf({i, j, k})] != 0) return true;
         }
       }
     }
@@ -111,7 +138,7 @@ class CutMeshBuilder {
     for (std::size_t i = 0; i < 3; ++i) {
       const int from = triangle[i], to = triangle[(i + 1) % 3];
       std::vector<int> points = {from, to};
-      if (cut_edges_.count(std::minmax(from, to)) != 0) points = pieces_.subdivided(from, to);
+      if (cut_edges_.count(edgeOf(from, to)) != 0) points = pieces_.subdivided(from, to);
       outline.insert(outline.end(), points.begin(), points.end() - 1);
     }
     if (outline.size() == 3) return addPlain({outline[0], outline[1], outline[2]});
@@ -140,7 +167,7 @@ class CutMeshBuilder {
     owners_.push_back(octantAt(octant));
   }
 
-  Octant octantAt(const HalfIndex& octant) const {
+  Octant octantAt(const HalfIndex& octant) {
     const int cell = cellOf(octant);
     return {cell, cell < 0 ? 0 : cornerOf(cell, octant)};
   }
@@ -149,13 +176,13 @@ class CutMeshBuilder {
   // given border, whatever its shape.
   void addLids(const HalfIndex& octant, int axis) {
     HalfIndex upper = octant;
-    ++upper[at(axis)];
-    const auto border = pieces_.lid(octant, axis);
+    if (++upper[at(axis)] >= 2 * cells()[at(axis)]) return;  // beyond there is none
     const bool below = !isRemoved(octant), above = !isRemoved(upper);
-    if (!below && !above) return;
+    if ((!below && !above) || areOfOnePart(octant, upper)) return;
+    const auto border = pieces_.lid(octant, axis);
     const bool parted = std::any_of(border.begin(), border.end(), [&](const auto& segment) {
       return !below || !above ||
-             holdOf(segment.first, octant).nodes != holdOf(segment.first, upper).nodes;
+             nodesOf(holdOf(segment.first, octant)) != nodesOf(holdOf(segment.first, upper));
     });
     if (!parted) return;
     std::vector<int> points;
@@ -168,48 +195,67 @@ class CutMeshBuilder {
   }
 
   // The cell that the octant is of; beyond the lattice the nearest one.
-  int cellOf(const HalfIndex& octant) const {
-    const int cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
+  int cellOf(const HalfIndex& octant) {
+    int& cell = cell_of_[numberOf(octant)];
+    if (cell != kNotLookedFor) return cell;
+    cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
     const Vec3 middle(octant[0] + 0.5, octant[1] + 0.5, octant[2] + 0.5);
-    return cell >= 0 ? cell : nearestCell(lattice_, 0.5 * middle);
+    if (cell < 0) cell = nearestCell(lattice_, 0.5 * middle);
+    return cell;
   }
 
-  bool isRemoved(const HalfIndex& octant) const {
+  int cellAroundPoint(int point) {
+    if (at(point) >= cell_around_.size()) cell_around_.resize(at(point) + 1, kNotLookedFor);
+    int& cell = cell_around_[at(point)];
+    if (cell == kNotLookedFor) cell = cellAround(lattice_, pieces_.vertex(point));
+    return cell;
+  }
+
+  bool isRemoved(const HalfIndex& octant) {
     const int cell = cellOf(octant);
     return cell >= 0 && parts_.owner(cell, cornerOf(cell, octant)) == nullptr;
   }
 
-  struct Hold {
-    std::vector<NodeWeight> carriers;
-    std::vector<int> nodes;  // ascending
-  };
+  bool areOfOnePart(const HalfIndex& a, const HalfIndex& b) {
+    const int cell = cellOf(a);
+    if (cell < 0 || cell != cellOf(b)) return false;
+    return parts_.owner(cell, cornerOf(cell, a)) == parts_.owner(cell, cornerOf(cell, b));
+  }
 
-  // What holds a point, as the material in the octant has it.
-  Hold holdOf(int point, const HalfIndex& octant) const {
-    const Vec3& place = pieces_.vertex(point);
+  // What carries a point, as the material in the octant has it.
+  Hold holdOf(int point, const HalfIndex& octant) {
     int cell = cellOf(octant);
     if (cell < 0 || !parts_.isOpen(cell)) {
-      const int around = cellAround(lattice_, place);  // whichever octant asks
+      const int around = cellAroundPoint(point);  // whichever octant asks
       if (cell < 0 || !parts_.isOpen(around)) cell = around;
     }
-    Hold hold;
-    hold.carriers = carriersIn(lattice_, *parts_.owner(cell, cornerOf(cell, octant)), place);
-    for (const NodeWeight& carrier : hold.carriers) hold.nodes.push_back(carrier.node);
-    std::sort(hold.nodes.begin(), hold.nodes.end());
-    return hold;
+    return carriersIn(lattice_, *parts_.owner(cell, cornerOf(cell, octant)), pieces_.vertex(point));
+  }
+
+  using Nodes = std::array<int, kCorners>;  // ascending, the first ones -1 where there are fewer
+  static Nodes nodesOf(const Hold& hold) {
+    Nodes nodes{};
+    nodes.fill(-1);
+    std::transform(hold.begin(), hold.end(), nodes.begin(),
+                   [](const NodeWeight& carrier) { return carrier.node; });
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
   }
 
   // The surface's vertex for a point. Where it hangs on the same nodes it is the same.
   int vertex(int point, const HalfIndex& octant) {
     const Hold hold = holdOf(point, octant);
-    const auto [known, is_new] = vertices_.try_emplace({point, hold.nodes}, 0);
+    std::array<int, 1 + kCorners> key{point};
+    const Nodes nodes = nodesOf(hold);
+    std::copy(nodes.begin(), nodes.end(), key.begin() + 1);
+    const auto [known, is_new] = vertices_.try_emplace(key, 0);
     if (is_new) {
       known->second = static_cast<int>(surface_.rest.size());
       surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
                                   ? mesh_.vertices[at(point)]
                                   : placed(pieces_.vertex(point)));
       places_.push_back(2.0 * pieces_.vertex(point));
-      surface_.carriers.push_back(parts_.withoutGhosts(hold.carriers));
+      surface_.carriers.push_back(parts_.withoutGhosts({hold.begin(), hold.end()}));
       surface_.node.push_back(-1);
     }
     return known->second;
@@ -237,9 +283,12 @@ class CutMeshBuilder {
   // Cut half way between nodes, not where the blade passed: along bent planes, pieces of triangles
   // that are larger than the bends come to cross each other.
   MeshPieces pieces_;
-  std::set<HalfIndex> region_;
-  std::set<std::pair<int, int>> cut_edges_;
-  std::map<std::pair<int, std::vector<int>>, int> vertices_;  // point and its nodes
+  std::vector<int> cell_of_;        // of each octant
+  std::vector<int> cell_around_;    // of the points up to the last that was asked for
+  std::vector<char> is_in_region_;  // each octant
+  std::vector<HalfIndex> region_;   // ascending
+  std::unordered_set<std::array<int, 2>, IndexHash> cut_edges_;
+  std::unordered_map<std::array<int, 1 + kCorners>, int, IndexHash> vertices_;  // point, its nodes
   TissueSurface surface_;
   std::vector<Octant> owners_;  // per triangle
   std::vector<Vec3> places_;    // per vertex, in half spacings

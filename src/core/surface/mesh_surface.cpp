@@ -56,9 +56,9 @@ int cellAround(const Lattice& lattice, const Vec3& point) {
   return nearest;
 }
 
-std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point) {
+Hold carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point) {
   const Vec3 place = clamped(inCell(lattice, cell, point));
-  std::vector<NodeWeight> carriers;
+  Hold hold;
   double sum = 0.0;
   for (int corner = 0; corner < kCorners; ++corner) {
     double weight = 1.0;
@@ -66,11 +66,11 @@ std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, con
       weight *= (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
     }
     if (weight <= kNoWeight) continue;
-    carriers.push_back({cell.nodes[at(corner)], weight});
+    hold.add(cell.nodes[at(corner)], weight);
     sum += weight;
   }
-  for (NodeWeight& carrier : carriers) carrier.weight /= sum;
-  return carriers;
+  for (int i = 0; i < hold.count; ++i) hold.carriers[at(i)].weight /= sum;
+  return hold;
 }
 
 TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
@@ -84,7 +84,8 @@ TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
   for (const Vec3& vertex : mesh.vertices) {
     const Vec3 point = (vertex - lattice.bounds().min()) / lattice.spacing();
     const Cell& cell = lattice.cells()[at(cellAround(lattice, point))];
-    surface.carriers.push_back(carriersIn(lattice, cell, point));
+    const Hold hold = carriersIn(lattice, cell, point);
+    surface.carriers.emplace_back(hold.begin(), hold.end());
   }
   return surface;
 }

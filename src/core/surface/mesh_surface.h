@@ -8,6 +8,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/surface.h"
 #include "robot_tissue/core/triangle_mesh.h"
+#include "surface/cell_parts.h"
 
 namespace robot_tissue {
 
@@ -18,7 +19,7 @@ int cellAround(const Lattice& lattice, const Vec3& point);
 int nearestCell(const Lattice& lattice, const Vec3& point);
 
 // Of a cell's or part's corners, for a point as above; a corner without weight is left out.
-std::vector<NodeWeight> carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
+Hold carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
 
 // `mesh`: closed, of which the lattice was made, with edges of a spacing at most.
 //

@@ -27,15 +27,6 @@ struct Octant {
   }
 };
 
-// What holds a point: the corners of a part of a cell that have a weight there.
-struct Hold {
-  std::array<NodeWeight, kCorners> carriers{};
-  int count = 0;
-
-  void add(int node, double weight) { carriers[at(count++)] = {node, weight}; }
-  const NodeWeight* begin() const { return carriers.data(); }
-  const NodeWeight* end() const { return carriers.data() + count; }
-};
 bool holdTheSame(const Hold& a, const Hold& b);  // the same nodes
 
 class OctantGrid {
