@@ -91,7 +91,7 @@ def simulated(simulate, scene):
     file.write_text(yaml.safe_dump(scene))
     done = subprocess.run([simulate, file, "--out", folder.name, "--quiet"], capture_output=True,
                           text=True)
-    if done.returncode not in (0, 2):
+    if done.returncode not in (0, 3):
         sys.exit("motion: " + done.stderr.strip())
     return folder
 

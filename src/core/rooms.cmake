@@ -68,8 +68,8 @@ robot_tissue_room(solvers/multigrid/hierarchy
     fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
     grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
     light_nodes.cpp light_nodes.h listed_cells.cpp listed_cells.h membrane_levels.cpp
-    membrane_levels.h node_displacements.cpp node_displacements.h open_parts.cpp open_parts.h
-    tuning.h uncovered_part.cpp uncovered_part.h)
+    membrane_levels.h node_displacements.cpp node_displacements.h node_loads.cpp node_loads.h
+    open_parts.cpp open_parts.h tuning.h uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy
   FILES budget.h composite_shape.cpp composite_shape.h error_estimator.cpp error_estimator.h

@@ -275,8 +275,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
   if (model.membrane() != nullptr) {
     membranes_.add({model.membrane(), entries_, spacing_, modulus_}, transfers_, levels_);
   }
-  findWeight(model, cells);
-  if (model.movesInTime()) findMasses(model, cells);
+  loads_.find(model, cells, wholeLevels());
 }
 
 template <typename Real>
@@ -313,75 +312,14 @@ void CompositeGrid<Real>::weighNodes() {
 }
 
 template <typename Real>
-void CompositeGrid<Real>::findWeight(const ElasticModel& model, const CellSet& cells) {
-  const double unit = modulus_ * spacing_ * spacing_;
-  for (const Cell& cell : cells.all()) {
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const Vec3 weight = model.cornerWeight(cell, corner) / unit;
-      if (weight.isZero(0.0)) continue;
-      for (auto& values : weight_) values.resize(at(finest().count()), Real(0));
-      for (int axis = 0; axis < 3; ++axis) {
-        weight_[at(axis)][at(entryOf(cell.nodes[at(corner)]))] += static_cast<Real>(weight[axis]);
-      }
-    }
-  }
-}
-
-// A coarse node has the shares of P in the masses of the nodes that it carries: P^T M P with its
-// rows summed up.
-template <typename Real>
-void CompositeGrid<Real>::findMasses(const ElasticModel& model, const CellSet& cells) {
-  const std::vector<double> of_nodes = model.nodeMasses(cells);
-  masses_.resize(levels_.size());
-  masses_.front().assign(at(finest().count()), 0.0);
-  for (std::size_t node = 0; node < of_nodes.size(); ++node) {
-    masses_.front()[at(entries_[node])] = of_nodes[node];
-  }
-  for (std::size_t level = 1; level < levels_.size(); ++level) {
-    masses_[level].assign(at(levels_[level].count()), 0.0);
-    for (int fine = 0; fine < levels_[level - 1].count(); ++fine) {
-      const double mass = masses_[level - 1][at(fine)];
-      if (mass == 0.0) continue;
-      for (const NodeShare& carrier : transfers_[level - 1].carriersOf(fine)) {
-        masses_[level][at(carrier.node)] += carrier.weight * mass;
-      }
-    }
-  }
+WholeLevels<Real> CompositeGrid<Real>::wholeLevels() {
+  return {levels_, transfers_, entries_, spacing_, modulus_};
 }
 
 template <typename Real>
 void CompositeGrid<Real>::takeTimeStep(const InertialTerm* inertia) {
-  if (inertia == nullptr && !is_in_step_) return;
-  is_in_step_ = inertia != nullptr;
-  scale_ = is_in_step_ ? inertia->elastic_scale : 1.0;
+  if (!loads_.takeTimeStep(inertia, wholeLevels())) return;
   finest().constrained.setUnits(spacing_, modulus());
-  double spacing = spacing_;
-  for (std::size_t level = 0; level < levels_.size(); ++level, spacing *= 2.0) {
-    std::vector<Real> stiffness;
-    const double unit = modulus() * spacing;
-    for (std::size_t i = 0; is_in_step_ && i < masses_[level].size(); ++i) {
-      stiffness.push_back(static_cast<Real>(inertia->per_mass * masses_[level][i] / unit));
-    }
-    levels_[level].setInertia(std::move(stiffness));
-  }
-  if (is_in_step_) {
-    const double unit = modulus() * spacing_ * spacing_;
-    for (auto& values : load_of_step_) values.assign(at(finest().count()), Real(0));
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Vec3 force = inertia->force[at(nodes_[i])] / unit;
-      for (int axis = 0; axis < 3; ++axis) {
-        Real& load = load_of_step_[at(axis)][at(entries_[i])];
-        load = static_cast<Real>(force[axis]);
-        if (!weight_.front().empty()) {
-          load += weight_[at(axis)][at(entries_[i])] / static_cast<Real>(scale_);
-        }
-      }
-    }
-    finest().right_hand_side = load_of_step_;
-  } else {
-    finest().clearRightHandSide();
-    if (!weight_.front().empty()) finest().right_hand_side = weight_;
-  }
 }
 
 template <typename Real>

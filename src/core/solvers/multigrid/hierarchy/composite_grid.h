@@ -22,6 +22,7 @@
 #include "solvers/multigrid/hierarchy/level_source.h"
 #include "solvers/multigrid/hierarchy/light_nodes.h"
 #include "solvers/multigrid/hierarchy/membrane_levels.h"
+#include "solvers/multigrid/hierarchy/node_loads.h"
 #include "solvers/multigrid/level/grid_level.h"
 
 namespace robot_tissue {
@@ -88,10 +89,10 @@ class CompositeGrid {
   const Lattice& lattice() const { return lattice_; }
   Workers* workers() const { return workers_; }
   // E0 (Pa); in a time step times InertialTerm::elastic_scale.
-  double modulus() const { return scale_ * modulus_; }
+  double modulus() const { return loads_.scale() * modulus_; }
   double spacing() const { return spacing_; }  // h (m), of the finest lattice
   // Of nodes (E0 h^2), with what acts on them in a time step besides; empty: no gravity, no step.
-  const Field<Real>& weight() const { return is_in_step_ ? load_of_step_ : weight_; }
+  const Field<Real>& weight() const { return loads_.onFinest(); }
 
   // As MembraneLevels.
   bool renewMembranes() { return membranes_.renew(levels_); }
@@ -115,8 +116,7 @@ class CompositeGrid {
   void addLevel(const LevelGrid& grid, int beside, const std::vector<LevelCell>& cells,
                 const LevelPart& part, double greatest_stiffness);
   void weighNodes();
-  void findWeight(const ElasticModel& model, const CellSet& cells);
-  void findMasses(const ElasticModel& model, const CellSet& cells);
+  WholeLevels<Real> wholeLevels();
 
   const Lattice& lattice_;
   Workers* workers_;
@@ -130,11 +130,7 @@ class CompositeGrid {
   std::vector<int> nodes_;
   std::vector<int> entries_;
   std::vector<LightNode> light_nodes_;
-  Field<Real> weight_;
-  std::vector<std::vector<double>> masses_;  // of the nodes of each level (kg); empty: not needed
-  double scale_ = 1.0;
-  bool is_in_step_ = false;
-  Field<Real> load_of_step_;
+  NodeLoads<Real> loads_;  // none where parts can be open
   MembraneLevels<Real> membranes_;
 };
 
