@@ -136,9 +136,10 @@ def measure_bar(simulate, case):
     return row, swing
 
 
-def drag_scene(shape, height, spacing, with_time):
+def drag_scene(shape, height, spacing, damping_time):
     def there(x, z):
         return {"xyz": [x, 0.05, z]}
+    with_time = damping_time is not None
     duration = {"duration": 0.25} if with_time else {}
     long = {"duration": 1.25} if with_time else {}
     scene = {"tissue": {"shape": {"type": "box", "min": [0, 0, 0], "max": [0.1, 0.1, 0.05]},
@@ -150,7 +151,7 @@ def drag_scene(shape, height, spacing, with_time):
                        {"move": {"tool": "tool", "to": there(0.06, 0.045 + height),
                                  "increments": 250, **long}}]}
     if with_time:
-        scene["tissue"]["time"] = {"damping_time": 0.01}
+        scene["tissue"]["time"] = {"damping_time": damping_time}
     return scene
 
 
@@ -159,17 +160,20 @@ TOOLS = {"sphere": ({"type": "sphere", "radius": 0.01}, 0.01),
                        0.01 * math.sqrt(2.0))}
 
 
-def measure_drag(simulate, tool, spacing, with_time):
+DAMPING_TIMES = (None, 0.01, 0.03, 0.1)  # s; None: no time
+
+
+def measure_drag(simulate, tool, spacing, damping_time):
     shape, height = TOOLS[tool]
-    with simulated(simulate, drag_scene(shape, height, spacing, with_time)) as folder:
+    with simulated(simulate, drag_scene(shape, height, spacing, damping_time)) as folder:
         rows = [row for row in rows_of(Path(folder) / "increments.csv") if row["step"] == "1"]
         forces = np.array([[float(row[axis]) for axis in ("fx", "fy", "fz")]
                            for row in rows_of(Path(folder) / "tools.csv") if row["step"] == "1"])
     ms = numbers(rows, "update_ms")
     jumps = np.linalg.norm(np.diff(forces, axis=0), axis=1)
     greatest = np.linalg.norm(forces, axis=1).max()
-    return {"tool": tool, "spacing_m": spacing, "time": "yes" if with_time else "no",
-            "status": worst(rows), "median_ms": f"{percentile(ms, 50):.3g}",
+    return {"tool": tool, "spacing_m": spacing, "damping_time_s":
+            "" if damping_time is None else damping_time, "status": worst(rows), "median_ms": f"{percentile(ms, 50):.3g}",
             "mean_ms": f"{sum(ms) / len(ms):.3g}", "percentile_99_ms": f"{percentile(ms, 99):.3g}",
             "greatest_N": f"{greatest:.3g}", "greatest_jump_percent":
             f"{100.0 * jumps.max() / greatest:.3g}"}
@@ -182,8 +186,8 @@ def measure(options):
         row, swing = measure_bar(simulate, case)
         bars.append(row)
         swings += swing
-    drags = [measure_drag(simulate, tool, 0.005, with_time)
-             for tool in TOOLS for with_time in (False, True)]
+    drags = [measure_drag(simulate, tool, 0.005, damping_time)
+             for tool in TOOLS for damping_time in DAMPING_TIMES]
     write_rows(BARS, list(bars[0]), bars)
     write_rows(SWING, list(swings[0]), swings)
     write_rows(DRAGS, list(drags[0]), drags)
