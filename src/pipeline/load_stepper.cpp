@@ -134,11 +134,9 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
   const std::vector<Vec3>& now = world_.tissue.state().displacement;
   const std::vector<Vec3>& before = *good.shape.displacement;
   double farthest = 0.0;
-  for (const auto& carriers : world_.tissue.surface().carriers) {
-    Vec3 way = Vec3::Zero();
-    for (const NodeWeight& carrier : carriers) {
-      way += carrier.weight * (now[at(carrier.node)] - before[at(carrier.node)]);
-    }
+  for (const CarrierRange carriers : world_.tissue.surface().carriers) {
+    const Vec3 way = carriedFrom(
+        Vec3::Zero(), carriers, [&](int node) -> Vec3 { return now[at(node)] - before[at(node)]; });
     farthest = std::max(farthest, way.squaredNorm());
   }
   const double leap = tuning::kMostLeap * world_.tissue.lattice().spacing();

@@ -118,7 +118,7 @@ void DisplaySurface::findNormals(const TissueSurface& surface, const std::vector
 // Vertices beside nodes, along cuts, are none of their edges' ends.
 void DisplaySurface::findNodes(const TissueSurface& surface) {
   const auto nodeAt = [&](int vertex) {
-    const auto& carriers = surface.carriers[at(vertex)];
+    const CarrierRange carriers = surface.carriers[at(vertex)];
     return carriers.size() == 1 ? surface.node[at(vertex)] : -1;
   };
   edge_between_.clear();

@@ -272,8 +272,9 @@ TEST(Membrane, TurnsWithoutEnergy) {
 TEST(Membrane, HangsOnTheNodesThatCarryIt) {
   TissueSurface surface = onNodes(sphereMesh(0.3, 1));
   const int count = static_cast<int>(surface.rest.size());
+  surface.carriers = CarrierLists();
   for (int vertex = 0; vertex < count; ++vertex) {
-    surface.carriers[at(vertex)] = {{2 * (vertex / 2), 0.3}, {3 * (vertex / 3) + 1, 0.7}};
+    surface.carriers.push_back({{2 * (vertex / 2), 0.3}, {3 * (vertex / 3) + 1, 0.7}});
   }
   MembranePart part;
   part.law = sheetLaw(sheet(0.4));

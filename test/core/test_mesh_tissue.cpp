@@ -169,7 +169,7 @@ TEST_P(BothModels, AnyCutLeavesTheSurfaceClosed) {
       const TissueSurface surface = meshSurface(lattice, state, mesh);
       ASSERT_EQ(countOpenEdges(surface), 0U);
       ASSERT_NEAR(enclosedVolume(surface, surface.rest), volumeOf(mesh), 1e-12 * volumeOf(mesh));
-      for (const auto& carriers : surface.carriers) {
+      for (const CarrierRange carriers : surface.carriers) {
         double sum = 0.0;
         for (const NodeWeight& carrier : carriers) {
           ASSERT_LT(at(carrier.node), state.displacement.size());

@@ -180,7 +180,7 @@ TEST_F(PartlyCutSurface, OpensBothSidesOfTheCellsThatAreCutThrough) {
 }
 
 TEST_F(PartlyCutSurface, CarriesEveryVertexWholly) {
-  for (const auto& carriers : surface_.carriers) {
+  for (const CarrierRange carriers : surface_.carriers) {
     double sum = 0.0;
     for (const NodeWeight& carrier : carriers) sum += carrier.weight;
     EXPECT_NEAR(sum, 1.0, 1e-12);

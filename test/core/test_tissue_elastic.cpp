@@ -54,7 +54,7 @@ TEST_F(ElasticTissue, ShowsThePatchWhereItIsThoughItsRimSlips) {
   EXPECT_EQ(report.patches.front().displacement, Vec3(0.0, 0.0, -0.003));
   const auto& surface = tissue_.surface();
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
-    const auto& carriers = surface.carriers[vertex];
+    const CarrierRange carriers = surface.carriers[vertex];
     if (carriers.size() != 1) continue;
     const Vec3 expected = surface.rest[vertex] + shown[at(carriers.front().node)];
     EXPECT_EQ(tissue_.vertices()[vertex], expected);

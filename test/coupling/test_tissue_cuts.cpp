@@ -118,7 +118,7 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
   const TissueSurface& surface = tissue_.surface();
   const int beside = tissue_.lattice().node(1, 1, 3);
   const auto isAtEdge = [&](int vertex) {
-    const auto& carriers = surface.carriers[at(vertex)];
+    const CarrierRange carriers = surface.carriers[at(vertex)];
     return carriers.size() == 2 && carriers[0].node == beside;
   };
   Contact contact;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "robot_tissue/core/carriers.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/triangle_mesh.h"
@@ -13,8 +14,8 @@ namespace robot_tissue {
 
 // A vertex follows the nodes it hangs on: x = rest + sum of weight * displacement of node.
 struct TissueSurface {
-  std::vector<Vec3> rest;                         // tissue frame (m)
-  std::vector<std::vector<NodeWeight>> carriers;  // per vertex, weights sum to 1
+  std::vector<Vec3> rest;               // tissue frame (m)
+  CarrierLists carriers;                // per vertex, weights sum to 1
   std::vector<int> node;                // per vertex: the lattice's node it stands at or, along a
                                         // cut, beside; -1 = beside several
   std::vector<MeshTriangle> triangles;  // counter-clockwise seen from outside

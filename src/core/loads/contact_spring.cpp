@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/core/carriers.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -46,11 +48,7 @@ Eigen::Matrix3d threadStiffnessAt(const ContactSpring& thread, const Vec3& way) 
 }  // namespace
 
 Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
-  Vec3 point = spring.rest;
-  for (const NodeWeight& carrier : spring.carriers) {
-    point += carrier.weight * displacement[at(carrier.node)];
-  }
-  return point;
+  return carriedFrom(spring.rest, spring.carriers, displacement);
 }
 
 double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include "robot_tissue/core/carriers.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -28,11 +30,7 @@ ContactSpring springOf(const SutureThread& thread) {
 }
 
 Vec3 placeOf(const SutureThread::End& end, const std::vector<Vec3>& displacement) {
-  Vec3 place = end.rest;
-  for (const NodeWeight& carrier : end.carriers) {
-    place += carrier.weight * displacement[at(carrier.node)];
-  }
-  return place;
+  return carriedFrom(end.rest, end.carriers, displacement);
 }
 
 SutureReport reportOf(const SutureThread& thread, const std::vector<Vec3>& displacement) {

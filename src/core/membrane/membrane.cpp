@@ -129,7 +129,8 @@ void Membrane::bindNodes(const TissueSurface& surface) {
   nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
   std::vector<VertexCarriers::Shares> of_vertices;
   for (const int vertex : vertex_of_surface_) {
-    of_vertices.push_back(surface.carriers[at(vertex)]);
+    const CarrierRange carriers = surface.carriers[at(vertex)];
+    of_vertices.emplace_back(carriers.begin(), carriers.end());
     for (NodeWeight& carrier : of_vertices.back()) {
       const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), carrier.node);
       carrier.node = static_cast<int>(found - nodes_.begin());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robot_tissue/core/grid_box.h"
+#include "robot_tissue/core/carriers.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/solve_report.h"
@@ -16,7 +17,7 @@ namespace robot_tissue {
 
 // How far a point that nodes carry may go in a solve (m), as sum of weight * displacement of node.
 struct WayLimit {
-  const std::vector<NodeWeight>* carriers = nullptr;
+  CarrierRange carriers;
   double longest = 0.0;
 };
 

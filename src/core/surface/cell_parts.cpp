@@ -21,10 +21,10 @@ void CellParts::findFirst(std::size_t places) {
   std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
 }
 
-std::vector<NodeWeight> CellParts::withoutGhosts(std::vector<NodeWeight> carriers) const {
-  if (stand_ins_.empty()) return carriers;
+void CellParts::addCarriers(const Hold& hold, CarrierLists& to) const {
+  if (stand_ins_.empty()) return to.push_back(CarrierRange(hold.begin(), hold.end()));
   std::map<int, double> weights;
-  for (const NodeWeight& carrier : carriers) {
+  for (const NodeWeight& carrier : hold) {
     if (!cells_->isGhost(carrier.node)) {
       weights[carrier.node] += carrier.weight;
       continue;
@@ -36,7 +36,7 @@ std::vector<NodeWeight> CellParts::withoutGhosts(std::vector<NodeWeight> carrier
   }
   std::vector<NodeWeight> own;
   for (const auto& [node, weight] : weights) own.push_back({node, weight});
-  return own;
+  to.push_back(own);
 }
 
 bool CellParts::hasAll(const Lattice& lattice, const LatticeState& state) const {

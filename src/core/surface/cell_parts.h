@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "robot_tissue/core/carriers.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 
@@ -46,7 +47,8 @@ class CellParts {
   }
   std::size_t count() const { return cells_->all().size(); }
 
-  std::vector<NodeWeight> withoutGhosts(std::vector<NodeWeight> carriers) const;
+  // Without ghosts where the model has none.
+  void addCarriers(const Hold& hold, CarrierLists& to) const;
 
  private:
   bool hasAll(const Lattice& lattice, const LatticeState& state) const;

@@ -255,7 +255,7 @@ class CutMeshBuilder {
                                   ? mesh_.vertices[at(point)]
                                   : placed(pieces_.vertex(point)));
       places_.push_back(2.0 * pieces_.vertex(point));
-      surface_.carriers.push_back(parts_.withoutGhosts({hold.begin(), hold.end()}));
+      parts_.addCarriers(hold, surface_.carriers);
       surface_.node.push_back(-1);
     }
     return known->second;

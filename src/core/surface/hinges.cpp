@@ -208,7 +208,8 @@ class HingeSeparator {
       if (is_new) {
         places_.push_back(Vec3(places_[at(vertex)]));
         surface_.rest.push_back(Vec3(surface_.rest[at(vertex)]));
-        surface_.carriers.push_back(std::vector<NodeWeight>(surface_.carriers[at(vertex)]));
+        const CarrierRange same = surface_.carriers[at(vertex)];
+        surface_.carriers.push_back(std::vector<NodeWeight>(same.begin(), same.end()));
         surface_.node.push_back(int(surface_.node[at(vertex)]));
       }
       vertex = copy->second;
@@ -248,7 +249,7 @@ class HingeSeparator {
     for (const auto& [node, weight] : weights) carriers.push_back({node, weight});
     places_.push_back(0.5 * (places_[at(a)] + places_[at(b)]));
     surface_.rest.push_back(0.5 * (surface_.rest[at(a)] + surface_.rest[at(b)]));
-    surface_.carriers.push_back(std::move(carriers));
+    surface_.carriers.push_back(carriers);
     surface_.node.push_back(-1);
   }
 

@@ -85,7 +85,7 @@ TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
     const Vec3 point = (vertex - lattice.bounds().min()) / lattice.spacing();
     const Cell& cell = lattice.cells()[at(cellAround(lattice, point))];
     const Hold hold = carriersIn(lattice, cell, point);
-    surface.carriers.emplace_back(hold.begin(), hold.end());
+    surface.carriers.push_back(CarrierRange(hold.begin(), hold.end()));
   }
   return surface;
 }

@@ -202,7 +202,7 @@ class SurfaceBuilder {
     holds_.push_back(hold);
     surface_.rest.push_back(octants_.placeOf(octant, point));
     places_.push_back(Vec3(point[0], point[1], point[2]));
-    surface_.carriers.push_back(octants_.carriersOf(hold));
+    octants_.addCarriers(hold, surface_.carriers);
     surface_.node.push_back(hold.count > 1 ? octants_.nodeOf(octant) : hold.begin()->node);
     return next;
   }
@@ -232,12 +232,8 @@ Box deform(const TissueSurface& surface, const std::vector<Vec3>& displacement,
   vertices.resize(surface.rest.size());
   Box bounds;
   for (std::size_t vertex = 0; vertex < surface.rest.size(); ++vertex) {
-    Vec3 position = surface.rest[vertex];
-    for (const NodeWeight& carrier : surface.carriers[vertex]) {
-      position += carrier.weight * displacement[at(carrier.node)];
-    }
-    vertices[vertex] = position;
-    bounds.extend(position);
+    vertices[vertex] = carriedFrom(surface.rest[vertex], surface.carriers[vertex], displacement);
+    bounds.extend(vertices[vertex]);
   }
   return bounds;
 }

@@ -258,7 +258,7 @@ void Tissue::limitWays() {
     const std::vector<double> longest = contact_update_->longestWays();
     for (std::size_t vertex = 0; vertex < longest.size(); ++vertex) {
       if (!std::isfinite(longest[vertex])) continue;
-      limits.push_back({&surface_.carriers[vertex], longest[vertex]});
+      limits.push_back({surface_.carriers[vertex], longest[vertex]});
     }
   }
   method_->limitWays(std::move(limits));

@@ -30,11 +30,7 @@ class WayLimits {
  private:
   template <typename DisplacementOf>
   static Vec3 placeOf(const WayLimit& limit, DisplacementOf displacementOf) {
-    Vec3 place = Vec3::Zero();
-    for (const NodeWeight& carrier : *limit.carriers) {
-      place += carrier.weight * displacementOf(carrier.node);
-    }
-    return place;
+    return carriedFrom(Vec3::Zero(), limit.carriers, displacementOf);
   }
 
   std::vector<WayLimit> limits_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robot_tissue/core/carriers.h"
 #include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
@@ -118,10 +119,8 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
 template <typename Real>
 Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring,
                                     const Field<Real>& displacement) const {
-  Vec3 mean = Vec3::Zero();
-  for (const LevelSpring::Carrier& carrier : spring.carriers) {
-    mean += carrier.weight * vectorAt(displacement, carrier.node);
-  }
+  Vec3 mean = carriedFrom(Vec3::Zero(), spring.carriers,
+                          [&](int node) { return vectorAt(displacement, node); });
   if (spring.group >= 0) {
     const std::size_t group = at(spring.group);
     mean -= motionAt(groups[group], spring.arm, motion[group]);
