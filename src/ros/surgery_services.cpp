@@ -135,6 +135,7 @@ void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response&
   suture.rest_length = request.rest_length;
   if (request.stiffness != 0.0) suture.stiffness = request.stiffness;
   suture.break_force = request.break_force;
+  suture.bite = request.bite;
   const SutureResult result = pipeline_.suture(suture);
   publisher_.shapeChanged();
   response.name = suture.name;

@@ -47,6 +47,11 @@ const KeyTable<SutureReading> kSutureKeys = {
        double& force = reading.suture.break_force;
        force = entry.numberOr(force, ranges::forceLimit());
      }},
+    {"bite",
+     [](const Entry& entry, SutureReading& reading) {
+       double& bite = reading.suture.bite;
+       bite = entry.numberOr(bite, reading.lengths.gap);
+     }},
 };
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(Thread, StaysOnItsSideOfACut) {
     SutureThread::End end;
     end.rest = Vec3(kCutAt, 0.01, 0.02);
     end.inside = end.rest + Vec3(side * 1e-3, 0.0, -1e-3);
-    ASSERT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, end));
+    ASSERT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, 0.0, end));
     double x = 0.0;
     for (const NodeWeight& carrier : end.carriers) {
       x += carrier.weight * restPosition(tissue.lattice(), *tissue.state().cells, carrier.node).x();
@@ -95,6 +95,30 @@ TEST(Thread, StaysOnItsSideOfACut) {
     const std::vector<int> pieces = tissue.pieceOfNodes();
     const int piece = pieces[at(tissue.lattice().node(side < 0.0 ? 1 : 8, 2, 2))];
     for (const NodeWeight& carrier : end.carriers) EXPECT_EQ(pieces[at(carrier.node)], piece);
+  }
+}
+
+// Also one that would reach across the cut; and it pulls in the middle of what it holds.
+TEST(Thread, BitesOnItsSideOfACut) {
+  Tissue tissue(barOf(), solverWith("newton"));
+  tissue.cut(planeAt(kCutAt));
+  for (const double bite : {1e-4, 2e-3, 6e-3}) {
+    SutureThread::End end;
+    end.rest = Vec3(kCutAt - 0.002, 0.01, 0.02);
+    end.inside = end.rest - Vec3(0.0, 0.0, 1e-3);
+    ASSERT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, bite, end));
+    double sum = 0.0;
+    Vec3 middle = Vec3::Zero();
+    for (const NodeWeight& carrier : end.carriers) {
+      EXPECT_GT(carrier.weight, 0.0);
+      sum += carrier.weight;
+      middle +=
+          carrier.weight * restPosition(tissue.lattice(), *tissue.state().cells, carrier.node);
+      EXPECT_EQ(tissue.pieceOfNodes()[at(carrier.node)], 0);
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+    EXPECT_LT((middle - (end.rest + end.to_middle)).norm(), 1e-12);
+    EXPECT_LT(end.to_middle.norm(), bite);
   }
 }
 
@@ -107,8 +131,8 @@ TEST(Thread, IsDroppedWhereItsTissueIsGone) {
     SutureThread thread;
     thread.from.rest = Vec3(0.01, 0.01, 0.02);
     thread.to.rest = Vec3(x, 0.01, 0.02);
-    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, thread.from));
-    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, thread.to));
+    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, 0.0, thread.from));
+    EXPECT_TRUE(bindEnd(tissue.surface(), kSutureSpacing, 0.0, thread.to));
     return thread;
   };
   Threads threads;

@@ -51,6 +51,50 @@ TEST(Sutures, CarryTheLoadOfABarThatIsCutInTwo) {
   }
 }
 
+// Of a bar with threads on its sides every 5 mm, cut in two, over that of the whole bar.
+double stiffnessBack(double spacing, double bite) {
+  TissueConfig config = barOf();
+  config.spacing = spacing;
+  Tissue whole(config, solverWith("layered")), sutured(config, solverWith("layered"));
+  const LoadStep pull = pullBy(barOf(), 1e-3);
+  whole.load(pull);
+  sutured.cut(planeAt(kCutAt));
+  for (SutureConfig& stitch : stitches()) {
+    stitch.bite = bite;
+    sutured.suture(stitch);
+  }
+  sutured.load(pull);
+  EXPECT_EQ(sutured.lastReport().status, SolveStatus::kOk);
+  EXPECT_NEAR(pullOfThreads(sutured), pullOf(sutured), 0.01 * pullOf(sutured));
+  EXPECT_NEAR(sutured.forceOfFixedNodes().x(), -pullOf(sutured), 0.01 * pullOf(sutured));
+  return pullOf(sutured) / pullOf(whole);
+}
+
+TEST(Sutures, ThatBiteGiveTheSameStiffnessBackOnAFinerLattice) {
+  const double bite = 0.0025, coarse = stiffnessBack(0.005, bite),
+               fine = stiffnessBack(0.0025, bite);
+  RecordProperty("share_of_stiffness", std::to_string(fine));
+  EXPECT_GT(fine, 0.5);
+  EXPECT_NEAR(fine, coarse, 0.1 * coarse);
+  EXPECT_LT(stiffnessBack(0.0025, 0.0), 0.7 * stiffnessBack(0.005, 0.0));  // points sink in
+}
+
+TEST(Sutures, KeepTheirBiteWhenTheyAreSaved) {
+  const TissueConfig config = barOf();
+  Tissue tissue(config, solverWith("layered")), loaded(config, solverWith("layered"));
+  tissue.cut(planeAt(kCutAt));
+  SutureConfig stitch = threadOf("s1", {0.02, 0.01, 0.02}, {0.025, 0.01, 0.02});
+  stitch.bite = 0.004;
+  stitch.rest_length = 0.003;
+  tissue.suture(stitch);
+  const std::string bytes = tissue.savedState();
+  loaded.loadState(*loaded.readState(bytes));
+  EXPECT_EQ(loaded.savedState(), bytes);
+  EXPECT_EQ(loaded.sutures()[0].from, tissue.sutures()[0].from);
+  for (Tissue* either : {&tissue, &loaded}) either->cut(planeAt(0.0125));  // ends are bound anew
+  EXPECT_EQ(loaded.sutures()[0].from, tissue.sutures()[0].from);
+}
+
 TEST(Sutures, SlackTheyDoNothing) {
   const TissueConfig config = barOf();
   Tissue plain(config, solverWith("newton")), sutured(config, solverWith("newton"));
@@ -255,6 +299,8 @@ TEST_F(SutureRefusal, OfWhatIsNoThread) {
   expectRefused([&](SutureConfig& config) { config.stiffness = nan; }, "stiffness");
   expectRefused([](SutureConfig& config) { config.rest_length = -1e-3; }, "rest_length");
   expectRefused([&](SutureConfig& config) { config.break_force = infinity; }, "break_force");
+  expectRefused([](SutureConfig& config) { config.bite = -1e-3; }, "bite");
+  expectRefused([&](SutureConfig& config) { config.bite = nan; }, "bite");
 }
 
 TEST(Sutures, NeedAMethodThatFindsEquilibria) {

@@ -12,7 +12,7 @@ steps:
   - settle: {}
   - suture: {from: [0.04, 0.05, 0.05], to: [0.06, 0.05, 0.05]}
   - suture: {name: s2, from: [0.04, 0.06, 0.05], to: [0.06, 0.06, 0.05], rest_length: 0.004,
-      stiffness: 50, break_force: 1.5}
+      stiffness: 50, break_force: 1.5, bite: 0.002}
   - suture: {from: [0.04, 0.07, 0.05], to: [0.06, 0.07, 0.05]}
 )";
 
@@ -33,6 +33,8 @@ TEST(SutureSteps, HaveEveryField) {
   EXPECT_EQ(suture(2).rest_length, 0.004);
   EXPECT_EQ(suture(2).stiffness, 50.0);
   EXPECT_EQ(suture(2).break_force, 1.5);
+  EXPECT_EQ(suture(1).bite, 0.0);
+  EXPECT_EQ(suture(2).bite, 0.002);
   EXPECT_EQ(suture(3).name, "s3");
 }
 
@@ -71,6 +73,10 @@ const std::vector<BadScene> kBadSutures = {
      "- settle: {}",
      "- suture: {from: [0, 0, 0], to: [0.01, 0, 0], break_force: -1}",
      {"steps[0].suture.break_force = -1", "a number from 0 to 1"}},
+    {"SutureBite",
+     "- settle: {}",
+     "- suture: {from: [0, 0, 0], to: [0.01, 0, 0], bite: -0.01}",
+     {"steps[0].suture.bite = -0.01", "a number from 0 to 1000 in m"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(, BadSutures, ::testing::ValuesIn(kBadSutures), caseName);

@@ -16,6 +16,7 @@ struct SutureConfig {
   double rest_length = 0.0;  // m
   double stiffness = 200.0;  // N/m
   double break_force = 0.0;  // N: pulled harder, in balance, it breaks; 0 = never
+  double bite = 0.0;         // m: so far around its point an end holds the surface; 0: there alone
 };
 
 // N/m: about what 10 cm of a steel wire of 0.3 mm have; of nylon it is a hundredth. More: single

@@ -22,7 +22,7 @@ ContactSpring springOf(const SutureThread& thread) {
   for (const auto& [node, weight] : weights) {
     if (std::abs(weight) > kNoWeight) spring.carriers.push_back({node, weight});
   }
-  spring.rest = thread.to.rest - thread.from.rest;
+  spring.rest = (thread.to.rest + thread.to.to_middle) - (thread.from.rest + thread.from.to_middle);
   spring.stiffness =
       thread.softness > 0.0 ? 1.0 / (1.0 / thread.stiffness + thread.softness) : thread.stiffness;
   spring.rest_length = thread.length;
@@ -30,7 +30,7 @@ ContactSpring springOf(const SutureThread& thread) {
 }
 
 Vec3 placeOf(const SutureThread::End& end, const std::vector<Vec3>& displacement) {
-  return carriedFrom(end.rest, end.carriers, displacement);
+  return carriedFrom(end.rest + end.to_middle, end.carriers, displacement);
 }
 
 SutureReport reportOf(const SutureThread& thread, const std::vector<Vec3>& displacement) {

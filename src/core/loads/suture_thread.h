@@ -11,12 +11,14 @@
 namespace robot_tissue {
 
 struct SutureThread {
-  // A point of the tissue's rest surface.
+  // A point of the tissue's rest surface, or, with a bite, what is around it.
   struct End {
     Vec3 rest = Vec3::Zero();          // where it is at rest (m)
     Vec3 inside = Vec3::Zero();        // a place in the tissue beside it, which tells the sides of
                                        // a cut apart where both are at that place (m)
     std::vector<NodeWeight> carriers;  // weights sum to 1
+    Vec3 to_middle = Vec3::Zero();     // from `rest` to the middle of what it holds, where the
+                                       // thread pulls: so it turns nothing (m)
   };
 
   std::string name;
@@ -24,6 +26,7 @@ struct SutureThread {
   double rest_length = 0.0;  // m
   double stiffness = 0.0;    // N/m
   double break_force = 0.0;  // N; 0: never
+  double bite = 0.0;         // m; 0: its ends are points
   double length = 0.0;       // in the place of rest_length while it is drawn in to that (m)
   double softness = 0.0;     // m/N, beside 1 / stiffness: likewise
   bool broken = false;

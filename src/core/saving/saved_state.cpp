@@ -18,15 +18,18 @@ namespace {
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr std::uint32_t kPlain = 1;
 constexpr std::uint32_t kWithExtras = 2;
 constexpr std::uint32_t kWithPieceNumbers = 3;
-// Bits of what later versions have more: the third from version 3 on, the fourth from 4 on.
+constexpr std::uint32_t kWithPartings = 4;
+// Bits of what later versions have more: the third from version 3 on, the fourth from 4 on, the
+// fifth from 5 on.
 constexpr std::uint8_t kHasRemovals = 1;
 constexpr std::uint8_t kHasSutures = 2;
 constexpr std::uint8_t kHasPieceNumbers = 4;
 constexpr std::uint8_t kHasPartings = 8;
+constexpr std::uint8_t kHasBites = 16;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -112,21 +115,24 @@ std::uint8_t extrasOf(const SavedState& state) {
   if (!state.sutures.empty()) extras |= kHasSutures;
   if (!state.pieces.areCounted()) extras |= kHasPieceNumbers;
   if (!state.lattice.parted_at.empty()) extras |= kHasPartings;
+  if (haveBites(state.sutures)) extras |= kHasBites;
   return extras;
 }
 
 // The lowest version that holds these.
 std::uint32_t versionOf(std::uint8_t extras) {
   if (extras == 0) return kPlain;
-  if ((extras & kHasPartings) != 0) return kVersion;
+  if ((extras & kHasBites) != 0) return kVersion;
+  if ((extras & kHasPartings) != 0) return kWithPartings;
   return (extras & kHasPieceNumbers) != 0 ? kWithPieceNumbers : kWithExtras;
 }
 
 std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
   if (version == kPlain) return 0;
   const std::uint8_t extras = in.u8();
-  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings;
-  if (extras > all || versionOf(extras) != version) {
+  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings | kHasBites;
+  const bool has_lost_bites = (extras & kHasBites) != 0 && (extras & kHasSutures) == 0;
+  if (extras > all || versionOf(extras) != version || has_lost_bites) {
     throw InputError("is damaged: it has nothing of its version, or more");
   }
   return extras;
@@ -296,6 +302,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   putReport(state.report, body);
   if ((extras & kHasSutures) != 0) putSutures(state.sutures, body);
   if ((extras & kHasPieceNumbers) != 0) putPieces(state.pieces, body);
+  if ((extras & kHasBites) != 0) putBites(state.sutures, body);
   return headerFor(body.bytes(), versionOf(extras), fingerprint) + body.bytes();
 }
 
@@ -333,6 +340,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   saved.pieces = (extras & kHasPieceNumbers) != 0
                      ? takePieces(state.pieces, lattice.nodeCount(), in)
                      : PieceNumbers::counted(state.pieces);
+  if ((extras & kHasBites) != 0) takeBites(saved.sutures, in);
   if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
   return saved;
 }

@@ -1,5 +1,6 @@
 #include "saving/saved_sutures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -83,6 +84,31 @@ std::vector<SutureThread> takeSutures(int node_count, ByteReader& in) {
     if (!names.insert(threads.back().name).second) failAsDamaged("two sutures have one name");
   }
   return threads;
+}
+
+bool haveBites(const std::vector<SutureThread>& threads) {
+  return std::any_of(threads.begin(), threads.end(),
+                     [](const SutureThread& thread) { return thread.bite > 0.0; });
+}
+
+void putBites(const std::vector<SutureThread>& threads, ByteWriter& out) {
+  for (const SutureThread& thread : threads) {
+    out.f64(thread.bite);
+    out.vec3(thread.from.to_middle);
+    out.vec3(thread.to.to_middle);
+  }
+}
+
+void takeBites(std::vector<SutureThread>& threads, ByteReader& in) {
+  for (SutureThread& thread : threads) {
+    thread.bite = takeNumber(in);
+    thread.from.to_middle = takeVector(in);
+    thread.to.to_middle = takeVector(in);
+    const double farthest = std::max(thread.from.to_middle.norm(), thread.to.to_middle.norm());
+    if (!(thread.bite >= 0.0 && farthest <= thread.bite)) {
+      failAsDamaged("the middle of a suture's bite is outside it");
+    }
+  }
 }
 
 }  // namespace robot_tissue

@@ -40,6 +40,7 @@ void requireNumbers(const SutureConfig& config) {
   require(stiffness > 0.0 && stiffness <= kStiffestSuture, stiffness, "stiffness",
           "more than 0 N/m, at most 1e5 N/m");
   require(force >= 0.0 && std::isfinite(force), force, "break_force", "0 (never), or more N");
+  require(config.bite >= 0.0 && std::isfinite(config.bite), config.bite, "bite", "0 m or more");
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
     }
     end.rest = restOf(surface_, nearest->on);
     end.inside = innerPlace(surface_, nearest->on.triangle, tuning::kInnerDepth * spacing);
-    bindEnd(surface_, spacing, end);
+    bindEnd(surface_, spacing, config.bite, end);
   };
   place("from", config.from, thread.from);
   place("to", config.to, thread.to);
@@ -64,6 +65,7 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
   thread.rest_length = thread.length = config.rest_length;
   thread.stiffness = config.stiffness;
   thread.break_force = config.break_force;
+  thread.bite = config.bite;
   if (springOf(thread).carriers.empty()) {
     refuse(config.name, "from and to are one point of the surface", "two points");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/held_surface.h"
 #include "surface/nearest_point.h"
 #include "tissue/tuning.h"
 
@@ -148,12 +149,18 @@ std::vector<int> Threads::breakOne(const std::vector<Vec3>& displacement) {
   return nodes;
 }
 
-bool bindEnd(const TissueSurface& surface, double spacing, SutureThread::End& end) {
+bool bindEnd(const TissueSurface& surface, double spacing, double bite, SutureThread::End& end) {
   const auto nearest = nearestAtRest(surface, end.rest, tuning::kSameDistance * spacing, end.inside,
                                      tuning::kInnerDepth * spacing);
   if (!nearest || nearest->distance > tuning::kFarthestFromEnd * spacing) return false;
-  end.carriers = carriersAt(surface, nearest->on);
   if (nearest->distance > tuning::kSameDistance * spacing) end.rest = restOf(surface, nearest->on);
+  if (bite > 0.0) {
+    HeldSurface held = heldAround(surface, nearest->on, bite);
+    end.carriers = std::move(held.carriers);
+    end.to_middle = held.middle - end.rest;
+  } else {
+    end.carriers = carriersAt(surface, nearest->on);
+  }
   return true;
 }
 
@@ -161,7 +168,8 @@ std::vector<int> Threads::rebind(const TissueSurface& surface, double spacing) {
   std::vector<int> left;
   const auto is_lost = [&](SutureThread& thread) {
     const SutureThread before = thread;
-    if (bindEnd(surface, spacing, thread.from) && bindEnd(surface, spacing, thread.to)) {
+    if (bindEnd(surface, spacing, thread.bite, thread.from) &&
+        bindEnd(surface, spacing, thread.bite, thread.to)) {
       return false;
     }
     addNodes(before, left);

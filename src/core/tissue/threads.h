@@ -53,6 +53,6 @@ class Threads {
 
 // Binds the end to what carries its place on the surface at rest. False: the surface is too far
 // from there.
-bool bindEnd(const TissueSurface& surface, double spacing, SutureThread::End& end);
+bool bindEnd(const TissueSurface& surface, double spacing, double bite, SutureThread::End& end);
 
 }  // namespace robot_tissue
