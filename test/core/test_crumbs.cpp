@@ -6,6 +6,7 @@
 #include "../random_polygons.h"
 #include "cutting/crumbs.h"
 #include "cutting/cut.h"
+#include "cutting/tear.h"
 #include "lattice/connectivity.h"
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
@@ -108,6 +109,28 @@ TEST(Crumbs, OfABallCutAtRandomAndRemovedInPartThereAreNone) {
   }
   EXPECT_GT(removed, 0.0);
   EXPECT_NEAR(volumeOfPieces(tissue) + removed, volume, 1e-9 * volume);
+}
+
+// Stretched alike everywhere, and held so: all goes that may.
+TEST(Crumbs, OfABallThatTearsThereAreNone) {
+  TissueConfig config = ball();
+  config.material.tear_stretch = 1.2;
+  const Lattice lattice(config);
+  LatticeState state = lattice.restState();
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    state.displacement[at(node)] = 0.5 * lattice.restPosition(node);
+  }
+  const std::vector<double> strains = tearStrains(lattice, config);
+  std::vector<Crossing> torn = tearingNext(lattice, state, strains);
+  ASSERT_FALSE(torn.empty());
+  for (; !torn.empty(); torn = tearingNext(lattice, state, strains)) sever(lattice, torn, state);
+  EXPECT_GT(state.pieces, 5);
+  const std::vector<int> pieces = pieceOfNodes(lattice, state);
+  std::set<int> with_tissue;
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    if (hasTissue(lattice, node)) with_tissue.insert(pieces[at(node)]);
+  }
+  EXPECT_EQ(static_cast<int>(with_tissue.size()), state.pieces);
 }
 
 }  // namespace

@@ -11,6 +11,43 @@ namespace robot_tissue {
 namespace {
 
 constexpr int kAxes = 4;  // numbers of axes that an end leaves room for
+// So many times a mesh is sliced at half the spacing, each time a part of it: as much memory at a
+// time as slicing it at the spacing takes.
+constexpr int kSlabs = 8;
+
+// Which cells of half the spacing a mesh reaches into, of layers of cells of the grid along z, from
+// `first` to before `end`.
+class HalfSlab {
+ public:
+  HalfSlab(const TriangleMesh& mesh, const Grid& grid, int first, int end)
+      : first_(first), end_(end) {
+    Box slab = grid.shape();
+    slab.max().z() = slab.min().z() + grid.spacing() * end;
+    slab.min().z() += grid.spacing() * first;
+    const Grid halves(slab, 0.5 * grid.spacing());
+    row_ = halves.size()[0] - 1;
+    plane_ = row_ * (halves.size()[1] - 1);
+    occupied_ = slicedWithin(mesh, halves).occupied;
+  }
+
+  bool has(const std::array<int, 3>& cell) const { return cell[2] >= first_ && cell[2] < end_; }
+
+  // Bit c: that at the cell's corner c.
+  std::uint8_t eighthsOf(const std::array<int, 3>& cell) const {
+    unsigned bits = 0;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int half = 2 * cell[0] + (corner & 1) + row_ * (2 * cell[1] + (corner >> 1 & 1)) +
+                       plane_ * (2 * (cell[2] - first_) + (corner >> 2 & 1));
+      if (occupied_[at(half)] != 0) bits |= 1U << corner;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+
+ private:
+  int first_, end_;
+  int row_ = 0, plane_ = 0;
+  std::vector<std::uint8_t> occupied_;
+};
 
 // Means over a cell's materials.
 struct CellStiffness {
@@ -102,22 +139,16 @@ void Lattice::placeCells(const FilledGrid& tissue) {
   cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
 }
 
-// As the mesh reaches into cells of half the spacing.
 void Lattice::placeEighths(const TissueConfig& config) {
   if (config.mesh == nullptr) return;
-  const Grid halves(grid_.shape(), 0.5 * spacing());
-  const std::vector<std::uint8_t> occupied = sliced(*config.mesh, halves).occupied;
-  const int row = halves.size()[0] - 1, plane = row * (halves.size()[1] - 1);
   eighths_.assign(cells().size(), 0);
-  for (const Cell& cell : cells()) {
-    const std::array<int, 3>& lowest = gridIndex(cell.nodes.front());
-    unsigned bits = 0;
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const int half = 2 * lowest[0] + (corner & 1) + row * (2 * lowest[1] + (corner >> 1 & 1)) +
-                       plane * (2 * lowest[2] + (corner >> 2 & 1));
-      if (occupied[at(half)] != 0) bits |= 1U << corner;
+  const int layers = size()[2] - 1, thick = (layers + kSlabs - 1) / kSlabs;
+  for (int first = 0; first < layers; first += thick) {
+    const HalfSlab slab(*config.mesh, grid_, first, std::min(first + thick, layers));
+    for (const Cell& cell : cells()) {
+      const std::array<int, 3>& lowest = gridIndex(cell.nodes.front());
+      if (slab.has(lowest)) eighths_[at(cell.place)] = slab.eighthsOf(lowest);
     }
-    eighths_[at(cell.place)] = static_cast<std::uint8_t>(bits);
   }
 }
 
