@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "robot_tissue/core/grid_box.h"
 #include "robot_tissue/core/carriers.h"
+#include "robot_tissue/core/grid_box.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
 #include "robot_tissue/core/solve_report.h"
