@@ -25,9 +25,7 @@ const StepReport& Pipeline::carryOn() {
   if (world_.tissue.isLoading()) loadOn();
   finish();
   countLate();
-  world_.report.late = isLate();
-  world_.report.gave_up = gave_up_;
-  return world_.report;
+  return endReport();
 }
 
 // Counts the iterations since the tools stand; a solve that never converges is given up in the end,

@@ -25,10 +25,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  iterations_ = 0;
-  const bool follows = followTools(pose, good, otherwise);
-  patience_.note(iterations_, world_.tissue.usualIterations());
-  if (!follows) {
+  if (!followTools(pose, good, otherwise)) {
     ran_out_of_time_ = isOutOfTime();
     goBackTo(good);
     return false;
@@ -46,6 +43,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
 // Later rounds only if the solve moved nodes into a tool with a rigid patch; for the others the
 // solver asks for the contacts itself (ContactUpdate). False: no shape followed.
 bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
+  const Patience::LoadStep load_step(world_.tissue.patience());
   const double spacing = world_.tissue.lattice().spacing();
   for (int round = 1;; ++round) {
     world_.sticking.ride(pose, world_.tissue);
@@ -69,7 +67,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     if (leaptFrom(good) || turnedOver(good) || isRefused(otherwise)) return false;
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
-    const bool is_last = round == tuning::kRigidRounds || isOutOfPatience();
+    const bool is_last = round == tuning::kRigidRounds || world_.tissue.patience().left() == 0;
     if (is_last) return deepest <= tuning::kThrough * spacing;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
@@ -100,15 +98,12 @@ void LoadStepper::beginTimeStep(double duration, Touched touched) {
 bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
   for (int more = 0;; ++more) {
     if (isLost(good) || isRefused(otherwise)) return false;
-    if (more == tuning::kMoreSolves || isOutOfPatience() || !isUnsettled()) return true;
+    const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
+    if (is_last || !isUnsettled()) return true;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
     follow(patchesOfTools(world_));
   }
-}
-
-bool LoadStepper::isOutOfPatience() const {
-  return patience_.isOver() && iterations_ > tuning::kLastIterations;
 }
 
 bool LoadStepper::isRefused(IfUnconverged otherwise) const {
@@ -118,12 +113,7 @@ bool LoadStepper::isRefused(IfUnconverged otherwise) const {
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(world_.report.solve_ms);
-  if (patience_.isOver()) world_.tissue.limitIterations(tuning::kLastIterations);
-  const SolveReport solved =
-      world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
-  world_.tissue.limitIterations(std::nullopt);
-  iterations_ += solved.iterations;
-  if (solved.status == SolveStatus::kUnconverged) cycles_in_vain_ += solved.iterations;
+  world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
   world_.report.changed = true;
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "grasping.h"
-#include "patience.h"
 #include "tool_contact_update.h"
 #include "touch_finder.h"
 #include "world.h"
@@ -46,10 +45,6 @@ class LoadStepper {
   Checkpoint checkpoint() const;
   void goBackTo(const Checkpoint& good);
 
-  Patience& patience() { return patience_; }
-  // Of solves that did not converge, since it was set to 0.
-  int cyclesInVain() const { return cycles_in_vain_; }
-  void forgetCyclesInVain() { cycles_in_vain_ = 0; }
   // As the last load step that no shape followed ended.
   bool ranOutOfTime() const { return ran_out_of_time_; }
   double throughAt(std::size_t link) const;
@@ -65,7 +60,6 @@ class LoadStepper {
   void follow(std::vector<LoadingPatch> patches);
   bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
-  bool isOutOfPatience() const;
   bool isRefused(IfUnconverged otherwise) const;
   bool isLost(const Checkpoint& good) const;
   bool leaptFrom(const Checkpoint& good) const;
@@ -81,9 +75,6 @@ class LoadStepper {
   TouchFinder& touch_finder_;
   ToolContactUpdate& contact_update_;
   Grasping& grasping_;
-  Patience patience_;
-  int iterations_ = 0;  // of all solves of the load step
-  int cycles_in_vain_ = 0;
   bool ran_out_of_time_ = false;
 };
 

@@ -53,7 +53,7 @@ const std::optional<RobotPose>& Pipeline::pose() const { return world_.last_pose
 
 ForceBalance Pipeline::forceBalance() const { return forceBalanceOf(world_); }
 
-void Pipeline::limitPatience() { parts_->load_step.patience().limit(); }
+void Pipeline::limitPatience() { world_.tissue.patience().limit(); }
 
 void Pipeline::setEnd(const Deadline& end) {
   end_ = end;
@@ -86,10 +86,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
     world_.unfinished = false;
     stepTo(goal, pose);
   }
-  world_.report.late = isLate();
-  world_.report.gave_up = gave_up_;
-  world_.report.hopeless = parts_->load_step.patience().isOver();
-  return world_.report;
+  return endReport();
 }
 
 void Pipeline::beginReport() {
@@ -105,6 +102,13 @@ void Pipeline::beginReport() {
   world_.report.substeps = world_.report.springs_cut = world_.report.springs_torn = 0;
   world_.report.area_cut = world_.report.volume_removed = 0.0;
   world_.report.lost_loads.clear();
+}
+
+const StepReport& Pipeline::endReport() {
+  world_.report.late = isLate();
+  world_.report.gave_up = gave_up_;
+  world_.report.hopeless = world_.tissue.patience().cutsOff();
+  return world_.report;
 }
 
 // goal: the pose, with the ways of tools that a force drives.
@@ -268,7 +272,6 @@ std::optional<StillPose> Pipeline::stillPose() const {
 
 void Pipeline::reset() {
   forgetTools();
-  parts_->load_step.patience().forget();
   world_.tissue.reset();
   world_.sliding.commit(world_.pose, world_.tissue);
   describeTools();

@@ -63,7 +63,8 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double load_steps = ways_.stepsBetween(start, pose);
   const double steps = stepsOf(load_steps, start, pose);
   double gone = 0.0, longest = std::exchange(begins_short_, false) ? tuning::kShortestStep : 1.0;
-  load_step_.forgetCyclesInVain();
+  Patience& patience = world_.tissue.patience();
+  patience.forgetWay();
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
   while (gone < steps) {
     const bool flies = load_steps > 0.0 && !world_.tissue.isMoving();
@@ -75,17 +76,15 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
     const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
     if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
-      if (longest == 1.0) load_step_.forgetCyclesInVain();
+      if (longest == 1.0) patience.forgetWay();
       gone = there;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
-      if (is_last || !(world_.deadline.isOver() || load_step_.patience().isOver())) continue;
-      (load_step_.patience().isOver() ? world_.report.lost : world_.report.too_fast) = true;
+      if (is_last || !(world_.deadline.isOver() || patience.cutsOff())) continue;
+      (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
-    const bool is_hopeless =
-        load_step_.cyclesInVain() > tuning::kMostCyclesInVain || load_step_.patience().isOver();
-    if (is_short || is_hopeless) {
+    if (is_short || patience.isOver()) {
       world_.report.lost = true;
       const double next = std::min(gone + tuning::kShortestStep, there);
       world_.dead_end = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
@@ -179,12 +178,11 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
   }
   if (!any) return;
   world_.last_pose = from;
-  if (load_step_.advance(from)) {
-    world_.last_pose = walk(pose);
-  } else {
+  if (!load_step_.advance(from)) {
+    if (world_.tissue.patience().cutsOff()) return;  // all would meet the jam anew
     startAnew(pose);
-    world_.last_pose = walk(pose);
   }
+  world_.last_pose = walk(pose);
 }
 
 // Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
@@ -265,6 +263,9 @@ void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose
   world_.last_pose = without;
   if (load_step_.advance(without)) {
     comeAndGo(pose);
+  } else if (world_.tissue.patience().cutsOff()) {
+    world_.report.lost = true;
+    return;  // as in leaveStuck
   } else {
     startAnew(pose);
   }

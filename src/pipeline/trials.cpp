@@ -5,7 +5,6 @@ namespace robot_tissue {
 
 struct Pipeline::Mark {
   Checkpoint now;
-  Patience patience;
   std::vector<Checkpoint> checkpoints;
   ForceDrive drive;
   std::vector<BladeState> blades;
@@ -22,11 +21,11 @@ struct Pipeline::Mark {
 };
 
 void Pipeline::beginTrial() {
-  trial_from_ = std::make_shared<const Mark>(Mark{
-      parts_->load_step.checkpoint(), parts_->load_step.patience(), parts_->motion.checkpoints(),
-      parts_->drive, parts_->blades.states(), parts_->burrs.states(), parts_->scissors.states(),
-      world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
-      world_.unfinished, touched_, world_.report});
+  trial_from_ = std::make_shared<const Mark>(
+      Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
+           parts_->blades.states(), parts_->burrs.states(), parts_->scissors.states(),
+           world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
+           world_.unfinished, touched_, world_.report});
   world_.tissue.beginAside();
   world_.is_trial = true;
 }
@@ -36,7 +35,6 @@ void Pipeline::undoTrial() {
   const Mark& mark = *trial_from_;
   world_.tissue.endAside();
   parts_->load_step.goBackTo(mark.now);
-  parts_->load_step.patience() = mark.patience;
   parts_->motion.restore(mark.checkpoints);
   parts_->drive = mark.drive;
   parts_->blades.restore(mark.blades);

@@ -15,17 +15,6 @@ constexpr double kStepOfThickness = 0.25;
 // Of a load step (1): the shortest that is tried where no shape follows. Less: more is followed
 // between tools that meet, at up to 1 / this as many solves. Chosen.
 constexpr double kShortestStep = 1.0 / 8.0;
-// Cycles of solves that did not converge, since the last whole load step: then the way is given up.
-// More: hopeless ways take longer, and a few more are followed. Chosen.
-constexpr int kMostCyclesInVain = 3000;
-// Iterations beyond those usual in a load step, over all of a scene: then ways are given up whose
-// load steps go on to be hard. And what an easy one forgives of them. More: jams are followed for
-// longer. Chosen.
-constexpr int kMostSpent = 2000;
-constexpr int kForgiven = 5;
-// Iterations of a load step after that, at most but for those of one solve: what lets go then may
-// still come to rest. Chosen: ten usual ones.
-constexpr int kLastIterations = 300;
 // Shapes at the ends of load steps that are kept for rigid patches to come back to. More: a longer
 // way back is found again, for a copy of the shape each. Chosen.
 constexpr std::size_t kMostCheckpoints = 64;

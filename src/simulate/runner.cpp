@@ -80,9 +80,11 @@ void Runner::performAll() {
     try {
       const int torn = pipeline_.tissue().springsTorn();
       const std::size_t dropped = pipeline_.tissue().droppedPieces().size();
+      const bool was_impatient = pipeline_.tissue().patience().cutsOff();
       std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
       remarkTorn(torn);
       remarkDropped(dropped);
+      if (!was_impatient) remarkImpatience();
       if (on_step_) on_step_(step_, pipeline_.tissue());
     } catch (const InputError& error) {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());
@@ -173,6 +175,13 @@ void Runner::remarkTorn(int before) {
   if (torn <= 0) return;
   remark(std::to_string(torn) +
          " springs tore; pieces: " + std::to_string(pipeline_.tissue().state().pieces));
+}
+
+void Runner::remarkImpatience() {
+  if (!pipeline_.tissue().patience().cutsOff()) return;
+  remark(
+      "it took far too many iterations; while load steps go on to be hard, each has the usual "
+      "ones alone");
 }
 
 void Runner::keepTool(std::size_t tool, int increment) {

@@ -46,6 +46,7 @@ class Runner {
   void performAll();
   void remark(const std::string& text);
   void remarkTorn(int before);
+  void remarkImpatience();
   void keep(SolveReport report, int increment = 1, int increments = 1);
   void keepTool(std::size_t tool, int increment);
   void keepShape();

@@ -15,6 +15,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/patience.h"
 #include "robot_tissue/core/removed_space.h"
 #include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/solve_report.h"
@@ -116,11 +117,9 @@ class Tissue {
   bool isUntouched() const { return patches_.size() == named_patches_; }
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
-  // Iterations of a load step beyond which it is a hard one for the method.
-  int usualIterations() const;
-  // Iterations after which no further round of a load step begins, from here on; none: as many as
-  // ever.
-  void limitIterations(std::optional<int> most) { most_iterations_ = most; }
+  // Of all its solves.
+  Patience& patience() { return patience_; }
+  const Patience& patience() const { return patience_; }
   // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
   const std::vector<LoadingPatch>& patches() const { return patches_; }
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
@@ -302,6 +301,7 @@ class Tissue {
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   bool isBounded() const;
   double mostMs() const;
+  int mostIterations() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
   SutureThread threadOf(const SutureConfig& config) const;
@@ -367,7 +367,7 @@ class Tissue {
   std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
   bool is_late_ = false;  // likewise
-  std::optional<int> most_iterations_;
+  Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
   ContactUpdate* contact_update_ = nullptr;

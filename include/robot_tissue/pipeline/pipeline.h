@@ -82,8 +82,8 @@ class Pipeline {
   const StepReport& carryOn();
   // The tools are where they were asked to be last, and the shape is the one there, in balance.
   bool hasArrived() const;
-  // From here on ways are given up (StepReport::hopeless) whose load steps take far too long again
-  // and again, counted by iterations over all steps since the last reset.
+  // From here on load steps that take far too long again and again, counted by iterations over all
+  // solves since the last reset, are cut off, and ways given up (Patience, StepReport::hopeless).
   void limitPatience();
   // No call begins a solve after it; what a call leaves then it tells as late.
   void setEnd(const Deadline& end);
@@ -146,6 +146,7 @@ class Pipeline {
   void takeTools(const std::vector<ToolGeometry>& tools);
   void forgetTools();
   void beginReport();
+  const StepReport& endReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
   bool goInLegs(const RobotPose& pose);
   void goTo(RobotPose pose);

@@ -38,6 +38,9 @@ class SolverMethod {
   // Time that each solve may take from here on (ms), in the place of the options' max_ms; 0: no
   // bound.
   virtual void limitTime(double) {}
+  // Likewise iterations, besides the options' own bound; then it ends, unconverged. Methods that do
+  // not know their usual iterations need not know it.
+  virtual void limitIterations(int) {}
 
   // Of the cells on their nodes in that shape (N), gravity and inertia not included, where the
   // method has a faster way than the model; empty: it has none.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "cutting/removal.h"
@@ -59,6 +60,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   rebuildSurface();
   planMembranes(tissue);
   method_ = makeMethod(solver, lattice_, *model_);
+  patience_ = Patience(method_->usualIterations());
   weight_ = model_->weight(state_);
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
 }
@@ -69,8 +71,6 @@ Tissue::~Tissue() = default;
 double Tissue::stepLength() const {
   return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
 }
-
-int Tissue::usualIterations() const { return method_->usualIterations(); }
 
 Tissue::Displacements Tissue::displacements() const {
   if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
@@ -131,11 +131,15 @@ void Tissue::restore(const Shape& shape) {
 }
 
 void Tissue::beginAside() {
-  if (!is_aside_) switchAside();
+  if (is_aside_) return;
+  patience_.beginTrial();
+  switchAside();
 }
 
 void Tissue::endAside() {
-  if (is_aside_) switchAside();
+  if (!is_aside_) return;
+  patience_.endTrial();
+  switchAside();
 }
 
 void Tissue::switchAside() {
@@ -149,6 +153,7 @@ void Tissue::reset() {
   const bool was_cut = !isAsMade(state_);
   stopTime();
   endAside();
+  patience_.forget();
   other_method_.reset();
   method_->forget();
   kept_.reset();
@@ -193,6 +198,7 @@ void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
 }
 
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
+  const Patience::LoadStep load_step(patience_);
   if (disturbed_.empty()) {
     disturbed_ = disturbed;
   } else {
@@ -227,7 +233,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     gain.note(of_round, state_.displacement, whole);
     const bool last =
         late || whole_rounds == tuning::kContactRounds || rounds == tuning::kMostRounds ||
-        report.iterations > most_iterations_.value_or(tuning::kMostIterations) || gain.isOver() ||
+        report.iterations > tuning::kMostIterations || patience_.left() == 0 || gain.isOver() ||
         (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_update_->renew(
         of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
@@ -236,6 +242,9 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     if (late) {
       is_late_ = true;
       last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
+    }
+    if (last && renewed && patience_.left() == 0) {
+      last_report_.status = report.status = std::max(report.status, SolveStatus::kUnconverged);
     }
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
@@ -290,6 +299,11 @@ double Tissue::mostMs() const {
   return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
 }
 
+// Of the next solve; of a time step's there is no bound, as above.
+int Tissue::mostIterations() const {
+  return in_time_step_ ? std::numeric_limits<int>::max() : std::max(1, patience_.left());
+}
+
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
   // it saves a method that stays finite.
@@ -299,6 +313,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   kept_.reset();
   limitWays();
   method_->limitTime(mostMs());
+  method_->limitIterations(mostIterations());
   SolveReport report = solveWithThreads(disturbed);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
@@ -312,6 +327,9 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
     report.patches.resize(patches_.size());
   }
   is_late_ = report.status == SolveStatus::kLate;
+  const bool converged = report.status != SolveStatus::kUnconverged;
+  // Loads alone are an answer, however long it took.
+  patience_.note(converged && isUntouched() ? 0 : report.iterations, converged);
   describeShape(report);
   last_report_ = report;
   return report;

@@ -91,6 +91,7 @@ SolveReport Tissue::tear() {
       worst = std::max(worst, SolveStatus::kLate);
       break;
     }
+    if (patience_.cutsOff() && last_report_.status == SolveStatus::kUnconverged) break;
     if (!any) change.emplace(*this, History::Kind::kTear);
     any = true;
     springs_torn_ += static_cast<int>(weakest.size());

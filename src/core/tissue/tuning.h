@@ -48,6 +48,20 @@ constexpr double kNearer = 0.7;
 // Less: creeping counts as gain. Chosen.
 constexpr double kFarther = 1.1;
 
+// Patience.
+// Iterations beyond those usual in a load step, over all of a scene: then load steps have the usual
+// ones alone, and ways are given up that ask for more. And what an easy load step forgives of them.
+// More: jams are followed for longer. Chosen: one slip of 800 is no jam, two at once are.
+constexpr int kMostSpent = 1000;
+constexpr int kForgiven = 5;
+// Of what is left of these (1): what one load step may take. Less: a hard one is cut off before the
+// method gives it up (2,000 cycles); more: one that comes late takes long.
+constexpr int kMostAtOnce = 2;
+// Iterations of load steps that did not converge, since the last whole one on a tool's way, where
+// nobody asked for an end of the scene: then the way is given up. More: hopeless ways take longer,
+// and a few more are followed. Chosen.
+constexpr int kMostSpentOnAWay = 3000;
+
 // Cuts.
 // Spacings (1): how far the lattice's nodes are from the surface that is shown, at most: a cell's
 // diagonal, rounded up. More: blades beside the tissue are looked at in vain.

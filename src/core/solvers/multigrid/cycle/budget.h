@@ -1,23 +1,25 @@
-// Time that a solve may take.
+// Time and cycles that a solve may take.
 #pragma once
 
 #include <chrono>
 
 namespace robot_tissue {
 
-// A clock that may run out.
+// A clock that may run out, and a count that does.
 class Budget {
  public:
-  explicit Budget(double max_ms) : max_ms_(max_ms) {}
+  Budget(double max_ms, int most_cycles) : max_ms_(max_ms), most_cycles_(most_cycles) {}
   double elapsedMs() const {
     const std::chrono::duration<double, std::milli> elapsed =
         std::chrono::steady_clock::now() - started_;
     return elapsed.count();
   }
+  int mostCycles() const { return most_cycles_; }
   bool isSpent() const { return max_ms_ > 0.0 && elapsedMs() > max_ms_; }
 
  private:
   double max_ms_;
+  int most_cycles_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 

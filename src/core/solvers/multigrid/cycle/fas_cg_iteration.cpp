@@ -1,5 +1,7 @@
 #include "solvers/multigrid/cycle/fas_cg_iteration.h"
 
+#include <algorithm>
+
 #include "solvers/multigrid/cycle/trial_at_rest.h"
 #include "solvers/multigrid/cycle/tuning.h"
 
@@ -95,7 +97,7 @@ bool FasCgIteration<Real>::isHopeless(const SolveContext& solve) const {
   if (!whole && progress_.isStuck(cycles, tuning::kPatienceInPart)) return true;
   const int most = solve.in_contact ? options_.max_cycles_in_contact : options_.max_cycles;
   const int patience = solve.in_contact ? options_.patience_in_contact : options_.patience;
-  return cycles >= most || progress_.isStuck(cycles, patience);
+  return cycles >= std::min(most, solve.budget.mostCycles()) || progress_.isStuck(cycles, patience);
 }
 
 template <typename Real>

@@ -33,7 +33,7 @@ int LayeredMethod::usualIterations() const { return cycle_tuning::kUsualCycles; 
 
 SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
                                  const std::vector<int>& disturbed, LatticeState& state) {
-  const Budget budget(options_.max_ms);
+  const Budget budget(options_.max_ms, most_cycles_);
   ConstrainedState shape{std::move(state), std::move(patches)};
   hold_.bind(shape);
   hold_.place(shape);

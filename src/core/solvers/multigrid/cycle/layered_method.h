@@ -5,6 +5,7 @@
 // is left, over that of the free nodes' displacement.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -29,6 +30,7 @@ class LayeredMethod : public SolverMethod {
   bool staysFinite() const override { return true; }
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
+  void limitIterations(int most) override { most_cycles_ = most; }
   double patchStep() const override;
   int usualIterations() const override;
   std::vector<Vec3> cellForces(const LatticeState& shape) override {
@@ -41,6 +43,7 @@ class LayeredMethod : public SolverMethod {
   const Lattice& lattice_;
   const ElasticModel& model_;
   LayeredOptions options_;
+  int most_cycles_ = std::numeric_limits<int>::max();
   DofConstraints hold_;
   Precision precision_;
   std::unique_ptr<MultigridSolver> solver_;

@@ -1,0 +1,178 @@
+// Load steps are given up that take far too long again and again: counted, not timed.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tissue_fixtures.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr int kUsual = 30;
+constexpr int kNoBound = std::numeric_limits<int>::max();
+
+Patience forScene() {
+  Patience patience(kUsual);
+  patience.limit();
+  return patience;
+}
+
+void solve(Patience& patience, int iterations, bool converged = true) {
+  const Patience::LoadStep load_step(patience);
+  patience.note(iterations, converged);
+}
+
+// Solves that take all that is left, until there is no more.
+void jam(Patience& patience) {
+  while (!patience.isOver()) solve(patience, patience.left(), false);
+}
+
+TEST(Patience, OutlastsASlipAndEndsInAJam) {
+  Patience patience = forScene();
+  solve(patience, 800);
+  EXPECT_FALSE(patience.isOver());
+  int hard = 0;
+  for (; hard < 1000 && !patience.isOver(); ++hard) solve(patience, 200);
+  EXPECT_LT(hard, 10);
+}
+
+TEST(Patience, ForgivesSlipsAmongEasyLoadSteps) {
+  Patience patience = forScene();
+  for (int slip = 0; slip < 100; ++slip) {
+    solve(patience, 800);
+    for (int easy = 0; easy < 200; ++easy) solve(patience, kUsual);
+    ASSERT_FALSE(patience.isOver()) << slip;
+  }
+}
+
+TEST(Patience, ForgivesNothingForWhatIsCutOff) {
+  Patience patience = forScene();
+  jam(patience);
+  for (int i = 0; i < 1000; ++i) solve(patience, patience.left(), false);
+  EXPECT_TRUE(patience.isOver());
+  solve(patience, kUsual);
+  EXPECT_FALSE(patience.isOver());
+}
+
+TEST(Patience, LeavesTheUsualIterationsToEachLoadStep) {
+  Patience patience = forScene();
+  jam(patience);
+  EXPECT_EQ(patience.left(), kUsual);
+  const Patience::LoadStep load_step(patience);
+  solve(patience, 20);
+  EXPECT_EQ(patience.left(), kUsual - 20);
+  solve(patience, 20);
+  EXPECT_EQ(patience.left(), 0);
+}
+
+TEST(Patience, TakesTheSolvesOfALoadStepAsOne) {
+  Patience once = forScene(), bit_by_bit = forScene();
+  for (int i = 0; i < 10; ++i) {
+    solve(once, 90);
+    const Patience::LoadStep load_step(bit_by_bit);
+    for (int part = 0; part < 6; ++part) solve(bit_by_bit, 15);
+  }
+  EXPECT_EQ(once.left(), bit_by_bit.left());
+}
+
+TEST(Patience, EndsForNoMethodThatKnowsNoUsualLoadStep) {
+  Patience patience;
+  patience.limit();
+  for (int i = 0; i < 100; ++i) solve(patience, 1000000);
+  EXPECT_FALSE(patience.isOver());
+  EXPECT_EQ(patience.left(), kNoBound);
+}
+
+TEST(Patience, IsOfOneWayUntilItIsLimited) {
+  Patience patience(kUsual);
+  jam(patience);
+  EXPECT_FALSE(patience.cutsOff());
+  EXPECT_EQ(patience.left(), kNoBound);
+  patience.forgetWay();
+  EXPECT_FALSE(patience.isOver());
+  patience.limit();
+  jam(patience);
+  patience.forgetWay();
+  EXPECT_TRUE(patience.cutsOff());
+  patience.forget();
+  EXPECT_FALSE(patience.isOver());
+}
+
+TEST(Patience, TrialsSpendTheirOwn) {
+  Patience patience = forScene();
+  patience.beginTrial();
+  jam(patience);
+  patience.endTrial();
+  EXPECT_FALSE(patience.isOver());
+  solve(patience, 200);
+  const int left = patience.left();
+  patience.beginTrial();
+  EXPECT_TRUE(patience.isOver());
+  patience.endTrial();
+  EXPECT_EQ(patience.left(), left);
+}
+
+TEST(Patience, IsOverForTrialsToo) {
+  Patience patience = forScene();
+  jam(patience);
+  patience.beginTrial();
+  EXPECT_TRUE(patience.isOver());
+  patience.endTrial();
+}
+
+// A block pulled out to twice its height, farther each time: more cycles than are usual.
+class ImpatientTissue : public ::testing::Test {
+ protected:
+  static TissueConfig block() {
+    TissueConfig config = withFixedBottom(blockOf(4, 4, 4, 0.01));
+    config.model = "elastic";
+    config.material.poisson_ratio = 0.49;
+    return config;
+  }
+  static SolverConfig exact() {
+    SolverConfig solver;
+    solver.tolerance = 1e-9;
+    return solver;
+  }
+  SolveReport pull(double way) {
+    const TissueConfig config = block();
+    LoadStep step =
+        loadOf({displacedPatch("top", nodeBox(config, {1, 1, 4}, {3, 3, 4}), {0, 0, way})});
+    step.increments = 1;
+    SolveReport report;
+    tissue_.load(step, [&](int, int, const SolveReport& of) { report = of; });
+    return report;
+  }
+  void SetUp() override { tissue_.patience().limit(); }
+
+  Tissue tissue_{block(), exact()};
+};
+
+TEST_F(ImpatientTissue, EndsItsLoadsAfterTheUsualIterationsAndSaysSo) {
+  ASSERT_EQ(pull(0.004).status, SolveStatus::kOk);
+  ASSERT_GT(tissue_.lastReport().iterations, kUsual);
+  jam(tissue_.patience());
+  const SolveReport report = pull(0.008);
+  EXPECT_EQ(report.status, SolveStatus::kUnconverged);
+  EXPECT_LE(report.iterations, kUsual);
+}
+
+TEST_F(ImpatientTissue, GivesUpTrialsByThemselves) {
+  tissue_.beginAside();
+  jam(tissue_.patience());
+  EXPECT_EQ(pull(0.004).status, SolveStatus::kUnconverged);
+  tissue_.endAside();
+  EXPECT_EQ(pull(0.006).status, SolveStatus::kOk);
+  tissue_.beginAside();
+  EXPECT_EQ(pull(0.004).status, SolveStatus::kUnconverged);
+  tissue_.endAside();
+}
+
+TEST_F(ImpatientTissue, BeginsAnewAtRest) {
+  jam(tissue_.patience());
+  tissue_.reset();
+  EXPECT_EQ(pull(0.004).status, SolveStatus::kOk);
+}
+
+}  // namespace
+}  // namespace robot_tissue
