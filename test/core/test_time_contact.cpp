@@ -33,6 +33,7 @@ class UnderAPlane {
     }
     return report.status;
   }
+  Tissue& tissue() { return tissue_; }
   bool rests() const { return !tissue_.isMoving(); }
   double energy() const {
     const Lattice& lattice = tissue_.lattice();
@@ -105,6 +106,19 @@ TEST(TimeInContact, EnergyNeverGrows) {
     }
     EXPECT_GT(longest_motion, 20);  // it did swing
   }
+}
+
+// Time goes on: no step of it can be given up.
+TEST(TimeInContact, SpendsNoPatience) {
+  UnderAPlane block(0.01);
+  Patience& patience = block.tissue().patience();
+  patience.limit();
+  const int before = patience.left();
+  block.put(0.01);
+  const Patience::LoadStep load_step(patience);
+  ASSERT_EQ(block.step(0.05), SolveStatus::kOk);
+  ASSERT_GT(block.tissue().lastReport().iterations, 0);
+  EXPECT_EQ(patience.left(), before);
 }
 
 }  // namespace

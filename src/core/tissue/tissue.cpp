@@ -328,8 +328,9 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   }
   is_late_ = report.status == SolveStatus::kLate;
   const bool converged = report.status != SolveStatus::kUnconverged;
-  // Loads alone are an answer, however long it took.
-  patience_.note(converged && isUntouched() ? 0 : report.iterations, converged);
+  // Loads alone are an answer, however long it took; and no time step can be left out.
+  const bool is_hard = !in_time_step_ && !(converged && isUntouched());
+  patience_.note(is_hard ? report.iterations : 0, converged);
   describeShape(report);
   last_report_ = report;
   return report;
