@@ -45,6 +45,16 @@ TEST(Patience, ForgivesSlipsAmongEasyLoadSteps) {
   }
 }
 
+// As counted where a box's edge is dragged over 25 mm of a block.
+TEST(Patience, OutlastsTissueThatSnapsOverAnEdge) {
+  Patience patience = forScene();
+  for (const int hard_steps : {4, 5, 7}) {
+    for (int hard = 0; hard < hard_steps; ++hard) solve(patience, 150);
+    ASSERT_FALSE(patience.isOver()) << hard_steps;
+    for (int easy = 0; easy < 46; ++easy) solve(patience, 10);
+  }
+}
+
 TEST(Patience, ForgivesNothingForWhatIsCutOff) {
   Patience patience = forScene();
   jam(patience);
