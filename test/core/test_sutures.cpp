@@ -79,6 +79,20 @@ TEST(Sutures, ThatBiteGiveTheSameStiffnessBackOnAFinerLattice) {
   EXPECT_LT(stiffnessBack(0.0025, 0.0), 0.7 * stiffnessBack(0.005, 0.0));  // points sink in
 }
 
+TEST(Sutures, HoldAPointWhereTheirBiteIsNoLength) {
+  const TissueConfig config = barOf();
+  Tissue point(config, solverWith("layered"));
+  SutureConfig stitch = threadOf("s1", {0.0213, 0.0107, 0.02}, {0.025, 0.01, 0.02});
+  stitch.rest_length = 0.003;
+  point.suture(stitch);
+  for (const double bite : {1e-300, 1e-19}) {
+    Tissue tissue(config, solverWith("layered"));
+    stitch.bite = bite;
+    tissue.suture(stitch);
+    EXPECT_EQ(tissue.state().displacement, point.state().displacement) << bite;
+  }
+}
+
 TEST(Sutures, KeepTheirBiteWhenTheyAreSaved) {
   const TissueConfig config = barOf();
   Tissue tissue(config, solverWith("layered")), loaded(config, solverWith("layered"));

@@ -14,6 +14,9 @@ namespace {
 // Of the radius (1): triangles are looked at in parts whose sides are no longer. More: weights that
 // hang on the triangles; less: time, with its square. Chosen.
 constexpr double kPart = 0.25;
+// Times that a triangle's sides are halved for that, at most: a radius that asks for more is none,
+// and before long sides are of rounding. More: smaller radii count. Chosen.
+constexpr int kMostHalvings = 16;
 
 // A part of a triangle: corners at rest, and where they are in the triangle.
 struct Part {
@@ -52,7 +55,7 @@ class Holding {
     const MeshTriangle& corners = surface_.triangles[at(triangle)];
     Part whole{{}, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
     for (std::size_t i = 0; i < 3; ++i) whole.places[i] = surface_.rest[at(corners[i])];
-    add(corners, whole);
+    add(corners, whole, kMostHalvings);
   }
 
   HeldSurface held() const {
@@ -65,12 +68,12 @@ class Holding {
   }
 
  private:
-  void add(const MeshTriangle& corners, const Part& part) {
+  void add(const MeshTriangle& corners, const Part& part, int halvings) {
     const Vec3 middle = (part.places[0] + part.places[1] + part.places[2]) / 3.0;
     const double side = part.longestSide(), distance = (middle - center_).norm();
-    if (side > kPart * radius_) {
+    if (side > kPart * radius_ && halvings > 0) {
       if (distance > radius_ + side) return;
-      for (const Part& quarter : quarters(part)) add(corners, quarter);
+      for (const Part& quarter : quarters(part)) add(corners, quarter, halvings - 1);
       return;
     }
     const double share = distance / radius_;
