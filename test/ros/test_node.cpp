@@ -75,13 +75,15 @@ TEST_F(RunningNode, WrenchGrowsWithDepthWithTheRightSignAndFrame) {
 TEST_F(RunningNode, ContactsTellPatchAndNormal) {
   press(0.004);
   ASSERT_TRUE(waitForContacts());
+  // Those of a shape that had yet to come to balance, on a busy machine, are deeper.
+  ASSERT_TRUE(waitFor(
+      [this] { return !contacts_->contacts.empty() && contacts_->contacts.front().depth < 1e-4; }));
   const TissueContact& contact = contacts_->contacts.front();
   EXPECT_EQ(contacts_->header.frame_id, "tissue");
   EXPECT_EQ(contact.tool, "probe");
   EXPECT_GT(contact.nodes.size(), 3U);
   EXPECT_NEAR(contact.normal.z, -1.0, 0.01);
   EXPECT_LT(contact.force.z, 0.0);  // of the tool on the tissue: down
-  EXPECT_LT(contact.depth, 1e-4);
 }
 
 TEST_F(RunningNode, CutSeversSpringsAndResetBringsThemBackBitForBit) {
