@@ -81,15 +81,20 @@ TEST(Sutures, ThatBiteGiveTheSameStiffnessBackOnAFinerLattice) {
 
 TEST(Sutures, HoldAPointWhereTheirBiteIsNoLength) {
   const TissueConfig config = barOf();
-  Tissue point(config, solverWith("layered"));
-  SutureConfig stitch = threadOf("s1", {0.0213, 0.0107, 0.02}, {0.025, 0.01, 0.02});
-  stitch.rest_length = 0.003;
-  point.suture(stitch);
-  for (const double bite : {1e-300, 1e-19}) {
-    Tissue tissue(config, solverWith("layered"));
-    stitch.bite = bite;
-    tissue.suture(stitch);
-    EXPECT_EQ(tissue.state().displacement, point.state().displacement) << bite;
+  for (const double place : {0.0113, 0.0127, 0.0131, 0.0149, 0.0213}) {
+    SutureConfig stitch = threadOf("s1", {place, 0.0107, 0.02}, {0.025, 0.01, 0.02});
+    stitch.rest_length = 0.003;
+    Tissue point(config, solverWith("layered"));
+    point.suture(stitch);
+    for (const double bite : {1e-300, 1e-19}) {
+      Tissue tissue(config, solverWith("layered"));
+      stitch.bite = bite;
+      tissue.suture(stitch);
+      EXPECT_EQ(tissue.state().displacement, point.state().displacement) << bite;
+      const std::string bytes = tissue.savedState();
+      ASSERT_NO_THROW(tissue.loadState(*tissue.readState(bytes))) << place << ", " << bite;
+      EXPECT_EQ(tissue.savedState(), bytes) << bite;
+    }
   }
 }
 

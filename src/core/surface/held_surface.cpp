@@ -60,6 +60,7 @@ class Holding {
 
   HeldSurface held() const {
     HeldSurface held;
+    if (!(whole_ > 0.0)) return held;
     held.middle = center_ + moment_ / whole_;
     for (const auto& [node, weight] : weights_) {
       if (weight > 0.0) held.carriers.push_back({node, weight / whole_});
@@ -128,9 +129,7 @@ HeldSurface heldAround(const TissueSurface& surface, const SurfacePoint& point, 
   for (const int triangle : near) {
     if (group(triangle) == group(point.triangle)) holding.add(triangle);
   }
-  HeldSurface held = holding.held();
-  if (held.carriers.empty()) return {carriersAt(surface, point), center};
-  return held;
+  return holding.held();
 }
 
 }  // namespace robot_tissue

@@ -154,13 +154,14 @@ bool bindEnd(const TissueSurface& surface, double spacing, double bite, SutureTh
                                      tuning::kInnerDepth * spacing);
   if (!nearest || nearest->distance > tuning::kFarthestFromEnd * spacing) return false;
   if (nearest->distance > tuning::kSameDistance * spacing) end.rest = restOf(surface, nearest->on);
+  end.carriers.clear();
+  end.to_middle.setZero();
   if (bite > 0.0) {
     HeldSurface held = heldAround(surface, nearest->on, bite);
     end.carriers = std::move(held.carriers);
-    end.to_middle = held.middle - end.rest;
-  } else {
-    end.carriers = carriersAt(surface, nearest->on);
+    if (!end.carriers.empty()) end.to_middle = held.middle - end.rest;
   }
+  if (end.carriers.empty()) end.carriers = carriersAt(surface, nearest->on);
   return true;
 }
 
