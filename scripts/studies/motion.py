@@ -158,8 +158,6 @@ def drag_scene(shape, height, spacing, damping_time):
 TOOLS = {"sphere": ({"type": "sphere", "radius": 0.01}, 0.01),
          "box, edge": ({"type": "box", "size": [0.02, 0.02, 0.02], "rpy": [0, math.pi / 4, 0]},
                        0.01 * math.sqrt(2.0))}
-
-
 DAMPING_TIMES = (None, 0.01, 0.03, 0.1)  # s; None: no time
 
 
@@ -172,8 +170,9 @@ def measure_drag(simulate, tool, spacing, damping_time):
     ms = numbers(rows, "update_ms")
     jumps = np.linalg.norm(np.diff(forces, axis=0), axis=1)
     greatest = np.linalg.norm(forces, axis=1).max()
-    return {"tool": tool, "spacing_m": spacing, "damping_time_s":
-            "" if damping_time is None else damping_time, "status": worst(rows), "median_ms": f"{percentile(ms, 50):.3g}",
+    return {"tool": tool, "spacing_m": spacing,
+            "damping_time_s": "" if damping_time is None else damping_time,
+            "status": worst(rows), "median_ms": f"{percentile(ms, 50):.3g}",
             "mean_ms": f"{sum(ms) / len(ms):.3g}", "percentile_99_ms": f"{percentile(ms, 99):.3g}",
             "greatest_N": f"{greatest:.3g}", "greatest_jump_percent":
             f"{100.0 * jumps.max() / greatest:.3g}"}
