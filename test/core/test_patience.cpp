@@ -85,6 +85,33 @@ TEST(Patience, TakesTheSolvesOfALoadStepAsOne) {
   EXPECT_EQ(once.left(), bit_by_bit.left());
 }
 
+// Of four iterations in a time step, one.
+TEST(Patience, TakesMoreOfTimeSteps) {
+  Patience of_loads = forScene(), of_time = forScene();
+  for (int i = 0; i < 10; ++i) {
+    solve(of_loads, 90);
+    const Patience::LoadStep load_step(of_time);
+    of_time.note(4 * 90, true, Patience::Of::kTimeStep);
+  }
+  EXPECT_FALSE(of_loads.isOver());
+  EXPECT_EQ(of_time.left(), of_loads.left());
+  EXPECT_EQ(of_time.left(Patience::Of::kTimeStep), 4 * of_loads.left());
+}
+
+// A method that usually takes more is given more.
+TEST(Patience, GoesByWhatIsUsual) {
+  Patience quick = forScene(), slow(10 * kUsual);
+  slow.limit();
+  for (int hard = 0; hard < 1000 && !quick.isOver(); ++hard) {
+    ASSERT_EQ(slow.left(), 10 * quick.left()) << hard;
+    solve(quick, 200);
+    solve(slow, 2000);
+    if (hard % 3 > 0) continue;
+    for (Patience* patience : {&quick, &slow}) solve(*patience, kUsual);
+  }
+  EXPECT_TRUE(slow.isOver());
+}
+
 TEST(Patience, EndsForNoMethodThatKnowsNoUsualLoadStep) {
   Patience patience;
   patience.limit();

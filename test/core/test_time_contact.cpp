@@ -108,8 +108,7 @@ TEST(TimeInContact, EnergyNeverGrows) {
   }
 }
 
-// Time goes on: no step of it can be given up.
-TEST(TimeInContact, SpendsNoPatience) {
+TEST(TimeInContact, CountsAQuarterOfItsIterations) {
   UnderAPlane block(0.01);
   Patience& patience = block.tissue().patience();
   patience.limit();
@@ -117,8 +116,10 @@ TEST(TimeInContact, SpendsNoPatience) {
   block.put(0.01);
   const Patience::LoadStep load_step(patience);
   ASSERT_EQ(block.step(0.05), SolveStatus::kOk);
-  ASSERT_GT(block.tissue().lastReport().iterations, 0);
-  EXPECT_EQ(patience.left(), before);
+  const int iterations = block.tissue().lastReport().iterations;
+  ASSERT_GT(iterations, 0);
+  EXPECT_LE(before - patience.left(), (iterations + 3) / 4 + 1);
+  EXPECT_GE(before - patience.left(), iterations / 4);
 }
 
 }  // namespace

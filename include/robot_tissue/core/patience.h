@@ -40,9 +40,12 @@ class Patience {
     if (!is_for_scene_) spent_ = 0;
   }
 
-  void note(int iterations, bool converged);  // of a solve
+  // What is solved: in a time step contacts begin and end at speed, so it may take several times as
+  // many, and counts the less.
+  enum class Of { kLoadStep, kTimeStep };
+  void note(int iterations, bool converged, Of what = Of::kLoadStep);  // of a solve
   // Iterations that the load step may still take.
-  int left() const;
+  int left(Of what = Of::kLoadStep) const;
   bool isOver() const { return spent_ >= most(); }
   // It is over, and load steps have the usual iterations alone.
   bool cutsOff() const { return is_for_scene_ && isOver(); }
@@ -54,6 +57,7 @@ class Patience {
 
  private:
   int most() const;
+  int timesUsual(double times) const;
   void endSolve();
   void endLoadStep();
 

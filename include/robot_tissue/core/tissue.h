@@ -302,6 +302,7 @@ class Tissue {
   bool isBounded() const;
   double mostMs() const;
   int mostIterations() const;
+  Patience::Of solved() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
   SutureThread threadOf(const SutureConfig& config) const;

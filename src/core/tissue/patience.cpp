@@ -1,24 +1,36 @@
 #include "robot_tissue/core/patience.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 
-int Patience::most() const { return is_for_scene_ ? tuning::kMostSpent : tuning::kMostSpentOnAWay; }
+int Patience::most() const {
+  return is_for_scene_ ? timesUsual(tuning::kMostSpent) : tuning::kMostSpentOnAWay;
+}
 
-void Patience::note(int iterations, bool converged) {
-  taken_ += iterations;
-  unsettled_ += iterations;
+// All there are of a method that does not know them.
+int Patience::timesUsual(double times) const {
+  constexpr int kNoBound = std::numeric_limits<int>::max();
+  return usual_ == kNoBound ? kNoBound : static_cast<int>(std::lround(times * usual_));
+}
+
+void Patience::note(int iterations, bool converged, Of what) {
+  const int times = what == Of::kTimeStep ? tuning::kTimesInTimeStep : 1;
+  const int counted = (iterations + times - 1) / times;
+  taken_ += counted;
+  unsettled_ += counted;
   converged_ = converged;
 }
 
-int Patience::left() const {
+int Patience::left(Of what) const {
   constexpr int kNoBound = std::numeric_limits<int>::max();
   if (!is_for_scene_ || usual_ == kNoBound) return kNoBound;
-  return std::max(0, usual_ + tuning::kMostAtOnce * (most() - spent_) - taken_);
+  const int left = std::max(0, usual_ + tuning::kMostAtOnce * (most() - spent_) - taken_);
+  return what == Of::kTimeStep ? tuning::kTimesInTimeStep * left : left;
 }
 
 void Patience::endSolve() {
@@ -30,7 +42,7 @@ void Patience::endLoadStep() {
   if (is_for_scene_ && taken_ > usual_) {
     spent_ = std::min(spent_ + taken_ - usual_, most());
   } else if (converged_) {
-    spent_ = std::max(spent_ - tuning::kForgiven, 0);
+    spent_ = std::max(spent_ - timesUsual(tuning::kForgiven), 0);
   }
   taken_ = 0;
   converged_ = true;

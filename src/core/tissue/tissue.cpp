@@ -299,9 +299,11 @@ double Tissue::mostMs() const {
   return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
 }
 
-// Of the next solve; of a time step's there is no bound, as above.
-int Tissue::mostIterations() const {
-  return in_time_step_ ? std::numeric_limits<int>::max() : std::max(1, patience_.left());
+// Of the next solve.
+int Tissue::mostIterations() const { return std::max(1, patience_.left(solved())); }
+
+Patience::Of Tissue::solved() const {
+  return in_time_step_ ? Patience::Of::kTimeStep : Patience::Of::kLoadStep;
 }
 
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
@@ -328,9 +330,9 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   }
   is_late_ = report.status == SolveStatus::kLate;
   const bool converged = report.status != SolveStatus::kUnconverged;
-  // Loads alone are an answer, however long it took; and no time step can be left out.
-  const bool is_hard = !in_time_step_ && !(converged && isUntouched());
-  patience_.note(is_hard ? report.iterations : 0, converged);
+  // Loads alone are an answer, however long it took.
+  const bool is_hard = !(converged && isUntouched());
+  patience_.note(is_hard ? report.iterations : 0, converged, solved());
   describeShape(report);
   last_report_ = report;
   return report;

@@ -295,6 +295,8 @@ double ExplicitMethod::longestStableStep(const std::vector<double>& masses,
   return tuning::kOfStable * 2.0 / frequency * (std::sqrt(1.0 + damping * damping) - damping);
 }
 
+int ExplicitMethod::usualIterations() const { return tuning::kUsualOfExplicit; }
+
 // Of an error in the slowest wave a step leaves (1 - s) / (1 + s), s its frequency a step where the
 // damping is critical for it. Damped for a faster one, that the motion shows, s is less in
 // proportion.

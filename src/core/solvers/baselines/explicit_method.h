@@ -29,6 +29,7 @@ class ExplicitMethod : public RelaxationMethod {
   SolveStatus goThrough(int& steps) override;
   void iterate() override;
   int stride() const override { return 8; }
+  int usualIterations() const override;
   double shrinkage() const override;
 
   // One time step on its way.

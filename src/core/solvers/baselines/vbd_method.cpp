@@ -73,6 +73,8 @@ void VbdMethod::iterate() {
   extrapolate();
 }
 
+int VbdMethod::usualIterations() const { return tuning::kUsualOfVbd; }
+
 // Gauss-Seidel damps a slow wave of eigenvalue w of D^-1 K by the factor 1 - 2 w a sweep,
 // over-relaxed by r by 1 - 2 w r / (2 - r); at least one half is taken to be left.
 double VbdMethod::shrinkage() const {

@@ -25,6 +25,7 @@ class VbdMethod : public RelaxationMethod {
   void begin(int care) override;
   void iterate() override;
   int stride() const override { return 2; }
+  int usualIterations() const override;
   double shrinkage() const override;
 
   using Acceleration = VbdOptions::Acceleration;

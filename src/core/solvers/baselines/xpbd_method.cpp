@@ -320,6 +320,8 @@ bool XpbdMethod::settles(double& to_go) {
   return false;
 }
 
+int XpbdMethod::usualIterations() const { return tuning::kUsualOfXpbd; }
+
 // Of an error in the slowest wave, critically damped, a step leaves (1 - s) / (1 + s).
 double XpbdMethod::shrinkage() const {
   const double share = std::sqrt(stretch_ * slowestWave());

@@ -33,6 +33,7 @@ class XpbdMethod : public RelaxationMethod {
   bool settles(double& to_go) override;
   bool balances() const override { return false; }
   int stride() const override { return 8; }
+  int usualIterations() const override;
   double shrinkage() const override;
 
   SolveStatus goThrough(int& steps) override;

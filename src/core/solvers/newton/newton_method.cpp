@@ -40,6 +40,8 @@ SolveReport NewtonMethod::solve(std::vector<LoadingPatch>& patches, const std::v
   return report;
 }
 
+int NewtonMethod::usualIterations() const { return tuning::kUsualSteps; }
+
 double NewtonMethod::patchStep() const { return options_.patch_step * lattice_.spacing(); }
 
 void NewtonMethod::countUnknowns(const ConstrainedState& shape) {

@@ -40,6 +40,7 @@ class NewtonMethod : public SolverMethod {
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   double patchStep() const override;
+  int usualIterations() const override;
 
  private:
   void countUnknowns(const ConstrainedState& shape);

@@ -25,6 +25,10 @@ constexpr double kShareOfExpected = 1e-4;
 // Chosen.
 constexpr int kHalvings = 30;
 
+// Steps of a load step in contact beyond which it is a hard one (a sphere that is dragged takes 5 a
+// solve). More: jams are followed for longer. Chosen.
+constexpr int kUsualSteps = 30;
+
 // What is lost in rounding.
 // Of the stiffness times the spacing (1): a force that is balance, however small the loads.
 constexpr double kRoundingForce = 1e-12;
