@@ -31,16 +31,6 @@ double SkylineCholesky::workOf(const std::vector<int>& first) {
   return work;
 }
 
-const double* SkylineCholesky::rowOf(int row) const {
-  const auto index = static_cast<std::size_t>(row);
-  return values_.data() + start_[index] - first_[index];
-}
-
-double* SkylineCholesky::rowOf(int row) {
-  const auto index = static_cast<std::size_t>(row);
-  return values_.data() + start_[index] - first_[index];
-}
-
 void SkylineCholesky::factorize() {
   for (int row = 0; row < rows(); ++row) {
     const int first = first_[static_cast<std::size_t>(row)];

@@ -16,17 +16,18 @@ class SkylineCholesky {
   static double workOf(const std::vector<int>& first);
   int rows() const { return static_cast<int>(first_.size()); }
 
-  // Of the lower triangle, in the envelope; until `factorize`.
-  double& at(int row, int column) { return rowOf(row)[column]; }
+  // Of the lower triangle, in the envelope, by columns; until `factorize`.
+  double* rowOf(int row) {
+    const auto index = static_cast<std::size_t>(row);
+    return values_.data() + start_[index] - first_[index];  // column 0 would be there
+  }
 
   void factorize();
   // In place, with the factor.
   void solve(Eigen::VectorXd& vector) const;
 
  private:
-  // So that column 0 would be there.
-  const double* rowOf(int row) const;
-  double* rowOf(int row);
+  const double* rowOf(int row) const { return const_cast<SkylineCholesky*>(this)->rowOf(row); }
 
   std::vector<int> first_;
   std::vector<std::ptrdiff_t> start_;  // of rows, in `values_`

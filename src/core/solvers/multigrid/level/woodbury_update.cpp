@@ -77,14 +77,15 @@ void WoodburyUpdate::fillForSprings(const std::vector<Eigen::Matrix3d>& inverses
       columns_[spring].push_back(inverses[at(part.node)] * part.along);
     }
     const int row = static_cast<int>(spring);
-    matrix_.at(row, row) = 1.0 / springs_[spring].stiffness;
+    double* values = matrix_.rowOf(row);
+    values[row] = 1.0 / springs_[spring].stiffness;
     for (const Part& part : springs_[spring].parts) {
       for (const int other : springs_at_[at(part.node)]) {
         if (other > row) break;
         const std::vector<Part>& theirs = springs_[at(other)].parts;
         for (std::size_t i = 0; i < theirs.size(); ++i) {
           if (theirs[i].node != part.node) continue;
-          matrix_.at(row, other) += part.along.dot(columns_[at(other)][i]);
+          values[other] += part.along.dot(columns_[at(other)][i]);
         }
       }
     }
@@ -97,7 +98,7 @@ void WoodburyUpdate::fillForNodes(const std::vector<Eigen::Matrix3d>& inverses) 
     roots_.emplace_back(inverses[at(node)].llt().matrixL());
     for (int axis = 0; axis < 3; ++axis) {
       const int row = row_of_[at(node)] + axis;
-      matrix_.at(row, row) = 1.0;
+      matrix_.rowOf(row)[row] = 1.0;
     }
   }
   for (std::size_t spring = 0; spring < springs_.size(); ++spring) {
@@ -110,11 +111,12 @@ void WoodburyUpdate::fillForNodes(const std::vector<Eigen::Matrix3d>& inverses) 
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Vec3 stiff = springs_[spring].stiffness * columns_[spring][i];
       const int row = row_of_[at(parts[i].node)];
-      for (std::size_t j = 0; j < parts.size(); ++j) {
-        const int column = row_of_[at(parts[j].node)];
-        for (int a = 0; a < 3; ++a) {
+      for (int a = 0; a < 3; ++a) {
+        double* values = matrix_.rowOf(row + a);
+        for (std::size_t j = 0; j < parts.size(); ++j) {
+          const int column = row_of_[at(parts[j].node)];
           for (int b = 0; b < 3 && column + b <= row + a; ++b) {
-            matrix_.at(row + a, column + b) += stiff[a] * columns_[spring][j][b];
+            values[column + b] += stiff[a] * columns_[spring][j][b];
           }
         }
       }
