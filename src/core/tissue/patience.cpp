@@ -29,7 +29,7 @@ void Patience::note(int iterations, bool converged, Of what) {
 int Patience::left(Of what) const {
   constexpr int kNoBound = std::numeric_limits<int>::max();
   if (!is_for_scene_ || usual_ == kNoBound) return kNoBound;
-  const int left = std::max(0, usual_ + tuning::kMostAtOnce * (most() - spent_) - taken_);
+  const int left = std::max(0, usual_ + most() - spent_ - taken_);
   return what == Of::kTimeStep ? tuning::kTimesInTimeStep * left : left;
 }
 

@@ -55,9 +55,6 @@ constexpr double kFarther = 1.1;
 // 25 mm of a block, by `layered`, spends 51.
 constexpr double kMostSpent = 2000.0 / 30.0;
 constexpr double kForgiven = 5.0 / 30.0;
-// Of what is left of these (1): what one load step may take. Less: a hard one is cut off before the
-// method gives it up (2,000 cycles); more: one that comes late takes long.
-constexpr int kMostAtOnce = 2;
 // Iterations of a time step that count as one (1). Less: motions that only touch now and then are
 // given up; more: jams that swing are followed for longer. Chosen: a box's edge dragged at 20 mm/s
 // takes 40 a time step in the mean, 459 in the 99th percentile, and spends 894 of the 2,000.
