@@ -1,7 +1,9 @@
 // Load steps are given up that take far too long again and again: counted, not timed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "tissue_fixtures.h"
 
@@ -192,6 +194,30 @@ TEST_F(ImpatientTissue, EndsItsLoadsAfterTheUsualIterationsAndSaysSo) {
   const SolveReport report = pull(0.008);
   EXPECT_EQ(report.status, SolveStatus::kUnconverged);
   EXPECT_LE(report.iterations, kUsual);
+}
+
+// Three touches a node, as of a fine mesh on a coarse lattice: an iteration is three.
+TEST_F(ImpatientTissue, CountsIterationsOfMoreTouchesThanNodesSeveralTimes) {
+  const Lattice& lattice = tissue_.lattice();
+  ContactSpring touch;
+  const int node = lattice.node(2, 2, 4);
+  touch.carriers = {{node, 1.0}};
+  touch.rest = lattice.restPosition(node);
+  touch.normal = -Vec3::UnitZ();
+  touch.plane_point = touch.rest + 0.001 * touch.normal;
+  touch.stiffness = 0.01 * tissue_.nodeStiffness(node);
+  for (const int touches_a_node : {0, 1, 3}) {
+    LoadingPatch tool;
+    const auto touches = static_cast<std::size_t>(touches_a_node * lattice.nodeCount() + 1);
+    tool.contacts = std::vector<ContactSpring>(touches, touch);
+    Patience& patience = tissue_.patience();
+    const Patience::LoadStep load_step(patience);
+    const int before = patience.left();
+    const SolveReport report = tissue_.follow({tool}, {});
+    ASSERT_EQ(report.status, SolveStatus::kOk);
+    ASSERT_GT(report.iterations, 0);
+    EXPECT_EQ(before - patience.left(), std::max(1, touches_a_node) * report.iterations);
+  }
 }
 
 TEST_F(ImpatientTissue, GivesUpTrialsByThemselves) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "cutting/removal.h"
@@ -286,26 +285,6 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   return true;
 }
 
-// Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
-// square of the step, be accelerations: it is solved to its end.
-bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
-
-// Time for the next solve (ms); 0: no bound.
-double Tissue::mostMs() const {
-  if (in_time_step_) return 0.0;
-  if (!deadline_) return max_ms_;
-  const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());
-  if (!std::isfinite(left)) return max_ms_;
-  return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
-}
-
-// Of the next solve.
-int Tissue::mostIterations() const { return std::max(1, patience_.left(solved())); }
-
-Patience::Of Tissue::solved() const {
-  return in_time_step_ ? Patience::Of::kTimeStep : Patience::Of::kLoadStep;
-}
-
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
   // it saves a method that stays finite.
@@ -316,6 +295,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   limitWays();
   method_->limitTime(mostMs());
   method_->limitIterations(mostIterations());
+  const int weight = weightOfIteration();
   SolveReport report = solveWithThreads(disturbed);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
@@ -332,7 +312,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.
   const bool is_hard = !(converged && isUntouched());
-  patience_.note(is_hard ? report.iterations : 0, converged, solved());
+  patience_.note(is_hard ? weight * report.iterations : 0, converged, solved());
   describeShape(report);
   last_report_ = report;
   return report;

@@ -1,0 +1,40 @@
+// Tissue: how long a solve may take.
+#include <algorithm>
+#include <cmath>
+
+#include "robot_tissue/core/tissue.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+
+// Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
+// square of the step, be accelerations: it is solved to its end.
+bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
+
+// Time for the next solve (ms); 0: no bound.
+double Tissue::mostMs() const {
+  if (in_time_step_) return 0.0;
+  if (!deadline_) return max_ms_;
+  const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());
+  if (!std::isfinite(left)) return max_ms_;
+  return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
+}
+
+// Of the next solve.
+int Tissue::mostIterations() const {
+  return std::max(1, patience_.left(solved()) / weightOfIteration());
+}
+
+// Where there are more touches than nodes, as of a fine mesh on a coarse lattice, they are most of
+// the work.
+int Tissue::weightOfIteration() const {
+  std::size_t touches = 0;
+  for (const LoadingPatch& patch : patches_) touches += patch.contacts.size();
+  return std::max(1, static_cast<int>(touches / state_.displacement.size()));
+}
+
+Patience::Of Tissue::solved() const {
+  return in_time_step_ ? Patience::Of::kTimeStep : Patience::Of::kLoadStep;
+}
+
+}  // namespace robot_tissue
