@@ -43,7 +43,7 @@ constexpr int kLooksApart = 4;
 // Iterations of a load step in contact beyond which it is a hard one. A sphere that is pressed into
 // a block of cells of 10 mm and dragged takes 27, 990 and 86 a solve. More: jams are followed for
 // longer. Chosen.
-constexpr int kUsualOfVbd = 200;
+constexpr int kUsualOfVbd = 150;
 constexpr int kUsualOfXpbd = 2000;
 constexpr int kUsualOfExplicit = 600;
 
