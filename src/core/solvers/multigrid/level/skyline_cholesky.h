@@ -17,17 +17,19 @@ class SkylineCholesky {
   int rows() const { return static_cast<int>(first_.size()); }
 
   // Of the lower triangle, in the envelope, by columns; until `factorize`.
-  double* rowOf(int row) {
-    const auto index = static_cast<std::size_t>(row);
-    return values_.data() + start_[index] - first_[index];  // column 0 would be there
-  }
+  double* rowOf(int row) { return values_.data() + startOf(row); }
 
   void factorize();
   // In place, with the factor.
   void solve(Eigen::VectorXd& vector) const;
 
  private:
-  const double* rowOf(int row) const { return const_cast<SkylineCholesky*>(this)->rowOf(row); }
+  const double* rowOf(int row) const { return values_.data() + startOf(row); }
+  // In `values_`, of column 0, were it there.
+  std::ptrdiff_t startOf(int row) const {
+    const auto index = static_cast<std::size_t>(row);
+    return start_[index] - first_[index];
+  }
 
   std::vector<int> first_;
   std::vector<std::ptrdiff_t> start_;  // of rows, in `values_`
