@@ -33,7 +33,7 @@ class SolverMethod {
 
   // Of the solves up to the next call, which their carriers must outlive. A solve in which a point
   // went farther than it may can end there, unconverged.
-  virtual void limitWays(std::vector<WayLimit>) {}
+  virtual void limitWays(std::vector<WayLimit>&&) {}
 
   // Time that each solve may take from here on (ms), in the place of the options' max_ms; 0: no
   // bound.

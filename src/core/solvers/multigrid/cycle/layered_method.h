@@ -22,7 +22,7 @@ class LayeredMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   void beginStep(const LatticeState&) override { solver_->beginStep(); }
-  void limitWays(std::vector<WayLimit> limits) override { solver_->limitWays(std::move(limits)); }
+  void limitWays(std::vector<WayLimit>&& limits) override { solver_->limitWays(std::move(limits)); }
   void forget() override;
   bool remembers() const override { return true; }
   const GridBox* visited() const override { return solver_->visited(); }
