@@ -182,8 +182,16 @@ TEST_F(MachineFiles, TellWhatAContainerOfVersionOneLeaves) {
   EXPECT_EQ(freeBytes(), 3000000.0);
 }
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+constexpr char kOwnHeap[] = "the sanitizer has a heap of its own";
+
 // As where surgery makes large things anew between small ones that stay.
 TEST(Memory, GapsOfTheHeapAreGivenBack) {
+  if (kSanitized) GTEST_SKIP() << kOwnHeap;
   constexpr std::size_t kBlocks = 2000, kBytes = 20000;
   std::vector<std::unique_ptr<std::string>> stay;
   {
@@ -200,9 +208,7 @@ TEST(Memory, GapsOfTheHeapAreGivenBack) {
 }
 
 TEST(Memory, HeapInUseIsWhatSomebodyHolds) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer has a heap of its own";
-#endif
+  if (kSanitized) GTEST_SKIP() << kOwnHeap;
   constexpr double kBlocks = 1000.0, kBytes = 20000.0;
   const double before = heapInUse();
   {
@@ -215,6 +221,7 @@ TEST(Memory, HeapInUseIsWhatSomebodyHolds) {
 }
 
 TEST(Memory, ALimitOfTheProcessCounts) {
+  if (kSanitized) GTEST_SKIP() << kOwnHeap;
   const auto limited = [](auto resource) {
     constexpr rlim_t kMost = rlim_t{1} << 30;
     const rlimit limit{kMost, kMost};
