@@ -7,6 +7,11 @@
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+constexpr int kNoBound = std::numeric_limits<int>::max();
+
+}  // namespace
 
 int Patience::most() const {
   return is_for_scene_ ? timesUsual(tuning::kMostSpent) : tuning::kMostSpentOnAWay;
@@ -14,7 +19,6 @@ int Patience::most() const {
 
 // All there are of a method that does not know them.
 int Patience::timesUsual(double times) const {
-  constexpr int kNoBound = std::numeric_limits<int>::max();
   return usual_ == kNoBound ? kNoBound : static_cast<int>(std::lround(times * usual_));
 }
 
@@ -27,7 +31,6 @@ void Patience::note(int iterations, bool converged, Of what) {
 }
 
 int Patience::left(Of what) const {
-  constexpr int kNoBound = std::numeric_limits<int>::max();
   if (!is_for_scene_ || usual_ == kNoBound) return kNoBound;
   const int left = std::max(0, usual_ + most() - spent_ - taken_);
   return what == Of::kTimeStep ? tuning::kTimesInTimeStep * left : left;

@@ -8,8 +8,7 @@
 namespace robot_tissue {
 
 // Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
-// square of the step, be accelerations: no clock cuts it short, and it may take several times as
-// many iterations as a load step.
+// square of the step, be accelerations: no clock cuts it short.
 bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
 
 // Time for the next solve (ms); 0: no bound.
