@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 namespace robot_tissue {
 namespace {
 
 using Type = ToolShape::Type;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string number(double value) {
   char text[32];

@@ -1,13 +1,9 @@
 #include "placed_link.h"
 
-#include <limits>
-
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Box placedBounds(const CollisionShape& shape, const Pose& tissue_T_shape) {
   if (shape.isPlane()) return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};

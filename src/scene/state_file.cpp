@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongestName = 100;                 // bytes
+constexpr std::size_t kLongestFileName = 100;             // bytes
 constexpr std::size_t kMostBytes = std::size_t{1} << 32;  // of a file; 30 million nodes have less
 
 [[noreturn]] void refuse(const std::string& name, const std::string& reason) {
@@ -84,10 +84,10 @@ std::string stateFileFault(const std::string& name) {
   };
   const fs::path extension = fs::path(name).extension();  // the runner's results have these
   const bool fits = extension != ".csv" && extension != ".stl" && !name.empty() &&
-                    name.size() <= kLongestName && name.front() != '.' &&
+                    name.size() <= kLongestFileName && name.front() != '.' &&
                     std::all_of(name.begin(), name.end(), allowed);
   if (fits) return "";
-  return "must be a plain name of at most " + std::to_string(kLongestName) +
+  return "must be a plain name of at most " + std::to_string(kLongestFileName) +
          " letters, digits, '.', '_' and '-' that neither begins with '.' nor ends in .csv or .stl";
 }
 

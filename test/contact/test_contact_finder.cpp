@@ -6,7 +6,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_finder {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -225,4 +225,4 @@ TEST(ContactFinder, PoseOrSurfaceOfAnotherSizeIsRefused) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_finder

@@ -9,7 +9,7 @@
 #include "contact_fixtures.h"
 #include "surface_traversal.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_search {
 namespace {
 
 constexpr double kCell = 0.005;
@@ -219,4 +219,4 @@ TEST(BroadPhase, TellsTheShapesThatComeNearAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_search

@@ -7,7 +7,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_deepest_point {
 namespace {
 
 double deepestOf(const ContactSet& found) {
@@ -254,4 +254,4 @@ TEST(DeepestPoint, PointOfAnEdgeIsFoundOnce) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_deepest_point

@@ -6,7 +6,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_flat_face {
 namespace {
 
 constexpr double kReach = 0.05;
@@ -95,4 +95,4 @@ TEST(FlatFace, TurnsWithItsLink) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_flat_face

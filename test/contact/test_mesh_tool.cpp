@@ -7,7 +7,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_tool {
 namespace {
 
 ContactSet findOn(const ContactFinder& finder, const Pose& pose, const Sheet& sheet,
@@ -172,4 +172,4 @@ TEST(MeshTool, MeshThatCrossesItselfWorksAndIsWarnedOf) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_tool

@@ -7,7 +7,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_moved_surface {
 namespace {
 
 const Eigen::Vector3i kCells(8, 8, 6);
@@ -78,4 +78,4 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_moved_surface

@@ -7,7 +7,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_penetration {
 namespace {
 
 const Eigen::Vector3i kCells(8, 8, 6);
@@ -207,4 +207,4 @@ TEST(Gap, IsTheLeastOfAllShapesAndSeesIntoNotches) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_penetration

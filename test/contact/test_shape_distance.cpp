@@ -15,7 +15,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_shape_distance {
 namespace {
 
 constexpr double kFar = 1.0;  // m, farther than any point asked
@@ -232,4 +232,4 @@ TEST(ShapeDistance, MeasuresOfALink) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_shape_distance

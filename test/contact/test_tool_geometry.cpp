@@ -5,7 +5,7 @@
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/tool_geometry.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tool_geometry {
 namespace {
 
 using testing::internal::CaptureStderr;
@@ -264,4 +264,4 @@ TEST(ToolGeometry, ToolWithoutLinksIsRefused) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tool_geometry

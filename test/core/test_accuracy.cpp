@@ -7,7 +7,7 @@
 #include "reference_cases.h"
 #include "robot_tissue/core/tissue.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_accuracy {
 namespace {
 
 class AnyRatio : public ::testing::TestWithParam<double> {};
@@ -78,4 +78,4 @@ TEST(Accuracy, GrowsAsTheLatticeGetsFiner) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_accuracy

@@ -8,7 +8,7 @@
 #include "tissue/registry.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_baselines {
 namespace {
 
 constexpr double kHonest = 2.0;  // times the tolerance is what the true error may be
@@ -270,4 +270,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Baseline, testing::Values("vbd", "xpbd", "expl
                          [](const auto& method) { return method.param; });
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_baselines

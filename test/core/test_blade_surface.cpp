@@ -10,7 +10,7 @@
 #include "cutting/cut.h"
 #include "lattice/connectivity.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_blade_surface {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -166,4 +166,4 @@ TEST(BladeSurface, NewSurfaceIsTheAreaOfTheSection) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_blade_surface

@@ -14,7 +14,7 @@
 #include "cutting/split_cells.h"
 #include "robot_tissue/core/surface.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cell_division {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -268,4 +268,4 @@ TEST(CellDivision, OnNodesTheBladePartsCellsAtTheirSides) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cell_division

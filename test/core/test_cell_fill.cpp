@@ -11,7 +11,7 @@
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/lattice.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cell_fill {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -199,4 +199,4 @@ TEST(Slivers, BesideAThinWallStayThin) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cell_fill

@@ -8,7 +8,7 @@
 #include "solvers/multigrid/level/cell_kernel.h"
 #include "solvers/multigrid/level/cell_operator.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cell_kernel {
 namespace {
 
 constexpr std::array<int, 3> kPoints = {9, 6, 5};
@@ -201,4 +201,4 @@ TYPED_TEST(CellKernel, ForcesOfTheCoveredPartAreOfItsCellsAlone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cell_kernel

@@ -8,7 +8,7 @@
 #include "cutting/split_cells.h"
 #include "robot_tissue/core/cells.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cells {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -134,4 +134,4 @@ TEST(InvertedCells, HalvesOfACutCellMayPassEachOther) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cells

@@ -9,7 +9,7 @@
 #include "solvers/multigrid/hierarchy/coarse_correction.h"
 #include "solvers/multigrid/hierarchy/grid_hierarchy.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_coarse_correction {
 namespace {
 
 // The grid around a ball has corners that are no nodes. What coarse levels say there moves nothing,
@@ -51,4 +51,4 @@ TEST(CoarseCorrection, MovesWhatIsThereAlone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_coarse_correction

@@ -3,7 +3,7 @@
 
 #include "robot_tissue/core/compat.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_compat {
 namespace {
 
 TEST(Compat, NumbersAreReadAlike) {
@@ -19,4 +19,4 @@ TEST(Compat, NumbersAreReadAlike) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_compat

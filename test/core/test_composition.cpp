@@ -7,7 +7,7 @@
 #include "mesh_fixtures.h"
 #include "robot_tissue/core/tissue.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_composition {
 namespace {
 
 constexpr double kH = 0.005;
@@ -222,4 +222,4 @@ TEST(MixedModuli, AreThoseOfBallsInTheFirst) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_composition

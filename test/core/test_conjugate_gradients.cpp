@@ -5,7 +5,7 @@
 #include "mesh_fixtures.h"
 #include "solvers/multigrid/level/conjugate_gradients.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_conjugate_gradients {
 namespace {
 
 constexpr int kNodes = 6;
@@ -53,4 +53,4 @@ TEST(ConjugateGradients, GoDownhillHoweverSoonTheyEnd) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_conjugate_gradients

@@ -7,7 +7,7 @@
 #include "layered_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_equilibrium {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -173,4 +173,4 @@ TEST(SpringOnAFixedNode, IsPartOfWhatTheFixedNodesHold) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_equilibrium

@@ -8,7 +8,7 @@
 #include "elastic_fixtures.h"
 #include "robot_tissue/core/contact_spring.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_spring {
 namespace {
 
 constexpr double kStiffness = 50.0;      // N/m
@@ -213,4 +213,4 @@ TEST(ContactSprings, CopiesHaveTheSameSpringsAlsoWhenTheFirstIsGone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_spring

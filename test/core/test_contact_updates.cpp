@@ -9,7 +9,7 @@
 #include "tissue/round_gain.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_updates {
 namespace {
 
 // Lets the shape go nowhere, and wants another solve each time.
@@ -114,4 +114,4 @@ TEST_F(Rounds, GoOnNearerOrFartherOrWhole) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_updates

@@ -11,7 +11,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_crumbs {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -134,4 +134,4 @@ TEST(Crumbs, OfABallThatTearsThereAreNone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_crumbs

@@ -8,7 +8,7 @@
 #include "cutting/cut.h"
 #include "lattice/connectivity.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cut {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -225,4 +225,4 @@ TEST(CountPieces, CountsWhatSpringsHoldTogether) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cut

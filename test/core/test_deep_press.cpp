@@ -8,7 +8,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_deep_press {
 namespace {
 
 constexpr double kTolerance = 0.01;
@@ -64,4 +64,4 @@ INSTANTIATE_TEST_SUITE_P(Layered, DeepPresses,
                          ::testing::Values(DeepPress{0.45, 0.035}, DeepPress{0.49, 0.035}));
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_deep_press

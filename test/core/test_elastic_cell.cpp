@@ -5,7 +5,7 @@
 
 #include "elastic_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_elastic_cell {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -183,4 +183,4 @@ TEST(ElasticCell, FlatAndInvertedCellsPushBack) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_elastic_cell

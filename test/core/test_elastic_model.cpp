@@ -5,7 +5,7 @@
 #include "cutting/cut.h"
 #include "elastic_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_elastic_model {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -137,4 +137,4 @@ TEST(ElasticModel, CellThatHangsTogetherIsWhole) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_elastic_model

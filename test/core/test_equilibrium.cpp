@@ -7,7 +7,7 @@
 #include "loads/patch_rim.h"
 #include "solvers/newton/equilibrium.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_equilibrium {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -140,4 +140,4 @@ INSTANTIATE_TEST_SUITE_P(Patch, ShakenBlock,
                          [](const auto& row) { return row.param.name; });
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_equilibrium

@@ -12,7 +12,7 @@
 #include "tissue/registry.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_fung {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -363,4 +363,4 @@ TEST(FungOverflow, OtherLawsHaveNone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_fung

@@ -6,7 +6,7 @@
 
 #include "block_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_lattice {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -207,4 +207,4 @@ TEST(Lattice, RefusesFixedBoxWithoutNode) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_lattice

@@ -6,7 +6,7 @@
 
 #include "solvers/multigrid/level/lattice_coarsening.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_lattice_coarsening {
 namespace {
 
 std::vector<LevelCell> blockOf(const LevelGrid& grid) {
@@ -126,4 +126,4 @@ TEST(Coarsening, AroundAPlaceWeightsSumToOne) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_lattice_coarsening

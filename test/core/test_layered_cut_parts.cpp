@@ -6,7 +6,7 @@
 #include "layered_fixtures.h"
 #include "solvers/multigrid/hierarchy/level_source.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_layered_cut_parts {
 namespace {
 
 constexpr double kTolerance = 0.01;
@@ -158,4 +158,4 @@ TEST(ChangedCells, AreCountedByPlaceAndCorners) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_layered_cut_parts

@@ -6,7 +6,7 @@
 
 #include "layered_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_layered_method {
 namespace {
 
 class LayeredPress : public testing::TestWithParam<std::tuple<double, double>> {};
@@ -201,4 +201,4 @@ TEST(Layered, CrushedCellsRecover) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_layered_method

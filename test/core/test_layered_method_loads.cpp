@@ -5,7 +5,7 @@
 #include "layered_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_layered_method_loads {
 namespace {
 
 class LayeredByForce : public testing::TestWithParam<std::tuple<double, bool>> {};
@@ -287,4 +287,4 @@ TEST(LayeredTissue, IsRefusedForTheSixSpringLattice) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_layered_method_loads

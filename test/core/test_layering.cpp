@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace robot_tissue {
+namespace robot_tissue::test_layering {
 namespace {
 
 namespace fs = std::filesystem;
@@ -295,4 +295,4 @@ TEST(Layering, FclIsIncludedInContactsSourcesOnly) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_layering

@@ -7,7 +7,7 @@
 #include "block_fixtures.h"
 #include "solvers/paper/layers.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_layers {
 namespace {
 
 constexpr int kNever = -1;
@@ -159,4 +159,4 @@ TEST(Layers, StartForgetsTheWalkBefore) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_layers

@@ -9,7 +9,7 @@
 #include "solvers/multigrid/hierarchy/light_nodes.h"
 #include "solvers/multigrid/level/grid_level.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_light_nodes {
 namespace {
 
 TEST(LightNodes, FullBlocksHaveNone) {
@@ -94,4 +94,4 @@ TEST(WeightRoots, MakeNodesCountLessInLengths) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_light_nodes

@@ -3,7 +3,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_limited_ways {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -54,4 +54,4 @@ TEST(LimitedWays, TakeMoreSolvesToTheSameShape) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_limited_ways

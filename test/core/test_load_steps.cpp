@@ -7,7 +7,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_load_steps {
 namespace {
 
 constexpr double kSpacing = 0.01;       // m
@@ -130,4 +130,4 @@ TEST(LoadSteps, OfMethodPaperFollowTheStiffness) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_load_steps

@@ -12,7 +12,7 @@
 #include "membrane/stretched_triangle.h"
 #include "mesh_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_membrane_laws {
 namespace {
 
 constexpr double kStep = 1e-6;  // of the differences (m), where lengths are about 1
@@ -369,4 +369,4 @@ TEST(Membrane, CarriersOfCarriers) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_membrane_laws

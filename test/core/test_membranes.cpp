@@ -7,7 +7,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_membranes {
 namespace {
 
 constexpr double kRadius = 0.03;  // m
@@ -277,4 +277,4 @@ TEST(Membranes, RefusesWhatNothingCanBeSaidOf) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_membranes

@@ -8,7 +8,7 @@
 #include "mesh_fixtures.h"
 #include "robot_tissue/core/mesh_checks.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_checks {
 namespace {
 
 std::string faultOf(const TriangleMesh& mesh) { return meshFault(mesh).value_or(""); }
@@ -175,4 +175,4 @@ TEST(MeshChecks, ShellsAreTurnedEachByItsPlace) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_checks

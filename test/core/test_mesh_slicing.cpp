@@ -8,7 +8,7 @@
 #include "mesh_fixtures.h"
 #include "robot_tissue/core/mesh_checks.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_slicing {
 namespace {
 
 constexpr double kSpacing = 0.005;
@@ -202,4 +202,4 @@ TEST(MeshSlicing, GridAroundIsCenteredAndMovesWithTheMesh) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_slicing

@@ -10,7 +10,7 @@
 #include "surface/mesh_surface.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_tissue {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -240,4 +240,4 @@ TEST_P(BothModels, BallCutThroughHasTwoClosedHalves) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_tissue

@@ -6,7 +6,7 @@
 #include "elastic_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_newton_method {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -255,4 +255,4 @@ TEST(PaperMethod, IsRefusedForElasticTissue) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_newton_method

@@ -8,7 +8,7 @@
 
 #include "block_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_paper_method {
 namespace {
 
 constexpr double kSpacing = 0.005;
@@ -261,4 +261,4 @@ TEST(PaperMethod, WithoutLoadNothingMoves) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_paper_method

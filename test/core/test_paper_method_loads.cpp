@@ -7,7 +7,7 @@
 
 #include "block_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_paper_method_loads {
 namespace {
 
 TissueConfig floatingBlock() { return blockOf(10, 10, 5); }
@@ -199,4 +199,4 @@ TEST(Disturbed, NodesAreBalancedWithoutAPatch) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_paper_method_loads

@@ -6,7 +6,7 @@
 #include "elastic_fixtures.h"
 #include "mesh_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_partial_cell {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -205,4 +205,4 @@ TEST(PartialCells, WeighWhereTheyAreFilled) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_partial_cell

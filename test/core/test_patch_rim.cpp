@@ -8,7 +8,7 @@
 #include "loads/patch_rim.h"
 #include "loads/rim_law.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_patch_rim {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -131,4 +131,4 @@ TEST_F(RimOfBlock, ForceFollowsThePatchNotTheNodes) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_patch_rim

@@ -7,7 +7,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_patience {
 namespace {
 
 constexpr int kUsual = 30;
@@ -238,4 +238,4 @@ TEST_F(ImpatientTissue, BeginsAnewAtRest) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_patience

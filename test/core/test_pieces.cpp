@@ -10,7 +10,7 @@
 #include "suture_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_pieces {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -264,4 +264,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, FreePieceWith,
                                            "paper"));
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_pieces

@@ -9,7 +9,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_removal {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -236,4 +236,4 @@ TEST(Removal, OpensAMeshAlongItsCells) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_removal

@@ -4,7 +4,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_retune {
 namespace {
 
 constexpr double kForceError = 1e-3;  // relative; the solver's tolerance is a tenth of it
@@ -136,4 +136,4 @@ TEST(Retune, LoadsOfASavedStateAreOfItsRegionsMesh) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_retune

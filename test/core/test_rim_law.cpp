@@ -7,7 +7,7 @@
 #include "../rim_strip.h"
 #include "loads/rim_law.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_rim_law {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -103,4 +103,4 @@ TEST_P(RimStrip, TwoMotionsAtOnceAreNotCoupledByTheLawsSprings) {
 INSTANTIATE_TEST_SUITE_P(PoissonRatio, RimStrip, testing::Values(0.25, 0.45));
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_rim_law

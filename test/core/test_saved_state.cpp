@@ -10,7 +10,7 @@
 #include "elastic_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_saved_state {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -254,4 +254,4 @@ TEST(SavedState, WithLoadsOfAnotherMaterialIsRefused) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_saved_state

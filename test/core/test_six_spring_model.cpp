@@ -5,7 +5,7 @@
 
 #include "block_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_six_spring_model {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -19,7 +19,7 @@ TissueConfig softBlock(int cells_x, int cells_y, int cells_z) {
 }
 
 // Repeatable displacements of up to `reach` along each axis, unlike for every node.
-void shake(LatticeState& state, double reach) {
+void displaceAll(LatticeState& state, double reach) {
   int step = 0;
   for (Vec3& moved : state.displacement) {
     for (int axis = 0; axis < 3; ++axis) moved[axis] = reach * std::sin(1.7 * ++step);
@@ -58,7 +58,7 @@ TEST(SixSpringModel, ForceIsTheNegativeGradientOfTheEnergy) {
   const Lattice lattice(softBlock(2, 2, 2));
   const SixSpringModel model(lattice, kNoGravity);
   LatticeState state = lattice.restState();
-  shake(state, 0.3 * kSpacing);
+  displaceAll(state, 0.3 * kSpacing);
   state.severed[5] = 1;
   const double step = 1e-7;
   double gradient_squared = 0.0;
@@ -101,7 +101,7 @@ TEST(SixSpringModel, InternalForcesSumToZero) {
   const Lattice lattice(softBlock(3, 2, 4));
   const SixSpringModel model(lattice, kNoGravity);
   LatticeState state = lattice.restState();
-  shake(state, 0.4 * kSpacing);
+  displaceAll(state, 0.4 * kSpacing);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   double greatest = 0.0;
   for (int node = 0; node < lattice.nodeCount(); ++node) {
@@ -166,7 +166,7 @@ TEST(SixSpringModel, GravityAddsTheNodesWeight) {
   const SixSpringModel model(lattice, gravity);
   const SixSpringModel weightless(lattice, kNoGravity);
   LatticeState state = lattice.restState();
-  shake(state, 0.2 * kSpacing);
+  displaceAll(state, 0.2 * kSpacing);
   for (int node = 0; node < lattice.nodeCount(); ++node) {
     const Vec3 added = model.nodeForce(state, node) - weightless.nodeForce(state, node);
     EXPECT_LT((added - lattice.mass(node) * gravity).norm(), 1e-14);
@@ -174,4 +174,4 @@ TEST(SixSpringModel, GravityAddsTheNodesWeight) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_six_spring_model

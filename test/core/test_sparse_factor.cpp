@@ -6,7 +6,7 @@
 #include "solvers/newton/sparse_factor.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_sparse_factor {
 namespace {
 
 // Of a chain of springs between `size` unknowns, its ends held by `hold`; lower triangle.
@@ -74,4 +74,4 @@ INSTANTIATE_TEST_SUITE_P(Maker, EachFactor, testing::Values(&makeEigenFactor, pr
                          });
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_sparse_factor

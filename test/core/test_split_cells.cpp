@@ -13,7 +13,7 @@
 #include "lattice/connectivity.h"
 #include "mesh_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_split_cells {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -372,4 +372,4 @@ TEST(SplitCells, ThoseOfEarlierCutsAreAsIfAllWereFoundAnew) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_split_cells

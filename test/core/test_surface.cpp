@@ -9,7 +9,7 @@
 #include "cutting/cut.h"
 #include "robot_tissue/core/surface.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_surface {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -310,4 +310,4 @@ TEST(Surface, OfPartsWithGhostsIsClosedAndDeformsAsTheMaterial) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_surface

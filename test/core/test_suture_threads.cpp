@@ -11,7 +11,7 @@
 #include "suture_fixtures.h"
 #include "tissue/threads.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_suture_threads {
 namespace {
 
 // `from` is carried by nodes 0 and 1, `to` by nodes 1 and 2: node 1 has a share of both.
@@ -194,4 +194,4 @@ TEST(Thread, IsRefusedFromDamagedBytes) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_suture_threads

@@ -7,7 +7,7 @@
 
 #include "suture_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_sutures {
 namespace {
 
 // What the threads pull the right part of the bar to the left with (N).
@@ -332,4 +332,4 @@ TEST(Sutures, NeedAMethodThatFindsEquilibria) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_sutures

@@ -8,7 +8,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tear {
 namespace {
 
 constexpr double kLength = 0.06, kWidth = 0.04, kThickness = 0.01;
@@ -185,4 +185,4 @@ TEST(Tear, WithoutTimeTheRestIsLate) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tear

@@ -8,7 +8,7 @@
 #include "elastic_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_time {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -272,4 +272,4 @@ TEST(Time, ForceOfAStepIsItsEnergysNegativeSlope) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_time

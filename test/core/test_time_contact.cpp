@@ -8,7 +8,7 @@
 #include "elastic_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_time_contact {
 namespace {
 
 // A block on fixed nodes under a plane without friction, that pushes its top.
@@ -123,4 +123,4 @@ TEST(TimeInContact, CountsAQuarterOfItsIterations) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_time_contact

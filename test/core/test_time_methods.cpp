@@ -7,7 +7,7 @@
 #include "elastic_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_time_methods {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -134,4 +134,4 @@ TEST_P(TimeMethod, ComesToRestAsWithoutTime) {
 INSTANTIATE_TEST_SUITE_P(Baselines, TimeMethod, testing::Values("vbd", "xpbd", "explicit"));
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_time_methods

@@ -5,7 +5,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue {
 namespace {
 
 constexpr double kSpacing = 0.005;
@@ -196,4 +196,4 @@ TEST(TissueReport, VerticesFollowTheNodes) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue

@@ -4,7 +4,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue_elastic {
 namespace {
 
 class ElasticTissue : public ::testing::Test {
@@ -135,4 +135,4 @@ TEST_F(ElasticTissue, SettlesUnderItsWeightAndCarriesIt) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue_elastic

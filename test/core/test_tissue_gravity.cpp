@@ -6,7 +6,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue_gravity {
 namespace {
 
 constexpr int kCells = 10;
@@ -133,4 +133,4 @@ TEST(Gravity, SurfaceSinksWithTheColumn) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue_gravity

@@ -6,7 +6,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue_refusals {
 namespace {
 
 const TissueConfig kBlock = withFixedBottom(blockOf(10, 6, 4));
@@ -96,4 +96,4 @@ TEST_F(Refusal, LeavesTheTissueUsable) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue_refusals

@@ -3,7 +3,7 @@
 
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue_release {
 namespace {
 
 const TissueConfig kBlock = withFixedBottom(blockOf(20, 8, 5));
@@ -196,4 +196,4 @@ TEST(TissueCut, OpensUnderTension) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue_release

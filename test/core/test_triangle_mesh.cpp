@@ -7,7 +7,7 @@
 #include "robot_tissue/core/mesh_checks.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_triangle_mesh {
 namespace {
 
 double longestEdge(const TriangleMesh& mesh) {
@@ -115,4 +115,4 @@ TEST(TriangleMesh, EnclosesWhatItGoesAround) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_triangle_mesh

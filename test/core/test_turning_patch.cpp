@@ -6,7 +6,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_turning_patch {
 namespace {
 
 constexpr double kSpacing = 0.005;
@@ -155,4 +155,4 @@ TEST(TurningPatch, IsRefusedByMethodsThatKnowNoTurns) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_turning_patch

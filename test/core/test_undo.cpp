@@ -7,7 +7,7 @@
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_undo {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -187,4 +187,4 @@ TEST(SavedState, HasItsSutures) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_undo

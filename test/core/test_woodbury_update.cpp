@@ -5,7 +5,7 @@
 
 #include "solvers/multigrid/level/woodbury_update.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_woodbury_update {
 namespace {
 
 using Springs = std::vector<WoodburyUpdate::Spring>;
@@ -112,4 +112,4 @@ TEST(WoodburyUpdate, AreAloneWithoutSprings) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_woodbury_update

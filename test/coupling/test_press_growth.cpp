@@ -3,7 +3,7 @@
 
 #include "robot_tissue/coupling/press_growth.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_press_growth {
 namespace {
 
 Pose atX(double x) { return Pose(Eigen::Translation3d(x, 0.0, 0.0)); }
@@ -48,4 +48,4 @@ TEST(PressGrowth, AFarWayOrAFirstTouchIsBounded) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_press_growth

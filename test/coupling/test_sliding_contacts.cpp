@@ -9,7 +9,7 @@
 #include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_sliding_contacts {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -367,4 +367,4 @@ TEST_F(PlaneOnABlock, SettledTouchesNeedNoFurtherRound) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_sliding_contacts

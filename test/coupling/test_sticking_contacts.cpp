@@ -6,7 +6,7 @@
 #include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sticking_contacts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_sticking_contacts {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -395,4 +395,4 @@ TEST_F(StickingContactsTest, NodesOfOneToolRideOnDifferentLinks) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_sticking_contacts

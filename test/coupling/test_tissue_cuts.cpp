@@ -4,7 +4,7 @@
 #include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sticking_contacts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tissue_cuts {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -165,4 +165,4 @@ TEST_F(CutTissue, ToolAtTheCutsEdgeTakesGhostsAlong) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tissue_cuts

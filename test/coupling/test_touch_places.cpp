@@ -6,7 +6,7 @@
 #include "core/tissue_fixtures.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_touch_places {
 namespace {
 
 constexpr double kSpacing = 0.01;
@@ -130,4 +130,4 @@ TEST_F(TouchedBlock, VerticesOfLipsGoOnByTheirTriangles) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_touch_places

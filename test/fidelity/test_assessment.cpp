@@ -7,7 +7,7 @@
 #include "reference_cases.h"
 #include "resolution_sweep.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_assessment {
 namespace {
 
 const std::vector<Vec3> kLimit = {Vec3(0.001, 0.0, -0.004), Vec3(0.0, 0.002, -0.001)};
@@ -128,4 +128,4 @@ TEST(Assessment, TheEstimateIsNearTheErrorAgainstFiniteElements) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_assessment

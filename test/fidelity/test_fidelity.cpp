@@ -12,7 +12,7 @@
 #include "fidelity_fixtures.h"
 #include "write_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_fidelity {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ TEST(WithRung, MeshesAreFoundFromAnotherFolder) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_fidelity

@@ -10,7 +10,7 @@
 #include "pacing.h"
 #include "probe.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_field {
 namespace {
 
 TEST(FieldAt, IsTheNodesOwnAtNodesAndTheirMeanBetween) {
@@ -124,4 +124,4 @@ TEST(Probe, HoldsTheOppositeFaceOfWhatFloats) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_field

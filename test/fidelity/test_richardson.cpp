@@ -5,7 +5,7 @@
 
 #include "richardson.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_richardson {
 namespace {
 
 // limit + slope h^order
@@ -60,4 +60,4 @@ TEST(Richardson, EqualAnswersAreTheLimit) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_richardson

@@ -5,7 +5,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_appearing_tools {
 namespace {
 
 constexpr double kHair = 0.06 * kSpacing;  // deep in the surface shown (m), beside a rim, too
@@ -94,4 +94,4 @@ TEST(ToolInFixedTissue, LetsGoOfWhatItIsHookedOnOnceItIsOutside) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_appearing_tools

@@ -6,7 +6,7 @@
 #include "material/elastic_model.h"
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_blade_dents {
 namespace {
 
 constexpr double kResistance = 200.0;  // J/m^2
@@ -192,4 +192,4 @@ TEST(BladeDents, WithoutTimeTheSameSprings) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_blade_dents

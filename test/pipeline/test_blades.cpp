@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_blades {
 namespace {
 
 constexpr double kResistance = 200.0;  // J/m^2
@@ -255,4 +255,4 @@ TEST(Blade, NoForceDrivesIt) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_blades

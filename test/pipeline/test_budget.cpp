@@ -4,7 +4,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_budget {
 namespace {
 
 constexpr double kTooShort = 1e-3;  // ms: one solve, with one cycle
@@ -136,4 +136,4 @@ TEST(Budget, DrivenToolMeetsItsForceInLaterSteps) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_budget

@@ -6,7 +6,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_burrs {
 namespace {
 
 constexpr double kBurrRadius = 0.008;
@@ -162,4 +162,4 @@ TEST(Burr, NoForceDrivesIt) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_burrs

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_contact_forces {
 namespace {
 
 Vec3 forceOnTissue(const Pipeline& pipeline, std::size_t tool = 0) {
@@ -205,4 +205,4 @@ TEST(Wrench, LongerThanAllowedIsToldAsTheLongestAllowed) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_contact_forces

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cuts_and_loads {
 namespace {
 
 std::vector<Vec3> uprightAt(double x) {
@@ -130,4 +130,4 @@ TEST(CutBesideATool, LeavesItsForceAsItWas) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cuts_and_loads

@@ -5,7 +5,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_fast_tools {
 namespace {
 
 constexpr double kSheet = 0.01;  // its thickness: two cells (m)
@@ -238,4 +238,4 @@ TEST(FarTool, IsNeverBehindNorMakesOthersSo) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_fast_tools

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_flat_tools {
 namespace {
 
 constexpr double kSticks = 2.0;  // friction at which nothing slides
@@ -95,4 +95,4 @@ TEST(FlatTools, ForceIsSmoothAsEdgesPassNodes) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_flat_tools

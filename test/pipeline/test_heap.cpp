@@ -7,7 +7,7 @@
 #include "pipeline_fixtures.h"
 #include "robot_tissue/core/compat.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_heap {
 namespace {
 
 // Presses, loads, cuts, sutures, takes away, all of it taken back; ends at rest.
@@ -61,4 +61,4 @@ TEST(Heap, HoldsNoMoreAfterAsMuchUseAgain) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_heap

@@ -5,7 +5,7 @@
 #include "../contact/contact_fixtures.h"
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_hinged_jaws {
 namespace {
 
 constexpr double kCloseGap = 0.0085;  // m
@@ -215,4 +215,4 @@ TEST(EmptyJaws, ToldToLetGoAreLeftByTissueThatSpringsBackFar) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_hinged_jaws

@@ -2,7 +2,7 @@
 // none at all, so that it does not matter how fast the machine is.
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_late_work {
 namespace {
 
 constexpr int kMostSteps = 400;
@@ -165,4 +165,4 @@ TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_late_work

@@ -5,7 +5,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_pipeline {
 namespace {
 
 TEST_P(PressedBlock, NothingIsSolvedBeforeTheToolTouches) {
@@ -263,4 +263,4 @@ TEST(LateBlock, GoesOnUntilItIsInBalance) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_pipeline

@@ -6,7 +6,7 @@
 #include "../core/mesh_fixtures.h"
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_pressed_mesh {
 namespace {
 
 constexpr double kBall = 0.033;     // radius (m)
@@ -81,4 +81,4 @@ TEST_F(PressedBall, CutUnderLoadStaysClosedAndTheToolStaysOut) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_pressed_mesh

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_scissors {
 namespace {
 
 constexpr double kLength = 0.03;   // of the edges (m)
@@ -150,4 +150,4 @@ TEST(Scissors, ATrialCutsNothing) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_scissors

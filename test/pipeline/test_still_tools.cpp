@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_still_tools {
 namespace {
 
 RobotPose shiftedBy(double way) {
@@ -105,4 +105,4 @@ TEST(PassingTool, WithARigidPatchChangesNothingOfWhatOthersPress) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_still_tools

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_supports {
 namespace {
 
 class LyingBlock : public ::testing::TestWithParam<const char*> {
@@ -115,4 +115,4 @@ TEST(Supports, BoxBearsAFixedBlocksOverhang) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_supports

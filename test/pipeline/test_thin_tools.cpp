@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_thin_tools {
 namespace {
 
 constexpr double kThin = 0.0005;              // radius of the needle (m)
@@ -84,4 +84,4 @@ TEST_P(Needle, DraggedAndDrawnOutNeverGoesThrough) {
 INSTANTIATE_TEST_SUITE_P(Beside, Needle, ::testing::Values(Vec3::Zero(), Vec3(0.0023, 0.0, 0.0)));
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_thin_tools

@@ -3,7 +3,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tool_actions {
 namespace {
 
 TEST_P(PressedBlock, DrivenToolMeetsItsForce) {
@@ -263,4 +263,4 @@ INSTANTIATE_TEST_SUITE_P(Method, Grasper, ::testing::Values("layered", "newton")
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tool_actions

@@ -5,7 +5,7 @@
 
 #include "pipeline_fixtures.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tools_in_time {
 namespace {
 
 constexpr double kCoarse = 0.01;  // m, spacing
@@ -212,4 +212,4 @@ TEST_F(CutAboveATable, TheFreePieceLandsAndRestsForNothing) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tools_in_time

@@ -6,7 +6,7 @@
 #include "pipeline_fixtures.h"
 #include "robot_tissue/pipeline/wrench_prediction.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_wrench_prediction {
 namespace {
 
 constexpr double kArm = 0.01;  // m
@@ -144,4 +144,4 @@ TEST(WrenchPrediction, FarOffItStaysWhereItStillCounts) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_wrench_prediction

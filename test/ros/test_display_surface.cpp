@@ -12,7 +12,7 @@
 #include "robot_tissue/ros/display_surface.h"
 #include "robot_tissue/ros/surface_colors.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_display_surface {
 namespace {
 
 constexpr double kWidth = 0.1, kSpacing = 0.01;  // m
@@ -180,4 +180,4 @@ TEST(SurfaceColors, TellTheDisplacementInMillimeters) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_display_surface

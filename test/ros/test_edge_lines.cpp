@@ -4,7 +4,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/markers.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_edge_lines {
 namespace {
 
 visualization_msgs::Marker edgesOf(const Pipeline& pipeline) {
@@ -64,4 +64,4 @@ TEST(EdgeLines, AreNotOfToolsWithoutAnEdge) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_edge_lines

@@ -6,7 +6,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "robot_tissue/ros/markers.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_force_markers {
 namespace {
 
 using visualization_msgs::Marker;
@@ -144,4 +144,4 @@ TEST_F(ForceMarkers, FollowABladeThatBendsNothing) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_force_markers

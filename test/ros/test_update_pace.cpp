@@ -7,7 +7,7 @@
 
 #include "robot_tissue/ros/update_pace.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_update_pace {
 namespace {
 
 constexpr double kStart = 1e9, kRate = 200.0;  // s, Hz
@@ -55,4 +55,4 @@ TEST(UpdatePace, BeginsAnewWhereTimeGoesBack) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_update_pace

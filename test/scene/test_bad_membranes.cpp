@@ -1,7 +1,7 @@
 // Bad entries of tissue.membranes are refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_bad_membranes {
 namespace {
 
 const std::string kCovered = R"(tissue:
@@ -99,4 +99,4 @@ TEST(Membrane, IsReadAsWritten) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bad_membranes

@@ -1,7 +1,7 @@
 // Bad steps of the offline runner are refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_bad_steps {
 namespace {
 
 class BadSteps : public ::testing::TestWithParam<BadScene> {};
@@ -202,4 +202,4 @@ INSTANTIATE_TEST_SUITE_P(Steps, BadSteps, ::testing::ValuesIn(kBadSteps), caseNa
 INSTANTIATE_TEST_SUITE_P(Patches, BadSteps, ::testing::ValuesIn(kBadPatches), caseName);
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bad_steps

@@ -1,7 +1,7 @@
 // Bad entries of tissue and solver are refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_bad_tissue {
 namespace {
 
 class BadTissue : public ::testing::TestWithParam<BadScene> {};
@@ -255,4 +255,4 @@ INSTANTIATE_TEST_SUITE_P(Materials, BadTissue, ::testing::ValuesIn(kBadMaterials
 INSTANTIATE_TEST_SUITE_P(Solvers, BadTissue, ::testing::ValuesIn(kBadSolvers), caseName);
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bad_tissue

@@ -1,7 +1,7 @@
 // Bad steps of tools are refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_bad_tool_steps {
 namespace {
 
 class BadToolSteps : public ::testing::TestWithParam<BadScene> {};
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(Pushes, BadToolSteps, ::testing::ValuesIn(kBadPushes), 
 INSTANTIATE_TEST_SUITE_P(Grasps, BadToolSteps, ::testing::ValuesIn(kBadGrasps), caseName);
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bad_tool_steps

@@ -1,7 +1,7 @@
 // Bad tools and supports are refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_bad_tools {
 namespace {
 
 class BadTools : public ::testing::TestWithParam<BadScene> {};
@@ -402,4 +402,4 @@ INSTANTIATE_TEST_SUITE_P(Supports, BadRunnerTools, ::testing::ValuesIn(kBadSuppo
 INSTANTIATE_TEST_SUITE_P(Models, BadOnSixSprings, ::testing::ValuesIn(kBadOnSixSprings), caseName);
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bad_tools

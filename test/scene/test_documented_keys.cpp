@@ -14,7 +14,7 @@
 #include "documents.h"
 #include "scene_texts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_documented_keys {
 namespace {
 
 using Keys = std::set<std::string>;  // full paths, "[]" for any entry of a list
@@ -152,4 +152,4 @@ TEST(DocumentedKeys, AreThoseThatTheParserKnows) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_documented_keys

@@ -12,7 +12,7 @@
 #include "robot_tissue/scene/value_text.h"
 #include "scene_texts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_good_scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -294,4 +294,4 @@ TEST_F(SceneFolder, FilesThatAreNoSceneAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_good_scene

@@ -3,7 +3,7 @@
 
 #include "scene_texts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_good_tools {
 namespace {
 
 Scene toolScene() { return parseText(kToolScene, SceneUser::kRunner); }
@@ -289,4 +289,4 @@ TEST(GoodTools, ALinkOfTwoToolsWithShapesIsRemarkedOn) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_good_tools

@@ -6,7 +6,7 @@
 #include "robot_tissue/scene/key_table.h"
 #include "scene_texts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_key_table {
 namespace {
 
 struct Reading {
@@ -89,4 +89,4 @@ TEST(ToolRoles, EveryOneOfTheTableIsRead) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_key_table

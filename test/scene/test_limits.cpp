@@ -18,7 +18,7 @@
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/patch_name.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_limits {
 namespace {
 
 namespace fs = std::filesystem;
@@ -348,4 +348,4 @@ TEST(PatchName, IsShortPrintedAndOneField) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_limits

@@ -5,7 +5,7 @@
 #include "material_presets.h"
 #include "scene_texts.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_materials {
 namespace {
 
 std::string withMaterial(const std::string& material, const std::string& region = "") {
@@ -111,4 +111,4 @@ TEST(Materials, WhatDoesNotGoTogetherIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_materials

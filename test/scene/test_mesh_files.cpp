@@ -13,7 +13,7 @@
 #include "robot_tissue/mesh/mesh_file.h"
 #include "robot_tissue/scene/readers.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -313,4 +313,4 @@ TEST(MeshFiles, CorruptedFilesAreReadSafely) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_files

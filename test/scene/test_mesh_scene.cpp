@@ -6,7 +6,7 @@
 #include "mesh_files.h"
 #include "robot_tissue/core/lattice.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_scene {
 namespace {
 
 // A ball of radius 33 mm: nodes from -35 to 35 mm, none in the corners of that box.
@@ -187,4 +187,4 @@ TEST_F(BallScene, ToolsMeshWithoutAnInsideIsRefusedByItsKey) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_scene

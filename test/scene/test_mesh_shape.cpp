@@ -9,7 +9,7 @@
 #include "robot_tissue/core/mesh_checks.h"
 #include "robot_tissue/scene/readers.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_mesh_shape {
 namespace {
 
 Entry shapeEntry(const std::string& keys) {
@@ -181,4 +181,4 @@ TEST(MeshShape, SpacingIsAtMostTheSmallestExtent) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_mesh_shape

@@ -13,7 +13,7 @@
 #include "robot_tissue/core/types.h"
 #include "robot_tissue/scene/state_file.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_state_file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST_F(StateFile, KilledInASaveTheOldStateIsThereOrTheNew) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_state_file

@@ -1,7 +1,7 @@
 // Steps that suture: what they say, and what is refused.
 #include "bad_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_suture_steps {
 namespace {
 
 const std::string kSutureScene = R"(tissue:
@@ -82,4 +82,4 @@ const std::vector<BadScene> kBadSutures = {
 INSTANTIATE_TEST_SUITE_P(, BadSutures, ::testing::ValuesIn(kBadSutures), caseName);
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_suture_steps

@@ -9,7 +9,7 @@
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/wall_remarks.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_wall_remarks {
 namespace {
 
 TissueConfig tissueOf(const TriangleMesh& mesh, double spacing) {
@@ -124,4 +124,4 @@ TEST(WallRemarks, ShippedScenesHaveNone) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_wall_remarks

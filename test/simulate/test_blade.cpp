@@ -3,7 +3,7 @@
 
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_blade {
 namespace {
 
 const std::string kKnife =
@@ -77,4 +77,4 @@ TEST(TearInAScene, IsToldInWords) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_blade

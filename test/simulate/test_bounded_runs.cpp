@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace robot_tissue {
+namespace robot_tissue::test_bounded_runs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ TEST_F(BoundedRun, EndsForMutatedScenes) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_bounded_runs

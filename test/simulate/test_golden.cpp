@@ -29,7 +29,7 @@
 #include "robot_tissue/scene/scene_parser.h"
 #include "run_scene.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_golden {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ TEST(Golden, OtherBitsGiveAnotherHash) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_golden

@@ -8,7 +8,7 @@
 #include "output_folder.h"
 #include "robot_tissue/core/types.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_output_folder {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST_F(OutputFolderTest, CommitPutsTheFilesInPlace) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_output_folder

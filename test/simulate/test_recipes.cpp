@@ -8,7 +8,7 @@
 #include "documents.h"
 #include "simulate_program.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_recipes {
 namespace {
 
 class Recipes : public Simulate {
@@ -38,4 +38,4 @@ TEST_F(Recipes, Run) {
 TEST_F(Recipes, FirstSceneOfTheReadmeRuns) { EXPECT_EQ(runAll(source_ / "README.md"), 1); }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_recipes

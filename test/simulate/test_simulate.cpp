@@ -11,7 +11,7 @@
 #include "result_text.h"
 #include "simulate_program.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_simulate {
 namespace {
 
 TEST_F(Simulate, WritesAllFilesAndNothingElse) {
@@ -204,4 +204,4 @@ TEST_F(Simulate, WritesTheLatticesNodesAlsoAfterACutOfElasticTissue) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_simulate

@@ -4,7 +4,7 @@
 #include "simulate.h"
 #include "simulate_program.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_simulate_words {
 namespace {
 
 TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
@@ -99,4 +99,4 @@ TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_simulate_words

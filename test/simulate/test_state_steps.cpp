@@ -9,7 +9,7 @@
 #include "simulate.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_state_steps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ TEST_F(StateFiles, AStateOfAnotherLatticeIsRefusedAndNothingWritten) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_state_steps

@@ -7,7 +7,7 @@
 #include "result_text.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_step_orders {
 namespace {
 
 const std::string kTissue = R"(
@@ -132,4 +132,4 @@ TEST(FirstLoad, IsBalancedOnASupport) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_step_orders

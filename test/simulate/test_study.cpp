@@ -11,7 +11,7 @@
 #include <map>
 #include <string>
 
-namespace robot_tissue {
+namespace robot_tissue::test_study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,4 +97,4 @@ TEST_F(StudyTest, GoesOnAfterKillsWithoutLosingOrRepeatingFinishedRuns) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_study

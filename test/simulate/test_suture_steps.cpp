@@ -7,7 +7,7 @@
 #include "simulate_program.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_suture_steps {
 namespace {
 
 const std::string kCut =
@@ -72,4 +72,4 @@ TEST_F(Simulate, TellsOfSuturesWhereTheSceneHasSome) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_suture_steps

@@ -6,7 +6,7 @@
 #include "result_text.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_time {
 namespace {
 
 const std::string kTime = "  time: {damping_time: 0.01}\n";
@@ -174,4 +174,4 @@ TEST(TimeSteps, BadOnesAreRefusedInALine) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_time

@@ -6,7 +6,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tool_physics {
 namespace {
 
 TEST(ToolPhysics, ASphereThatIsPressedMeetsAForceThatGrowsAndLeavesNothing) {
@@ -210,4 +210,4 @@ TEST(ToolPhysics, TwoRunsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tool_physics

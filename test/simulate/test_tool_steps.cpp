@@ -10,7 +10,7 @@
 #include "simulate.h"
 #include "tool_scenes.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tool_steps {
 namespace {
 
 std::string refusalOf(const std::string& scene) {
@@ -260,4 +260,4 @@ TEST(ToolSteps, RemarksGoToStderrUnlessQuiet) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_tool_steps

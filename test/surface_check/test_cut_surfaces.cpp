@@ -12,7 +12,7 @@
 #endif
 #include "robot_tissue/scene/scene_parser.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_cut_surfaces {
 namespace {
 
 #ifdef ROBOT_TISSUE_HAS_CGAL
@@ -138,4 +138,4 @@ TEST(CutSurfaces, AreCheckedByCgal) {
 #endif
 
 }  // namespace
-}  // namespace robot_tissue
+}  // namespace robot_tissue::test_cut_surfaces

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ using Pose = Eigen::Isometry3d;
 
 // Index of a node, spring or vertex as containers want it.
 constexpr std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A mask of axes has bit 1 << axis.
 constexpr std::uint8_t kAllAxes = 7;

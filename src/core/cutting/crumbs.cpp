@@ -40,9 +40,9 @@ bool isCrumb(const Lattice& lattice, const LatticeState& state, int start) {
 }
 
 // What springs hold together, by the lowest node, and whether there is tissue in it.
-class Parts {
+class HeldParts {
  public:
-  Parts(const Lattice& lattice, const LatticeState& state)
+  HeldParts(const Lattice& lattice, const LatticeState& state)
       : nodes_(at(lattice.nodeCount())), has_tissue_(at(lattice.nodeCount()), 0) {
     for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
       if (state.severed[spring] != 0) continue;
@@ -77,7 +77,7 @@ struct Bond {
 
 // Of the crumb of the lowest number that these springs would part from anything.
 std::optional<Bond> nextBond(const Lattice& lattice, const std::vector<Crossing>& crossings,
-                             Parts& parts) {
+                             HeldParts& parts) {
   std::map<int, std::map<int, int>> springs;  // per crumb and part beside it
   for (const Crossing& crossing : crossings) {
     const Spring& ends = lattice.springs()[at(crossing.spring)];
@@ -111,7 +111,7 @@ std::vector<Crossing> sparingCrumbs(const Lattice& lattice, const LatticeState& 
         return isCrumb(lattice, after, ends.a) || isCrumb(lattice, after, ends.b);
       });
   if (!leaves_any) return crossings;
-  Parts parts(lattice, after);
+  HeldParts parts(lattice, after);
   while (const std::optional<Bond> bond = nextBond(lattice, crossings, parts)) {
     const auto joins = [&](const Crossing& crossing) {
       const Spring& ends = lattice.springs()[at(crossing.spring)];
@@ -133,7 +133,7 @@ std::vector<std::uint8_t> withCrumbs(const Lattice& lattice, const LatticeState&
     after.taken[place] = static_cast<std::uint8_t>(after.taken[place] | cells[place]);
   }
   noteTaken(lattice, after);
-  Parts parts(lattice, after);
+  HeldParts parts(lattice, after);
   for (const Cell& cell : lattice.cells()) {
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(after, cell.place, corner) || !parts.isCrumb(parts.of(cell, corner))) continue;

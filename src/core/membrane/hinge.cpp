@@ -11,14 +11,14 @@ constexpr double kPi = 3.14159265358979323846;
 // The angle's gradient is, at corner i, the sum over both triangles k of s_ik N_k / |N_k|^2, where
 // N_k = x_a x x_b + x_b x x_c + x_c x x_a, and s_ik is -|e| at the corner opposite to the edge e,
 // and at the edge's ends what balances that: (x_1 - x_k) . e / |e| and (x_k - x_0) . e / |e|.
-struct Side {
+struct HingeSide {
   std::array<int, 3> corners;  // a, b, c: turned as the triangle; c is opposite to the edge
   Vec3 normal, scaled;         // N, N / |N|^2
   Eigen::Matrix3d of_normal;   // derivative of `scaled` by N
 };
 
-Side sideOf(const Hinge::Corners& places, const std::array<int, 3>& corners) {
-  Side side;
+HingeSide sideOf(const Hinge::Corners& places, const std::array<int, 3>& corners) {
+  HingeSide side;
   side.corners = corners;
   const Vec3 &a = places[at(corners[0])], &b = places[at(corners[1])], &c = places[at(corners[2])];
   side.normal = (b - a).cross(c - a);
@@ -29,12 +29,12 @@ Side sideOf(const Hinge::Corners& places, const std::array<int, 3>& corners) {
   return side;
 }
 
-std::array<Side, 2> sidesOf(const Hinge::Corners& places) {
+std::array<HingeSide, 2> sidesOf(const Hinge::Corners& places) {
   return {sideOf(places, {0, 1, 2}), sideOf(places, {1, 0, 3})};
 }
 
 // Of N by the corner: dN = dx_a x (x_b - x_c) + ...
-Eigen::Matrix3d normalDerivative(const Hinge::Corners& places, const Side& side, int corner) {
+Eigen::Matrix3d normalDerivative(const Hinge::Corners& places, const HingeSide& side, int corner) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (side.corners[i] != corner) continue;
     const Vec3& next = places[at(side.corners[(i + 1) % 3])];
@@ -64,7 +64,7 @@ Share along(const Hinge::Corners& places, int from, int to) {
   return share;
 }
 
-std::array<Share, 4> sharesOf(const Hinge::Corners& places, const Side& side) {
+std::array<Share, 4> sharesOf(const Hinge::Corners& places, const HingeSide& side) {
   const int opposite = side.corners[2];
   std::array<Share, 4> shares;
   shares[0] = along(places, opposite, 1);
@@ -75,7 +75,7 @@ std::array<Share, 4> sharesOf(const Hinge::Corners& places, const Side& side) {
 
 Hinge::Hessian angleHessian(const Hinge::Corners& places) {
   Hinge::Hessian hessian = Hinge::Hessian::Zero();
-  for (const Side& side : sidesOf(places)) {
+  for (const HingeSide& side : sidesOf(places)) {
     const std::array<Share, 4> shares = sharesOf(places, side);
     for (int j = 0; j < 4; ++j) {
       const Eigen::Matrix3d scaled = side.of_normal * normalDerivative(places, side, j);

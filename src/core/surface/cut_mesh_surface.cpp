@@ -15,8 +15,6 @@
 namespace robot_tissue {
 namespace {
 
-enum class Face { kOuter, kOpened };  // opened by a cut
-
 constexpr int kNotLookedFor = -2;  // a cell; -1: none
 
 class CutMeshBuilder {

@@ -18,6 +18,9 @@ namespace robot_tissue {
 
 using HalfPoint = std::array<int, 3>;
 
+// What a face shows: the tissue's skin, or what a cut or a removal opened.
+enum class Face { kOuter, kOpened };
+
 struct Octant {
   int cell = -1;  // of the lattice; -1: none
   int corner = 0;

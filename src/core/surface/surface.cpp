@@ -11,8 +11,6 @@
 namespace robot_tissue {
 namespace {
 
-enum class Face { kOuter, kOpened };  // opened by a cut, or a removal
-
 // A value for each point of the half grid.
 template <typename Value>
 class OnHalfGrid {

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "simd/field_kernel.h"
@@ -23,9 +22,9 @@ constexpr int kMark = 0, kBest = 1;  // spare arrays of the field; 6 and 7: rela
 struct RelaxationMethod::Course {
   int iterations = 0;
   int looks = 0;
-  std::vector<double> ways;                                // from look to look, the last ones
-  double error = 1.0;                                      // error_estimate
-  double least = std::numeric_limits<double>::infinity();  // correctionNorm of the best shape
+  std::vector<double> ways;  // from look to look, the last ones
+  double error = 1.0;        // error_estimate
+  double least = kInfinity;  // correctionNorm of the best shape
   int best_look = 0;
   std::vector<LoadingPatch> best_patches;
   int care = 0;  // how often forces grew tenfold, or did not fall: begin() goes on with care
@@ -160,7 +159,6 @@ bool RelaxationMethod::look(Course& course) {
 // the last ratio and the geometric mean of the last two; and no less than a share of what the
 // method's slowest wave leaves in the end, as early ways shrink faster than late ones.
 double RelaxationMethod::lengthToGo(const std::vector<double>& ways) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::size_t count = ways.size();
   const double last = ways.back();
   if (last == 0.0) return 0.0;

@@ -13,7 +13,7 @@ namespace {
 
 // Spare arrays of the field: the shape before the step, mobilities, the shape when the step was
 // last shortened.
-constexpr int kBefore = 2, kMobility = 3, kShortened = 4;
+constexpr int kSweepStart = 2, kMobility = 3, kShortened = 4;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void XpbdMethod::begin(int care) {
   weigh();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* now = field_->moved()[axis];
-    std::copy(now, now + field_->size(), field_->spare(kBefore)[axis]);
+    std::copy(now, now + field_->size(), field_->spare(kSweepStart)[axis]);
   }
   takeStep(std::pow(tuning::kShorter, care) *
            std::min(tuning::kFirstStretch * options_.tolerance, tuning::kMostStretch));
@@ -74,7 +74,7 @@ void XpbdMethod::iterate() {
 void XpbdMethod::coast() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     robot_tissue::coast(static_cast<float>(keep_), field_->size(), field_->free()[axis],
-                        field_->spare(kBefore)[axis], field_->moved()[axis]);
+                        field_->spare(kSweepStart)[axis], field_->moved()[axis]);
   }
   for (std::size_t node = 0; node < weight_.size(); ++node) {
     if (!weight_[node].isZero(0.0)) push(static_cast<int>(node), weight_[node], 1.0);
@@ -234,7 +234,7 @@ void XpbdMethod::makeSmallStep(double step, const std::vector<double>& masses,
     Vec3 pushed;
     for (int axis = 0; axis < 3; ++axis) {
       pushed[axis] = static_cast<double>(field_->moved()[at(axis)][slot] -
-                                         field_->spare(kBefore)[at(axis)][slot]);
+                                         field_->spare(kSweepStart)[at(axis)][slot]);
     }
     pushed = hold_.freePart(index, field_->unit() * pushed);
     shape_.state.displacement[node] = predicted[node] + pushed;
@@ -266,7 +266,7 @@ void XpbdMethod::predict(double step, const std::vector<double>& masses) {
   }
   field_->takeAll(shape_.state);
   field_->findSqueezed();
-  keepPlaces(kBefore);
+  keepPlaces(kSweepStart);
 }
 
 // Square of the time step over mass, per axis (m/N); 0 where it is held.

@@ -10,8 +10,6 @@ namespace {
 
 namespace tuning = cycle_tuning;
 
-bool isPowerOfTwo(int number) { return (number & (number - 1)) == 0; }
-
 }  // namespace
 
 void ErrorFactor::learn(double shown, Solve solve) {

@@ -10,8 +10,6 @@ namespace {
 
 namespace tuning = cycle_tuning;
 
-bool isPowerOfTwo(int number) { return (number & (number - 1)) == 0; }
-
 }  // namespace
 
 template <typename Real>

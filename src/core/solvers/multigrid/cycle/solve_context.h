@@ -21,6 +21,9 @@ struct SolveContext {
   int cycles = 0;
 };
 
+// What is renewed seldom is renewed in these cycles: 1, 2, 4, 8, and so on.
+inline bool isPowerOfTwo(int cycle) { return (cycle & (cycle - 1)) == 0; }
+
 // Whether a tool or support touches. Threads count as tissue: they hold on, and need no rounds.
 inline bool isInContact(const ConstrainedState& shape) {
   return std::any_of(shape.patches.begin(), shape.patches.end(), [](const LoadingPatch& patch) {
