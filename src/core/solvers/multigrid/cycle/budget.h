@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 
 namespace robot_tissue {
 
@@ -14,8 +15,11 @@ class Budget {
         std::chrono::steady_clock::now() - started_;
     return elapsed.count();
   }
+  double leftMs() const {
+    return max_ms_ > 0.0 ? max_ms_ - elapsedMs() : std::numeric_limits<double>::infinity();
+  }
   int mostCycles() const { return most_cycles_; }
-  bool isSpent() const { return max_ms_ > 0.0 && elapsedMs() > max_ms_; }
+  bool isSpent() const { return leftMs() < 0.0; }
 
  private:
   double max_ms_;

@@ -31,6 +31,7 @@ template <typename Real>
 void FasCgSolver<Real>::forget() {
   iteration_.forget();
   measured_.reset();
+  is_measure_due_ = false;
   part_.forget();
   warm_start_.forget();
   forces_.noteHeld(0.0);
@@ -47,25 +48,43 @@ Vec3 FasCgSolver<Real>::forceLeft() {
   return shape_.exists() ? forceLeftOn(shape_, lattice_.spacing()) : Vec3(Vec3::Zero());
 }
 
+// Measuring takes longer than a solve may: where there is no time for it, it is left to a later one.
 template <typename Real>
-void FasCgSolver<Real>::findLevels(const LatticeState& state) {
-  if (cells_ == state.cells) return;
-  const bool is_measured =
-      measured_ != nullptr && !part_.isEmpty() &&
-      changedCells(lattice_, *measured_, *state.cells).share <= tuning::kMeasuredAgain;
-  KnownLevels known;
-  if (is_measured) {
-    const std::vector<double> stiffness = shape_.levels().grid().greatestStiffness();
-    known = {shape_.levels().takeSources(), stiffness,
-             changedCells(lattice_, *cells_, *state.cells).box, part_.box(), part_.layers()};
+void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budget) {
+  const bool are_others = cells_ != state.cells;
+  if (are_others) {
+    is_measure_due_ =
+        measured_ == nullptr || part_.isEmpty() ||
+        changedCells(lattice_, *measured_, *state.cells).share > tuning::kMeasuredAgain;
   }
-  shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get(),
-                                                     is_measured ? &known : nullptr));
+  if (!are_others && (!is_measure_due_ || part_.isEmpty())) return;
+  const bool can_wait = shape_.exists() && !part_.isEmpty();
+  if (is_measure_due_ && (!can_wait || budget.leftMs() >= measuring_ms_)) {
+    const double before_ms = budget.elapsedMs();
+    measureLevels(state);
+    measuring_ms_ = budget.elapsedMs() - before_ms;
+  } else if (are_others) {
+    const std::vector<double> stiffness = shape_.levels().grid().greatestStiffness();
+    KnownLevels known = {shape_.levels().takeSources(), stiffness,
+                         changedCells(lattice_, *cells_, *state.cells).box, part_.box(),
+                         part_.layers()};
+    shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells,
+                                                       workers_.get(), std::move(known)));
+    iteration_.reset();
+  }
   cells_ = state.cells;
   warm_start_.forget();
-  if (is_measured) return iteration_.reset();
+}
+
+template <typename Real>
+void FasCgSolver<Real>::measureLevels(const LatticeState& state) {
+  KnownLevels known;
+  if (shape_.exists()) known.sources = shape_.levels().takeSources();
+  shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get(),
+                                                     std::move(known)));
   iteration_.resetOnTrial(lattice_, model_, state);
   measured_ = state.cells;
+  is_measure_due_ = false;
 }
 
 template <typename Real>
@@ -78,7 +97,7 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   if (cells_ != shape.state.cells) part_.forgetLoads();
   part_.findSeeds(solve, disturbed);
   if (in_time) part_.seedAll();
-  findLevels(shape.state);
+  findLevels(shape.state, budget);
   SolveReport report;
   wants_double_ = false;
   if (part_.isEmpty()) return report;
@@ -171,7 +190,7 @@ void FasCgSolver<Real>::takeTimeStep(const SolveContext& solve) {
 
 template <typename Real>
 std::vector<Vec3> FasCgSolver<Real>::cellForces(const LatticeState& shape) {
-  findLevels(shape);
+  findLevels(shape, Budget(0.0, 0));
   const CompositeGrid<Real>& grid = shape_.levels().grid();
   shape_.levels().takeTimeStep(nullptr);
   shape_.levels().displacements().take(shape.displacement,

@@ -39,7 +39,8 @@ class FasCgSolver : public MultigridSolver {
 
  private:
   void takeTimeStep(const SolveContext& solve);
-  void findLevels(const LatticeState& state);
+  void findLevels(const LatticeState& state, const Budget& budget);
+  void measureLevels(const LatticeState& state);
   void open(const SolveContext& solve, const GridBox& box);
   void prepare(const SolveContext& solve);
   SolveStatus balance(SolveContext& solve);
@@ -54,6 +55,8 @@ class FasCgSolver : public MultigridSolver {
   std::unique_ptr<Workers> workers_;
   std::shared_ptr<const CellSet> cells_;     // that the levels were made of
   std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of
+  bool is_measure_due_ = false;              // too many cells are others since
+  double measuring_ms_ = 0.0;                // what it took last
   CompositeShape<Real> shape_;
   OpenPart part_;
   WayLimits limits_;

@@ -69,26 +69,25 @@ double greatestShear(const ElasticModel& model, const Lattice& lattice) {
 
 template <typename Real>
 CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers, KnownLevels* known)
+                                   const CellSet& cells, Workers* workers, KnownLevels known)
     : lattice_(lattice),
       workers_(workers),
       spacing_(lattice.spacing()),
       modulus_(greatestShear(model, lattice)),
+      sources_(std::move(known.sources)),
       light_nodes_(lightNodes(cells)) {
-  if (known != nullptr) {
-    sources_ = std::move(known->sources);
-  } else if (!model.movesInTime() && model.membrane() == nullptr) {
+  if (sources_.empty() && !model.movesInTime() && model.membrane() == nullptr) {
     sources_ = levelSources(lattice, model, modulus_, tuning::kFewestPoints);
   }
   listCuts(lattice, model, cells, modulus_, sources_);
   if (!isBlock()) {
     openAll(model, cells);
-  } else if (known == nullptr) {
+  } else if (known.stiffness.empty()) {
     measureStiffness();
     openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
   } else {
-    measureChanged(*known);
-    openParts(openPartsAround(sources_, known->box, known->layers));
+    measureChanged(known);
+    openParts(openPartsAround(sources_, known.box, known.layers));
   }
 }
 
@@ -106,14 +105,15 @@ template <typename Real>
 void CompositeGrid<Real>::measureStiffness() {
   for (std::size_t level = 0; level < sources_.size(); ++level) {
     LevelSource& source = sources_[level];
-    if (source.isUniform()) {
+    if (source.isUniform() && source.uncut_stiffness == 0.0) {
       GridBox points = source.whole();
       for (int& high : points.high) high = std::min(high, tuning::kMeasuredCells);
       const LevelGrid grid = gridOf(points);
       const GridLevel<Real> block(grid, 0, source.uncutIn(points, grid),
                                   {points, level == 0 ? kCoversNothing : points});
-      source.greatest_stiffness = block.greatestStiffness();
+      source.uncut_stiffness = block.greatestStiffness();
     }
+    source.greatest_stiffness = source.uncut_stiffness;
     if (!isCut()) continue;
     const GridBox points = source.isUniform() ? source.listed.box : source.whole();
     source.greatest_stiffness = std::max(source.greatest_stiffness, stiffnessIn(level, points));

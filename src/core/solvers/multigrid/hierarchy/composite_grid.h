@@ -27,10 +27,11 @@
 
 namespace robot_tissue {
 
-// What another grid of the same lattice knows, of a block, of which few cells have changed since.
+// What another grid of the same lattice knows, of a block. All but the sources: where few cells have
+// changed since.
 struct KnownLevels {
   std::vector<LevelSource> sources;
-  std::vector<double> stiffness;  // as GridLevel::greatestStiffness, per level
+  std::vector<double> stiffness;  // as GridLevel::greatestStiffness, per level; empty: not known
   GridBox changed;                // points of the finest lattice around those cells
   GridBox box;                    // to be open from the first on, with so many layers
   int layers = 0;
@@ -39,10 +40,10 @@ struct KnownLevels {
 template <typename Real>
 class CompositeGrid {
  public:
-  // A block is open in its middle where nothing is known. The workers, null for none, must outlive
+  // A block is open in its middle where its stiffness is not known. The workers, null for none, must outlive
   // the grid.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, KnownLevels* known);
+                Workers* workers, KnownLevels known);
 
   // Opens the least part that has the box (points of the finest lattice), and so many layers more
   // on each coarser level. The levels are new then, at rest and held by nothing. False: it was

@@ -1,6 +1,7 @@
 #include "solvers/multigrid/hierarchy/grid_hierarchy.h"
 
 #include <cmath>
+#include <utility>
 
 #include "simd/field_kernel.h"
 
@@ -8,8 +9,8 @@ namespace robot_tissue {
 
 template <typename Real>
 GridHierarchy<Real>::GridHierarchy(const Lattice& lattice, const ElasticModel& model,
-                                   const CellSet& cells, Workers* workers, KnownLevels* known)
-    : grid_(lattice, model, cells, workers, known),
+                                   const CellSet& cells, Workers* workers, KnownLevels known)
+    : grid_(lattice, model, cells, workers, std::move(known)),
       displacements_(grid_),
       constraints_(grid_),
       restriction_(grid_, constraints_),

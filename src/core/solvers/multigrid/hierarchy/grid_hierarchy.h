@@ -27,7 +27,7 @@ class GridHierarchy {
  public:
   // As CompositeGrid.
   GridHierarchy(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
-                Workers* workers, KnownLevels* known = nullptr);
+                Workers* workers, KnownLevels known = {});
   GridHierarchy(const GridHierarchy&) = delete;
   GridHierarchy& operator=(const GridHierarchy&) = delete;
 

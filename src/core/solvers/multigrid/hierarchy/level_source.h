@@ -22,7 +22,8 @@ struct LevelSource {
   // round. Empty: low above high.
   GridBox rough;
   ListedCells listed;               // none where nothing is cut
-  double greatest_stiffness = 0.0;  // of a lattice of equal cells, 0 = not known
+  double uncut_stiffness = 0.0;     // the greatest of a lattice of equal cells; 0: not known
+  double greatest_stiffness = 0.0;  // with what is cut; 0: not known
 
   // More than tuning::kThick points along the shortest side, and at most tuning::kMostSlender times
   // that along the longest. Thinner or longer blocks bend, and few trilinear cells are too stiff in
