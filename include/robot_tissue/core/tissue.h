@@ -158,8 +158,9 @@ class Tissue {
   void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
 
   // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
-  // one solve at least, with one cycle of the method. Loads stop on their way then, to be carried
-  // on (loadOn). None: solver.max_ms bounds each solve.
+  // one solve at least, with one cycle of the method, but for a change of the topology, which may
+  // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
+  // solver.max_ms bounds each solve.
   void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
 
   // Equilibrium under what acts now, at rest.
@@ -267,6 +268,8 @@ class Tissue {
 
  private:
   SolveReport solve(const std::vector<int>& disturbed);
+  void disturb(const std::vector<int>& nodes);
+  void rememberDisturbed();
   SolveReport severAndBalance(const std::vector<Crossing>& crossings);
   bool takesNoTime() const;
   void findFreePieces();
@@ -292,6 +295,8 @@ class Tissue {
   void dropLetGo();
   std::vector<LoadingPatch> namedLoads() const;
   SolveReport changeTopology(const std::vector<int>& disturbed);
+  bool hasTimeForLevels(double before_ms) const;
+  SolveReport leaveToNextCall(const std::vector<int>& disturbed);
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   double volumeRatio() const;
   void renewContacts();

@@ -198,19 +198,28 @@ void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
 
 SolveReport Tissue::solve(const std::vector<int>& disturbed) {
   const Patience::LoadStep load_step(patience_);
-  if (disturbed_.empty()) {
-    disturbed_ = disturbed;
-  } else {
-    disturbed_.insert(disturbed_.end(), disturbed.begin(), disturbed.end());
-    std::sort(disturbed_.begin(), disturbed_.end());
-    disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
-  }
+  disturb(disturbed);
   SolveReport report = solveAndBreak(disturbed_);
   if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
   if (!is_late_) disturbed_.clear();
-  for (int& node : disturbed_) node = state_.cells->original(node);  // ghosts may go meanwhile
+  rememberDisturbed();
   last_report_.volume_ratio = report.volume_ratio = volumeRatio();
   return report;
+}
+
+void Tissue::disturb(const std::vector<int>& nodes) {
+  if (disturbed_.empty()) {
+    disturbed_ = nodes;
+    return;
+  }
+  disturbed_.insert(disturbed_.end(), nodes.begin(), nodes.end());
+  std::sort(disturbed_.begin(), disturbed_.end());
+  disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
+}
+
+// For the next solve: ghosts may go meanwhile.
+void Tissue::rememberDisturbed() {
+  for (int& node : disturbed_) node = state_.cells->original(node);
 }
 
 SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {

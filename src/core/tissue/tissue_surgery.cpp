@@ -1,5 +1,6 @@
 // Tissue: cuts, removals, pieces, and the way back.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
 #include "tissue/topology_change.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -51,6 +53,19 @@ void loseNodes(const LatticeState& state, LoadingPatch& patch) {
       patch.rim.end());
 }
 
+// What these patches were told to answer when they were the earlier ones; nothing of new ones.
+std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
+                                const std::vector<PatchAnswer>& answers,
+                                const std::vector<LoadingPatch>& patches) {
+  std::vector<PatchAnswer> told(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    for (std::size_t j = 0; j < std::min(earlier.size(), answers.size()); ++j) {
+      if (earlier[j].name == patches[i].name) told[i] = answers[j];
+    }
+  }
+  return told;
+}
+
 }  // namespace
 
 std::vector<LoadingPatch> Tissue::namedLoads() const {
@@ -59,11 +74,35 @@ std::vector<LoadingPatch> Tissue::namedLoads() const {
 
 // Balances what other cells and springs leave.
 SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
+  const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
   kept_.reset();
   rebuildSurface();
   deformSurface();
+  const std::vector<LoadingPatch> earlier = patches_;
   renewContacts();
-  return takesNoTime() ? asItIs() : solve(disturbed);
+  if (takesNoTime()) return asItIs();
+  if (hasTimeForLevels(before_ms)) return solve(disturbed);
+  last_report_.patches = asTold(earlier, last_report_.patches, patches_);
+  return leaveToNextCall(disturbed);
+}
+
+// before_ms: what was left before the surface was made.
+bool Tissue::hasTimeForLevels(double before_ms) const {
+  const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
+  if (!isBounded() || !std::isfinite(left_ms)) return true;
+  return left_ms >= tuning::kLevelsOverSurface * (before_ms - left_ms);
+}
+
+// The shape stays, to be balanced by the next solve.
+SolveReport Tissue::leaveToNextCall(const std::vector<int>& disturbed) {
+  disturb(disturbed);
+  rememberDisturbed();
+  is_late_ = true;
+  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
+  last_report_.iterations = 0;
+  last_report_.wall_ms = 0.0;
+  last_report_.volume_ratio = volumeRatio();
+  return last_report_;
 }
 
 CutReport Tissue::cut(const std::vector<Vec3>& corners) {
