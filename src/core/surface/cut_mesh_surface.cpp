@@ -17,6 +17,44 @@ namespace {
 
 constexpr int kNotLookedFor = -2;  // a cell; -1: none
 
+// A value for each octant of a box, with the last ones; beyond it there is none.
+template <typename Value>
+class OnOctants {
+ public:
+  OnOctants() = default;
+  OnOctants(const HalfIndex& first, const HalfIndex& last, Value all) : first_(first) {
+    for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = last[axis] - first[axis] + 1;
+    values_.assign(at(size_[0]) * at(size_[1]) * at(size_[2]), all);
+  }
+
+  Value* find(const HalfIndex& octant) {
+    return has(octant) ? &values_[numberOf(octant)] : nullptr;
+  }
+  const Value* find(const HalfIndex& octant) const {
+    return has(octant) ? &values_[numberOf(octant)] : nullptr;
+  }
+
+ private:
+  bool has(const HalfIndex& octant) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int from_first = octant[axis] - first_[axis];
+      if (from_first < 0 || from_first >= size_[axis]) return false;
+    }
+    return true;
+  }
+  std::size_t numberOf(const HalfIndex& octant) const {
+    return (at(octant[0] - first_[0]) * at(size_[1]) + at(octant[1] - first_[1])) * at(size_[2]) +
+           at(octant[2] - first_[2]);
+  }
+
+  HalfIndex first_{}, size_{};
+  std::vector<Value> values_;
+};
+
+struct Octants {
+  HalfIndex first{}, last{};
+};
+
 class CutMeshBuilder {
  public:
   CutMeshBuilder(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh)
@@ -24,9 +62,7 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        pieces_(inSpacings(), cells()),
-        cell_of_(octantCount(), kNotLookedFor),
-        is_in_region_(octantCount(), 0) {
+        pieces_(inSpacings(), cells()) {
     findRegion();
   }
 
@@ -61,17 +97,6 @@ class CutMeshBuilder {
     return {size[0] - 1, size[1] - 1, size[2] - 1};
   }
 
-  std::size_t octantCount() const {
-    const auto along = cells();
-    return at(8 * along[0] * along[1] * along[2]);
-  }
-
-  // In a grid of all octants, in their order.
-  std::size_t numberOf(const HalfIndex& octant) const {
-    const auto along = cells();
-    return at((octant[0] * 2 * along[1] + octant[1]) * 2 * along[2] + octant[2]);
-  }
-
   static std::array<int, 2> edgeOf(int from, int to) {
     return {std::min(from, to), std::max(from, to)};
   }
@@ -86,27 +111,49 @@ class CutMeshBuilder {
 
   // The octants of split and removed cells, and of the cells around them.
   void findRegion() {
+    std::vector<Octants> open;
     for (const Cell& cell : lattice_.cells()) {
-      if (!parts_.isOpen(cell.place)) continue;
-      const auto& lowest = lattice_.gridIndex(cell.nodes.front());
-      HalfIndex from{}, to{};
+      if (parts_.isOpen(cell.place)) open.push_back(octantsAround(cell));
+    }
+    if (open.empty()) return;
+    Octants box = open.front();
+    for (const Octants& each : open) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        from[axis] = std::max(0, 2 * lowest[axis] - 2);
-        to[axis] = std::min(2 * cells()[axis] - 1, 2 * lowest[axis] + 3);
-      }
-      for (int k = from[2]; k <= to[2]; ++k) {
-        for (int j = from[1]; j <= to[1]; ++j) {
-          for (int i = from[0]; i <= to[0]; ++i) addToRegion({i, j, k});
-        }
+        box.first[axis] = std::min(box.first[axis], each.first[axis]);
+        box.last[axis] = std::max(box.last[axis], each.last[axis]);
       }
     }
+    cell_of_ = OnOctants<int>(box.first, box.last, kNotLookedFor);
+    is_in_region_ = OnOctants<char>(box.first, box.last, 0);
+    for (const Octants& each : open) addToRegion(each);
     std::sort(region_.begin(), region_.end());
   }
 
-  void addToRegion(const HalfIndex& octant) {
-    char& is_in = is_in_region_[numberOf(octant)];
-    if (is_in == 0) region_.push_back(octant);
-    is_in = 1;
+  Octants octantsAround(const Cell& cell) const {
+    const auto& lowest = lattice_.gridIndex(cell.nodes.front());
+    Octants around;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      around.first[axis] = std::max(0, 2 * lowest[axis] - 2);
+      around.last[axis] = std::min(2 * cells()[axis] - 1, 2 * lowest[axis] + 3);
+    }
+    return around;
+  }
+
+  void addToRegion(const Octants& octants) {
+    for (int k = octants.first[2]; k <= octants.last[2]; ++k) {
+      for (int j = octants.first[1]; j <= octants.last[1]; ++j) {
+        for (int i = octants.first[0]; i <= octants.last[0]; ++i) {
+          char& is_in = *is_in_region_.find({i, j, k});
+          if (is_in == 0) region_.push_back({i, j, k});
+          is_in = 1;
+        }
+      }
+    }
+  }
+
+  bool isInRegion(const HalfIndex& octant) const {
+    const char* is_in = is_in_region_.find(octant);
+    return is_in != nullptr && *is_in != 0;
   }
 
   // Its box reaches into the region.
@@ -123,7 +170,7 @@ class CutMeshBuilder {
     for (int k = low[2]; k <= high[2]; ++k) {
       for (int j = low[1]; j <= high[1]; ++j) {
         for (int i = low[0]; i <= high[0]; ++i) {
-          if (is_in_region_[numberOf({i, j, k})] != 0) return true;
+          if (isInRegion({i, j, k})) return true;
         }
       }
     }
@@ -194,11 +241,12 @@ class CutMeshBuilder {
 
   // The cell that the octant is of; beyond the lattice the nearest one.
   int cellOf(const HalfIndex& octant) {
-    int& cell = cell_of_[numberOf(octant)];
-    if (cell != kNotLookedFor) return cell;
-    cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
+    int* known = cell_of_.find(octant);
+    if (known != nullptr && *known != kNotLookedFor) return *known;
+    int cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
     const Vec3 middle(octant[0] + 0.5, octant[1] + 0.5, octant[2] + 0.5);
     if (cell < 0) cell = nearestCell(lattice_, 0.5 * middle);
+    if (known != nullptr) *known = cell;
     return cell;
   }
 
@@ -281,10 +329,10 @@ class CutMeshBuilder {
   // Cut half way between nodes, not where the blade passed: along bent planes, pieces of triangles
   // that are larger than the bends come to cross each other.
   MeshPieces pieces_;
-  std::vector<int> cell_of_;        // of each octant
-  std::vector<int> cell_around_;    // of the points up to the last that was asked for
-  std::vector<char> is_in_region_;  // each octant
-  std::vector<HalfIndex> region_;   // ascending
+  OnOctants<int> cell_of_;         // of each octant around the region
+  std::vector<int> cell_around_;   // of the points up to the last that was asked for
+  OnOctants<char> is_in_region_;   // as cell_of_
+  std::vector<HalfIndex> region_;  // ascending
   std::unordered_set<std::array<int, 2>, IndexHash> cut_edges_;
   std::unordered_map<std::array<int, 1 + kCorners>, int, IndexHash> vertices_;  // point, its nodes
   TissueSurface surface_;
