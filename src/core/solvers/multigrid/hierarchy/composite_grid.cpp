@@ -172,6 +172,7 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
   points_.clear();
   levels_.clear();
   transfers_.clear();
+  levels_.reserve(free_.size());
   for (std::size_t level = 0; level < free_.size(); ++level) {
     LevelSource& source = sources_[level];
     points_.push_back(withNeighbors(free_[level], source.whole()));

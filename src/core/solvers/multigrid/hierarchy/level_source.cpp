@@ -148,6 +148,31 @@ ListedCells listedIn(const GridBox& box, const Lattice& lattice, const ElasticMo
   return listed;
 }
 
+// Of the block as if nothing was cut, those between the points that are wanted, by their place in
+// the whole grid; they are placed from the origin.
+template <typename Wanted>
+void addUncut(const LevelSource& source, const GridBox& points, const std::array<int, 3>& origin,
+              const LevelGrid& grid, Wanted isWanted, std::vector<LevelCell>& cells) {
+  const std::array<int, 3> count = {points.high[0] - points.low[0], points.high[1] - points.low[1],
+                                    points.high[2] - points.low[2]};
+  forAll(count, [&](int i, int j, int k) {
+    const std::array<int, 3> place = {points.low[0] + i, points.low[1] + j, points.low[2] + k};
+    if (!isWanted(place)) return;
+    LevelCell cell;
+    const std::size_t here = source.cellAt(place[0], place[1], place[2]);
+    cell.shear = source.shear[here];
+    cell.bulk = source.bulk[here];
+    cell.stiffening = source.stiffening[here];
+    for (std::size_t axis = 0; axis < 3; ++axis) cell.place[axis] = place[axis] - origin[axis];
+    for (int corner = 0; corner < kCorners; ++corner) {
+      cell.nodes[at(corner)] =
+          grid.index(cell.place[0] + (corner & 1), cell.place[1] + (corner >> 1 & 1),
+                     cell.place[2] + (corner >> 2 & 1));
+    }
+    cells.push_back(std::move(cell));
+  });
+}
+
 // Lists the coarse cells for those that the finer level lists, and as many of the block's beside
 // them as the next coarser level asks for.
 void listCoarse(LevelSource& fine, LevelSource& coarse) {
@@ -163,10 +188,8 @@ void listCoarse(LevelSource& fine, LevelSource& coarse) {
   to.beside = from.to_coarser.nodes_beside;
   to.cells = std::move(from.to_coarser.cells);
   to.box = evenAround(covered, kBesideCut, coarse.whole());
-  for (LevelCell& cell : coarse.uncutIn(coarse.whole(), to.grid)) {
-    const bool is_beside = hasCell(to.box, cell.place) && !hasCell(covered, cell.place);
-    if (is_beside) to.cells.push_back(std::move(cell));
-  }
+  const auto is_beside = [&](const std::array<int, 3>& place) { return !hasCell(covered, place); };
+  addUncut(coarse, to.box, coarse.whole().low, to.grid, is_beside, to.cells);
 }
 
 }  // namespace
@@ -177,13 +200,12 @@ bool LevelSource::isThick() const {
 }
 
 std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGrid& grid) const {
-  std::vector<LevelCell> cells = uncutIn(points, grid);
-  if (listed.isEmpty()) return cells;
-  const auto is_listed = [&](const LevelCell& cell) {
-    return hasCell(listed.box, {cell.place[0] + points.low[0], cell.place[1] + points.low[1],
-                                cell.place[2] + points.low[2]});
+  if (listed.isEmpty()) return uncutIn(points, grid);
+  std::vector<LevelCell> cells;
+  const auto is_uncut = [&](const std::array<int, 3>& place) {
+    return !hasCell(listed.box, place);
   };
-  cells.erase(std::remove_if(cells.begin(), cells.end(), is_listed), cells.end());
+  addUncut(*this, points, points.low, grid, is_uncut, cells);
   const PartEntries in_part(listed.grid, points, grid);
   for (const LevelCell& cell : listed.cells) {
     if (hasCell(points, cell.place)) cells.push_back(in_part(cell));
@@ -193,22 +215,10 @@ std::vector<LevelCell> LevelSource::cellsIn(const GridBox& points, const LevelGr
 
 std::vector<LevelCell> LevelSource::uncutIn(const GridBox& points, const LevelGrid& grid) const {
   std::vector<LevelCell> cells;
-  const std::array<int, 3> count = {points.high[0] - points.low[0], points.high[1] - points.low[1],
-                                    points.high[2] - points.low[2]};
-  cells.reserve(at(count[0] * count[1] * count[2]));
-  forAll(count, [&](int i, int j, int k) {
-    LevelCell cell;
-    cell.place = {i, j, k};
-    const std::size_t here = cellAt(points.low[0] + i, points.low[1] + j, points.low[2] + k);
-    cell.shear = shear[here];
-    cell.bulk = bulk[here];
-    cell.stiffening = stiffening[here];
-    for (int corner = 0; corner < kCorners; ++corner) {
-      cell.nodes[at(corner)] =
-          grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
-    }
-    cells.push_back(cell);
-  });
+  cells.reserve(at((points.high[0] - points.low[0]) * (points.high[1] - points.low[1]) *
+                   (points.high[2] - points.low[2])));
+  addUncut(
+      *this, points, points.low, grid, [](const auto&) { return true; }, cells);
   return cells;
 }
 

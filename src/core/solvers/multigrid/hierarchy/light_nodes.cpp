@@ -1,7 +1,5 @@
 #include "solvers/multigrid/hierarchy/light_nodes.h"
 
-#include <algorithm>
-
 namespace robot_tissue {
 namespace {
 
@@ -21,17 +19,16 @@ double volumeAt(const CellSet& cells, int node) {
 }  // namespace
 
 std::vector<LightNode> lightNodes(const CellSet& cells) {
-  std::vector<int> of_partly_filled;
+  std::vector<char> is_of_partly_filled(at(cells.nodeCount()), 0);
   for (const Cell& cell : cells.all()) {
     if (cell.fill == nullptr) continue;
-    of_partly_filled.insert(of_partly_filled.end(), cell.nodes.begin(), cell.nodes.end());
+    for (const int node : cell.nodes) is_of_partly_filled[at(node)] = 1;
   }
-  std::sort(of_partly_filled.begin(), of_partly_filled.end());
-  const auto end = std::unique(of_partly_filled.begin(), of_partly_filled.end());
   std::vector<LightNode> light;
-  for (auto node = of_partly_filled.begin(); node != end; ++node) {
-    const double weight = volumeAt(cells, *node) / kWhole;
-    if (weight < 1.0 - kRounding) light.push_back({*node, weight});
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (is_of_partly_filled[at(node)] == 0) continue;
+    const double weight = volumeAt(cells, node) / kWhole;
+    if (weight < 1.0 - kRounding) light.push_back({node, weight});
   }
   return light;
 }

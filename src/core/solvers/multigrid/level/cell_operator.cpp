@@ -1,12 +1,15 @@
 #include "solvers/multigrid/level/cell_operator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "simd/field_kernel.h"
 #include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 namespace {
+
+constexpr int kNoSum = -1;
 
 template <typename Real>
 std::array<Real, 3> rounded(const Vec3& values) {
@@ -44,6 +47,7 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
   const bool stiffens = std::any_of(cells.begin(), cells.end(),
                                     [](const LevelCell& cell) { return cell.stiffening > 0.0; });
   if (stiffens) stiffening_.assign(at(count_), Real(0));
+  std::vector<int> sum_of(at(count_), kNoSum);
   for (const LevelCell& cell : cells) {
     const int lowest = grid_.index(cell.place[0], cell.place[1], cell.place[2]);
     bool regular = true;
@@ -74,22 +78,27 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
     } else {
       filled_.push_back(filledCell(loose, *cell.fill));
     }
-    loose_nodes_.insert(loose_nodes_.end(), cell.nodes.begin(), cell.nodes.end());
+    for (const int node : cell.nodes) sum_of[at(node)] = 0;
   }
-  std::sort(loose_nodes_.begin(), loose_nodes_.end());
-  loose_nodes_.erase(std::unique(loose_nodes_.begin(), loose_nodes_.end()), loose_nodes_.end());
-  for (auto& sums : loose_sums_) sums.assign(loose_nodes_.size(), Real(0));
-  for (LooseCell<Real>& cell : loose_) placeSums(cell);
-  for (FilledCell<Real>& cell : filled_) placeSums(cell);
+  if (!loose_.empty() || !filled_.empty()) placeSums(std::move(sum_of));
 }
 
+// sum_of: per entry, kNoSum where it is of no loose cell.
 template <typename Real>
-void CellOperator<Real>::placeSums(LooseCell<Real>& cell) const {
-  for (std::size_t corner = 0; corner < cell.nodes.size(); ++corner) {
-    const auto found =
-        std::lower_bound(loose_nodes_.begin(), loose_nodes_.end(), cell.nodes[corner]);
-    cell.sums[corner] = static_cast<int>(found - loose_nodes_.begin());
+void CellOperator<Real>::placeSums(std::vector<int> sum_of) {
+  for (int node = 0; node < count_; ++node) {
+    if (sum_of[at(node)] == kNoSum) continue;
+    sum_of[at(node)] = static_cast<int>(loose_nodes_.size());
+    loose_nodes_.push_back(node);
   }
+  for (auto& sums : loose_sums_) sums.assign(loose_nodes_.size(), Real(0));
+  const auto place = [&sum_of](LooseCell<Real>& cell) {
+    for (std::size_t corner = 0; corner < cell.nodes.size(); ++corner) {
+      cell.sums[corner] = sum_of[at(cell.nodes[corner])];
+    }
+  };
+  std::for_each(loose_.begin(), loose_.end(), place);
+  std::for_each(filled_.begin(), filled_.end(), place);
 }
 
 template <typename Real>

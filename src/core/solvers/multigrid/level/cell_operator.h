@@ -72,7 +72,7 @@ class CellOperator {
   using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
 
   void place(const std::vector<LevelCell>& cells);
-  void placeSums(LooseCell<Real>& cell) const;
+  void placeSums(std::vector<int> sum_of);
   void findBlocks();
   void makeSums(int threads);
   void findForces(const Loads& loads, Find what, const Blocks& blocks);
