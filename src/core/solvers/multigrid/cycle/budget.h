@@ -20,6 +20,7 @@ class Budget {
   }
   int mostCycles() const { return most_cycles_; }
   bool isSpent() const { return leftMs() < 0.0; }
+  bool isOverdrawn() const { return leftMs() < -max_ms_; }  // by as much as there was
 
  private:
   double max_ms_;

@@ -146,7 +146,7 @@ void FasCgIteration<Real>::finishLate(const SolveContext& solve) {
 template <typename Real>
 void FasCgIteration<Real>::settleForces(const SolveContext& solve) {
   for (int round = 0; round < tuning::kMostSettling; ++round) {
-    if (forces_.isSettled(part_.loaded())) return;
+    if (solve.budget.isOverdrawn() || forces_.isSettled(part_.loaded())) return;
     shape_.finest().smoothAndFindForces(cycle_.smootherSteps(solve));
   }
 }
