@@ -99,8 +99,31 @@ double leftByLimits(const std::string& root) {
   return std::min(leftByLimit(RLIMIT_AS, space), leftByLimit(RLIMIT_DATA, data));
 }
 
+MethodTraits traitsOfAny(const std::string& method) {
+  return method.empty() ? MethodTraits() : traitsOf(method);
+}
+
 double factorBytes(double nodes, const std::string& method) {
-  return traitsOf(method).factor_bytes * std::pow(nodes, 4.0 / 3.0);
+  return traitsOfAny(method).factor_bytes * std::pow(nodes, 4.0 / 3.0);
+}
+
+double trianglesOf(const TriangleMesh& mesh, double spacing) {
+  double triangles = 0.0;
+  for (const MeshTriangle& t : mesh.triangles) {
+    const double squares = 0.5 * doubleArea(mesh.vertices, t).norm() / (spacing * spacing);
+    double longest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 edge = mesh.vertices[at(t[i])] - mesh.vertices[at(t[(i + 1) % 3])];
+      longest = std::max(longest, edge.norm() / spacing);
+    }
+    triangles += 1.0 + 4.0 * squares + 4.0 * longest;
+  }
+  return triangles;
+}
+
+double trianglesOf(const Box& box, double spacing) {
+  const Vec3 size = (box.max() - box.min()) / spacing;
+  return 4.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
 }
 
 }  // namespace
@@ -154,21 +177,15 @@ double nodesWithin(const TriangleMesh& mesh, double spacing) {
   return std::min(cells, around.prod());
 }
 
-double memoryAround(const TriangleMesh& mesh, double spacing) {
-  const Box box = boundsOf(mesh.vertices);
-  const Vec3 around = ((box.max() - box.min()) / spacing).array().ceil() + 2.0;
+double memoryAround(const TissueConfig& tissue, const std::string& method) {
+  const double membrane = tissue.membranes.empty() ? 0.0 : tuning::kBytesPerMembraneTriangle;
+  if (!tissue.mesh) return membrane * trianglesOf(tissue.shape, tissue.spacing);
+  const Box box = boundsOf(tissue.mesh->vertices);
+  const Vec3 around = ((box.max() - box.min()) / tissue.spacing).array().ceil() + 2.0;
   if (around.prod() > std::numeric_limits<int>::max()) return kUnlimited;  // numbered by int
-  double triangles = 0.0;
-  for (const MeshTriangle& t : mesh.triangles) {
-    const double squares = 0.5 * doubleArea(mesh.vertices, t).norm() / (spacing * spacing);
-    double longest = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 edge = mesh.vertices[at(t[i])] - mesh.vertices[at(t[(i + 1) % 3])];
-      longest = std::max(longest, edge.norm() / spacing);
-    }
-    triangles += 1.0 + 4.0 * squares + 4.0 * longest;
-  }
-  return tuning::kBytesPerGridCell * around.prod() + tuning::kBytesPerTriangle * triangles;
+  const double of_method = traitsOfAny(method).grid_bytes;
+  return (tuning::kBytesPerGridCell + of_method) * around.prod() +
+         (tuning::kBytesPerTriangle + membrane) * trianglesOf(*tissue.mesh, tissue.spacing);
 }
 
 }  // namespace robot_tissue

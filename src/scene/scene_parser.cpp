@@ -19,7 +19,7 @@ std::string readFile(const std::string& path) {
   }
 }
 
-// By the method that it is solved with; readTissue knows the model's own only.
+// By the method that it is solved with, and with its membranes; readTissue knows neither.
 void requireMemoryOfMethod(const Entry& tissue, const Scene& scene) {
   requireMemory(tissue.child(tissue.node()["spacing"], "spacing"), scene.tissue,
                 scene.solver.method);

@@ -293,13 +293,14 @@ void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::
   const double nodes = tissue.mesh
                            ? nodesWithin(*tissue.mesh, tissue.spacing)
                            : nodeCount(tissue.shape.max() - tissue.shape.min(), tissue.spacing);
-  const double around = tissue.mesh ? memoryAround(*tissue.mesh, tissue.spacing) : 0.0;
+  const double around = memoryAround(tissue, method);
   const double free = freeMemory();
   const double most = mostNodes(free - around, method);
   if (nodes <= most) return;
   spacing.fail("makes " + numberText(std::round(nodes)) + " nodes, which take " +
-               megabytes(around + memoryOf(nodes, method)) + " with method " + method + " where " +
-               megabytes(free) + " are free: " +
+               megabytes(around + memoryOf(nodes, method)) +
+               (method.empty() ? "" : " with method " + method) + " where " + megabytes(free) +
+               " are free: " +
                (most > 0.0 ? "must give at most " + numberText(most) + " nodes"
                            : "must be larger, or the mesh smaller"));
 }
@@ -310,7 +311,7 @@ TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, boo
   TissueReading reading{scene_folder, supported, remarks, {}, {}};
   readKeys(map, kBodyKeys, reading);
   const TissueConfig& tissue = reading.tissue;
-  requireMemory(map["spacing"], tissue, methodsFor(tissue.model).front());
+  requireMemory(map["spacing"], tissue, "");  // the method comes later
   for (const WallRemark& remark : wallRemarks(tissue)) {
     remarks.push_back(map["spacing"].line(remark.text + "; remedy: " + remark.remedy));
   }

@@ -10,10 +10,11 @@ namespace robot_tissue::tuning {
 // system ends a program whose scene does not. Bytes a node: lattice, springs, shape and surface,
 // and the shapes kept along a tool's way. Measured, with some reserve.
 constexpr double kBytesPerNode = 3000.0;
-// Bytes a cell of the grid around a mesh, filled or not, and a triangle of the mesh. Measured, with
-// some reserve.
-constexpr double kBytesPerGridCell = 40.0;
+// Bytes a cell of the grid around a mesh, filled or not, besides the method's; a triangle of the
+// mesh; and more, one that a membrane is on. Measured, with some reserve.
+constexpr double kBytesPerGridCell = 45.0;
 constexpr double kBytesPerTriangle = 500.0;
+constexpr double kBytesPerMembraneTriangle = 2800.0;
 
 // Refusals.
 // Letters of a value that are shown. More: longer lines. Chosen.

@@ -21,6 +21,7 @@ struct MethodTraits {
   bool turns_patches = true;   // that a force moves
   bool takes_membranes = false;
   double factor_bytes = 0.0;  // of memory for n nodes, over n^(4/3): of a sparse factor
+  double grid_bytes = 0.0;    // of memory a cell of the grid around the lattice, filled or not
 };
 
 const std::vector<std::string>& modelNames();

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "robot_tissue/core/scene.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
@@ -22,15 +23,18 @@ double heapInUse();
 // Whole pages of the heap that nothing is in go back to the system, also from between what stays.
 void giveBackFreeMemory();
 
-// Bytes that a lattice of so many nodes takes with its shape, surface and solver.
+// Bytes that a lattice of so many nodes takes with its shape, surface and solver. Method "", here
+// and below: what it takes with any of them.
 double memoryOf(double nodes, const std::string& method);
 
 // The most nodes whose memory is within `bytes`, and that are numbered by int.
 double mostNodes(double bytes, const std::string& method);
 
-// Estimate for a mesh in a lattice: about how many nodes it holds, and the bytes of the grid around
-// it and of its surface when its triangles are no larger than the spacing.
+// About how many nodes a mesh holds.
 double nodesWithin(const TriangleMesh& mesh, double spacing);
-double memoryAround(const TriangleMesh& mesh, double spacing);
+
+// Bytes besides those of the nodes: of membranes, and where the tissue is a mesh of the grid around
+// it, also where it is empty, and of its surface when its triangles are no larger than the spacing.
+double memoryAround(const TissueConfig& tissue, const std::string& method);
 
 }  // namespace robot_tissue

@@ -128,17 +128,19 @@ const std::vector<ModelEntry>& models() {
   return all;
 }
 
+constexpr MethodTraits kOfField = {true, false, true, false, 0.0, tuning::kFieldBytes};
+
 // Those of a model in the order of its defaults. The six-spring lattice holds many shapes without a
 // force: no method can name its equilibrium. The paper's method moves along springs, which do not
 // reach the ghosts that cuts give the cells.
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> all = {
-      {"layered", makeLayered, {"elastic"}, {true, true, true, true, 0.0}},
+      {"layered", makeLayered, {"elastic"}, {true, true, true, true, 0.0, tuning::kLevelsBytes}},
       {"newton", makeNewton, {"elastic"}, {false, false, true, true, tuning::kFactorBytes}},
       {"paper", makePaper, {"six_spring"}, {true, false, false, false, 0.0}},
-      {"vbd", makeVbd, {"elastic"}, {}},
-      {"xpbd", makeXpbd, {"elastic"}, {}},
-      {"explicit", makeExplicit, {"elastic"}, {}},
+      {"vbd", makeVbd, {"elastic"}, kOfField},
+      {"xpbd", makeXpbd, {"elastic"}, kOfField},
+      {"explicit", makeExplicit, {"elastic"}, kOfField},
   };
   return all;
 }
