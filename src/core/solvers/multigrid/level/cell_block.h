@@ -351,7 +351,7 @@ struct Block {
       cross(along_y, along_z, across[0]);
       const L determinant =
           along_x[0] * across[0][0] + along_x[1] * across[0][1] + along_x[2] * across[0][2];
-      if (!any((determinant < kSqueezed) & (shear > Real(0)))) continue;
+      if (!anyAbove0(determinant < kSqueezed ? shear : L{})) continue;
       cross(along_z, along_x, across[1]);
       cross(along_x, along_y, across[2]);
       pushCorner<kWithStiffness>(corner, determinant, across, push);
@@ -400,7 +400,7 @@ struct Block {
     stiffen<true>();
     if constexpr (kStiffens) stiffenByStrain<true>();
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
-    const bool squeezed = any((slight > kSlight) & (shear > Real(0)));
+    const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
     if (corner_stiffness != nullptr) stiffenCorners(fill, corner_stiffness);
     L push[kCorners][3];
     for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
@@ -462,7 +462,7 @@ struct Block {
     // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
     // its two parts.
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
-    const bool squeezed = any((slight > kSlight) & (shear > Real(0)));
+    const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
     L push[kCorners][3];
     const bool more = squeezed || has_parts;
     if (more) {

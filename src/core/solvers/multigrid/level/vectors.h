@@ -67,11 +67,11 @@ ROBOT_TISSUE_INLINE L greater(const L& a, const L& b) {
   return a > b ? a : b;
 }
 
-// Whether any lane is true.
-template <typename Mask>
-ROBOT_TISSUE_INLINE bool any(const Mask& mask) {
-  std::uint64_t words[sizeof mask / sizeof(std::uint64_t)], all_of_them = 0;
-  std::memcpy(words, &mask, sizeof words);
+// Whether any lane is above 0; none is below, or -0. Of numbers: GCC 12 makes masks lane by lane.
+template <typename L>
+ROBOT_TISSUE_INLINE bool anyAbove0(const L& x) {
+  std::uint64_t words[sizeof x / sizeof(std::uint64_t)], all_of_them = 0;
+  std::memcpy(words, &x, sizeof words);
   for (const std::uint64_t word : words) all_of_them |= word;
   return all_of_them != 0;
 }
