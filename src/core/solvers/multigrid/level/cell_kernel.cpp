@@ -47,14 +47,16 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
   block.has_parts = standing != 0;
   if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
   block.template solve<kWithStiffness, kStiffens>();
-  for (int corner = kCorners - 1; corner >= 0; --corner) {
-    const int sum = first - grid.origin + (corner & 1) + (corner >> 1 & 1) * grid.row;
+  for (int corner = kCorners - 2; corner >= 0; corner -= 2) {
+    const int sum = first - grid.origin + (corner >> 1 & 1) * grid.row;
     const bool low = corner < kCorners / 2;
     for (int axis = 0; axis < 3; ++axis) {
-      subtract<V>(block.mode[corner][axis], (low ? grid.lower[axis] : grid.upper[axis]) + sum);
+      subtractBoth<V>(block.mode[corner][axis], block.mode[corner + 1][axis],
+                      (low ? grid.lower[axis] : grid.upper[axis]) + sum);
     }
     if constexpr (kWithStiffness) {
-      subtract<V>(-block.stiffness, (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
+      subtractBoth<V>(-block.stiffness, -block.stiffness,
+                      (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
     }
   }
 }
