@@ -335,26 +335,44 @@ struct Block {
     }
   }
 
+  // Those that meet in a corner, as above.
+  struct Corner {
+    Corner(const Edges& edges, int corner)
+        : x(edges.along[0][corner >> 1 & 1][corner >> 2 & 1]),
+          y(edges.along[1][corner >> 2 & 1][corner & 1]),
+          z(edges.along[2][corner & 1][corner >> 1 & 1]) {}
+
+    const L (&x)[3];
+    const L (&y)[3];
+    const L (&z)[3];
+  };
+
+  static ROBOT_TISSUE_INLINE L determinantOf(const Corner& corner, L (&across_x)[3]) {
+    cross(corner.y, corner.z, across_x);
+    return corner.x[0] * across_x[0] + corner.x[1] * across_x[1] + corner.x[2] * across_x[2];
+  }
+
   // Adds the barrier's gradient in the modes to `push`, corner by corner where any cell is squeezed
-  // there.
+  // there; few are squeezed anywhere.
   template <bool kWithStiffness>
   ROBOT_TISSUE_INLINE void addBarrier(L (&push)[kCorners][3]) {
     constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
     Edges edges;
     findEdges(edges);
+    L across[3][3];
+    L least = all<V>(kSqueezed);
+#pragma GCC unroll 8
     for (int corner = 0; corner < kCorners; ++corner) {
-      const int x = corner & 1, y = corner >> 1 & 1, z = corner >> 2 & 1;
-      const L(&along_x)[3] = edges.along[0][y][z];
-      const L(&along_y)[3] = edges.along[1][z][x];
-      const L(&along_z)[3] = edges.along[2][x][y];
-      L across[3][3];
-      cross(along_y, along_z, across[0]);
-      const L determinant =
-          along_x[0] * across[0][0] + along_x[1] * across[0][1] + along_x[2] * across[0][2];
+      least = lesser(determinantOf(Corner(edges, corner), across[0]), least);
+    }
+    if (!anyAbove0(least < kSqueezed ? shear : L{})) return;
+    for (int index = 0; index < kCorners; ++index) {
+      const Corner corner(edges, index);
+      const L determinant = determinantOf(corner, across[0]);
       if (!anyAbove0(determinant < kSqueezed ? shear : L{})) continue;
-      cross(along_z, along_x, across[1]);
-      cross(along_x, along_y, across[2]);
-      pushCorner<kWithStiffness>(corner, determinant, across, push);
+      cross(corner.z, corner.x, across[1]);
+      cross(corner.x, corner.y, across[2]);
+      pushCorner<kWithStiffness>(index, determinant, across, push);
     }
   }
 

@@ -80,6 +80,11 @@ ROBOT_TISSUE_INLINE L greater(const L& a, const L& b) {
   return a > b ? a : b;
 }
 
+template <typename L>
+ROBOT_TISSUE_INLINE L lesser(const L& a, const L& b) {
+  return a < b ? a : b;
+}
+
 // Whether any lane is above 0; none is below, or -0. Of numbers: GCC 12 makes masks lane by lane.
 template <typename L>
 ROBOT_TISSUE_INLINE bool anyAbove0(const L& x) {
