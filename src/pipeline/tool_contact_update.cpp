@@ -61,13 +61,15 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
 // Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a
 // point came in is no longer known.
 double ToolContactUpdate::shareOutside(double share, int strides) const {
-  const std::vector<double> before = depthsIn(vertices_);
+  std::vector<double> before;  // found where they are asked for
   const auto is_deep = [&](double part) {
     const std::vector<double> depths = depthsAt(part);
     for (std::size_t link = 0; link < depths.size(); ++link) {
       const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
                                    tuning::kDeepestOfThickness * world_.finder.thickness(link));
-      if (depths[link] > std::max(most, before[link] + tuning::kDepthGrowth * most)) return true;
+      if (depths[link] <= most) continue;
+      if (before.empty()) before = depthsIn(vertices_);
+      if (depths[link] > before[link] + tuning::kDepthGrowth * most) return true;
     }
     return false;
   };

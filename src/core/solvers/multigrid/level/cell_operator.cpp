@@ -214,8 +214,11 @@ template <typename Real>
 void CellOperator<Real>::addPlane(const Loads& loads, Find what,
                                   const std::vector<CellBlock>& blocks, int plane,
                                   Sums& sums) const {
+  const std::size_t sums_asked = what == Find::kForcesAndStiffness ? 4 : 3;
   for (auto* both : {&sums.lower, &sums.upper}) {
-    for (auto& values : *both) std::fill(values.begin(), values.end(), Real(0));
+    for (std::size_t i = 0; i < sums_asked; ++i) {
+      std::fill((*both)[i].begin(), (*both)[i].end(), Real(0));
+    }
   }
   CellGrid<Real> cells = gridOf(loads);
   cells.origin = plane * grid_.plane;

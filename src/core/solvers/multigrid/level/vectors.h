@@ -88,10 +88,12 @@ ROBOT_TISSUE_INLINE L lesser(const L& a, const L& b) {
 // Whether any lane is above 0; none is below, or -0. Of numbers: GCC 12 makes masks lane by lane.
 template <typename L>
 ROBOT_TISSUE_INLINE bool anyAbove0(const L& x) {
-  std::uint64_t words[sizeof x / sizeof(std::uint64_t)], all_of_them = 0;
+  typedef std::uint64_t Words __attribute__((vector_size(16)));
+  Words words[sizeof x / sizeof(Words)];
   std::memcpy(words, &x, sizeof words);
-  for (const std::uint64_t word : words) all_of_them |= word;
-  return all_of_them != 0;
+  Words all_of_them{};
+  for (const Words& some : words) all_of_them |= some;
+  return (all_of_them[0] | all_of_them[1]) != 0;
 }
 
 // r = x^(-1/3), x > 0. A guess within some percent: the bits of x as a number are about its
