@@ -19,6 +19,13 @@
 #define ROBOT_TISSUE_HAS_TARGET_CLONES 0
 #endif
 
+// __builtin_shufflevector: GCC 12 and later, and Clang.
+#if defined(__clang__) || (defined(__GNUC__) && __GNUC__ >= 12)
+#define ROBOT_TISSUE_HAS_SHUFFLEVECTOR 1
+#else
+#define ROBOT_TISSUE_HAS_SHUFFLEVECTOR 0
+#endif
+
 // std::from_chars of floating-point numbers: GCC 11 and later.
 #if defined(__cpp_lib_to_chars) && __cpp_lib_to_chars >= 201611L
 #define ROBOT_TISSUE_HAS_FLOAT_FROM_CHARS 1

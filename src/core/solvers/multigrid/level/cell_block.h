@@ -4,6 +4,7 @@
 #include "material/elastic_cell.h"
 #include "material/elastic_law.h"
 #include "simd/vector_clones.h"
+#include "solvers/multigrid/level/cell_barrier.h"
 #include "solvers/multigrid/level/vectors.h"
 
 namespace robot_tissue::vectors {
@@ -302,108 +303,26 @@ struct Block {
     }
   }
 
-  // Minus the cell's edges along each axis: of a corner at the high ends along the two axes that
-  // follow it in turn, b and c, the edge with index [high along b][high along c]. Along x it is
-  // m_x + y m_xy + z m_xz + y z m_xyz - e_x, with y and z -1 at the high end, else 1.
-  struct Edges {
-    L along[3][2][2][3];
-  };
-
-  ROBOT_TISSUE_INLINE void findEdges(Edges& edges) const {
-#pragma GCC unroll 3
-    for (int a0 = 0; a0 < 3; ++a0) {
-      const int b = 1 << (a0 + 1) % 3, c = 1 << (a0 + 2) % 3, own = 1 << a0;
-#pragma GCC unroll 3
-      for (int axis = 0; axis < 3; ++axis) {
-        const L straight = mode[own][axis] - Real(axis == a0 ? 1.0 : 0.0);
-        const L low = straight + mode[own | b][axis], high = straight - mode[own | b][axis];
-        const L low_turn = mode[own | c][axis] + mode[7][axis];
-        const L high_turn = mode[own | c][axis] - mode[7][axis];
-        edges.along[a0][0][0][axis] = low + low_turn;
-        edges.along[a0][0][1][axis] = low - low_turn;
-        edges.along[a0][1][0][axis] = high + high_turn;
-        edges.along[a0][1][1][axis] = high - high_turn;
-      }
-    }
-  }
-
-  static ROBOT_TISSUE_INLINE void cross(const L (&b)[3], const L (&c)[3], L (&across)[3]) {
+  // Where `slight` does not tell: whether a corner may be squeezed, without its determinant. With
+  // the mean deformation gradient F, J = det F and a corner's edges G = F + B,
+  //   det G = J + cof F : B + F : cof B + det B >= J - |cof F| |B| - |F| |B|^2 / 3^(1/2)
+  //                                                 - |B|^3 / 27^(1/2),
+  // |F| / 3^(1/2) <= (|F|^2 / 3 + 1) / 2, |F|^2 <= I1, |B| <= |B|^2 + 1/4.
+  ROBOT_TISSUE_INLINE bool maySqueeze() const {
+    constexpr Real kSqueezed = Real(1.01 * elastic_law::kSqueezed);  // by rounding
+    L bent_square = L{};                                             // of |B|, at most
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
-      const int v = (axis + 1) % 3, w = (axis + 2) % 3;
-      across[axis] = b[w] * c[v] - b[v] * c[w];
+      const L bent = mode[3][axis] * mode[3][axis] + mode[5][axis] * mode[5][axis] +
+                     mode[6][axis] * mode[6][axis];
+      bent_square += Real(6.0) * bent + Real(9.0) * mode[7][axis] * mode[7][axis];
     }
-  }
-
-  // Those that meet in a corner, as above.
-  struct Corner {
-    Corner(const Edges& edges, int corner)
-        : x(edges.along[0][corner >> 1 & 1][corner >> 2 & 1]),
-          y(edges.along[1][corner >> 2 & 1][corner & 1]),
-          z(edges.along[2][corner & 1][corner >> 1 & 1]) {}
-
-    const L (&x)[3];
-    const L (&y)[3];
-    const L (&z)[3];
-  };
-
-  static ROBOT_TISSUE_INLINE L determinantOf(const Corner& corner, L (&across_x)[3]) {
-    cross(corner.y, corner.z, across_x);
-    return corner.x[0] * across_x[0] + corner.x[1] * across_x[1] + corner.x[2] * across_x[2];
-  }
-
-  // Adds the barrier's gradient in the modes to `push`, corner by corner where any cell is squeezed
-  // there; few are squeezed anywhere.
-  template <bool kWithStiffness>
-  ROBOT_TISSUE_INLINE void addBarrier(L (&push)[kCorners][3]) {
-    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
-    Edges edges;
-    findEdges(edges);
-    L across[3][3];
-    L least = all<V>(kSqueezed);
-#pragma GCC unroll 8
-    for (int corner = 0; corner < kCorners; ++corner) {
-      least = lesser(determinantOf(Corner(edges, corner), across[0]), least);
-    }
-    if (!anyAbove0(least < kSqueezed ? shear : L{})) return;
-    for (int index = 0; index < kCorners; ++index) {
-      const Corner corner(edges, index);
-      const L determinant = determinantOf(corner, across[0]);
-      if (!anyAbove0(determinant < kSqueezed ? shear : L{})) continue;
-      cross(corner.z, corner.x, across[1]);
-      cross(corner.x, corner.y, across[2]);
-      pushCorner<kWithStiffness>(index, determinant, across, push);
-    }
-  }
-
-  template <bool kWithStiffness>
-  ROBOT_TISSUE_INLINE void pushCorner(int corner, const L& determinant, const L (&across)[3][3],
-                                      L (&push)[kCorners][3]) {
-    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
-    const Real x = (corner & 1) != 0 ? Real(-1) : Real(1);
-    const Real y = (corner & 2) != 0 ? Real(-1) : Real(1);
-    const Real z = (corner & 4) != 0 ? Real(-1) : Real(1);
-    const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
-    const L height = shear * Real(elastic_law::kBarrier / kCorners);
-    const L slope = height * depth * depth * Real(-3.0 * 0.25 / kSqueezed);
-    for (int axis = 0; axis < 3; ++axis) {
-      const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
-              along_z = slope * across[2][axis];
-      push[1][axis] += along_x;
-      push[2][axis] += along_y;
-      push[4][axis] += along_z;
-      push[3][axis] += y * along_x + x * along_y;
-      push[5][axis] += z * along_x + x * along_z;
-      push[6][axis] += z * along_y + y * along_z;
-      push[7][axis] += y * z * along_x + x * z * along_y + x * y * along_z;
-    }
-    if constexpr (kWithStiffness) {
-      L widest = L{};
-      for (const auto& area : across) {
-        widest = greater(widest, area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
-      }
-      stiffness += height * depth * widest * Real(3.0 * 6.0 / (kSqueezed * kSqueezed));
-    }
+    const L by_products =
+        (invariant + Real(6.0)) * Real(1.0 / 6.0) + (bent_square + Real(0.25)) * Real(0.19245009);
+    const L left = volume + (Real(1.0) - kSqueezed) - bent_square * by_products;
+    const L most = bent_square * (square(0) + square(1) + square(2));
+    const L squared = left > Real(0.0) ? left * left : L{};
+    return anyAbove0(squared > most ? L{} : shear);
   }
 
   // As `solve`, of cells that are filled in part. `corner_stiffness`: bounds of the stiffness of
@@ -427,7 +346,7 @@ struct Block {
       std::memcpy(over_fill, mode, sizeof mode);
       shiftModes<-1>(fill);
       stiffness = L{};
-      addBarrier<true>(push);
+      CellBarrier<V>{mode, shear}.add(push, &stiffness);
       std::memcpy(mode, over_fill, sizeof mode);
       for (int corner = 0; corner_stiffness != nullptr && corner < kCorners; ++corner) {
         corner_stiffness[corner] += stiffness;
@@ -480,12 +399,12 @@ struct Block {
     // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
     // its two parts.
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
-    const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
+    const bool squeezed = anyAbove0(slight > kSlight ? shear : L{}) && maySqueeze();
     L push[kCorners][3];
     const bool more = squeezed || has_parts;
     if (more) {
       for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
-      if (squeezed) addBarrier<kWithStiffness>(push);
+      if (squeezed) CellBarrier<V>{mode, shear}.add(push, kWithStiffness ? &stiffness : nullptr);
       if (has_parts) addParts(push);
     }
     scale();

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "robot_tissue/core/compat.h"
 #include "simd/vector_clones.h"
 
 // Vectors longer than the processor's are passed between functions that are all inlined.
@@ -58,10 +59,15 @@ ROBOT_TISSUE_INLINE typename V::Lanes load(const typename V::Real* from) {
   return x;
 }
 
+// {0, x[0], x[1], ...}
 template <typename L, std::size_t... kIndex>
 ROBOT_TISSUE_INLINE L oneLaneUp(const L& x, std::index_sequence<kIndex...>) {
+#if ROBOT_TISSUE_HAS_SHUFFLEVECTOR
   constexpr int kSize = sizeof...(kIndex);
   return __builtin_shufflevector(x, L{}, (kIndex == 0 ? kSize : static_cast<int>(kIndex) - 1)...);
+#else
+  return L{(kIndex == 0 ? 0 : x[kIndex == 0 ? 0 : kIndex - 1])...};
+#endif
 }
 
 // Subtracts `low`, and `high` one place further on, which is subtracted first. In one go: a load

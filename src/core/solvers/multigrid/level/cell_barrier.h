@@ -1,0 +1,123 @@
+// What keeps corners of a block of cells from turning inside out (doc/model.md): its gradient, in
+// the lanes of vectors.
+#pragma once
+
+#include "material/elastic_cell.h"
+#include "material/elastic_law.h"
+#include "simd/vector_clones.h"
+#include "solvers/multigrid/level/vectors.h"
+
+namespace robot_tissue::vectors {
+
+template <typename V>
+struct CellBarrier {
+  using Real = typename V::Real;
+  using L = typename V::Lanes;
+
+  const L (&mode)[kCorners][3];  // m_s (cell_block.h)
+  const L& shear;                // 0 where there is no cell
+
+  // Minus the cell's edges along each axis: of a corner at the high ends along the two axes that
+  // follow it in turn, b and c, the edge with index [high along b][high along c]. Along x it is
+  // m_x + y m_xy + z m_xz + y z m_xyz - e_x, with y and z -1 at the high end, else 1.
+  struct Edges {
+    L along[3][2][2][3];
+  };
+
+  ROBOT_TISSUE_INLINE void findEdges(Edges& edges) const {
+#pragma GCC unroll 3
+    for (int a0 = 0; a0 < 3; ++a0) {
+      const int b = 1 << (a0 + 1) % 3, c = 1 << (a0 + 2) % 3, own = 1 << a0;
+#pragma GCC unroll 3
+      for (int axis = 0; axis < 3; ++axis) {
+        const L straight = mode[own][axis] - Real(axis == a0 ? 1.0 : 0.0);
+        const L low = straight + mode[own | b][axis], high = straight - mode[own | b][axis];
+        const L low_turn = mode[own | c][axis] + mode[7][axis];
+        const L high_turn = mode[own | c][axis] - mode[7][axis];
+        edges.along[a0][0][0][axis] = low + low_turn;
+        edges.along[a0][0][1][axis] = low - low_turn;
+        edges.along[a0][1][0][axis] = high + high_turn;
+        edges.along[a0][1][1][axis] = high - high_turn;
+      }
+    }
+  }
+
+  static ROBOT_TISSUE_INLINE void cross(const L (&b)[3], const L (&c)[3], L (&across)[3]) {
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const int v = (axis + 1) % 3, w = (axis + 2) % 3;
+      across[axis] = b[w] * c[v] - b[v] * c[w];
+    }
+  }
+
+  // Those that meet in a corner, as above.
+  struct Corner {
+    ROBOT_TISSUE_INLINE Corner(const Edges& edges, int corner)
+        : x(edges.along[0][corner >> 1 & 1][corner >> 2 & 1]),
+          y(edges.along[1][corner >> 2 & 1][corner & 1]),
+          z(edges.along[2][corner & 1][corner >> 1 & 1]) {}
+
+    const L (&x)[3];
+    const L (&y)[3];
+    const L (&z)[3];
+  };
+
+  static ROBOT_TISSUE_INLINE L determinantOf(const Corner& corner, L (&across_x)[3]) {
+    cross(corner.y, corner.z, across_x);
+    return corner.x[0] * across_x[0] + corner.x[1] * across_x[1] + corner.x[2] * across_x[2];
+  }
+
+  // Adds the barrier's gradient in the modes to `push` and, unless null, what it adds to the bound
+  // of the corners' stiffness; corner by corner where any cell is squeezed there, as few are
+  // anywhere.
+  ROBOT_TISSUE_INLINE void add(L (&push)[kCorners][3], L* stiffness) const {
+    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
+    Edges edges;
+    findEdges(edges);
+    L across[3][3];
+    L least = all<V>(kSqueezed);
+#pragma GCC unroll 8
+    for (int corner = 0; corner < kCorners; ++corner) {
+      least = lesser(determinantOf(Corner(edges, corner), across[0]), least);
+    }
+    if (!anyAbove0(least < kSqueezed ? shear : L{})) return;
+    for (int index = 0; index < kCorners; ++index) {
+      const Corner corner(edges, index);
+      const L determinant = determinantOf(corner, across[0]);
+      if (!anyAbove0(determinant < kSqueezed ? shear : L{})) continue;
+      cross(corner.z, corner.x, across[1]);
+      cross(corner.x, corner.y, across[2]);
+      pushCorner(index, determinant, across, push, stiffness);
+    }
+  }
+
+  ROBOT_TISSUE_INLINE void pushCorner(int corner, const L& determinant, const L (&across)[3][3],
+                                      L (&push)[kCorners][3], L* stiffness) const {
+    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
+    const Real x = (corner & 1) != 0 ? Real(-1) : Real(1);
+    const Real y = (corner & 2) != 0 ? Real(-1) : Real(1);
+    const Real z = (corner & 4) != 0 ? Real(-1) : Real(1);
+    const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
+    const L height = shear * Real(elastic_law::kBarrier / kCorners);
+    const L slope = height * depth * depth * Real(-3.0 * 0.25 / kSqueezed);
+    for (int axis = 0; axis < 3; ++axis) {
+      const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
+              along_z = slope * across[2][axis];
+      push[1][axis] += along_x;
+      push[2][axis] += along_y;
+      push[4][axis] += along_z;
+      push[3][axis] += y * along_x + x * along_y;
+      push[5][axis] += z * along_x + x * along_z;
+      push[6][axis] += z * along_y + y * along_z;
+      push[7][axis] += y * z * along_x + x * z * along_y + x * y * along_z;
+    }
+    if (stiffness == nullptr) return;
+    L widest = L{};
+    for (const auto& area : across) {
+      widest = greater(widest, area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+    }
+    *stiffness += height * depth * widest * Real(3.0 * 6.0 / (kSqueezed * kSqueezed));
+  }
+};
+
+}  // namespace robot_tissue::vectors
