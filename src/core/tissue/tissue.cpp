@@ -33,8 +33,11 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
          });
 }
 
-// The least that another solve would take, about.
-double cycleMs(const SolveReport& solve) { return solve.wall_ms / std::max(1, solve.iterations); }
+// The least that another solve would take, of one iteration, about.
+double shortestMs(const SolveReport& solve) {
+  const double ends = tuning::kIterationsOfEnds;
+  return solve.wall_ms * (1.0 + ends) / (std::max(1, solve.iterations) + ends);
+}
 
 }  // namespace
 
@@ -233,7 +236,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   double look_ms = 0.0;  // what the last round took besides its solve
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
     const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-    const bool late = isBounded() && left_ms <= 2.0 * look_ms + cycleMs(of_round);
+    const bool late = isBounded() && left_ms <= 2.0 * look_ms + shortestMs(of_round);
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = !goBack(*before) && solved;

@@ -78,7 +78,10 @@ constexpr int kMostTearRounds = 500;
 constexpr double kShareOfTime = 0.5;
 // ms: a solve has so much at least; one cycle, however short. Chosen.
 constexpr double kLeastMs = 1e-6;
-
+// Iterations that take as long as what a solve of any length begins and ends with (1): by
+// `layered`, under two tools, it binds what holds the nodes, and smooths what is cut short. More:
+// fewer rounds in a call that has little time left; less: it ends later.
+constexpr double kIterationsOfEnds = 2.0;
 // Of the time that a new surface and the contacts on it took (1): about as much the solve on it
 // takes at least, its levels and one cycle, and what is looked at after it (1.9 after 200 cuts
 // under two tools). Where less is left, the next call makes it. More: cuts are balanced one call

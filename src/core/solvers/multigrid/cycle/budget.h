@@ -4,6 +4,8 @@
 #include <chrono>
 #include <limits>
 
+#include "solvers/multigrid/cycle/tuning.h"
+
 namespace robot_tissue {
 
 // A clock that may run out, and a count that does.
@@ -20,7 +22,7 @@ class Budget {
   }
   int mostCycles() const { return most_cycles_; }
   bool isSpent() const { return leftMs() < 0.0; }
-  bool isOverdrawn() const { return leftMs() < -max_ms_; }  // by as much as there was
+  bool isOverdrawn() const { return leftMs() < -cycle_tuning::kMostOverdrawn * max_ms_; }
 
  private:
   double max_ms_;

@@ -48,7 +48,8 @@ Vec3 FasCgSolver<Real>::forceLeft() {
   return shape_.exists() ? forceLeftOn(shape_, lattice_.spacing()) : Vec3(Vec3::Zero());
 }
 
-// Measuring takes longer than a solve may: where there is no time for it, it is left to a later one.
+// Measuring takes longer than a solve may: where there is no time for it, it is left to a later
+// one.
 template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budget) {
   const bool are_others = cells_ != state.cells;
@@ -59,8 +60,8 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
   }
   if (!are_others && (!is_measure_due_ || part_.isEmpty())) return;
   const bool can_wait = shape_.exists() && !part_.isEmpty();
+  const double before_ms = budget.elapsedMs();
   if (is_measure_due_ && (!can_wait || budget.leftMs() >= measuring_ms_)) {
-    const double before_ms = budget.elapsedMs();
     measureLevels(state);
     measuring_ms_ = budget.elapsedMs() - before_ms;
   } else if (are_others) {
@@ -71,6 +72,7 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
     shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells,
                                                        workers_.get(), std::move(known)));
     iteration_.reset();
+    measuring_ms_ = tuning::kMeasuringOverLevels * (budget.elapsedMs() - before_ms);
   }
   cells_ = state.cells;
   warm_start_.forget();

@@ -56,7 +56,7 @@ class FasCgSolver : public MultigridSolver {
   std::shared_ptr<const CellSet> cells_;     // that the levels were made of
   std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of
   bool is_measure_due_ = false;              // too many cells are others since
-  double measuring_ms_ = 0.0;                // what it took last
+  double measuring_ms_ = 0.0;                // what it takes
   CompositeShape<Real> shape_;
   OpenPart part_;
   WayLimits limits_;

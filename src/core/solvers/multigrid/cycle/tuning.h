@@ -72,6 +72,9 @@ constexpr double kSoonTouches = 0.1;
 // forces, slower.
 constexpr double kForceShare = 2.0;
 constexpr int kMostSettling = 3;
+// Of a solve's time (1): beyond it by so much, a solve cut short spends none of these rounds
+// (chosen). Up: better forces; calls that have no time end later.
+constexpr double kMostOverdrawn = 0.25;
 // Share of a patch's own force that may be unbalanced on it, if the tolerance is less: single
 // precision knows no better (chosen). Up: patches by force stop earlier.
 constexpr double kPatchBalance = 1e-5;
@@ -119,6 +122,10 @@ constexpr double kTrialMotion = 1e-3;
 // Share of the cells: once cuts have changed more since the trial, it is made again, and the
 // levels' greatest stiffness is measured again. Up: fewer trials, errors are told as too small.
 constexpr double kMeasuredAgain = 0.01;
+// Times what levels take that are not measured (1): so long, about, it takes to measure them (2.5
+// to 3.5 after 1 to 200 cuts at 4,851 nodes). Up: a solve with little time leaves that to a later
+// one more often; down: it ends later.
+constexpr double kMeasuringOverLevels = 3.0;
 // Greatest factor that it may show: nu 0.49 has it. Up: more cycles there.
 constexpr double kMostAtRest = 8.0;
 
