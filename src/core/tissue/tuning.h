@@ -53,8 +53,8 @@ constexpr double kFarther = 1.1;
 // load steps have the usual ones alone, and ways are given up that ask for more. And what an easy
 // load step forgives of them. More: jams are followed for longer. Chosen: an edge dragged over
 // 25 mm of a block, by `layered`, spends 51.
-constexpr double kMostSpent = 2000.0 / 30.0;
-constexpr double kForgiven = 5.0 / 30.0;
+constexpr double kMostSpent = 1500.0 / 30.0;
+constexpr double kForgiven = 15.0 / 30.0;
 // Iterations of a time step that count as one (1). Less: motions that only touch now and then are
 // given up; more: jams that swing are followed for longer. Chosen: a box's edge dragged at 20 mm/s
 // takes 40 a time step in the mean, 459 in the 99th percentile, and spends 894 of the 2,000.
