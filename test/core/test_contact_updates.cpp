@@ -45,6 +45,40 @@ class SlowLook : public ContactUpdate {
   int looks_ = 0;
 };
 
+// A plane on the top of a block that is deeper and less deep in turn.
+class Trembling : public ContactUpdate {
+ public:
+  explicit Trembling(const Tissue& tissue) : lattice_(tissue.lattice()) {}
+  std::vector<double> longestWays() override { return {}; }
+  double shareOfWay(const std::vector<Vec3>&) override { return 1.0; }
+  bool renew(std::vector<LoadingPatch>& of_tools, Shape, Round) override {
+    depth_ = 0.003 - depth_;
+    of_tools = {plane()};
+    return true;
+  }
+  LoadingPatch plane() const {
+    LoadingPatch plane;
+    plane.name = "plane";
+    std::vector<ContactSpring> touches;
+    for (int node = 0; node < lattice_.nodeCount(); ++node) {
+      ContactSpring touch;
+      touch.rest = lattice_.restPosition(node);
+      if (touch.rest.z() < 0.02 - 1e-6) continue;
+      touch.carriers = {{node, 1.0}};
+      touch.normal = -Vec3::UnitZ();
+      touch.plane_point = Vec3(0.0, 0.0, 0.02 - depth_);
+      touch.stiffness = 1000.0;  // N/m
+      touches.push_back(touch);
+    }
+    plane.contacts = touches;
+    return plane;
+  }
+
+ private:
+  const Lattice& lattice_;
+  double depth_ = 0.001;  // m
+};
+
 TissueConfig smallBlock() {
   TissueConfig config;
   config.shape.max() = Vec3(0.04, 0.04, 0.02);
@@ -78,6 +112,21 @@ TEST(ContactUpdates, EndWhereTheyLeadNeitherNearerNorFarther) {
   tissue.load(punched(0.001));
   EXPECT_GT(contacts.rounds(), 1);
   EXPECT_LT(contacts.rounds(), 40);
+}
+
+// Of the methods, one that takes many iterations.
+TEST(ContactUpdates, ThatStillChangeAfterManyIterationsHaveNotConverged) {
+  SolverConfig solver;
+  solver.method = "explicit";
+  solver.tolerance = 1e-4;
+  Tissue tissue(smallBlock(), solver);
+  Trembling contacts(tissue);
+  const LoadingPatch plane = contacts.plane();
+  ASSERT_EQ(tissue.follow({plane}, {}).status, SolveStatus::kOk);
+  tissue.setContactUpdate(&contacts);
+  const SolveReport report = tissue.follow({plane}, {});
+  ASSERT_GT(report.iterations, 1500);
+  EXPECT_EQ(report.status, SolveStatus::kUnconverged);
 }
 
 class Rounds : public ::testing::Test {

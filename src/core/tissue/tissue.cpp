@@ -242,10 +242,10 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
     gain.note(of_round, state_.displacement, whole);
-    const bool last =
-        late || whole_rounds == tuning::kContactRounds || rounds == tuning::kMostRounds ||
-        report.iterations > tuning::kMostIterations || patience_.left() == 0 || gain.isOver() ||
-        (!solved && !hurried && rounds > 1 && state_.displacement == *before);
+    const bool spent = report.iterations > tuning::kMostIterations || patience_.left() == 0;
+    const bool last = late || whole_rounds == tuning::kContactRounds ||
+                      rounds == tuning::kMostRounds || spent || gain.isOver() ||
+                      (!solved && !hurried && rounds > 1 && state_.displacement == *before);
     const bool renewed = contact_update_->renew(
         of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
         last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
@@ -254,7 +254,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
       is_late_ = true;
       last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
     }
-    if (last && renewed && patience_.left() == 0) {
+    if (last && renewed && spent) {
       last_report_.status = report.status = std::max(report.status, SolveStatus::kUnconverged);
     }
     if (last) break;
