@@ -9,6 +9,15 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+// Whether a load step like the last one, before which so much was left, would end too late.
+bool isShort(const Deadline& deadline, double before_ms) {
+  const double left_ms = deadline.leftMs();
+  return std::isfinite(left_ms) && left_ms < tuning::kOfLastLoadStep * (before_ms - left_ms);
+}
+
+}  // namespace
 
 // Whether the shortest load step of this way is the one that no shape followed (World::dead_end):
 // it is not tried again.
@@ -75,12 +84,13 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     const double there = is_last ? steps : gone + stride;
     const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
     const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
+    const double before_ms = world_.deadline.leftMs();
     if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
       if (longest == 1.0) patience.forgetWay();
       gone = there;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
-      if (is_last || !(world_.deadline.isOver() || patience.cutsOff())) continue;
+      if (is_last || !(isShort(world_.deadline, before_ms) || patience.cutsOff())) continue;
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
@@ -91,7 +101,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       return came();
     }
     longest = tuning::kShortestStep;
-    if (!load_step_.ranOutOfTime()) continue;
+    if (!load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
     begins_short_ = world_.report.too_fast = true;
     return came();
   }

@@ -5,7 +5,8 @@
 //   cut_updates pressing N            blocks of 2N x 2N x N cells pressed by a sphere, a cut now
 //                                     and then
 //   cut_updates tools CUTS [BUDGET]   so many cuts under two moving tools at 4,851 nodes; a call
-//                                     may take so many ms, then it is LATE
+//                                     may take so many ms, then it is LATE; with a bound, 600
+//                                     moves more, in which pieces roll
 //   cut_updates memory UPDATES        what is allocated as a tool goes round and round, and a cut
 //                                     is made and taken back every four updates
 //
@@ -94,6 +95,27 @@ void cutWhilePressing(int cells_high) {
   times.tell("pressing", pipeline.tissue().lattice().nodeCount());
 }
 
+// On a circle of 10 mm each, the other way round, `depth` deep (m).
+RobotPose goingRound(int update, double depth) {
+  const double turn = 0.05 * update;
+  const Vec3 round = 0.01 * Vec3(std::cos(turn), std::sin(turn), 0.0);
+  const double z = kHeight + kRadius - depth;
+  return posesAt({Vec3(0.03, 0.05, z) + round, Vec3(0.07, 0.05, z) - round});
+}
+
+// Deeper and deeper, so that the pieces that were cut off roll.
+void rollPieces(Pipeline& pipeline, int updates_before) {
+  Times times;
+  for (int update = 0; update < 600; ++update) {
+    const double start = processorTime();
+    pipeline.step(goingRound(updates_before + update, 0.004 + 1e-5 * update));
+    times.moves.push_back(processorTime() - start);
+    times.note(pipeline.tissue());
+  }
+  times.cuts.push_back(0.0);
+  times.tell("rolling, bounded", pipeline.tissue().lattice().nodeCount());
+}
+
 // budget: of a call (ms); 0: none.
 void cutUnderTwoTools(int cuts, double budget) {
   Pipeline pipeline = blockUnder(10, {sphere("left"), sphere("right")});
@@ -101,11 +123,8 @@ void cutUnderTwoTools(int cuts, double budget) {
   RandomNumbers numbers;
   Times times;
   for (int cut = 0; cut < cuts; ++cut) {
-    const double turn = 0.05 * cut;
-    const Vec3 round = 0.01 * Vec3(std::cos(turn), std::sin(turn), 0.0);
-    const double z = kHeight + kRadius - std::min(2.5e-4 * cut, 0.004);
     double start = processorTime();
-    pipeline.step(posesAt({Vec3(0.03, 0.05, z) + round, Vec3(0.07, 0.05, z) - round}));
+    pipeline.step(goingRound(cut, std::min(2.5e-4 * cut, 0.004)));
     times.moves.push_back(processorTime() - start);
     times.note(pipeline.tissue());
     const Vec3 middle(numbers.between(0.01, 0.09), numbers.between(0.01, 0.09), kHeight);
@@ -117,6 +136,7 @@ void cutUnderTwoTools(int cuts, double budget) {
   }
   times.tell(budget > 0.0 ? "two tools, bounded" : "two tools",
              pipeline.tissue().lattice().nodeCount());
+  if (budget > 0.0) rollPieces(pipeline, cuts);
 }
 
 void watchMemory(int updates) {
