@@ -46,6 +46,8 @@ class Patience {
   void note(int iterations, bool converged, Of what = Of::kLoadStep);  // of a solve
   // Iterations that the load step may still take.
   int left(Of what = Of::kLoadStep) const;
+  // Iterations that one takes at most, bounded or not.
+  int mostOfLoadStep() const;
   bool isOver() const { return spent_ >= most(); }
   // It is over, and load steps have the usual iterations alone.
   bool cutsOff() const { return is_for_scene_ && isOver(); }

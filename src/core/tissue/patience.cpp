@@ -17,6 +17,8 @@ int Patience::most() const {
   return is_for_scene_ ? timesUsual(tuning::kMostSpent) : tuning::kMostSpentOnAWay;
 }
 
+int Patience::mostOfLoadStep() const { return timesUsual(tuning::kMostOfLoadStep); }
+
 // All there are of a method that does not know them.
 int Patience::timesUsual(double times) const {
   return usual_ == kNoBound ? kNoBound : static_cast<int>(std::lround(times * usual_));

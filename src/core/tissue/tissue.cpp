@@ -242,7 +242,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool whole = !goBack(*before) && solved;
     if (whole) ++whole_rounds;
     gain.note(of_round, state_.displacement, whole);
-    const bool spent = report.iterations > tuning::kMostIterations || patience_.left() == 0;
+    const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
     const bool last = late || whole_rounds == tuning::kContactRounds ||
                       rounds == tuning::kMostRounds || spent || gain.isOver() ||
                       (!solved && !hurried && rounds > 1 && state_.displacement == *before);

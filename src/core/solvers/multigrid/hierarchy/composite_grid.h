@@ -27,8 +27,8 @@
 
 namespace robot_tissue {
 
-// What another grid of the same lattice knows, of a block. All but the sources: where few cells have
-// changed since.
+// What another grid of the same lattice knows, of a block. All but the sources: where few cells
+// have changed since.
 struct KnownLevels {
   std::vector<LevelSource> sources;
   std::vector<double> stiffness;  // as GridLevel::greatestStiffness, per level; empty: not known
@@ -40,8 +40,8 @@ struct KnownLevels {
 template <typename Real>
 class CompositeGrid {
  public:
-  // A block is open in its middle where its stiffness is not known. The workers, null for none, must outlive
-  // the grid.
+  // A block is open in its middle where its stiffness is not known. The workers, null for none,
+  // must outlive the grid.
   CompositeGrid(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,
                 Workers* workers, KnownLevels known);
 
