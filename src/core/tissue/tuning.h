@@ -32,9 +32,9 @@ constexpr double kRounding = 1e-9;
 // settle in more cases, by longer load steps. Chosen.
 constexpr int kContactRounds = 16;
 // Rounds with those that are cut short, at most, and iterations of all, over the usual ones of a
-// load step (1). More: hopeless load steps take longer, and a few more are solved. Chosen: the tools
-// of the contact study take up to 829, of 1,500. A load step that takes more, and whose contacts
-// still change, has not converged.
+// load step (1). More: hopeless load steps take longer, and a few more are solved. Chosen: the
+// tools of the contact study take up to 829, of 1,500. A load step that takes more, and whose
+// contacts still change, has not converged.
 constexpr int kMostRounds = 200;
 constexpr double kMostOfLoadStep = 1500.0 / 30.0;
 // Iterations in rounds that gained nothing, after which the load step is given up. More: the same
