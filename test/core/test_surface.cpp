@@ -8,6 +8,7 @@
 #include "block_fixtures.h"
 #include "cutting/cut.h"
 #include "robot_tissue/core/surface.h"
+#include "surface/hinges.h"
 
 namespace robot_tissue::test_surface {
 namespace {
@@ -307,6 +308,39 @@ TEST(Surface, OfPartsWithGhostsIsClosedAndDeformsAsTheMaterial) {
       EXPECT_LT((vertices[vertex] - gradient * surface.rest[vertex]).norm(), 1e-14);
     }
   }
+}
+
+// Two tetrahedra with one corner in common: no edge has more than two triangles, but around that
+// corner there are two fans.
+TEST(Hinges, WedgesThatMeetAtAPointGetVerticesOfTheirOwn) {
+  const Lattice lattice(blockOf(2, 2, 2, kSpacing));
+  const LatticeState state = lattice.restState();
+  TissueSurface surface;
+  const Vec3 shared(0.5, 0.5, 0.5);
+  const Vec3 sides[3] = {Vec3(0.3, 0.0, 0.0), Vec3(0.0, 0.3, 0.0), Vec3(0.0, 0.0, 0.3)};
+  std::vector<Vec3> places = {shared};
+  for (const double sign : {1.0, -1.0}) {
+    for (const Vec3& side : sides) places.emplace_back(shared + sign * side);
+  }
+  for (const Vec3& place : places) {
+    surface.rest.push_back(0.5 * kSpacing * place);
+    surface.carriers.push_back({{0, 1.0}});
+    surface.node.push_back(-1);
+  }
+  surface.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3},
+                       {0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}};
+  surface.opened.assign(surface.triangles.size(), 1);
+  const std::vector<Octant> owners(surface.triangles.size(), Octant{0, 0});
+  separateHinges(OctantGrid(lattice, state), owners, places, surface);
+  ASSERT_EQ(surface.rest.size(), 8u);
+  EXPECT_EQ(surface.rest.back(), surface.rest.front());
+  EXPECT_EQ(countOpenEdges(surface), 0);
+  std::set<int> first, second;
+  for (std::size_t i = 0; i < 4; ++i) {
+    first.insert(surface.triangles[i].begin(), surface.triangles[i].end());
+    second.insert(surface.triangles[i + 4].begin(), surface.triangles[i + 4].end());
+  }
+  for (const int vertex : second) EXPECT_EQ(first.count(vertex), 0u) << vertex;
 }
 
 }  // namespace

@@ -45,9 +45,10 @@ class HingeSeparator {
 
   void run() {
     findEdges();
-    if (!hasHinges()) return;
+    const bool has_hinges = hasHinges();
     forAll([this](const std::vector<EdgePlace>& places) { joinAlong(places); });
     separate();
+    if (!has_hinges) return;
     findEdges();
     for (int passes = 0; hasHinges() && passes < kMostPasses; ++passes) {
       if (!splitEdges()) return;
