@@ -20,6 +20,18 @@ ROBOT_TISSUE_INLINE void sumAll(const Real* __restrict below, const Real* __rest
 }
 
 template <typename Real>
+ROBOT_TISSUE_INLINE void takeFree(const Real* __restrict whole, const Real* __restrict free,
+                                  Real* __restrict force, int count) {
+  for (int i = 0; i < count; ++i) force[i] = free[i] != Real(0) ? whole[i] : Real(0);
+}
+
+template <typename Real>
+ROBOT_TISSUE_INLINE void invertFree(const Real* __restrict stiffness, const Real* __restrict free,
+                                    Real* __restrict inverse, int count) {
+  for (int i = 0; i < count; ++i) inverse[i] = free[i] / (stiffness[i] + (Real(1) - free[i]));
+}
+
+template <typename Real>
 ROBOT_TISSUE_INLINE void holdAll(const Real* __restrict stiffness,
                                  const Real* __restrict displacement, const Real* __restrict free,
                                  Real* __restrict whole, Real* __restrict force, int count) {
@@ -192,6 +204,26 @@ ROBOT_TISSUE_CLONES void invertStiffness(const double* below, const double* lowe
                                          const double* free, double* stiffness, double* inverse,
                                          int count) {
   invertAll(below, lower, free, stiffness, inverse, count);
+}
+
+ROBOT_TISSUE_CLONES void takeWhereFree(const float* whole, const float* free, float* force,
+                                       int count) {
+  takeFree(whole, free, force, count);
+}
+
+ROBOT_TISSUE_CLONES void takeWhereFree(const double* whole, const double* free, double* force,
+                                       int count) {
+  takeFree(whole, free, force, count);
+}
+
+ROBOT_TISSUE_CLONES void invertWhereFree(const float* stiffness, const float* free, float* inverse,
+                                         int count) {
+  invertFree(stiffness, free, inverse, count);
+}
+
+ROBOT_TISSUE_CLONES void invertWhereFree(const double* stiffness, const double* free,
+                                         double* inverse, int count) {
+  invertFree(stiffness, free, inverse, count);
 }
 
 ROBOT_TISSUE_CLONES void addHolds(const float* stiffness, const float* displacement,

@@ -18,6 +18,12 @@ void invertStiffness(const float* below, const float* lower, const float* free, 
 void invertStiffness(const double* below, const double* lower, const double* free,
                      double* stiffness, double* inverse, int count);
 
+// As these leave it where `whole` and `stiffness` are known and `free` alone has changed.
+void takeWhereFree(const float* whole, const float* free, float* force, int count);
+void takeWhereFree(const double* whole, const double* free, double* force, int count);
+void invertWhereFree(const float* stiffness, const float* free, float* inverse, int count);
+void invertWhereFree(const double* stiffness, const double* free, double* inverse, int count);
+
 // Springs that hold the nodes at zero: whole -= stiffness * displacement, force = free * whole.
 void addHolds(const float* stiffness, const float* displacement, const float* free, float* whole,
               float* force, int count);

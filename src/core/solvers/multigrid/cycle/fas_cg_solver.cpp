@@ -36,6 +36,7 @@ void FasCgSolver<Real>::forget() {
   warm_start_.forget();
   forces_.noteHeld(0.0);
   if (shape_.exists()) shape_.levels().forgetMembranes();
+  knows_cells_ = false;
 }
 
 template <typename Real>
@@ -59,6 +60,7 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
         changedCells(lattice_, *measured_, *state.cells).share > tuning::kMeasuredAgain;
   }
   if (!are_others && (!is_measure_due_ || part_.isEmpty())) return;
+  knows_cells_ = false;
   const bool can_wait = shape_.exists() && !part_.isEmpty();
   const double before_ms = budget.elapsedMs();
   if (is_measure_due_ && (!can_wait || budget.leftMs() >= measuring_ms_)) {
@@ -163,20 +165,27 @@ void FasCgSolver<Real>::open(const SolveContext& solve, const GridBox& box) {
   if (shape_.levels().open(box, part_.layers(), solve.shape.state.displacement)) {
     warm_start_.forget();
     iteration_.noteOpened();
+    knows_cells_ = false;
   }
   prepare(solve);
 }
 
+// Where the shape is the one that the last solve left, and held alike, its cells' forces are known.
 template <typename Real>
 void FasCgSolver<Real>::prepare(const SolveContext& solve) {
   const std::vector<Vec3>& displacement = solve.shape.state.displacement;
   takeTimeStep(solve);
-  shape_.levels().constraints().bind(solve.shape, solve.hold);
-  shape_.levels().displacements().take(displacement, solve.hold.dirichletMask());
+  const Holds holds = shape_.levels().constraints().bind(solve.shape, solve.hold);
+  const bool moved = shape_.levels().displacements().take(displacement, solve.hold.dirichletMask());
   shape_.levels().renewMembranes();
   limits_.begin(displacement);
   warm_start_.noteStart();
-  shape_.finest().findForces();
+  if (knows_cells_ && holds == Holds::kAsBefore && !moved) {
+    shape_.finest().findForcesOfConstrained();
+  } else {
+    shape_.finest().findForces();
+  }
+  knows_cells_ = model_.inertia() == nullptr && !model_.hasMembranes();
   forces_.begin();
 }
 
@@ -184,6 +193,7 @@ template <typename Real>
 void FasCgSolver<Real>::takeTimeStep(const SolveContext& solve) {
   const InertialTerm* inertia = model_.inertia();
   shape_.levels().takeTimeStep(inertia);
+  knows_cells_ = knows_cells_ && inertia == nullptr;
   if (inertia == nullptr) return iteration_.measureFrom(nullptr, 0.0);
   iteration_.measureFrom(&free_motion_, inertia->least_way / lattice_.spacing());
   shape_.levels().displacements().take(inertia->free_motion, solve.hold.dirichletMask());
@@ -195,6 +205,7 @@ std::vector<Vec3> FasCgSolver<Real>::cellForces(const LatticeState& shape) {
   findLevels(shape, Budget(0.0, 0));
   const CompositeGrid<Real>& grid = shape_.levels().grid();
   shape_.levels().takeTimeStep(nullptr);
+  knows_cells_ = false;
   shape_.levels().displacements().take(shape.displacement,
                                        std::vector<std::uint8_t>(shape.displacement.size(), 0));
   shape_.finest().findForces();

@@ -65,6 +65,7 @@ class FasCgSolver : public MultigridSolver {
   FasCgIteration<Real> iteration_;
   CompositeVector<Real> free_motion_;  // in a time step
   bool wants_double_ = false;
+  bool knows_cells_ = false;  // the finest level's cells have the forces of its displacement
 };
 
 extern template class FasCgSolver<float>;

@@ -65,7 +65,8 @@ void CoarseCorrection<Real>::solve(std::size_t index) {
     level.smooth(tuning::kStepsCoarsest);
     return;
   }
-  level.smoothAndFindForces(tuning::kStepsBefore);
+  level.smooth(tuning::kStepsBefore);
+  level.findForces(Find::kForces);
   correct(index);
   level.findForces();
   level.smooth(tuning::kStepsAfter);

@@ -22,11 +22,14 @@ void LevelConstraints<Real>::reset() {
 }
 
 template <typename Real>
-void LevelConstraints<Real>::bind(const ConstrainedState& shape, const DofConstraints& hold) {
+Holds LevelConstraints<Real>::bind(const ConstrainedState& shape, const DofConstraints& hold) {
   Pattern pattern = patternOf(shape, hold);
   const bool by_force = std::any_of(shape.patches.begin(), shape.patches.end(), byForce);
   const bool held_alike = !by_force && pattern.dirichlet == pattern_.dirichlet;
-  if (held_alike && pattern.springs == pattern_.springs) return renewSprings(shape, hold);
+  if (held_alike && pattern.springs == pattern_.springs) {
+    renewSprings(shape, hold);
+    return Holds::kAsBefore;
+  }
   pattern_ = by_force ? Pattern() : std::move(pattern);
   if (!held_alike) {
     holdFinest(shape, hold);
@@ -34,7 +37,9 @@ void LevelConstraints<Real>::bind(const ConstrainedState& shape, const DofConstr
   }
   addSpringsToFinest(shape, hold);
   for (std::size_t level = 1; level < grid_.levelCount(); ++level) addSpringsToCoarse(level);
-  if (!held_alike) grid_.placeInterfaces();
+  if (held_alike) return Holds::kAsBefore;
+  grid_.placeInterfaces();
+  return Holds::kOthers;
 }
 
 template <typename Real>

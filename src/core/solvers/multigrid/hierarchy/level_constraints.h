@@ -14,6 +14,9 @@
 
 namespace robot_tissue {
 
+// Whether the same components of the same nodes are given as before; springs may be others.
+enum class Holds { kAsBefore, kOthers };
+
 template <typename Real>
 class LevelConstraints {
  public:
@@ -22,7 +25,7 @@ class LevelConstraints {
   // To be called when the grid's levels are new: held by nothing.
   void reset();
   // Takes over what holds the nodes, and gravity.
-  void bind(const ConstrainedState& shape, const DofConstraints& hold);
+  Holds bind(const ConstrainedState& shape, const DofConstraints& hold);
   // Places patches by force, and takes their motion so far as done.
   void renewGroups(const ConstrainedState& shape, const DofConstraints& hold);
   // Per spring of a coarse level that stands for one of the next finer level: that one. Ties come

@@ -16,7 +16,7 @@ bool NodeDisplacements<Real>::take(const std::vector<Vec3>& displacement,
                                    const std::vector<std::uint8_t>& held) {
   const double unit = 1.0 / grid_.spacing();
   const std::vector<int>&nodes = grid_.nodes(), &entries = grid_.entries();
-  bool others_moved = false;
+  bool moved = false, others_moved = false;
   for (int axis = 0; axis < 3; ++axis) {
     Real* to = grid_.finest().displacement[at(axis)].data();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -24,12 +24,14 @@ bool NodeDisplacements<Real>::take(const std::vector<Vec3>& displacement,
       Real& here = to[entries[i]];
       const Real now = static_cast<Real>(displacement[node][axis] * unit);
       const bool same = std::abs(now - here) <= tuning::kSame * std::abs(here);
-      others_moved = others_moved || (!same && held[node] == 0);
-      if (!same) here = now;
+      if (same) continue;
+      here = now;
+      moved = true;
+      others_moved = others_moved || held[node] == 0;
     }
   }
   if (others_moved) takeCoarse(displacement);
-  return others_moved;
+  return moved;
 }
 
 template <typename Real>

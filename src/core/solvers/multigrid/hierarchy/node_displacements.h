@@ -16,7 +16,7 @@ class NodeDisplacements {
   explicit NodeDisplacements(CompositeGrid<Real>& grid) : grid_(grid) {}
 
   // Where nodes of which nothing is held (`held`: bits of axes, per node) are elsewhere than the
-  // finest level has them, all levels start from there. True: there were some.
+  // finest level has them, all levels start from there. True: any node of that level was elsewhere.
   bool take(const std::vector<Vec3>& displacement, const std::vector<std::uint8_t>& held);
   // Of a block: puts the coarse levels' nodes where the nodes at their places are.
   void takeCoarse(const std::vector<Vec3>& displacement);

@@ -155,6 +155,14 @@ void CellOperator<Real>::findForces(const Loads& loads, Find what) {
 }
 
 template <typename Real>
+void CellOperator<Real>::takeFree(const Loads& loads) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    takeWhereFree(whole[axis].data(), loads.free.data(), loads.force[axis].data(), count_);
+  }
+  invertWhereFree(stiffness.data(), loads.free.data(), loads.inverse.data(), count_);
+}
+
+template <typename Real>
 void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
   findForces(loads, Find::kForces, covered_blocks_);
 }

@@ -78,8 +78,9 @@ std::vector<int> ConstrainedNodes<Real>::nodes() const {
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
-  std::vector<int> nodes;
+void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
+                                  const std::vector<int>& partly_held) {
+  std::vector<int> nodes = partly_held;
   for (const LevelSpring& spring : springs) {
     for (const LevelSpring::Carrier& carrier : spring.carriers) nodes.push_back(carrier.node);
   }
@@ -87,9 +88,6 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held) {
     nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
   }
   for (const OwnStiffness& own : own_stiffness) nodes.push_back(own.node);
-  for (std::size_t node = 0; node < held.size(); ++node) {
-    if (held[node] != 0 && held[node] != kAllAxes) nodes.push_back(static_cast<int>(node));
-  }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   all_.assign(nodes.size(), {});

@@ -68,8 +68,8 @@ class ConstrainedNodes {
   // tool out of it.
   double soon_touches = 0.0;
 
-  // `held`: bits of axes, per node.
-  void bind(const std::vector<std::uint8_t>& held);
+  // `held`: bits of axes, per node; `partly_held`: nodes with some of them, but not all.
+  void bind(const std::vector<std::uint8_t>& held, const std::vector<int>& partly_held);
   // Nodes on the membrane, of which `own_stiffness` is, are balanced together from now on; null:
   // each alone. `greatest`: as GridLevel::greatestStiffness.
   void couple(std::shared_ptr<const LevelMembrane<Real>> membrane, double greatest);

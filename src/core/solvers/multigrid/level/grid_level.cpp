@@ -111,25 +111,30 @@ void GridLevel<Real>::startMembrane() {
 template <typename Real>
 void GridLevel<Real>::freeAll() {
   std::fill(held_.begin(), held_.end(), std::uint8_t{0});
+  are_holds_new_ = true;
   constrained.springs.clear();
   constrained.groups.clear();
 }
 
 template <typename Real>
 void GridLevel<Real>::bind() {
-  constrained.bind(held_);
-  findFree();
+  if (are_holds_new_) takeHolds();
+  constrained.bind(held_, partly_held_);
+  free_ = not_held_;
+  for (const int node : constrained.nodes()) free_[at(node)] = Real(0);
 }
 
 template <typename Real>
-void GridLevel<Real>::findFree() {
-  std::fill(free_.begin(), free_.end(), Real(0));
+void GridLevel<Real>::takeHolds() {
+  are_holds_new_ = false;
+  not_held_.assign(at(count()), Real(0));
   interface_.clear();
+  partly_held_.clear();
   const GridBox& free = part().free;
   const auto look = [&](int node, const std::array<int, 3>& place) {
     if (held_[at(node)] != 0 || !exists(node)) return;
     if (free.has(place)) {
-      free_[at(node)] = Real(1);
+      not_held_[at(node)] = Real(1);
     } else {
       interface_.push_back(node);
     }
@@ -141,7 +146,10 @@ void GridLevel<Real>::findFree() {
     }
   }
   for (int node = grid().beside; node < count(); ++node) look(node, placeOf(node));
-  for (const int node : constrained.nodes()) free_[at(node)] = Real(0);
+  for (int node = 0; node < count(); ++node) {
+    const std::uint8_t held = held_[at(node)];
+    if (held != 0 && held != kAllAxes) partly_held_.push_back(node);
+  }
 }
 
 template <typename Real>
@@ -159,15 +167,16 @@ void GridLevel<Real>::hideInterface() {
 }
 
 template <typename Real>
-void GridLevel<Real>::findForces() {
-  findForces(Find::kForcesAndStiffness);
-}
-
-template <typename Real>
 void GridLevel<Real>::findForces(Find what) {
   cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, what);
   if (membrane_) membrane_->addForces(displacement, cells_.whole);
   constrained.findForces(cells_, displacement, what, force);
+}
+
+template <typename Real>
+void GridLevel<Real>::findForcesOfConstrained() {
+  cells_.takeFree({displacement, right_hand_side, free_, force, inverse_});
+  constrained.findForces(cells_, displacement, Find::kForcesAndStiffness, force);
 }
 
 // Chebyshev's polynomials of the fourth kind (Lottes 2022): with lambda the greatest eigenvalue of

@@ -38,7 +38,10 @@ class GridLevel {
 
   // What holds the nodes: first nothing does, then `hold` one by one, then `bind`. Bits of axes.
   void freeAll();
-  void hold(int node, unsigned axes) { held_[at(node)] |= static_cast<std::uint8_t>(axes); }
+  void hold(int node, unsigned axes) {
+    held_[at(node)] |= static_cast<std::uint8_t>(axes);
+    are_holds_new_ = true;
+  }
   const std::vector<std::uint8_t>& dirichletMask() const { return held_; }
   unsigned dirichletAxes(int node) const { return held_[at(node)]; }
   ConstrainedNodes<Real> constrained;  // with springs and groups
@@ -71,7 +74,10 @@ class GridLevel {
   Vec3 forceOfCells(int node) const { return vectorAt(cells_.whole, node); }
 
   // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
-  void findForces();
+  void findForces(Find what = Find::kForcesAndStiffness);
+  // The same, where cells are as findForces() last found them: only what holds the nodes changed.
+  // Not of levels with membranes.
+  void findForcesOfConstrained();
   // Takes so many steps of the smoother from there on; `force` and stiffness are stale then.
   void smooth(int steps);
   void smoothAndFindForces(int steps);
@@ -101,9 +107,8 @@ class GridLevel {
  private:
   template <typename MotionOf>
   double weightedSquares(MotionOf motionOf) const;
-  void findForces(Find what);
   void measureSteps();
-  void findFree();
+  void takeHolds();
 
   void clearStep();
   void setFasRightHandSideInPart(const Field<Real>& residual);
@@ -119,8 +124,11 @@ class GridLevel {
   Field<Real> last_step_;   // of the smoother
   Field<Real> of_covered_;  // forces; empty where the covered part is the whole
   std::vector<int> interface_;
-  std::vector<Real> free_;     // 1 where a node may move and is none of `constrained`, else 0
-  std::vector<Real> inverse_;  // of the stiffness of such nodes, else 0
+  std::vector<int> partly_held_;
+  std::vector<Real> not_held_;  // 1 where a node may move, else 0
+  bool are_holds_new_ = true;   // interface_, partly_held_ and not_held_ are of others
+  std::vector<Real> free_;      // 1 where a node may move and is none of `constrained`, else 0
+  std::vector<Real> inverse_;   // of the stiffness of such nodes, else 0
 };
 
 extern template class GridLevel<float>;
