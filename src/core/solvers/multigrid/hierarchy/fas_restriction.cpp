@@ -49,13 +49,14 @@ void FasRestriction<Real>::restrictSprings(std::size_t index) {
   const GridLevel<Real>& fine = grid_.level(index - 1);
   GridLevel<Real>& coarse = grid_.level(index);
   const std::vector<int>& fine_springs = constraints_.fineSpringsOf(index);
+  coarse.constrained.takePlaces(coarse.displacement);
   for (std::size_t i = 0; i < coarse.constrained.springs.size(); ++i) {
     LevelSpring& spring = coarse.constrained.springs[i];
     if (i < fine_springs.size()) {
       spring.stiffness =
           fine.constrained.springs[at(fine_springs[i])].stiffness / GridTransfer<Real>::kTwice;
     }
-    spring.anchor = coarse.constrained.meanOf(spring, coarse.displacement);
+    spring.anchor = coarse.constrained.meanOf(spring);
   }
 }
 

@@ -23,30 +23,27 @@ const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
   if (coupling_ != nullptr) {
     balancing_ = balancingTogether();
   } else {
-    balancing_ = freeForces();
+    takeFreeForces(balancing_);
     divide(balancing_);
   }
   return balancing_;
 }
 
 template <typename Real>
-std::vector<Vec3> ConstrainedNodes<Real>::freeForces() const {
-  std::vector<Vec3> forces;
-  forces.reserve(all_.size());
-  for (const ConstrainedNode& constrained : all_) {
-    forces.push_back(constrained.force);
+void ConstrainedNodes<Real>::takeFreeForces(std::vector<Vec3>& forces) const {
+  forces = forces_;
+  for (std::size_t i = 0; i < all_.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      if ((constrained.held >> axis & 1U) != 0) forces.back()[axis] = 0.0;
+      if ((all_[i].held >> axis & 1U) != 0) forces[i][axis] = 0.0;
     }
   }
-  return forces;
 }
 
 template <typename Real>
 void ConstrainedNodes<Real>::divide(std::vector<Vec3>& forces) const {
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const Vec3 free = forces[i];
-    forces[i] = all_[i].inverse * free;
+    forces[i] = inverses_[i] * free;
   }
   joined_.apply(forces);
 }
@@ -60,12 +57,14 @@ void ConstrainedNodes<Real>::couple(std::shared_ptr<const LevelMembrane<Real>> m
 
 template <typename Real>
 std::vector<Vec3> ConstrainedNodes<Real>::balancingTogether() const {
+  std::vector<Vec3> forces;
+  takeFreeForces(forces);
   return conjugateGradients(
-      freeForces(), {tuning::kTogetherShare, tuning::kMostTogether},
+      std::move(forces), {tuning::kTogetherShare, tuning::kMostTogether},
       [this](const std::vector<Vec3>& motions) { return timesTogether(motions); },
-      [this](std::vector<Vec3> forces) {
-        divide(forces);
-        return forces;
+      [this](std::vector<Vec3> left) {
+        divide(left);
+        return left;
       });
 }
 
@@ -105,14 +104,14 @@ void ConstrainedNodes<Real>::shortenTogether(double longest) {
 }
 
 template const std::vector<Vec3>& ConstrainedNodes<float>::balancing() const;
-template std::vector<Vec3> ConstrainedNodes<float>::freeForces() const;
+template void ConstrainedNodes<float>::takeFreeForces(std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::divide(std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::couple(std::shared_ptr<const LevelMembrane<float>>, double);
 template std::vector<Vec3> ConstrainedNodes<float>::balancingTogether() const;
 template std::vector<Vec3> ConstrainedNodes<float>::timesTogether(const std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::shortenTogether(double);
 template const std::vector<Vec3>& ConstrainedNodes<double>::balancing() const;
-template std::vector<Vec3> ConstrainedNodes<double>::freeForces() const;
+template void ConstrainedNodes<double>::takeFreeForces(std::vector<Vec3>&) const;
 template void ConstrainedNodes<double>::divide(std::vector<Vec3>&) const;
 template void ConstrainedNodes<double>::couple(std::shared_ptr<const LevelMembrane<double>>,
                                                double);

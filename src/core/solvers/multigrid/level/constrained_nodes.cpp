@@ -91,6 +91,8 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   all_.assign(nodes.size(), {});
+  for (auto* vectors : {&places_, &forces_}) vectors->assign(nodes.size(), Vec3::Zero());
+  inverses_.assign(nodes.size(), Eigen::Matrix3d::Zero());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     all_[i].node = nodes[i];
     all_[i].held = held[at(nodes[i])];
@@ -115,10 +117,16 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
 }
 
 template <typename Real>
-Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring,
-                                    const Field<Real>& displacement) const {
-  Vec3 mean = carriedFrom(Vec3::Zero(), spring.carriers,
-                          [&](int node) { return vectorAt(displacement, node); });
+void ConstrainedNodes<Real>::takePlaces(const Field<Real>& displacement) {
+  for (std::size_t i = 0; i < all_.size(); ++i) places_[i] = vectorAt(displacement, all_[i].node);
+}
+
+template <typename Real>
+Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring) const {
+  Vec3 mean = Vec3::Zero();
+  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+    mean += carrier.weight * places_[at(carrier.constrained)];
+  }
   if (spring.group >= 0) {
     const std::size_t group = at(spring.group);
     mean -= motionAt(groups[group], spring.arm, motion[group]);
@@ -127,9 +135,8 @@ Vec3 ConstrainedNodes<Real>::meanOf(const LevelSpring& spring,
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& displacement,
-                                       Find what) {
-  const Vec3 mean = meanOf(spring, displacement);
+void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, Find what) {
+  const Vec3 mean = meanOf(spring);
   Vec3 on_nodes = Vec3::Zero();
   bool joins = false;
   if (spring.contact == nullptr) {
@@ -144,7 +151,7 @@ void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, const Field<Real>& d
     }
   }
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
-    all_[at(carrier.constrained)].force += carrier.weight * on_nodes;
+    forces_[at(carrier.constrained)] += carrier.weight * on_nodes;
   }
   if (what == Find::kForcesAndStiffness) {
     if (joins) join(spring, spring.contact->rest + spacing_ * mean);
@@ -181,9 +188,10 @@ bool ConstrainedNodes<Real>::isJoining(const LevelSpring& spring, const Vec3& po
     const double gap = contact.normal.dot(point - contact.plane_point) - soon_touches * spacing_;
     if (contact.multiplier - contact.stiffness * gap <= 0.0) return false;
   }
-  return std::none_of(spring.carriers.begin(), spring.carriers.end(), [this](const auto& carrier) {
-    return all_[at(carrier.constrained)].group >= 0;
-  });
+  return groups.empty() ||
+         std::none_of(spring.carriers.begin(), spring.carriers.end(), [this](const auto& carrier) {
+           return all_[at(carrier.constrained)].group >= 0;
+         });
 }
 
 // A thread that is much longer than its rest length is about as stiff across itself as along: it
@@ -221,8 +229,10 @@ template <typename Real>
 void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
                                         const Field<Real>& displacement, Find what,
                                         Field<Real>& forces) {
-  for (ConstrainedNode& constrained : all_) {
-    constrained.force = vectorAt(cells.whole, constrained.node);
+  takePlaces(displacement);
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    ConstrainedNode& constrained = all_[i];
+    forces_[i] = vectorAt(cells.whole, constrained.node);
     if (what == Find::kForces) continue;
     const double stiffness = static_cast<double>(cells.stiffness[at(constrained.node)]);
     constrained.stiffness = stiffness * Eigen::Matrix3d::Identity();
@@ -236,43 +246,43 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
     group_stiffness_.assign(groups.size(), Matrix6::Zero());
     joining_.clear();
   }
-  for (LevelSpring& spring : springs) addSpring(spring, displacement, what);
-  for (ConstrainedNode& constrained : all_) {
+  for (LevelSpring& spring : springs) addSpring(spring, what);
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const ConstrainedNode& constrained = all_[i];
     if (constrained.group >= 0) {
       const std::size_t group = at(constrained.group);
       const Jacobian jacobian = jacobianAt(groups[group], constrained.arm);
-      force[group] += jacobian.transpose() * constrained.force;
+      force[group] += jacobian.transpose() * forces_[i];
       if (what == Find::kForcesAndStiffness)
         group_stiffness_[group] += jacobian.transpose() * constrained.stiffness * jacobian;
     }
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_held = (constrained.held >> axis & 1U) != 0;
       forces[at(axis)][at(constrained.node)] =
-          is_held ? Real(0) : static_cast<Real>(constrained.force[axis]);
+          is_held ? Real(0) : static_cast<Real>(forces_[i][axis]);
     }
-    if (what == Find::kForcesAndStiffness) invert(constrained);
+    if (what == Find::kForcesAndStiffness) invert(i);
   }
   if (what == Find::kForces) return;
   invertGroups();
-  std::vector<Eigen::Matrix3d> inverses;
-  for (const ConstrainedNode& constrained : all_) inverses.push_back(constrained.inverse);
-  joined_.join(std::move(joining_), inverses);
+  joined_.join(std::move(joining_), inverses_);
 }
 
 template <typename Real>
 void ConstrainedNodes<Real>::setForces(const Field<Real>& forces) {
-  for (ConstrainedNode& constrained : all_) constrained.force = vectorAt(forces, constrained.node);
+  for (std::size_t i = 0; i < all_.size(); ++i) forces_[i] = vectorAt(forces, all_[i].node);
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::invert(ConstrainedNode& constrained) {
+void ConstrainedNodes<Real>::invert(std::size_t index) {
+  ConstrainedNode& constrained = all_[index];
   for (int axis = 0; axis < 3; ++axis) {
     if ((constrained.held >> axis & 1U) == 0) continue;
     constrained.stiffness.row(axis).setZero();
     constrained.stiffness.col(axis).setZero();
     constrained.stiffness(axis, axis) = 1.0;
   }
-  constrained.inverse = constrained.stiffness.inverse();
+  inverses_[index] = constrained.stiffness.inverse();
 }
 
 template <typename Real>
@@ -373,7 +383,7 @@ double ConstrainedNodes<Real>::squaredMotionOf(const std::vector<GroupVector>& o
 template <typename Real>
 const Vec3* ConstrainedNodes<Real>::wholeForce(int node) const {
   const std::size_t constrained = at(indexOf(node));
-  return constrained < all_.size() && all_[constrained].node == node ? &all_[constrained].force
+  return constrained < all_.size() && all_[constrained].node == node ? &forces_[constrained]
                                                                      : nullptr;
 }
 

@@ -101,8 +101,10 @@ class ConstrainedNodes {
   }
   // Sum over the springs in contact, as last found.
   const Vec3& contactForce() const { return contact_force_; }
+  // Where the nodes are from now on, until forces are found.
+  void takePlaces(const Field<Real>& displacement);
   // Mean displacement of what carries the spring, less the group's motion there.
-  Vec3 meanOf(const LevelSpring& spring, const Field<Real>& displacement) const;
+  Vec3 meanOf(const LevelSpring& spring) const;
 
  private:
   struct ConstrainedNode {
@@ -110,15 +112,13 @@ class ConstrainedNodes {
     int group = -1;
     unsigned held = 0;
     Vec3 arm = Vec3::Zero();
-    Vec3 force = Vec3::Zero();
     Vec3 step = Vec3::Zero();
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
   };
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
   int indexOf(int node) const;
-  void addSpring(LevelSpring& spring, const Field<Real>& displacement, Find what);
+  void addSpring(LevelSpring& spring, Find what);
   void addStiffness(const LevelSpring& spring, const Eigen::Matrix3d& stiffness);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
   void join(const LevelSpring& spring, const Vec3& point);
@@ -127,17 +127,20 @@ class ConstrainedNodes {
   // WoodburyUpdate; with a membrane: constrained_balance.cpp); the reference holds until the next
   // call.
   const std::vector<Vec3>& balancing() const;
-  std::vector<Vec3> freeForces() const;
+  void takeFreeForces(std::vector<Vec3>& forces) const;
   void divide(std::vector<Vec3>& forces) const;
   std::vector<Vec3> balancingTogether() const;
   std::vector<Vec3> timesTogether(const std::vector<Vec3>& motions) const;
   void shortenTogether(double longest);
-  void invert(ConstrainedNode& constrained);
+  void invert(std::size_t index);
   void invertGroups();
 
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
   std::vector<ConstrainedNode> all_;
+  std::vector<Vec3> places_;                     // displacement, per entry of all_
+  std::vector<Vec3> forces_;                     // likewise
+  std::vector<Eigen::Matrix3d> inverses_;        // of the stiffness, likewise
   std::vector<WoodburyUpdate::Spring> joining_;  // of springs in contact, one a direction
   WoodburyUpdate joined_;
   mutable std::vector<Vec3> balancing_;

@@ -17,10 +17,12 @@ int leastNode(const WoodburyUpdate::Spring& spring) {
 
 void WoodburyUpdate::join(std::vector<Spring> springs,
                           const std::vector<Eigen::Matrix3d>& inverses) {
+  if (springs.empty() && springs_.empty()) return;
   springs_ = std::move(springs);
   std::stable_sort(springs_.begin(), springs_.end(),
                    [](const Spring& a, const Spring& b) { return leastNode(a) < leastNode(b); });
-  springs_at_.assign(inverses.size(), {});
+  for (std::vector<int>& springs_there : springs_at_) springs_there.clear();
+  springs_at_.resize(inverses.size());
   for (std::size_t spring = 0; spring < springs_.size(); ++spring) {
     for (const Part& part : springs_[spring].parts) {
       springs_at_[at(part.node)].push_back(static_cast<int>(spring));
