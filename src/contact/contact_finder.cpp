@@ -102,10 +102,12 @@ class SurfaceTree {
   std::uint64_t moves_ = 0;
 };
 
-// What the last find() met, so that penetrations() need not look for the same again.
+// What the last find() met, so that neither it nor penetrations() look for the same again.
 struct Found {
   std::uint64_t move = 0;  // SurfaceTree::moves() then
   RobotPose pose;
+  double margin = 0.0;
+  ContactSet contacts;
   std::vector<double> deepest;  // per link (m)
 };
 
@@ -134,6 +136,14 @@ struct ContactFinder::Impl {
   bool knows(std::size_t link, const Pose& tissue_T_link) const {
     return link < found.deepest.size() && found.move == surface_tree.moves() &&
            found.pose.links[link].matrix() == tissue_T_link.matrix();
+  }
+
+  bool knowsAll(const RobotPose& pose, double margin) const {
+    if (!surface_tree.exists() || found.margin != margin) return false;
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (!knows(link, pose.links[link])) return false;
+    }
+    return true;
   }
 
   // Kept from call to call, to spare allocations and to answer the same question once.
@@ -240,9 +250,10 @@ ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surfa
                                const std::vector<Vec3>& vertices, double margin) const {
   requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);
+  const Box bounds = impl_->boundsOf(surface, vertices);
+  if (impl_->knowsAll(pose, margin)) return impl_->found.contacts;
   const std::vector<PlacedLink> links = impl_->placedAt(pose);
   std::vector<std::vector<std::size_t>> near_shapes(links.size());
-  const Box bounds = impl_->boundsOf(surface, vertices);
   const auto near = impl_->broad_phase.nearTo(bounds, links, margin);
   if (!near.empty() && !impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
   for (const auto& [link, shape] : near) near_shapes[link].push_back(shape);
@@ -251,7 +262,8 @@ ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surfa
     if (near_shapes[link].empty()) continue;
     impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin, found);
   }
-  impl_->found = {impl_->surface_tree.moves(), pose, std::vector<double>(links.size(), 0.0)};
+  impl_->found = {impl_->surface_tree.moves(), pose, margin, found,
+                  std::vector<double>(links.size(), 0.0)};
   for (const Contact& contact : found.contacts) {
     double& deepest = impl_->found.deepest[at(contact.link)];
     deepest = std::max(deepest, contact.depth_m);

@@ -88,6 +88,7 @@ double ToolContactUpdate::shareOutside(double share, int strides) const {
 
 // depthsIn of the shape at that share of the way.
 std::vector<double> ToolContactUpdate::depthsAt(double share) const {
+  if (share == 1.0) return depthsIn(now_);
   std::vector<Vec3> there(now_.size());
   for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
     there[vertex] = vertices_[vertex] + share * (now_[vertex] - vertices_[vertex]);
@@ -95,12 +96,13 @@ std::vector<double> ToolContactUpdate::depthsAt(double share) const {
   return depthsIn(there);
 }
 
-// Per link of the tools: depth of the deepest point that gives way (m).
+// Per link of the tools: depth of the deepest point that gives way (m). Of the contacts that are
+// asked for next where the shape stays.
 std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertices) const {
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   std::vector<double> depths(world_.tools.linkCount(), 0.0);
-  for (const Contact& contact :
-       world_.finder.find(world_.pose, world_.tissue.surface(), vertices, 0.0).contacts) {
+  for (const Contact& contact : touch_finder_.contactsOf(world_.pose, vertices).contacts) {
+    if (contact.depth_m <= 0.0) continue;
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
     if (world_.isInWound(at(contact.link))) continue;
     if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;

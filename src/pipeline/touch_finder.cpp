@@ -33,7 +33,9 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
 // Unit normal of the surface at the contact, into the tissue; zero where it has none.
 Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
   const int vertex = vertexAt(world_.tissue.surface(), contact.place);
-  if (vertex >= 0) return -outwards_[at(vertex)].normalized();
+  if (vertex >= 0) {
+    return -areas_.doubleAreaAt(vertex, world_.tissue.surface(), vertices_).normalized();
+  }
   return -doubleArea(vertices_, world_.tissue.surface().triangles[at(contact.place.triangle)])
               .normalized();
 }
@@ -100,9 +102,13 @@ bool TouchFinder::turn(const RobotPose& pose, Contact& contact) const {
 ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), displacement, vertices_);
+  return contactsOf(pose, vertices_);
+}
+
+ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) const {
   const double spacing = world_.tissue.lattice().spacing();
   const auto find = [&](double gap) {
-    return world_.finder.find(pose, world_.tissue.surface(), vertices_, gap * spacing);
+    return world_.finder.find(pose, world_.tissue.surface(), vertices, gap * spacing);
   };
   if (!world_.anyInWound()) return find(tuning::kNearGap);
   ContactSet contacts = find(tuning::kPlaceOfLip + tuning::kNearGap);
@@ -123,7 +129,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
-  findNormals();
+  areas_.takeSurface(world_.tissue.surface());
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay
   std::size_t kept = 0;
   for (Contact& contact : all) {
@@ -142,14 +148,6 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   }
   takeRims(held, contacts);
   return contacts;
-}
-
-void TouchFinder::findNormals() {
-  outwards_.assign(vertices_.size(), Vec3::Zero());
-  for (const MeshTriangle& corners : world_.tissue.surface().triangles) {
-    const Vec3 area = doubleArea(vertices_, corners);
-    for (const int corner : corners) outwards_[at(corner)] += area;
-  }
 }
 
 // What is at the rim of a flat face is pushed as the rim has it, and what is beside the face, too.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tool_rims.h"
+#include "vertex_areas.h"
 #include "world.h"
 
 namespace robot_tissue {
@@ -16,6 +17,8 @@ class TouchFinder {
 
   // With gaps that a solve may close.
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
+  // Likewise, of the surface with its vertices there.
+  ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) const;
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
@@ -33,13 +36,12 @@ class TouchFinder {
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   bool turnAside(const RobotPose& pose, Contact& contact) const;
   bool turn(const RobotPose& pose, Contact& contact) const;
-  void findNormals();
   void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
   World& world_;
   ToolRims rims_;
   std::vector<Vec3> vertices_;  // of the last contacts
-  std::vector<Vec3> outwards_;  // their normals
+  VertexAreas areas_;
   std::vector<double> depths_;
 };
 
