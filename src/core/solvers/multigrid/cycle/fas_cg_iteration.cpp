@@ -40,8 +40,14 @@ SolveStatus FasCgIteration<Real>::run(SolveContext& solve) {
   for (; status == SolveStatus::kLate; status = check(solve)) {
     if (solve.cycles > 0 && solve.budget.isSpent()) break;
     if (areMembranesStiff(solve)) shape_.levels().coupleMembranes(true);
+    const bool is_easy = isEasy(solve);
+    const double rough = is_easy ? shape_.finest().squaredLocalMotion() : 0.0;
     makeCycle(solve);
     ++solve.cycles;
+    if (is_easy && isQuiet(rough)) {
+      estimator_.noteCorrection();
+      return SolveStatus::kOk;
+    }
     if (isPowerOfTwo(solve.cycles)) shape_.renewMembranes();
   }
   if (status == SolveStatus::kLate) finishLate(solve);
@@ -83,6 +89,22 @@ bool FasCgIteration<Real>::isBalanced(const SolveContext& solve) const {
   const bool untried = solve.cycles == 0 && solve.has_changed;
   return !untried && estimator_.errorAfterCorrection() <= part_.allowedError() &&
          forces_.isReached(solve);
+}
+
+// A tool in contact went on as before, and the warm start with it: the one cycle that a change asks
+// for is expected to be all.
+template <typename Real>
+bool FasCgIteration<Real>::isEasy(const SolveContext& solve) const {
+  return solve.in_contact && !solve.in_time && solve.warm_started && solve.cycles == 0 &&
+         estimator_.errorAfterCorrection() <= part_.allowedError() && forces_.isReached(solve);
+}
+
+// That cycle did what was expected: the smooth motion that is left need not be found to see it.
+// rough_before: GridLevel::squaredLocalMotion before it.
+template <typename Real>
+bool FasCgIteration<Real>::isQuiet(double rough_before) const {
+  return shape_.finest().squaredLocalMotion() <= rough_before &&
+         forces_.isSettled(part_.loaded(), tuning::kQuietForceShare);
 }
 
 // What went beyond its limit is cut back: the rest of the solve would be in vain.
@@ -146,7 +168,8 @@ void FasCgIteration<Real>::finishLate(const SolveContext& solve) {
 template <typename Real>
 void FasCgIteration<Real>::settleForces(const SolveContext& solve) {
   for (int round = 0; round < tuning::kMostSettling; ++round) {
-    if (solve.budget.isOverdrawn() || forces_.isSettled(part_.loaded())) return;
+    if (solve.budget.isOverdrawn() || forces_.isSettled(part_.loaded(), tuning::kForceShare))
+      return;
     shape_.finest().smoothAndFindForces(cycle_.smootherSteps(solve));
   }
 }

@@ -45,6 +45,8 @@ class FasCgIteration {
   SolveStatus check(const SolveContext& solve);
   bool areMembranesStiff(const SolveContext& solve) const;
   bool isBalanced(const SolveContext& solve) const;
+  bool isEasy(const SolveContext& solve) const;
+  bool isQuiet(double rough_before) const;
   bool isHopeless(const SolveContext& solve) const;
   void makeCycle(const SolveContext& solve);
   void finish(const SolveContext& solve);

@@ -96,11 +96,11 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
                                    const std::vector<int>& disturbed, const Budget& budget) {
   SolveContext solve{shape, hold, budget};
   solve.in_contact = isInContact(shape);
-  const bool in_time = model_.inertia() != nullptr;
-  solve.has_changed = solve.in_contact || !disturbed.empty() || in_time;
+  solve.in_time = model_.inertia() != nullptr;
+  solve.has_changed = solve.in_contact || !disturbed.empty() || solve.in_time;
   if (cells_ != shape.state.cells) part_.forgetLoads();
   part_.findSeeds(solve, disturbed);
-  if (in_time) part_.seedAll();
+  if (solve.in_time) part_.seedAll();
   findLevels(shape.state, budget);
   SolveReport report;
   wants_double_ = false;

@@ -68,9 +68,9 @@ bool ForceBalance<Real>::arePatchesBalanced() const {
 // The sum of all unbalanced forces is the difference between what goes into the tissue and what its
 // held nodes bear.
 template <typename Real>
-bool ForceBalance<Real>::isSettled(const std::vector<int>& loaded) const {
+bool ForceBalance<Real>::isSettled(const std::vector<int>& loaded, double share) const {
   const double given = heldForce(loaded).norm() + shape_.finest().constrained.contactForce().norm();
-  return shape_.netForce().norm() <= tuning::kForceShare * tolerance_ * given || given == 0.0;
+  return shape_.netForce().norm() <= share * tolerance_ * given || given == 0.0;
 }
 
 // On those of the nodes whose places are given.

@@ -24,8 +24,9 @@ class ForceBalance {
 
   bool isZero() const;                              // no force at all is left
   bool isReached(const SolveContext& solve) const;  // as well as the displacements ask for
-  // So well that the tissue's ends bear the same; `loaded`: nodes in patches and contacts.
-  bool isSettled(const std::vector<int>& loaded) const;
+  // So well that the tissue's ends bear the same, to that share of the tolerance; `loaded`: nodes
+  // in patches and contacts.
+  bool isSettled(const std::vector<int>& loaded, double share) const;
 
   // Greatest unbalanced force, on nodes and patches by force, over the greatest that there was.
   double residual(const ConstrainedState& state) const;

@@ -14,6 +14,7 @@ struct SolveContext {
   const DofConstraints& hold;  // bound to it
   const Budget& budget;
   bool in_contact = false;
+  bool in_time = false;  // a time step
   // There are contacts or disturbed nodes. What they change may be too small to show in the error,
   // which is relative to the displacement: at least one cycle is made.
   bool has_changed = false;

@@ -75,6 +75,10 @@ constexpr int kMostSettling = 3;
 // Of a solve's time (1): beyond it by so much, a solve cut short spends none of these rounds
 // (chosen). Up: better forces; calls that have no time end later.
 constexpr double kMostOverdrawn = 0.25;
+// Likewise after the one cycle of a solve in contact that ends with it: what is unbalanced is what
+// forces jump by from update to update (0.5: as smooth as with a second look, 2: twice as rough,
+// model.md). Up: fewer second looks, rougher forces.
+constexpr double kQuietForceShare = 0.5;
 // Share of a patch's own force that may be unbalanced on it, if the tolerance is less: single
 // precision knows no better (chosen). Up: patches by force stop earlier.
 constexpr double kPatchBalance = 1e-5;
