@@ -78,8 +78,11 @@ class SurfaceTree {
       revision_ = surface.revision;
       rest_ = surface.rest;
       tree_.emplace(rest_, surface.triangles);
+      vertices_ = rest_;
       ++moves_;
     }
+    if (areSame(vertices, vertices_)) return *tree_;
+    vertices_ = vertices;
     if (tree_->moveTo(vertices)) ++moves_;
     return *tree_;
   }
@@ -98,6 +101,7 @@ class SurfaceTree {
 
   std::uint64_t revision_ = 0;
   std::vector<Vec3> rest_;
+  std::vector<Vec3> vertices_;  // that the tree is of
   std::optional<TriangleBvh> tree_;
   std::uint64_t moves_ = 0;
 };

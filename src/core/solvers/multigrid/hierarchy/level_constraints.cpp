@@ -197,11 +197,12 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
   std::vector<int>& fine_springs = from_fine_[index - 1].springs;
   coarse.constrained.springs.clear();
   fine_springs.clear();
+  SharesOfNodes known(grid_.level(index - 1).constrained.count());
   for (std::size_t i = 0; i < fine.size(); ++i) {
     LevelSpring spring = fine[i];
     spring.contact = nullptr;
     spring.arm /= GridTransfer<Real>::kTwice;
-    spring.carriers = freeCarriers(index, fine[i].carriers);
+    spring.carriers = freeCarriers(index, fine[i].carriers, known);
     if (spring.carriers.empty() && spring.group < 0) continue;
     coarse.constrained.springs.push_back(std::move(spring));
     fine_springs.push_back(static_cast<int>(i));
@@ -214,13 +215,12 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
 // The coarse nodes that carry a spring of the fine lattice, without those that do not move.
 template <typename Real>
 std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
-    std::size_t index, const std::vector<LevelSpring::Carrier>& fine) const {
-  const GridLevel<Real>& coarse = grid_.level(index);
+    std::size_t index, const std::vector<LevelSpring::Carrier>& fine, SharesOfNodes& known) const {
   std::vector<LevelSpring::Carrier> carriers;
   for (const LevelSpring::Carrier& carrier : fine) {
-    if (grid_.level(index - 1).dirichletAxes(carrier.node) == kAllAxes) continue;
-    for (const NodeShare& share : grid_.transfer(index - 1).carriersOf(carrier.node)) {
-      if (coarse.dirichletAxes(share.node) == kAllAxes) continue;
+    std::optional<NodeShares>& shares = known[at(carrier.constrained)];
+    if (!shares) shares = freeShares(index, carrier.node);
+    for (const NodeShare& share : *shares) {
       const LevelSpring::Carrier part{share.node, share.weight * carrier.weight};
       const auto same = std::find_if(carriers.begin(), carriers.end(),
                                      [&](const auto& other) { return other.node == part.node; });
@@ -232,6 +232,18 @@ std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
     }
   }
   return carriers;
+}
+
+template <typename Real>
+NodeShares LevelConstraints<Real>::freeShares(std::size_t index, int fine_node) const {
+  if (grid_.level(index - 1).dirichletAxes(fine_node) == kAllAxes) return {};
+  const GridLevel<Real>& coarse = grid_.level(index);
+  NodeShares shares = grid_.transfer(index - 1).carriersOf(fine_node);
+  const auto stands = [&coarse](const NodeShare& share) {
+    return coarse.dirichletAxes(share.node) == kAllAxes;
+  };
+  shares.erase(std::remove_if(shares.begin(), shares.end(), stands), shares.end());
+  return shares;
 }
 
 // One for each component that is given where no coarse node stands, and for hard nodes of groups.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "loads/dof_constraints.h"
@@ -52,8 +53,12 @@ class LevelConstraints {
   void renewSprings(const ConstrainedState& shape, const DofConstraints& hold);
   void holdCoarse(std::size_t coarse);
   void addSpringsToCoarse(std::size_t coarse);
-  std::vector<LevelSpring::Carrier> freeCarriers(
-      std::size_t coarse, const std::vector<LevelSpring::Carrier>& fine) const;
+  // Per node with springs of a level, what carries it on the next coarser one, as it is asked for.
+  using SharesOfNodes = std::vector<std::optional<NodeShares>>;
+  std::vector<LevelSpring::Carrier> freeCarriers(std::size_t coarse,
+                                                 const std::vector<LevelSpring::Carrier>& fine,
+                                                 SharesOfNodes& known) const;
+  NodeShares freeShares(std::size_t coarse, int fine_node) const;
   void addTies(std::size_t coarse);
   void addTie(std::size_t coarse, int fine_node, unsigned axes, int group, const Vec3& arm);
 

@@ -76,6 +76,7 @@ class ConstrainedNodes {
   // Of the laws of contacts: the spacing (m) and E0 (Pa).
   void setUnits(double spacing, double modulus);
   std::vector<int> nodes() const;  // ascending
+  std::size_t count() const { return all_.size(); }
 
   // Forces of the cells and of springs; the free components go to `forces`.
   void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, Find what,
