@@ -34,7 +34,16 @@ void* operator new(std::size_t bytes) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  ++allocations;
+  allocated_bytes += static_cast<long>(bytes);
+  const auto line = static_cast<std::size_t>(alignment);
+  void* const memory = std::aligned_alloc(line, (bytes + line - 1) / line * line);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace robot_tissue {

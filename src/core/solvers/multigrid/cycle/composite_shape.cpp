@@ -10,7 +10,7 @@ namespace robot_tissue {
 namespace {
 
 template <typename Real>
-double dot(const std::vector<Real>& a, const std::vector<Real>& b) {
+double dot(const Numbers<Real>& a, const Numbers<Real>& b) {
   return dotOf(a.data(), b.data(), static_cast<int>(a.size()));
 }
 

@@ -304,7 +304,7 @@ void CompositeGrid<Real>::addLevel(const LevelGrid& grid, int beside,
 template <typename Real>
 void CompositeGrid<Real>::weighNodes() {
   if (light_nodes_.empty()) return;
-  std::vector<Real> roots(at(finest().count()), Real(1));
+  Numbers<Real> roots(at(finest().count()), Real(1));
   for (const LightNode& light : light_nodes_) {
     const int entry = entryOf(light.node);
     if (entry >= 0) roots[at(entry)] = static_cast<Real>(std::sqrt(light.weight));

@@ -48,7 +48,7 @@ std::array<int, 3> GridTransfer<Real>::placeOnCoarse(int fine_node) const {
 template <typename Real>
 void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& coarse) const {
   const auto& size = fine_.size;
-  std::vector<Real> line(at(2 * countAlongX() + 1), Real(0));
+  Numbers<Real> line(at(2 * countAlongX() + 1), Real(0));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Real* to = coarse[axis].data();
     std::fill(coarse[axis].begin() + to_.grid.beside, coarse[axis].end(), Real(0));
@@ -124,8 +124,8 @@ void GridTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& star
 }
 
 template <typename Real>
-void GridTransfer<Real>::prolongPlane(const std::vector<Real>& coarse, int k,
-                                      std::vector<Real>& between, Real* plane) const {
+void GridTransfer<Real>::prolongPlane(const Numbers<Real>& coarse, int k, Numbers<Real>& between,
+                                      Real* plane) const {
   const int length = countAlongX(), stride = to_.grid.row;
   const int count = fine_.size[1] / 2 * stride + length;
   between.resize(at(count + length));

@@ -27,8 +27,7 @@ class GridTransfer {
   // fine = 2 P (now - start).
   void prolong(const Field<Real>& now, const Field<Real>& start, Field<Real>& fine);
   // P on a plane of fine nodes, with coarse and fine values in the same unit. `between`: scratch.
-  void prolongPlane(const std::vector<Real>& coarse, int k, std::vector<Real>& between,
-                    Real* plane) const;
+  void prolongPlane(const Numbers<Real>& coarse, int k, Numbers<Real>& between, Real* plane) const;
   // fine = 2 P coarse at these fine nodes.
   void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
@@ -40,7 +39,7 @@ class GridTransfer {
   LevelGrid fine_;
   Coarsening to_;
   std::array<int, 3> at_;
-  std::vector<Real> motion_, between_;  // of coarse nodes
+  Numbers<Real> motion_, between_;  // of coarse nodes
 };
 
 extern template class GridTransfer<float>;

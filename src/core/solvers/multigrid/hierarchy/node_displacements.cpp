@@ -116,7 +116,7 @@ void NodeDisplacements<Real>::writeInterpolated(std::vector<Vec3>& displacement)
     Field<Real> fine;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       fine[axis].resize(at(grid.beside));
-      std::vector<Real> between;
+      Numbers<Real> between;
       for (int k = 0; k < grid.size[2]; ++k) {
         transfer.prolongPlane(coarse[axis], k, between, fine[axis].data() + grid.index(0, 0, k));
       }
@@ -169,7 +169,7 @@ void NodeDisplacements<Real>::writePlanes(const GridTransfer<Real>& transfer,
   const double spacing = grid_.spacing();
   Field<Real> plane;
   for (auto& values : plane) values.resize(at(grid.plane));
-  std::vector<Real> between;
+  Numbers<Real> between;
   for (int k = first; k < end; ++k) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       transfer.prolongPlane(coarse[axis], k, between, plane[axis].data());

@@ -58,7 +58,7 @@ bool NodeLoads<Real>::takeTimeStep(const InertialTerm* inertia, const WholeLevel
   scale_ = is_in_step_ ? inertia->elastic_scale : 1.0;
   double spacing = on.spacing;
   for (std::size_t level = 0; level < on.levels.size(); ++level, spacing *= 2.0) {
-    std::vector<Real> stiffness;
+    Numbers<Real> stiffness;
     const double unit = scale_ * on.modulus * spacing;
     for (std::size_t i = 0; is_in_step_ && i < masses_[level].size(); ++i) {
       stiffness.push_back(static_cast<Real>(inertia->per_mass * masses_[level][i] / unit));

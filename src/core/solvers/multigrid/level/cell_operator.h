@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "simd/numbers.h"
 #include "simd/workers.h"
 #include "solvers/multigrid/level/cell_kernel.h"
 #include "solvers/multigrid/level/lattice_coarsening.h"
@@ -16,7 +17,7 @@ namespace robot_tissue {
 
 // One value a node along x, y and z.
 template <typename Real>
-using Field = std::array<std::vector<Real>, 3>;
+using Field = std::array<Numbers<Real>, 3>;
 
 // What is found at a shape: forces alone, or what the smoother needs for a step, too (bounds of the
 // nodes' stiffness, and their inverses where the nodes are free).
@@ -48,9 +49,9 @@ class CellOperator {
   struct Loads {
     const Field<Real>& displacement;
     const Field<Real>& right_hand_side;
-    const std::vector<Real>& free;
+    const Numbers<Real>& free;
     Field<Real>& force;
-    std::vector<Real>& inverse;
+    Numbers<Real>& inverse;
   };
   void findForces(const Loads& loads, Find what);
   // What findForces found, with stiffness, of other nodes that are free.
@@ -60,15 +61,15 @@ class CellOperator {
   // In these threads from now on, with the same results.
   void share(Workers& workers);
   Field<Real> whole;
-  std::vector<Real> stiffness;
+  Numbers<Real> stiffness;
   // Of the nodes' inertia in a time step, against displacement (E0 h); empty: none.
-  std::vector<Real> inertia;
+  Numbers<Real> inertia;
 
  private:
   // Forces (0 to 2) and stiffness (3) on planes of nodes: of a plane of cells on its lower and
   // upper nodes, and `below`, of the plane of cells before on the same lower ones.
   struct Sums {
-    std::array<std::vector<Real>, 4> below, lower, upper;
+    std::array<Numbers<Real>, 4> below, lower, upper;
   };
 
   using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
@@ -89,12 +90,12 @@ class CellOperator {
 
   LevelGrid grid_;
   int count_ = 0;
-  std::vector<Real> shear_, bulk_;
-  std::vector<Real> stiffening_;  // empty: 0 in all
+  Numbers<Real> shear_, bulk_;
+  Numbers<Real> stiffening_;  // empty: 0 in all
   std::vector<LooseCell<Real>> loose_;
   std::vector<FilledCell<Real>> filled_;
-  std::vector<int> loose_nodes_;                 // of loose cells and filled ones
-  std::array<std::vector<Real>, 4> loose_sums_;  // on them: forces, stiffness
+  std::vector<int> loose_nodes_;             // of loose cells and filled ones
+  std::array<Numbers<Real>, 4> loose_sums_;  // on them: forces, stiffness
   std::vector<std::array<int, 3>> beside_places_;
   LevelPart part_;
   Blocks blocks_;

@@ -354,7 +354,7 @@ void ConstrainedNodes<Real>::moveBy(const Field<Real>& of_nodes,
 }
 
 template <typename Real>
-double ConstrainedNodes<Real>::squaredLocalMotion(const std::vector<Real>& weight_roots) const {
+double ConstrainedNodes<Real>::squaredLocalMotion(const Numbers<Real>& weight_roots) const {
   double squared = 0.0;
   const std::vector<Vec3>& motions = balancing();
   for (std::size_t i = 0; i < all_.size(); ++i) {

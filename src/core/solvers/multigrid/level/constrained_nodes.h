@@ -92,7 +92,7 @@ class ConstrainedNodes {
               Field<Real>& displacement);
 
   // Of D^-1 f, nodes by their weights, whose roots these are; empty: 1 each.
-  double squaredLocalMotion(const std::vector<Real>& weight_roots) const;
+  double squaredLocalMotion(const Numbers<Real>& weight_roots) const;
   // Of hard nodes, under such motions of their groups.
   double squaredMotionOf(const std::vector<GroupVector>& of_groups) const;
   // Of cells, right-hand side and springs, as last found; null where the node is none of these.

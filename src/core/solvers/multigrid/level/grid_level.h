@@ -34,7 +34,7 @@ class GridLevel {
   double greatestStiffness() const { return 1.0 / step_; }
 
   // Per entry, the root of the weight with which the node counts in lengths; empty: 1 each.
-  void setWeightRoots(std::vector<Real> roots) { weight_roots_ = std::move(roots); }
+  void setWeightRoots(Numbers<Real> roots) { weight_roots_ = std::move(roots); }
 
   // What holds the nodes: first nothing does, then `hold` one by one, then `bind`. Bits of axes.
   void freeAll();
@@ -69,7 +69,7 @@ class GridLevel {
   void share(Workers& workers) { cells_.share(workers); }
 
   // Per entry, stiffness of the nodes' inertia in a time step; empty: none. Forces are stale then.
-  void setInertia(std::vector<Real> stiffness) { cells_.inertia = std::move(stiffness); }
+  void setInertia(Numbers<Real> stiffness) { cells_.inertia = std::move(stiffness); }
   // Of cells, membranes and the right-hand side alone, as last found.
   Vec3 forceOfCells(int node) const { return vectorAt(cells_.whole, node); }
 
@@ -118,17 +118,17 @@ class GridLevel {
   CellOperator<Real> cells_;
   std::shared_ptr<LevelMembrane<Real>> membrane_;  // null: no membranes
   std::vector<std::uint8_t> held_;
-  std::vector<Real> rest_stiffness_;
-  std::vector<Real> weight_roots_;
+  Numbers<Real> rest_stiffness_;
+  Numbers<Real> weight_roots_;
   double step_ = 0.5;       // one over greatestStiffness()
   Field<Real> last_step_;   // of the smoother
   Field<Real> of_covered_;  // forces; empty where the covered part is the whole
   std::vector<int> interface_;
   std::vector<int> partly_held_;
-  std::vector<Real> not_held_;  // 1 where a node may move, else 0
-  bool are_holds_new_ = true;   // interface_, partly_held_ and not_held_ are of others
-  std::vector<Real> free_;      // 1 where a node may move and is none of `constrained`, else 0
-  std::vector<Real> inverse_;   // of the stiffness of such nodes, else 0
+  Numbers<Real> not_held_;     // 1 where a node may move, else 0
+  bool are_holds_new_ = true;  // interface_, partly_held_ and not_held_ are of others
+  Numbers<Real> free_;         // 1 where a node may move and is none of `constrained`, else 0
+  Numbers<Real> inverse_;      // of the stiffness of such nodes, else 0
 };
 
 extern template class GridLevel<float>;
