@@ -71,7 +71,7 @@ struct Around {
 
   CellOperator<Real>& cells;
   Field<Real> load, force;
-  std::vector<Real> free, inverse;
+  Numbers<Real> free, inverse;
 };
 
 template <typename Real>

@@ -83,7 +83,7 @@ TEST(WeightRoots, MakeNodesCountLessInLengths) {
   EXPECT_DOUBLE_EQ(level.squaredLength(motion), 25.0);
   EXPECT_DOUBLE_EQ(level.squaredDistanceFrom(rest), 25.0);
 
-  std::vector<double> roots(count, 0.5);
+  Numbers<double> roots(count, 0.5);
   level.setWeightRoots(roots);
   EXPECT_NEAR(level.squaredLocalMotion(), 0.25 * local, 1e-12 * local);
   roots.assign(count, 1.0);
