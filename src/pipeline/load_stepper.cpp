@@ -25,7 +25,7 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  if (!followTools(pose, good, otherwise)) {
+  if (!takesShape(pose, good, otherwise)) {
     ran_out_of_time_ = isOutOfTime();
     goBackTo(good);
     return false;
@@ -40,10 +40,17 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   return true;
 }
 
+bool LoadStepper::takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
+  Patience& patience = world_.tissue.patience();
+  const Patience::LoadStep load_step(patience);
+  const bool follows = followTools(pose, good, otherwise);
+  if (!follows) patience.noteLost();
+  return follows;
+}
+
 // Later rounds only if the solve moved nodes into a tool with a rigid patch; for the others the
 // solver asks for the contacts itself (ContactUpdate). False: no shape followed.
 bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
-  const Patience::LoadStep load_step(world_.tissue.patience());
   const double spacing = world_.tissue.lattice().spacing();
   for (int round = 1;; ++round) {
     world_.sticking.ride(pose, world_.tissue);

@@ -58,6 +58,7 @@ class LoadStepper {
   double deepestInRigid(const RobotPose& pose);
   std::vector<LoadingPatch> lastTouches() const;
   void follow(std::vector<LoadingPatch> patches);
+  bool takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
   bool isRefused(IfUnconverged otherwise) const;

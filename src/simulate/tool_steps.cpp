@@ -167,11 +167,12 @@ void Runner::follow() {
   followPushes();
 }
 
-// Tools by a force follow the tissue.
+// Tools by a force follow the tissue, unless it takes far too long.
 void Runner::followPushes() {
   const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });
   for (int i = 0; any && i < tuning::kMostUpdates; ++i) {
-    if (i > 0 && (!pipeline_.report().changed || deadline_.isOver())) break;
+    const StepReport& report = pipeline_.report();
+    if (i > 0 && (!report.changed || report.hopeless || deadline_.isOver())) break;
     update();
   }
   for (std::size_t tool = 0; tool < tools_.count(); ++tool) {

@@ -233,6 +233,15 @@ TEST_P(Baseline, BudgetThatIsTooShortIsLateAndIsCarriedOn) {
   EXPECT_LT(pair.error(), 0.05);
 }
 
+TEST_P(Baseline, TakesNoMoreIterationsThanItMay) {
+  Pair pair(pressBlock(0.45), solver());
+  pair.patches = {pair.punch(Vec3(0, 0, -0.004))};
+  pair.method->limitIterations(7);
+  const SolveReport report = pair.method->solve(pair.patches, {}, pair.state);
+  EXPECT_EQ(report.status, SolveStatus::kUnconverged);
+  EXPECT_EQ(report.iterations, 7);
+}
+
 TEST_P(Baseline, FloatingTissueUnderAForceHasNoEquilibrium) {
   const TissueConfig config = elasticBlockOf(3, 3, 3, 0.45);
   Pair pair(config, solver());

@@ -188,6 +188,16 @@ TEST(Newton, SaysSoWhenItDidNotConverge) {
   EXPECT_GT(report.residual, 1e-10);
 }
 
+TEST(Newton, TakesNoMoreIterationsThanItMay) {
+  const TissueConfig config = pressedBlock(0.45);
+  ElasticBlock block(config);
+  block.method.limitIterations(2);
+  const SolveReport report =
+      block.solve({displaced(punchNodes(block.lattice, config), Vec3(0.0, 0.0, -0.01))});
+  EXPECT_EQ(report.status, SolveStatus::kUnconverged);
+  EXPECT_EQ(report.iterations, 2);
+}
+
 TEST(Newton, SaysSoWhenItsTimeIsUp) {
   const TissueConfig config = pressedBlock(0.45);
   NewtonOptions options;

@@ -66,25 +66,75 @@ TEST(Patience, ForgivesNothingForWhatIsCutOff) {
   EXPECT_FALSE(patience.isOver());
 }
 
-TEST(Patience, LeavesTheUsualIterationsToEachLoadStep) {
+TEST(Patience, LeavesTheUsualWorkToEachLoadStep) {
   Patience patience = forScene();
   jam(patience);
-  EXPECT_EQ(patience.left(), kUsual);
+  const int usual = patience.left();
+  EXPECT_GE(usual, kUsual);
+  EXPECT_LT(usual, 2 * kUsual);
   const Patience::LoadStep load_step(patience);
   solve(patience, 20);
-  EXPECT_EQ(patience.left(), kUsual - 20);
-  solve(patience, 20);
+  EXPECT_LT(patience.left(), usual - 20);
+  solve(patience, usual - 20);
   EXPECT_EQ(patience.left(), 0);
 }
 
 TEST(Patience, TakesTheSolvesOfALoadStepAsOne) {
-  Patience once = forScene(), bit_by_bit = forScene();
-  for (int i = 0; i < 10; ++i) {
-    solve(once, 90);
-    const Patience::LoadStep load_step(bit_by_bit);
-    for (int part = 0; part < 6; ++part) solve(bit_by_bit, 15);
+  Patience patience = forScene();
+  const int fresh = patience.left();
+  for (int i = 0; i < 1000; ++i) {
+    const Patience::LoadStep load_step(patience);
+    for (int part = 0; part < 4; ++part) solve(patience, kUsual / 4);
   }
-  EXPECT_EQ(once.left(), bit_by_bit.left());
+  EXPECT_EQ(patience.left(), fresh);
+}
+
+// As where contacts change from round to round: what each solve begins and ends with is work, too.
+TEST(Patience, EndsForManyShortSolves) {
+  Patience in_one = forScene(), in_many = forScene();
+  for (int i = 0; i < 200; ++i) {
+    solve(in_one, kUsual);
+    const Patience::LoadStep load_step(in_many);
+    for (int part = 0; part < kUsual; ++part) solve(in_many, 1);
+  }
+  EXPECT_FALSE(in_one.isOver());
+  EXPECT_TRUE(in_many.isOver());
+}
+
+TEST(Patience, CountsAllThatLedNowhere) {
+  Patience useful = forScene(), unsettled = forScene(), lost = forScene();
+  for (int i = 0; i < 200; ++i) {
+    solve(useful, kUsual);
+    solve(unsettled, std::min(kUsual, unsettled.left()), false);
+    const Patience::LoadStep load_step(lost);
+    solve(lost, std::min(kUsual, lost.left()));
+    lost.noteLost();
+  }
+  EXPECT_FALSE(useful.isOver());
+  EXPECT_TRUE(unsettled.isOver());
+  EXPECT_TRUE(lost.isOver());
+}
+
+// Where iterations take long, there are fewer beyond the usual ones, but no fewer of these.
+TEST(Patience, IsLessOnALargeLattice) {
+  Patience small = forScene(), large(kUsual, 1000000);
+  large.limit();
+  EXPECT_GT(small.left(), 10 * large.left());
+  jam(small);
+  jam(large);
+  EXPECT_EQ(large.left(), small.left());
+}
+
+// And where there are more touches than nodes, each iteration counts for more.
+TEST(Patience, GoesByWhatIterationsCost) {
+  Patience cheap = forScene(), dear = forScene();
+  for (int i = 0; i < 100; ++i) {
+    solve(cheap, kUsual);
+    const Patience::LoadStep load_step(dear);
+    dear.note(kUsual, true, Patience::Of::kLoadStep, 8.0);
+  }
+  EXPECT_FALSE(cheap.isOver());
+  EXPECT_TRUE(dear.isOver());
 }
 
 // Of four iterations in a time step, one.
@@ -96,8 +146,8 @@ TEST(Patience, TakesMoreOfTimeSteps) {
     of_time.note(4 * 90, true, Patience::Of::kTimeStep);
   }
   EXPECT_FALSE(of_loads.isOver());
-  EXPECT_EQ(of_time.left(), of_loads.left());
-  EXPECT_EQ(of_time.left(Patience::Of::kTimeStep), 4 * of_loads.left());
+  EXPECT_GE(of_time.left(), of_loads.left());
+  EXPECT_GE(of_time.left(Patience::Of::kTimeStep), 4 * of_loads.left());
 }
 
 // A method that usually takes more is given more.
@@ -105,7 +155,7 @@ TEST(Patience, GoesByWhatIsUsual) {
   Patience quick = forScene(), slow(10 * kUsual);
   slow.limit();
   for (int hard = 0; hard < 1000 && !quick.isOver(); ++hard) {
-    ASSERT_EQ(slow.left(), 10 * quick.left()) << hard;
+    ASSERT_NEAR(slow.left(), 10 * quick.left(), 10) << hard;  // whole ones
     solve(quick, 200);
     solve(slow, 2000);
     if (hard % 3 > 0) continue;

@@ -6,14 +6,19 @@
 
 namespace robot_tissue {
 
-// Counts what load steps take beyond the iterations that are usual. A slip or two are forgiven by
-// and by; tissue that is crushed between tools, or tears beside one, asks for hundreds in every
-// other load step, for as long as it goes on.
+// Counts the work of load steps beyond what is usual, all of it where they do not converge or no
+// shape follows. A slip or two are forgiven by and by; tissue that is crushed between tools, or
+// tears beside one, asks for hundreds of iterations in every other load step, for as long as it
+// goes on.
+//
+// Work is in the method's iterations: a solve is as long as those it takes, and what it begins and
+// ends with takes as long as a few more.
 class Patience {
  public:
   // Iterations that a load step usually takes at most; a method that does not know them is never
-  // out of patience.
-  explicit Patience(int usual = std::numeric_limits<int>::max()) : usual_(usual) {}
+  // out of patience. Nodes of the lattice: where they are many, less beyond the usual work is
+  // forborne, as it takes the longer.
+  explicit Patience(int usual_iterations = std::numeric_limits<int>::max(), int nodes = 1);
 
   // What is solved while one lives is one load step; one within another is part of it.
   class LoadStep {
@@ -31,8 +36,8 @@ class Patience {
   };
 
   // From here on it is for all of a scene, and once it is over load steps have no more than the
-  // usual iterations; before, it is for one way of the tools, counts what did not converge alone,
-  // and bounds no solve.
+  // usual work; before, it is for one way of the tools, counts what did not converge alone, and
+  // bounds no solve.
   void limit() { is_for_scene_ = true; }
   void forget() { spent_ = spent_by_trials_ = 0; }
   // A way begins, or went on by a whole load step.
@@ -41,11 +46,15 @@ class Patience {
   }
 
   // What is solved: in a time step contacts begin and end at speed, so it may take several times as
-  // many, and counts the less.
+  // many, and counts the less. `cost`: of an iteration, over that of one with few touches.
   enum class Of { kLoadStep, kTimeStep };
-  void note(int iterations, bool converged, Of what = Of::kLoadStep);  // of a solve
-  // Iterations that the load step may still take.
-  int left(Of what = Of::kLoadStep) const;
+  void note(int iterations, bool converged, Of what = Of::kLoadStep, double cost = 1.0);
+  // Nothing, as of a solve that is an answer however long it took.
+  void noteEasy() { converged_ = true; }
+  // No shape followed in the load step under way: its solves led nowhere, converged or not.
+  void noteLost() { lost_ = true; }
+  // Iterations that the next solve of the load step may take; 0: there is to be none.
+  int left(Of what = Of::kLoadStep, double cost = 1.0) const;
   // Iterations that one takes at most, bounded or not.
   int mostOfLoadStep() const;
   bool isOver() const { return spent_ >= most(); }
@@ -58,20 +67,24 @@ class Patience {
   void endTrial();
 
  private:
-  int most() const;
-  int timesUsual(double times) const;
+  double most() const { return is_for_scene_ ? most_ : most_on_a_way_; }
+  bool isKnown() const { return usual_ < std::numeric_limits<int>::max(); }
+  void spend(double work);
   void endSolve();
   void endLoadStep();
 
-  int usual_;
+  int usual_;             // iterations
+  double most_;           // work, spent over a scene
+  double most_on_a_way_;  // likewise
   bool is_for_scene_ = false;
-  int depth_ = 0;          // of load steps
-  int taken_ = 0;          // iterations, in the load step under way
-  int unsettled_ = 0;      // likewise, in the solve under way
-  bool converged_ = true;  // its last solve, if there was any
-  int spent_ = 0;          // iterations
-  int spent_by_trials_ = 0;
-  int before_trial_ = 0;  // spent_
+  int depth_ = 0;           // of load steps
+  double taken_ = 0.0;      // work, in the load step under way
+  double unsettled_ = 0.0;  // likewise, in the solve under way
+  bool converged_ = true;   // its last solve, if there was any
+  bool lost_ = false;       // the load step under way
+  double spent_ = 0.0;      // work
+  double spent_by_trials_ = 0.0;
+  double before_trial_ = 0.0;  // spent_
 };
 
 }  // namespace robot_tissue

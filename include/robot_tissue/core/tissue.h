@@ -308,7 +308,7 @@ class Tissue {
   double mostMs() const;
   int mostIterations() const;
   Patience::Of solved() const;
-  int weightOfIteration() const;
+  double costOfIteration() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
   SutureThread threadOf(const SutureConfig& config) const;

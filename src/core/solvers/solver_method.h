@@ -38,8 +38,8 @@ class SolverMethod {
   // Time that each solve may take from here on (ms), in the place of the options' max_ms; 0: no
   // bound.
   virtual void limitTime(double) {}
-  // Likewise iterations, besides the options' own bound; then it ends, unconverged. Methods that do
-  // not know their usual iterations need not know it.
+  // Likewise iterations, besides the options' own bound; then it ends, unconverged. To be kept by
+  // methods that know their usual iterations.
   virtual void limitIterations(int) {}
 
   // Of the cells on their nodes in that shape (N), gravity and inertia not included, where the

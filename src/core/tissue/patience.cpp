@@ -11,45 +11,55 @@ namespace {
 
 constexpr int kNoBound = std::numeric_limits<int>::max();
 
+double timesOf(Patience::Of what) {
+  return what == Patience::Of::kTimeStep ? tuning::kTimesInTimeStep : 1.0;
+}
+
 }  // namespace
 
-int Patience::most() const {
-  return is_for_scene_ ? timesUsual(tuning::kMostSpent) : tuning::kMostSpentOnAWay;
+Patience::Patience(int usual_iterations, int nodes)
+    : usual_(usual_iterations),
+      most_(tuning::kMostSpent * usual_iterations / std::max(1.0, nodes / tuning::kManyNodes)),
+      most_on_a_way_(tuning::kMostSpentOnAWay) {}
+
+int Patience::mostOfLoadStep() const {
+  return isKnown() ? static_cast<int>(std::lround(tuning::kMostOfLoadStep * usual_)) : kNoBound;
 }
 
-int Patience::mostOfLoadStep() const { return timesUsual(tuning::kMostOfLoadStep); }
-
-// All there are of a method that does not know them.
-int Patience::timesUsual(double times) const {
-  return usual_ == kNoBound ? kNoBound : static_cast<int>(std::lround(times * usual_));
-}
-
-void Patience::note(int iterations, bool converged, Of what) {
-  const int times = what == Of::kTimeStep ? tuning::kTimesInTimeStep : 1;
-  const int counted = (iterations + times - 1) / times;
-  taken_ += counted;
-  unsettled_ += counted;
+void Patience::note(int iterations, bool converged, Of what, double cost) {
+  const double work = cost * (iterations + tuning::kEndsOfSolve * usual_) / timesOf(what);
+  taken_ += work;
+  unsettled_ += work;
   converged_ = converged;
 }
 
-int Patience::left(Of what) const {
-  if (!is_for_scene_ || usual_ == kNoBound) return kNoBound;
-  const int left = std::max(0, usual_ + most() - spent_ - taken_);
-  return what == Of::kTimeStep ? tuning::kTimesInTimeStep * left : left;
+int Patience::left(Of what, double cost) const {
+  if (!is_for_scene_ || !isKnown()) return kNoBound;
+  const double work = tuning::kUsualWork * usual_ + most_ - spent_ - taken_;
+  return std::max(0, static_cast<int>(timesOf(what) * work / cost - tuning::kEndsOfSolve * usual_));
+}
+
+void Patience::spend(double work) {
+  if (isKnown()) spent_ = std::min(spent_ + work, most());
 }
 
 void Patience::endSolve() {
-  if (!is_for_scene_ && !converged_) spent_ = std::min(spent_ + unsettled_, most());
-  unsettled_ = 0;
+  if (!is_for_scene_ && !converged_) spend(unsettled_);
+  unsettled_ = 0.0;
 }
 
 void Patience::endLoadStep() {
-  if (is_for_scene_ && taken_ > usual_) {
-    spent_ = std::min(spent_ + taken_ - usual_, most());
-  } else if (converged_) {
-    spent_ = std::max(spent_ - timesUsual(tuning::kForgiven), 0);
+  const double usual = tuning::kUsualWork * usual_;
+  const bool settled = converged_ && !lost_;
+  if (is_for_scene_ && !settled) {
+    spend(taken_);
+  } else if (is_for_scene_ && taken_ > usual) {
+    spend(taken_ - usual);
+  } else if (settled) {
+    spent_ = std::max(spent_ - tuning::kForgiven * usual, 0.0);
   }
-  taken_ = 0;
+  taken_ = 0.0;
+  lost_ = false;
   converged_ = true;
 }
 

@@ -22,15 +22,15 @@ double Tissue::mostMs() const {
 
 // Of the next solve.
 int Tissue::mostIterations() const {
-  return std::max(1, patience_.left(solved()) / weightOfIteration());
+  return std::max(1, patience_.left(solved(), costOfIteration()));
 }
 
-// Where there are more touches than nodes, as of a fine mesh on a coarse lattice, they are most of
-// the work.
-int Tissue::weightOfIteration() const {
-  std::size_t touches = 0;
-  for (const LoadingPatch& patch : patches_) touches += patch.contacts.size();
-  return std::max(1, static_cast<int>(touches / state_.displacement.size()));
+// Over that of an iteration with few touches. Where there are more of them than nodes, as of a fine
+// mesh on a coarse lattice, they are most of the work.
+double Tissue::costOfIteration() const {
+  double touches = 0.0;
+  for (const LoadingPatch& patch : patches_) touches += static_cast<double>(patch.contacts.size());
+  return std::max(1.0, touches / static_cast<double>(state_.displacement.size()));
 }
 
 Patience::Of Tissue::solved() const {

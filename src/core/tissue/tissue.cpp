@@ -62,7 +62,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   rebuildSurface();
   planMembranes(tissue);
   method_ = makeMethod(solver, lattice_, *model_);
-  patience_ = Patience(method_->usualIterations());
+  patience_ = Patience(method_->usualIterations(), lattice_.nodeCount());
   weight_ = model_->weight(state_);
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
 }
@@ -307,7 +307,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   limitWays();
   method_->limitTime(mostMs());
   method_->limitIterations(mostIterations());
-  const int weight = weightOfIteration();
+  const double cost = costOfIteration();
   SolveReport report = solveWithThreads(disturbed);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
@@ -323,8 +323,11 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   is_late_ = report.status == SolveStatus::kLate;
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.
-  const bool is_hard = !(converged && isUntouched());
-  patience_.note(is_hard ? weight * report.iterations : 0, converged, solved());
+  if (converged && isUntouched()) {
+    patience_.noteEasy();
+  } else {
+    patience_.note(report.iterations, converged, solved(), cost);
+  }
   describeShape(report);
   last_report_ = report;
   return report;

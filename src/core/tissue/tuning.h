@@ -51,20 +51,31 @@ constexpr double kNearer = 0.7;
 constexpr double kFarther = 1.1;
 
 // Patience.
-// Iterations beyond those usual in a load step, over the usual ones (1), over all of a scene: then
-// load steps have the usual ones alone, and ways are given up that ask for more. And what an easy
-// load step forgives of them. More: jams are followed for longer. Chosen: an edge dragged over
-// 25 mm of a block, by `layered`, spends 36.
+// What a solve of any length begins and ends with, over the usual iterations of a load step (1): 2
+// by `layered`, as kIterationsOfEnds. More: contacts that change from round to round are given up
+// earlier; less: load steps of many short solves are as free as one solve.
+constexpr double kEndsOfSolve = 2.0 / 30.0;
+// Work that is usual in a load step, over its usual iterations (1): these and the ends of 7 or 8
+// solves. More: jams are followed for longer.
+constexpr double kUsualWork = 1.5;
+// Work beyond that, over the usual iterations of a load step (1), over all of a scene: then load
+// steps have the usual work alone, and ways are given up that ask for more. And what an easy load
+// step forgives, over the usual work. More: jams are followed for longer. Chosen: an edge dragged
+// over 25 mm of a block spends 38, a needle likewise.
 constexpr double kMostSpent = 1500.0 / 30.0;
-constexpr double kForgiven = 15.0 / 30.0;
+constexpr double kForgiven = 0.5;
+// Nodes (1) beyond which kMostSpent is less, in proportion, as iterations are longer. Less: large
+// scenes are given up earlier; more: their jams take minutes. Chosen: tools on 35,301 nodes are
+// followed as on 4,851.
+constexpr double kManyNodes = 40000.0;
 // Iterations of a time step that count as one (1). Less: motions that only touch now and then are
 // given up; more: jams that swing are followed for longer. Chosen: a box's edge dragged at 20 mm/s
 // takes 40 a time step in the mean, 459 in the 99th percentile, and spends 956 of the 1,500.
 constexpr int kTimesInTimeStep = 4;
-// Iterations of load steps that did not converge, since the last whole one on a tool's way, where
-// nobody asked for an end of the scene: then the way is given up. More: hopeless ways take longer,
-// and a few more are followed. Chosen.
-constexpr int kMostSpentOnAWay = 3000;
+// Iterations' work in load steps that did not converge, since the last whole one on a tool's way,
+// where nobody asked for an end of the scene: then the way is given up. More: hopeless ways take
+// longer, and a few more are followed. Chosen.
+constexpr double kMostSpentOnAWay = 3000.0;
 
 // Cuts.
 // Spacings (1): how far the lattice's nodes are from the surface that is shown, at most: a cell's

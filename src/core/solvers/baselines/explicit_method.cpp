@@ -195,7 +195,7 @@ SolveStatus ExplicitMethod::goThrough(int& steps) {
   const double longest = longestStableStep(passage.masses, passage.term.damping_time);
   const double count = std::max(1.0, std::ceil(duration / longest));
   SolveStatus status = SolveStatus::kUnconverged;
-  if (count <= options_.max_iterations) {
+  if (count <= mostIterations()) {
     steps = static_cast<int>(count);
     passage.step = duration / count;
     status = pass(passage, steps);

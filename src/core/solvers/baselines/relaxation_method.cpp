@@ -107,7 +107,7 @@ SolveStatus RelaxationMethod::run(Course& course) {
   findForces();
   lookAtWave(WaveLook::kFirst);
   while (course.care <= tuning::kMostCare && !course.stalled &&
-         course.iterations < options_.max_iterations) {
+         course.iterations < mostIterations()) {
     iterate();
     ++course.iterations;
     if (course.iterations % stride() == 0 && look(course)) return SolveStatus::kOk;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -43,6 +44,7 @@ class RelaxationMethod : public SolverMethod {
   bool remembers() const override { return true; }
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
+  void limitIterations(int most) override { most_iterations_ = most; }
   double patchStep() const override;
 
  protected:
@@ -65,6 +67,7 @@ class RelaxationMethod : public SolverMethod {
   // kGoneThrough: from the shape at the step's start to that at its end; how many steps were made.
   virtual SolveStatus goThrough(int& /*steps*/) { return SolveStatus::kUnconverged; }
   bool isLate() const { return options_.max_ms > 0.0 && elapsedMs() > options_.max_ms; }
+  int mostIterations() const { return std::min(options_.max_iterations, most_iterations_); }
 
   // Cells from what holds the tissue to what is farthest from it; in a time step, as far as it
   // is felt within it.
@@ -112,6 +115,7 @@ class RelaxationMethod : public SolverMethod {
   void describe(const Course& course, SolveReport& report);
   double elapsedMs() const;
 
+  int most_iterations_ = std::numeric_limits<int>::max();
   std::vector<Eigen::MatrixXd> answers_;  // per patch by force: its stiffness, nodes held
   std::vector<Vec3> scratch_;             // forces (N)
   std::vector<Vec3> left_;                // displacement that the last solve left (m)

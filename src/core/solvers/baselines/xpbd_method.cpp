@@ -191,7 +191,7 @@ SolveStatus XpbdMethod::goThrough(int& steps) {
   velocity_ = term.velocity;
   weigh();
   const double count = std::max(1.0, std::ceil(term.duration / smallStep(masses)));
-  if (count <= options_.max_iterations) {
+  if (count <= mostIterations()) {
     steps = static_cast<int>(count);
     for (int step = 1; step <= steps; ++step) {
       for (std::size_t node = 0; node < place.size(); ++node) {  // what is held goes evenly

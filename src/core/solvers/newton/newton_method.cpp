@@ -96,7 +96,8 @@ void NewtonMethod::carryPatches(ConstrainedState& shape) {
 SolveStatus NewtonMethod::iterate(ConstrainedState& shape, int& iterations) {
   const std::vector<Vec3> unmoved(shape.state.displacement.size(), Vec3::Zero());
   for (iterations = 0; relative_ > options_.residual; ++iterations) {
-    if (iterations == options_.max_iterations) return SolveStatus::kUnconverged;
+    if (iterations >= std::min(options_.max_iterations, most_iterations_))
+      return SolveStatus::kUnconverged;
     const bool is_over = options_.max_ms > 0.0 && elapsedMs() > options_.max_ms;
     if (is_over && iterations > 0) return SolveStatus::kLate;
     if (!factorize(shape, unmoved)) return SolveStatus::kUnconverged;

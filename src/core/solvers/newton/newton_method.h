@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,7 @@ class NewtonMethod : public SolverMethod {
                     LatticeState& state) override;
   bool findsEquilibrium() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
+  void limitIterations(int most) override { most_iterations_ = most; }
   double patchStep() const override;
   int usualIterations() const override;
 
@@ -59,6 +61,7 @@ class NewtonMethod : public SolverMethod {
   const Lattice& lattice_;
   const EnergyModel& model_;
   NewtonOptions options_;
+  int most_iterations_ = std::numeric_limits<int>::max();
   double stiffness_ = 0.0;  // mean over the nodes at rest (N/m)
   double hold_ = 0.0;       // likewise, of cells alone
   DofMap unknowns_;
