@@ -126,6 +126,29 @@ void ToolRims::leaveSteep(int link) {
   }
 }
 
+double ToolRims::flatness(int number, const Pose& tissue_T_link, const ContactSet& contacts,
+                          const std::vector<Vec3>& vertices) const {
+  if (!world_.finder.hasFlatFaces(at(number))) return 0.0;
+  Link link;
+  link.number = number;
+  link.tissue_T_link = tissue_T_link;
+  const Vec3 inwards = inwardsAround(link, vertices);
+  if (inwards.isZero(0.0)) return 0.0;
+  const double spacing = world_.tissue.lattice().spacing();
+  double flatness = 0.0;
+  for (const Contact& contact : contacts.contacts) {
+    if (contact.link != number || vertexAt(world_.tissue.surface(), contact.place) < 0) continue;
+    const auto face = world_.finder.flatFace(at(number), tissue_T_link, inwards, contact.point,
+                                             tuning::kRimReach * spacing);
+    if (!face || std::abs(face->height_m) > tuning::kOnFace * spacing) continue;
+    const double wide =
+        fade(widthOf(*face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
+    flatness = std::max(
+        flatness, wide * fade(face->normal.dot(inwards), tuning::kTiltedFace, tuning::kLevelFace));
+  }
+  return flatness;
+}
+
 bool ToolRims::isSticking(int tool) const {
   return at(tool) < world_.tools.size() && world_.tools.isRigid(tool);
 }

@@ -25,6 +25,10 @@ class ToolRims {
   // In this shape, where the links have these contacts, with their planes.
   void look(const RobotPose& pose, const std::vector<Vec3>& vertices, const ContactSet& contacts);
 
+  // How much a link stands on a flat face (1), as the surface around it looks.
+  double flatness(int number, const Pose& tissue_T_link, const ContactSet& contacts,
+                  const std::vector<Vec3>& vertices) const;
+
   // Writes the rim into a contact, and of a vertex at it the face's plane.
   void mark(Contact& contact) const;
   // The vertices beside faces that their rims push.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "stopwatch.h"
@@ -30,24 +31,54 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
   return tracked;
 }
 
-// Unit normal of the surface at the contact, into the tissue; zero where it has none.
+// Unit normal of the surface at the contact, into the tissue, as vertices and triangles have it;
+// zero where it has none.
 Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
-  const int vertex = vertexAt(world_.tissue.surface(), contact.place);
-  if (vertex >= 0) {
-    return -areas_.doubleAreaAt(vertex, world_.tissue.surface(), vertices_).normalized();
+  const TissueSurface& surface = world_.tissue.surface();
+  const int vertex = vertexAt(surface, contact.place);
+  if (vertex >= 0) return -areas_.doubleAreaAt(vertex, surface, vertices_).normalized();
+  return -doubleArea(vertices_, surface.triangles[at(contact.place.triangle)]).normalized();
+}
+
+// The same between vertices, where it goes evenly from one to the other (Phong 1975), as that of
+// the smooth surface that the triangles stand for: what slides along them would catch on facets as
+// on teeth.
+Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
+  const TissueSurface& surface = world_.tissue.surface();
+  const int triangle = contact.place.triangle;
+  Vec3 smooth = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const int vertex = surface.triangles[at(triangle)][at(k)];
+    smooth -= contact.place.barycentric[k] *
+              areas_.doubleAreaBeside(triangle, vertex, surface, vertices_).normalized();
   }
-  return -doubleArea(vertices_, world_.tissue.surface().triangles[at(contact.place.triangle)])
-              .normalized();
+  const double share = smooth_[at(contact.link)];
+  return (share * smooth.normalized() + (1.0 - share) * inwardsAt(contact)).normalized();
+}
+
+// A link thinner than the spacing is among so few triangles that these count by themselves. Under a
+// flat face normals are the face's; triangles at its edge lie partly on it, and their smooth
+// normals would let it in.
+void TouchFinder::findSmooth(const RobotPose& pose, const ContactSet& contacts) {
+  const double spacing = world_.tissue.lattice().spacing();
+  smooth_.assign(pose.links.size(), 0.0);
+  std::set<int> touching;
+  for (const Contact& contact : contacts.contacts) touching.insert(contact.link);
+  for (const int link : touching) {
+    smooth_[at(link)] = std::min(1.0, world_.finder.thickness(at(link)) / spacing) *
+                        (1.0 - rims_.flatness(link, pose.links[at(link)], contacts, vertices_));
+  }
 }
 
 // A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
-// also where another side of the tool is nearer, as at edges and on thin tools. Between its edges a
-// triangle is pressed across itself: what touches it there is a corner, an edge or a rim, which has
-// no normal of its own.
+// also where another side of the tool is nearer, as at edges and on thin tools. Between vertices
+// it is pressed along its own normal: what touches it there is a corner, an edge or a rim, which
+// has none, or a round tool, which has the same one.
 bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   const double spacing = world_.tissue.lattice().spacing();
   const std::size_t link = at(contact.link);
-  const Vec3 inwards = inwardsAt(contact);
+  const bool is_vertex = vertexAt(world_.tissue.surface(), contact.place) >= 0;
+  const Vec3 inwards = is_vertex ? inwardsAt(contact) : inwardsBetween(contact);
   if (!(inwards.norm() > 0.0)) return false;
   const Pose& tissue_T_link = pose.links[link];
   const auto nearest =
@@ -63,10 +94,11 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   contact.normal = out.normal;
   contact.depth_m = out.depth_m;
   const double cosine = out.normal.dot(inwards);
-  if (contact.place.barycentric.minCoeff() > tuning::kInsideTriangle &&
-      cosine > tuning::kSameSide) {
-    contact.normal = inwards;
-    contact.depth_m = out.depth_m / cosine;
+  if (!is_vertex && cosine > tuning::kSameSide) {
+    const bool is_on_edge = contact.place.barycentric.minCoeff() <= tuning::kInsideTriangle;
+    const double share = is_on_edge ? smooth_[link] : 1.0;
+    contact.normal = (share * inwards + (1.0 - share) * out.normal).normalized();
+    contact.depth_m = out.depth_m / contact.normal.dot(out.normal);
   }
   return true;
 }
@@ -130,6 +162,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
   areas_.takeSurface(world_.tissue.surface());
+  findSmooth(pose, contacts);
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay
   std::size_t kept = 0;
   for (Contact& contact : all) {

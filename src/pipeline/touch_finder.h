@@ -33,9 +33,11 @@ class TouchFinder {
 
  private:
   Vec3 inwardsAt(const Contact& contact) const;
+  Vec3 inwardsBetween(const Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   bool turnAside(const RobotPose& pose, Contact& contact) const;
   bool turn(const RobotPose& pose, Contact& contact) const;
+  void findSmooth(const RobotPose& pose, const ContactSet& contacts);
   void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
   World& world_;
@@ -43,6 +45,7 @@ class TouchFinder {
   std::vector<Vec3> vertices_;  // of the last contacts
   VertexAreas areas_;
   std::vector<double> depths_;
+  std::vector<double> smooth_;  // per link (1): how much of the surface that it touches is smooth
 };
 
 }  // namespace robot_tissue

@@ -73,6 +73,9 @@ constexpr double kDetourBeyond = 0.5;
 constexpr double kSameSide = 0.3;
 // Barycentric weight (1): with more of each corner, a point is on no edge of its triangle. Chosen.
 constexpr double kInsideTriangle = 1e-3;
+// Cosine of the angle by which the surface at rest folds at an edge of its own (1): 40 degrees, as
+// at sharp edges of tools. Less: rounded where it is sharp. Chosen.
+constexpr double kSharpFold = 0.766;
 
 // Contacts: rims of flat faces.
 // Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side
@@ -89,6 +92,9 @@ constexpr double kLevel = 0.3;
 // where it is tilted by 35 degrees, and are there in full up to 15. More: they fade sooner. Chosen.
 constexpr double kTiltedFace = 0.819;
 constexpr double kFlatFace = 0.966;
+// Likewise of a face that is met facet by facet: up to 25 degrees, as the surface around a dragged
+// tool leans. Less: facets round off under it, and let its edge in. Chosen.
+constexpr double kLevelFace = 0.906;
 // Cosine of the angle between a face and its link's force, likewise: 20 and 8 degrees. A tool that
 // ploughs presses forwards, too, and tissue lies against its front. Chosen.
 constexpr double kTiltedPush = 0.94;

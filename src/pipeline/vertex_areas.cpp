@@ -1,6 +1,7 @@
 #include "vertex_areas.h"
 
 #include "robot_tissue/core/triangle_mesh.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 
@@ -28,6 +29,19 @@ Vec3 VertexAreas::doubleAreaAt(int vertex, const TissueSurface& surface,
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
     sum += doubleArea(vertices, surface.triangles[at(triangles_[i])]);
+  }
+  return sum;
+}
+
+Vec3 VertexAreas::doubleAreaBeside(int triangle, int vertex, const TissueSurface& surface,
+                                   const std::vector<Vec3>& vertices) const {
+  const Vec3 own = doubleArea(surface.rest, surface.triangles[at(triangle)]).normalized();
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
+    const MeshTriangle& corners = surface.triangles[at(triangles_[i])];
+    const Vec3 at_rest = doubleArea(surface.rest, corners);
+    if (own.dot(at_rest) >= tuning::kSharpFold * at_rest.norm())
+      sum += doubleArea(vertices, corners);
   }
   return sum;
 }

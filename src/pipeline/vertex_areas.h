@@ -16,6 +16,9 @@ class VertexAreas {
   // Twice the sum of the areas of the triangles at the vertex, outwards (m^2), as the vertices are.
   Vec3 doubleAreaAt(int vertex, const TissueSurface& surface,
                     const std::vector<Vec3>& vertices) const;
+  // Of those that a sharp edge of the surface at rest does not part from `triangle`, one of them.
+  Vec3 doubleAreaBeside(int triangle, int vertex, const TissueSurface& surface,
+                        const std::vector<Vec3>& vertices) const;
 
  private:
   std::uint64_t revision_ = 0;      // of the surface; 0: none yet
