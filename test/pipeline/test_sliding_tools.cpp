@@ -1,0 +1,59 @@
+// Tools that slide without friction: nothing but the tissue's slope pushes them aside, whatever
+// triangles its surface is made of.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue::test_sliding_tools {
+namespace {
+
+constexpr double kDepth = 0.008;   // m
+constexpr double kLength = 0.030;  // m: of the tools, across their way
+
+ToolShape turned(ToolShape shape, double angle, const Vec3& axis, double up) {
+  shape.pose.linear() = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  shape.pose.translation().z() = up;
+  return shape;
+}
+
+ToolShape lyingCylinder() {
+  ToolShape cylinder;
+  cylinder.type = ToolShape::Type::kCylinder;
+  cylinder.radius = 0.006;
+  cylinder.length = kLength;
+  return turned(cylinder, M_PI / 2.0, Vec3::UnitX(), cylinder.radius);
+}
+
+ToolShape boxOnItsEdge() {
+  constexpr double kSide = 0.012;
+  return turned(boxOf({kSide, kLength, kSide}), M_PI / 4.0, Vec3::UnitY(), kSide / std::sqrt(2.0));
+}
+
+// On the tool, where it has come to the block's middle from its left. It goes on from there, so
+// that it does not come to rest in a dent of its own.
+Vec3 forceInTheMiddle(const ToolShape& shape) {
+  Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.0, toolOf(shape))});
+  const double y = kMiddle, down = kTop - kDepth;
+  walk(pipeline, {{0.018, y, kTop}}, {{0.018, y, down}});
+  walk(pipeline, {{0.018, y, down}}, {{kMiddle, y, down}});
+  return pipeline.report().tools.front().force_on_tool;
+}
+
+// By symmetry the force in the middle of the block is straight up.
+TEST(SlidingTools, WithoutFrictionARoundToolIsNotHeldBack) {
+  const Vec3 force = forceInTheMiddle(lyingCylinder());
+  EXPECT_GT(force.z(), 0.5);
+  EXPECT_LT(std::abs(force.x()), 0.08 * force.z());
+}
+
+TEST(SlidingTools, WithoutFrictionAnEdgeIsNotHeldBack) {
+  const Vec3 force = forceInTheMiddle(boxOnItsEdge());
+  EXPECT_GT(force.z(), 0.3);
+  EXPECT_LT(std::abs(force.x()), 0.12 * force.z());
+}
+
+}  // namespace
+}  // namespace robot_tissue::test_sliding_tools
