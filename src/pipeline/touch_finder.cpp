@@ -56,16 +56,18 @@ Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
   return (share * smooth.normalized() + (1.0 - share) * inwardsAt(contact)).normalized();
 }
 
-// A link thinner than the spacing is among so few triangles that these count by themselves. Under a
-// flat face normals are the face's; triangles at its edge lie partly on it, and their smooth
-// normals would let it in.
+// A link thinner than half a spacing is among so few triangles that these count by themselves, one
+// thicker than a spacing touches the smooth surface. Under a flat face normals are the face's;
+// triangles at its edge lie partly on it, and their smooth normals would let it in.
 void TouchFinder::findSmooth(const RobotPose& pose, const ContactSet& contacts) {
   const double spacing = world_.tissue.lattice().spacing();
   smooth_.assign(pose.links.size(), 0.0);
   std::set<int> touching;
   for (const Contact& contact : contacts.contacts) touching.insert(contact.link);
   for (const int link : touching) {
-    smooth_[at(link)] = std::min(1.0, world_.finder.thickness(at(link)) / spacing) *
+    const double thick = 2.0 * world_.finder.thickness(at(link)) / spacing - 1.0;
+    if (thick <= 0.0) continue;
+    smooth_[at(link)] = std::min(1.0, thick) *
                         (1.0 - rims_.flatness(link, pose.links[at(link)], contacts, vertices_));
   }
 }

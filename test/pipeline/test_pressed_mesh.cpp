@@ -62,7 +62,7 @@ TEST_F(PressedBall, ToolInAnEmptyCornerOfTheGridIsOutside) {
   ASSERT_LT(corner.x(), 0.04);
   pipeline_.step(at({1.01 * corner}));
   EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
-  pipeline_.step(at({0.97 * corner}));
+  pipeline_.step(at({0.96 * corner}));
   EXPECT_GT(greatestDisplacement(pipeline_.tissue()), 0.0);
   EXPECT_LT(tool().normal.dot(corner.normalized()), -0.9);
 }
