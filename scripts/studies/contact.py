@@ -42,6 +42,8 @@ LIFT = ["way", "spacing_mm", "friction", "leg", "increment", "fx", "fy", "fz",
 Study = namedtuple("Study", "name table columns program arguments key limit")
 STUDIES = [Study(f"press_{tool}", "press", PRESS, "contact_press", [tool, "0", "5", "0.3"],
                  ("tool", tool), 42) for tool in TOOLS]
+STUDIES += [Study(f"slide_{tool}", "slide", PRESS, "contact_press", [tool, "0", "5", "0"],
+                  ("tool", tool), 60) for tool in TOOLS if tool not in ("needle", "cup")]
 STUDIES += [Study(f"hertz_{spacing}", "hertz", HERTZ, "contact_hertz",
                   [spacing, "40", "50", "160", "4", "8"], ("spacing_mm", spacing), 110)
             for spacing in ("2.5", "5")]
@@ -200,6 +202,24 @@ def tell_press():
               f"| {len(bad)} |")
 
 
+def tell_slide():
+    print("| tool without friction | force aside over force up, mean of the last 10 mm dragged; greatest | "
+          "jump, dragged (%) | penetration, greatest (mm) | ms: median, mean | not OK |")
+    print("|---|---|---|---|---|---|")
+    for tool in TOOLS:
+        rows = [row for row in table_of("slide") if row["tool"] == tool]
+        aside = [-float(row["fx"]) / float(row["fz"]) for row in rows if row["leg"] == "drag"]
+        if not aside:
+            continue
+        last = aside[-len(aside) // 3:]
+        most = max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
+        ms = numbers(rows, "ms")
+        print(f"| {tool.replace('_', ' ')} | {sum(last) / len(last):.3f}; {max(map(abs, aside)):.3f} "
+              f"| {jumps_of(rows, 'drag', most):.1f} | {max(numbers(rows, 'penetration_mm')):.3f} "
+              f"| {percentile(ms, 50):.0f}, {sum(ms) / len(ms):.0f} "
+              f"| {sum(row['status'] != 'OK' for row in rows)} |")
+
+
 def tell_hertz():
     print("| spacing (mm) | depth (mm) | force (N) | layer (N) | off | touches | penetration (mm) | "
           "s | status |")
@@ -298,5 +318,5 @@ def run(options):
         measure(options.programs, options.only)
     draw_press()
     draw_hertz()
-    for tell in (tell_press, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
+    for tell in (tell_press, tell_slide, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
         tell()
