@@ -220,7 +220,7 @@ class ImpatientTissue : public ::testing::Test {
   }
   static SolverConfig exact() {
     SolverConfig solver;
-    solver.tolerance = 1e-9;
+    solver.tolerance = 1e-12;
     return solver;
   }
   SolveReport pull(double way) {
@@ -239,14 +239,17 @@ class ImpatientTissue : public ::testing::Test {
 
 TEST_F(ImpatientTissue, EndsItsLoadsAfterTheUsualIterationsAndSaysSo) {
   ASSERT_EQ(pull(0.004).status, SolveStatus::kOk);
-  ASSERT_GT(tissue_.lastReport().iterations, kUsual);
+  const int whole = tissue_.lastReport().iterations;
   jam(tissue_.patience());
+  const int left = tissue_.patience().left();
+  ASSERT_GT(whole, left);
   const SolveReport report = pull(0.008);
   EXPECT_EQ(report.status, SolveStatus::kUnconverged);
-  EXPECT_LE(report.iterations, kUsual);
+  EXPECT_LE(report.iterations, left);
 }
 
-// Three touches a node, as of a fine mesh on a coarse lattice: an iteration is three.
+// Three touches a node, as of a fine mesh on a coarse lattice: an iteration is three, and so are
+// the two that a solve begins and ends with.
 TEST_F(ImpatientTissue, CountsIterationsOfMoreTouchesThanNodesSeveralTimes) {
   const Lattice& lattice = tissue_.lattice();
   ContactSpring touch;
@@ -266,7 +269,8 @@ TEST_F(ImpatientTissue, CountsIterationsOfMoreTouchesThanNodesSeveralTimes) {
     const SolveReport report = tissue_.follow({tool}, {});
     ASSERT_EQ(report.status, SolveStatus::kOk);
     ASSERT_GT(report.iterations, 0);
-    EXPECT_EQ(before - patience.left(), std::max(1, touches_a_node) * report.iterations);
+    const double cost = std::max(1.0, static_cast<double>(touches) / lattice.nodeCount());
+    EXPECT_NEAR(before - patience.left(), cost * (report.iterations + 2), 1.0);
   }
 }
 
