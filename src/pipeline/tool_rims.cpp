@@ -137,10 +137,8 @@ double ToolRims::flatness(int number, const Pose& tissue_T_link, const ContactSe
   const double spacing = world_.tissue.lattice().spacing();
   double flatness = 0.0;
   for (const Contact& contact : contacts.contacts) {
-    if (contact.link != number || vertexAt(world_.tissue.surface(), contact.place) < 0) continue;
-    const auto face = world_.finder.flatFace(at(number), tissue_T_link, inwards, contact.point,
-                                             tuning::kRimReach * spacing);
-    if (!face || std::abs(face->height_m) > tuning::kOnFace * spacing) continue;
+    const auto face = faceUnder(contact, link, inwards);
+    if (!face) continue;
     const double wide =
         fade(widthOf(*face), tuning::kNarrowFace * spacing, tuning::kWideFace * spacing);
     flatness = std::max(
@@ -166,17 +164,26 @@ Vec3 ToolRims::inwardsAround(const Link& link, const std::vector<Vec3>& vertices
   return sum.normalized();
 }
 
+// The face of the link, looking there, that a vertex in contact with it stands on.
+std::optional<FlatFace> ToolRims::faceUnder(const Contact& contact, const Link& link,
+                                            const Vec3& facing) const {
+  if (contact.link != link.number) return std::nullopt;
+  if (vertexAt(world_.tissue.surface(), contact.place) < 0) return std::nullopt;
+  const double spacing = world_.tissue.lattice().spacing();
+  const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, facing,
+                                           contact.point, tuning::kRimReach * spacing);
+  if (!face || std::abs(face->height_m) > tuning::kOnFace * spacing) return std::nullopt;
+  return face;
+}
+
 // Vertices that are on the face, and farther from its edges than any shift.
 void ToolRims::findFirm(const ContactSet& contacts, Link& link) const {
   const double spacing = world_.tissue.lattice().spacing();
   for (const Contact& contact : contacts.contacts) {
-    if (contact.link != link.number) continue;
-    const int vertex = vertexAt(world_.tissue.surface(), contact.place);
-    if (vertex < 0) continue;
-    const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,
-                                             contact.point, tuning::kRimReach * spacing);
-    if (!face || std::abs(face->height_m) > tuning::kOnFace * spacing) continue;
-    if (leastDepth(*face) >= tuning::kFirmDepth * spacing) link.firm.insert(vertex);
+    const auto face = faceUnder(contact, link, link.facing);
+    if (face && leastDepth(*face) >= tuning::kFirmDepth * spacing) {
+      link.firm.insert(vertexAt(world_.tissue.surface(), contact.place));
+    }
   }
 }
 

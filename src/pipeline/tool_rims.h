@@ -63,6 +63,8 @@ class ToolRims {
   void takeSurface();
   bool isSticking(int tool) const;
   Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
+  std::optional<FlatFace> faceUnder(const Contact& contact, const Link& link,
+                                    const Vec3& facing) const;
   void findFirm(const ContactSet& contacts, Link& link) const;
   bool findTurn(const std::vector<Vec3>& vertices, Link& link) const;
   void lookAround(const std::vector<Vec3>& vertices, const Link& link);
