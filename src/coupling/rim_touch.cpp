@@ -44,7 +44,6 @@ TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
     return sum;
   }
   const double most = 1.0 / (tuning::kSoftestRim * touch.firm_stiffness);
-  double least_depth = 0.0;  // spacings
   for (const FaceEdge& edge : rim.edges) {
     const double depth = edge.depth_m / tissue.lattice().spacing();
     const auto found = tissue.rimCompliance(touch.spring.carriers.front().node, depth);
@@ -52,13 +51,11 @@ TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
     const RimCompliance of_edge = limited(*found, most);
     sum.normal += of_edge.normal;
     sum.friction += frictionCompliance(of_edge, edge.outward, touch.spring.friction_force);
-    least_depth = std::min(least_depth, depth);
   }
   const double part = rim.is_beyond ? 1.0 / rim.share : rim.share;
   sum.normal *= part;
   sum.friction *= part;
-  sum.shown = sum.normal * fade(rim.share, 0.0, tuning::kShownShare) *
-              fade(least_depth, -1.0, -1.0 + tuning::kShownLate);
+  sum.shown = sum.normal * fade(rim.share, 0.0, tuning::kShownShare) * rim.shown;
   return sum;
 }
 

@@ -253,7 +253,7 @@ void SlidingContacts::forgetLost(const Held& held) {
 }
 
 // The touch that a contact is of: the same vertex or, within a triangle, the nearest within
-// kSamePoint.
+// kSamePoint. What a vertex beside a face touches besides, as the tool's side, is another.
 SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact,
                                                           const TissueSurface& surface) {
   const int vertex = vertexAt(surface, contact.place);
@@ -261,7 +261,9 @@ SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact
   double least = tuning::kSamePoint;
   for (ContactConstraint& touch : touches_) {
     if (touch.contact.link != contact.link || touch.vertex != vertex) continue;
-    if (touch.contact.rim.is_beyond != contact.rim.is_beyond) continue;
+    const Rim &known_rim = touch.contact.rim, &rim = contact.rim;
+    const bool either_is_at_none = known_rim.edges.empty() || rim.edges.empty();
+    if (known_rim.is_beyond != rim.is_beyond && either_is_at_none) continue;
     if (vertex >= 0) return &touch;
     const SurfacePoint& known = touch.contact.place;
     if (known.triangle != contact.place.triangle) continue;

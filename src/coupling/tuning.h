@@ -61,11 +61,9 @@ constexpr double kLeastFree = 0.1;
 // Of a firm touch's stiffness (1): rim springs are no softer, so that where they are all but free
 // the surface is still shown where the face has it. Rounding: of no weight in the force.
 constexpr double kSoftestRim = 1e-4;
-// Of the spacing (1): on the first of its way towards a face, a vertex beside it comes to be shown
-// in its plane. Less: it comes at once; more: the tool's edge stands the deeper in what is shown.
-// Chosen.
-constexpr double kShownLate = 0.05;
-// Likewise of the share of the push that goes by these springs (1).
+// Share (1) of the push that goes by these springs, up to which a vertex beside a face comes to be
+// shown in its plane. Less: it comes at once; more: the tool's edge stands the deeper in what is
+// shown. Chosen.
 constexpr double kShownShare = 0.2;
 
 // Nodes that stick.
