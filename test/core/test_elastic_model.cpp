@@ -42,6 +42,21 @@ TEST(ElasticModel, ForceIsTheEnergysNegativeSlope) {
   }
 }
 
+// The state's sum of forces is told so: no cell is asked once for each of its nodes.
+TEST(ElasticModel, ForcesOnSomeNodesAreThoseOfEachToTheBit) {
+  TissueConfig config = twoMaterials();
+  config.gravity = Vec3(1.0, 2.0, -9.81);
+  ElasticBlock block(config);
+  shake(block.state, 0.2 * kSpacing);
+  std::vector<int> nodes;
+  for (int node = block.lattice.nodeCount() - 1; node >= 0; node -= 3) nodes.push_back(node);
+  const std::vector<Vec3> forces = block.model.forcesOn(block.state, nodes);
+  ASSERT_EQ(forces.size(), nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    EXPECT_EQ(forces[i], block.model.nodeForce(block.state, nodes[i])) << nodes[i];
+  }
+}
+
 TEST(ElasticModel, HessiansAddUpToTheForcesSlope) {
   ElasticBlock block(twoMaterials());
   shake(block.state, 0.2 * kSpacing);

@@ -126,6 +126,37 @@ Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
   return force;
 }
 
+// A cell once, however many of the nodes it has. To the bit as nodeForce: a node's cells follow
+// each other as their numbers do.
+std::vector<Vec3> ElasticModel::forcesOn(const LatticeState& state,
+                                         const std::vector<int>& nodes) const {
+  const CellSet& cells = *state.cells;
+  std::vector<Vec3> forces;
+  std::vector<int> place_of(at(cells.nodeCount()), -1), around;
+  for (const int node : nodes) {
+    place_of[at(node)] = static_cast<int>(forces.size());
+    forces.push_back(inertialForce(node));
+    for (auto met = cells.first(node); met != cells.last(node); ++met)
+      around.push_back(static_cast<int>(met->cell));
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const int number : around) {
+    const Cell& cell = cells.all()[at(number)];
+    const ElasticCell shape = shaped(state, cell);
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int node = cell.nodes[at(corner)];
+      if (place_of[at(node)] < 0) continue;
+      forces[at(place_of[at(node)])] += cornerWeight(cell, corner) - shape.gradient(corner) -
+                                        cornerInertia(cell, corner) * state.displacement[at(node)];
+    }
+  }
+  for (std::size_t i = 0; membrane_ && i < nodes.size(); ++i) {
+    forces[i] += membrane_->force(state.displacement, nodes[i]);
+  }
+  return forces;
+}
+
 Vec3 ElasticModel::weight(const LatticeState& state) const {
   Vec3 weight = Vec3::Zero();
   for (const Cell& cell : state.cells->all()) {

@@ -26,6 +26,8 @@ class ElasticModel : public EnergyModel {
   SplitCells splitCells() const override { return SplitCells::kParted; }
   bool resistsInversion() const override { return true; }
   Vec3 nodeForce(const LatticeState& state, int node) const override;
+  std::vector<Vec3> forcesOn(const LatticeState& state,
+                             const std::vector<int>& nodes) const override;
   Vec3 weight(const LatticeState& state) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
   Moduli moduliAt(const LatticeState& state, int node) const override;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "config/material.h"
 #include "robot_tissue/core/lattice_state.h"
@@ -20,6 +21,14 @@ class TissueModel {
   // Net force on the node (N, tissue frame), gravity included; zero in equilibrium. In a time step
   // that of inertia and of viscosity, too.
   virtual Vec3 nodeForce(const LatticeState& state, int node) const = 0;
+
+  // nodeForce of each of these nodes, none of which is told twice.
+  virtual std::vector<Vec3> forcesOn(const LatticeState& state,
+                                     const std::vector<int>& nodes) const {
+    std::vector<Vec3> forces;
+    for (const int node : nodes) forces.push_back(nodeForce(state, node));
+    return forces;
+  }
 
   // Stiffness against moving this node alone, at rest, along x, y and z (N/m); zero along an axis
   // that nothing resists.

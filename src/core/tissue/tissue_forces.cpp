@@ -29,9 +29,14 @@ Vec3 Tissue::forceOfFixedNodes() const {
   if (method_->visited() != nullptr)
     return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
   const CellSet& cells = *state_.cells;
-  Vec3 force = Vec3::Zero();
+  std::vector<int> fixed;
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(lattice_, cells, node)) force -= nodeForce(node);
+    if (isFixed(lattice_, cells, node)) fixed.push_back(node);
+  }
+  const std::vector<Vec3> on_fixed = model_->forcesOn(state_, fixed);
+  Vec3 force = Vec3::Zero();
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    force -= on_fixed[i] + threads_->forceOn(fixed[i], state_.displacement);
   }
   for (const LoadingPatch& patch : patches_) {
     for (const ContactSpring& spring : patch.contacts) {
