@@ -373,14 +373,25 @@ bool Pipeline::drive(const RobotPose& pose) {
 }
 
 void Pipeline::describeTools() {
+  {
+    const Stopwatch watch(world_.report.contact_ms);
+    for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+      ToolReport& report = world_.report.tools[tool];
+      report = describeTool(world_, parts_->grasping, tool);
+      report.offset = parts_->drive.offset(tool);
+      parts_->blades.describe(tool, report);
+    }
+  }
+  world_.depths_are_due = true;
+  if (!leaves_depths_) findDepths();
+}
+
+void Pipeline::findDepths() const {
+  if (!std::exchange(world_.depths_are_due, false)) return;
   const Stopwatch watch(world_.report.contact_ms);
   const std::vector<double> deepest = deepestPoints(world_);
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    ToolReport& report = world_.report.tools[tool];
-    report = describeTool(world_, parts_->grasping, tool);
-    report.max_penetration = deepest[tool];
-    report.offset = parts_->drive.offset(tool);
-    parts_->blades.describe(tool, report);
+    world_.report.tools[tool].max_penetration = deepest[tool];
   }
 }
 

@@ -72,10 +72,11 @@ struct World {
   std::optional<double> reached_s;
   // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
   std::optional<DeadEnd> dead_end;
-  bool is_trial = false;    // what is done is undone, so nothing may sever
-  bool unfinished = false;  // the last load step had no time for all it would do [LoadStepper]
-  Deadline deadline;        // of the call under way
-  StepReport report;        // [LoadStepper, ToolMotion; times: whoever took them]
+  bool is_trial = false;        // what is done is undone, so nothing may sever
+  bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
+  Deadline deadline;            // of the call under way
+  StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
+  bool depths_are_due = false;  // of the tools' reports [Pipeline]
 
  private:
   std::vector<bool> in_wound_;  // per link; supports have none

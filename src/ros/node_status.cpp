@@ -101,6 +101,7 @@ void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper&
 
 // Diagnostics of the tools: what was said of them since the last ones, and how each is now.
 void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  pipeline_.findDepths();
   const StepReport& report = pipeline_.report();
   for (const StepRemark& remark : remarksOn(pipeline_)) {
     if (remark.kind == StepRemark::Kind::kJawsMeet) tools_said_[remark.kind] = remark.text;

@@ -40,6 +40,7 @@ Touch touchMessage(const ToolTouch& touch) {
 }  // namespace
 
 TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
+  pipeline.findDepths();
   const StepReport& report = pipeline.report();
   const LatticeState& lattice = pipeline.tissue().state();
   TissueState message;
@@ -75,6 +76,7 @@ TissueState stateMessage(const Pipeline& pipeline, const NodeStatus& status) {
 }
 
 ContactArray contactArray(const Pipeline& pipeline) {
+  pipeline.findDepths();
   ContactArray array;
   for (std::size_t tool = 0; tool < pipeline.tools().size(); ++tool) {
     const ToolReport& report = pipeline.report().tools[tool];

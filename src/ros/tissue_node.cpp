@@ -35,6 +35,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   grace_end_ = ros::WallTime::now() + kGrace;
   pipeline_.setBudget(updateBudget(parameters_));
+  pipeline_.leaveDepths();
   robotIsKnown();
   follower_.settleFromRest();
   services_ = std::make_unique<TissueServices>(

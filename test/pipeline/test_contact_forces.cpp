@@ -30,6 +30,24 @@ TEST_P(WithEachMethod, ForcesBalance) {
   EXPECT_TRUE(balance.supports.isZero() && balance.loads.isZero() && balance.weight.isZero());
 }
 
+// A node tells wrenches first: they are those of a pipeline that looks for depths at once.
+TEST(Depths, AreLookedForWhenAskedForWhereTheyAreLeft) {
+  Pipeline at_once(block("elastic"), {}, {probe()}), leaving(block("elastic"), {}, {probe()});
+  leaving.leaveDepths();
+  double deepest = 0.0;
+  for (int update = 0; update < 12; ++update) {
+    const RobotPose pose = pressed(0.0005 * update);
+    const ToolReport expected = at_once.step(pose).tools[0];
+    const ToolReport left = leaving.step(pose).tools[0];
+    EXPECT_EQ(left.force_on_tool, expected.force_on_tool);
+    EXPECT_EQ(left.max_penetration, 0.0);
+    leaving.findDepths();
+    EXPECT_EQ(leaving.report().tools[0].max_penetration, expected.max_penetration);
+    deepest = std::max(deepest, expected.max_penetration);
+  }
+  EXPECT_GT(deepest, 0.0);
+}
+
 TEST_P(WithEachMethod, ForcesBalanceWithLoadsAndWeight) {
   TissueConfig tissue = block("elastic", 0.01);
   tissue.gravity = Vec3(0.0, 0.0, -9.81);

@@ -121,6 +121,11 @@ class Pipeline {
   // no shape could follow where one last did. Empty before the first step.
   const std::optional<RobotPose>& pose() const;
   ForceBalance forceBalance() const;
+  // From here on ToolReport::max_penetration is looked for only when findDepths() is called: it
+  // takes a search of the surface, and wrenches need not wait for it. Until then it is zero.
+  void leaveDepths() { leaves_depths_ = true; }
+  // Of the shape as it is; each at most once.
+  void findDepths() const;
   // Where the tool pushes or holds the tissue, in the shape as it is now.
   std::vector<ToolTouch> touchesOf(std::size_t tool) const;
   // How far along a unit direction a line from the point leaves the tools' shapes for good (m, at
@@ -163,10 +168,11 @@ class Pipeline {
   World& world_;
   std::vector<SupportConfig> supports_;
   double budget_s_ = std::numeric_limits<double>::infinity();
-  std::optional<Deadline> end_;             // of all calls
-  int late_iterations_ = 0;                 // of the method, where the tools stand
-  bool gave_up_ = false;                    // there
-  bool touched_ = true;                     // the reports are to be brought up to date
+  std::optional<Deadline> end_;  // of all calls
+  int late_iterations_ = 0;      // of the method, where the tools stand
+  bool gave_up_ = false;         // there
+  bool touched_ = true;          // the reports are to be brought up to date
+  bool leaves_depths_ = false;
   std::shared_ptr<const Mark> trial_from_;  // null: none is under way
 };
 
