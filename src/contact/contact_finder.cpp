@@ -26,6 +26,7 @@ struct Link {
   std::vector<CollisionShape> shapes;
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
+  std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
   std::size_t in_use = 0;                         // of the shapes, the first
 
   PlacedLink placedAt(const Pose& tissue_T_link) const {
@@ -48,6 +49,7 @@ Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geomet
     link.surface_points.push_back(surfacePoints(link.shapes.back()));
   }
   link.in_use = link.shapes.size();
+  link.face_pairs.resize(link.shapes.size());
   return link;
 }
 
@@ -78,6 +80,7 @@ class SurfaceTree {
       revision_ = surface.revision;
       rest_ = surface.rest;
       tree_.emplace(rest_, surface.triangles);
+      ++trees_;
       vertices_ = rest_;
       ++moves_;
     }
@@ -91,6 +94,7 @@ class SurfaceTree {
   // Counts how often another surface was taken, or the same moved: what was found at another count
   // is of another shape.
   std::uint64_t moves() const { return moves_; }
+  std::uint64_t trees() const { return trees_; }  // counts other surfaces alone
 
  private:
   bool isOf(const TissueSurface& surface) const {
@@ -104,6 +108,7 @@ class SurfaceTree {
   std::vector<Vec3> vertices_;  // that the tree is of
   std::optional<TriangleBvh> tree_;
   std::uint64_t moves_ = 0;
+  std::uint64_t trees_ = 0;
 };
 
 // What the last find() met, so that neither it nor penetrations() look for the same again.
@@ -235,11 +240,13 @@ void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
                                       ContactSet& contacts) {
   const TriangleBvh& tree = surface_tree.last();
   std::vector<int> triangles;
-  std::vector<FacePairs> faces(here.size());
+  std::vector<const FacePairs*> faces(here.size(), nullptr);
   for (const std::size_t shape : near_shapes) {
     const std::vector<int> near = trianglesNear(here[shape], tree, margin);
     triangles.insert(triangles.end(), near.begin(), near.end());
-    if (here[shape].shape->isMesh()) faces[shape] = FacePairs(here[shape], tree, margin);
+    if (!here[shape].shape->isMesh()) continue;
+    faces[shape] = &links[link].face_pairs[shape].of(here[shape], tree, surface_tree.trees(),
+                                                     vertices, margin);
   }
   if (near_shapes.size() > 1) {
     std::sort(triangles.begin(), triangles.end());

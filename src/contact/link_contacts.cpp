@@ -111,7 +111,8 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
   const double accuracy = 0.5 * accuracyFor(asked, corners);
   std::vector<TriangleMinimum> minima;
   if (asked.isMesh()) {
-    (*faces_)[shape].facesNear(triangle_, near_faces_);
+    near_faces_.clear();
+    if (const FacePairs* pairs = (*faces_)[shape]) pairs->facesNear(triangle_, near_faces_);
     // No face comes near: all of the triangle is inside, or all of it outside.
     const Seen& corner = seen(shape, triangle[0]);
     if (near_faces_.empty() && (!corner.is_near || corner.distance.value > 0.0)) return minima;

@@ -22,9 +22,9 @@ class LinkContacts {
   struct Asked {
     const PlacedLink& link;
     int tool_index, link_index;
-    const std::vector<int>& triangles;    // that may touch it, ascending
-    const std::vector<FacePairs>& faces;  // per shape; of meshes
-    double margin;                        // m
+    const std::vector<int>& triangles;           // that may touch it, ascending
+    const std::vector<const FacePairs*>& faces;  // per shape; of meshes near the surface, else null
+    double margin;                               // m
   };
   void find(const Asked& asked, const TissueSurface& surface, const std::vector<Vec3>& vertices,
             ContactSet& found);
@@ -50,7 +50,7 @@ class LinkContacts {
   void add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found);
 
   const PlacedLink* link_ = nullptr;
-  const std::vector<FacePairs>* faces_ = nullptr;
+  const std::vector<const FacePairs*>* faces_ = nullptr;
   const TissueSurface* surface_ = nullptr;
   const std::vector<Vec3>* vertices_ = nullptr;
   double margin_ = 0.0;  // m

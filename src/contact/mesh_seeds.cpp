@@ -26,7 +26,9 @@ class TrianglePlane {
     to_c_ = area.cross(ab) / area.squaredNorm();
     for (std::size_t k = 0; k < 3; ++k) {
       start_[k] = corners[k];
-      outwards_[k] = (corners[(k + 1) % 3] - corners[k]).cross(normal_).stableNormalized();
+      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+      outwards_[k] = edge.cross(normal_).stableNormalized();
+      slack_[k] = tuning::kSquare * longestEdge(corners) * edge.norm() / area.norm();
     }
   }
   double height(const Vec3& point) const { return normal_.dot(point - origin_); }
@@ -40,22 +42,63 @@ class TrianglePlane {
   double beyond(std::size_t k, const Vec3& point) const {
     return outwards_[k].dot(point - start_[k]);
   }
-  // All of a face is farther than `reach` from the triangle, to one side of it.
-  bool isFar(const Corners& face, const std::array<double, 3>& heights, double reach) const {
-    const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
-    if (low > reach || high < -reach) return true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (beyond(k, face[0]) > reach && beyond(k, face[1]) > reach && beyond(k, face[2]) > reach) {
-        return true;
-      }
-    }
-    return false;
-  }
+  // A point that is farther on the triangle's side than this of its distance to the edge is nearer
+  // to the triangle than to the edge (leadsAway).
+  double slack(std::size_t k) const { return slack_[k]; }
 
  private:
   Vec3 origin_, normal_, to_b_, to_c_;
   std::array<Vec3, 3> start_, outwards_;
+  std::array<double, 3> slack_{};
 };
+
+// Where a point is, as seen from the triangle (m).
+struct SeenFrom {
+  double height = 0.0;
+  std::array<double, 3> beyond{};  // by edges, as TrianglePlane::beyond
+};
+
+// The mesh's vertices as seen from one triangle: each is looked at once, however many faces and
+// edges have it.
+class SeenVertices {
+ public:
+  const TrianglePlane& plane() const { return *plane_; }
+  void begin(const ToolMesh& mesh, const TrianglePlane& plane) {
+    mesh_ = &mesh;
+    plane_ = &plane;
+    seen_.resize(std::max(seen_.size(), mesh.vertices().size()));
+    ++round_;
+  }
+  const SeenFrom& operator[](int vertex) {
+    Seen& seen = seen_[at(vertex)];
+    if (std::exchange(seen.round, round_) == round_) return seen.from;
+    const Vec3& point = mesh_->vertices()[at(vertex)];
+    seen.from.height = plane_->height(point);
+    for (std::size_t k = 0; k < 3; ++k) seen.from.beyond[k] = plane_->beyond(k, point);
+    return seen.from;
+  }
+
+ private:
+  struct Seen {
+    std::uint64_t round = 0;
+    SeenFrom from;
+  };
+
+  const ToolMesh* mesh_ = nullptr;
+  const TrianglePlane* plane_ = nullptr;
+  std::vector<Seen> seen_;
+  std::uint64_t round_ = 0;
+};
+
+// All of a face is farther than `reach` from the triangle, to one side of it.
+bool isFar(const SeenFrom& a, const SeenFrom& b, const SeenFrom& c, double reach) {
+  if (std::min({a.height, b.height, c.height}) > reach) return true;
+  if (std::max({a.height, b.height, c.height}) < -reach) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (a.beyond[k] > reach && b.beyond[k] > reach && c.beyond[k] > reach) return true;
+  }
+  return false;
+}
 
 // Where a face of the mesh cuts the triangle.
 struct Slit {
@@ -177,10 +220,10 @@ class Marks {
 
 // Nearest points of vertices whose neighbors are all farther from the triangle; corners of the
 // triangle are asked in any case.
-void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh,
-                        const TrianglePlane& plane, double reach, const Corners& corners,
-                        std::vector<Vec3>& seeds) {
-  thread_local Marks marks;
+void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh, SeenVertices& seen,
+                        double reach, const Corners& corners, std::vector<Vec3>& seeds) {
+  thread_local Marks of_thread;
+  Marks& marks = of_thread;  // looked up once
   marks.begin(mesh.vertices().size());
   std::vector<int> vertices;
   for (const int face : faces) {
@@ -190,7 +233,7 @@ void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh,
   }
   for (const int number : vertices) {
     const Vec3& vertex = mesh.vertices()[at(number)];
-    if (std::abs(plane.height(vertex)) > reach) continue;
+    if (std::abs(seen[number].height) > reach) continue;
     const Vec3 weights = nearestInTriangle(vertex, corners);
     const Vec3 away = pointOf(corners, weights) - vertex;
     if (weights.maxCoeff() == 1.0 || away.norm() > reach) continue;
@@ -218,12 +261,17 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
   return std::array<double, 2>{u, v};
 }
 
+// Both are outside of the range.
+bool liesBeyond(double a, double b, double low, double high) {
+  return std::min(a, b) > high || std::max(a, b) < low;
+}
+
 // Places on the triangle's edges that are nearest to an edge of the mesh: local least distances, as
 // on the triangle and on the mesh's faces beside the edge every way leads apart.
-void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
-                      const TrianglePlane& plane, double reach, const Corners& corners,
-                      std::vector<Vec3>& seeds) {
-  thread_local Marks marks;
+void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenVertices& seen,
+                      double reach, const Corners& corners, std::vector<Vec3>& seeds) {
+  thread_local Marks of_thread;
+  Marks& marks = of_thread;  // looked up once
   marks.begin(mesh.edges().size());
   std::vector<int> edges;
   for (const int face : faces) {
@@ -231,20 +279,20 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
       if (marks.isFirst(edge)) edges.push_back(edge);
     }
   }
+  std::array<double, 3> inside;
+  for (std::size_t k = 0; k < 3; ++k) {
+    inside[k] = -std::min(reach, 2.0 * seen.plane().slack(k) * reach + tuning::kRounding);
+  }
   for (const int number : edges) {
     const ToolMesh::Edge& edge = mesh.edges()[at(number)];
+    const SeenFrom& first = seen[edge.ends[0]];
+    const SeenFrom& last = seen[edge.ends[1]];
+    if (liesBeyond(first.height, last.height, -reach, reach)) continue;
     const Vec3& from = mesh.vertices()[at(edge.ends[0])];
     const Vec3& to = mesh.vertices()[at(edge.ends[1])];
-    const double from_height = plane.height(from), to_height = plane.height(to);
-    if (std::min(from_height, to_height) > reach || std::max(from_height, to_height) < -reach) {
-      continue;
-    }
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      const double from_beyond = plane.beyond(k, from), to_beyond = plane.beyond(k, to);
-      if (std::min(from_beyond, to_beyond) > reach || std::max(from_beyond, to_beyond) < -reach) {
-        continue;
-      }
+      if (liesBeyond(first.beyond[k], last.beyond[k], inside[k], reach)) continue;
       const auto shares = nearestWithin(corners[k], corners[next], from, to);
       if (!shares) continue;
       const Vec3 place = corners[k] + (*shares)[0] * (corners[next] - corners[k]);
@@ -268,22 +316,25 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh,
 std::vector<Vec3> seedsOn(const Corners& corners, const ToolMesh& mesh,
                           const std::vector<int>& faces, double reach) {
   const TrianglePlane plane(corners);
+  thread_local SeenVertices of_thread;
+  SeenVertices& seen = of_thread;  // looked up once
+  seen.begin(mesh, plane);
   std::vector<Slit> slits;
   std::vector<int> near;
   for (const int face : faces) {
-    const Corners of_face = mesh.corners(face);
-    std::array<double, 3> heights;
-    for (std::size_t k = 0; k < 3; ++k) heights[k] = plane.height(of_face[k]);
-    if (plane.isFar(of_face, heights, reach)) continue;
+    const MeshTriangle& ends = mesh.triangles()[at(face)];
+    const SeenFrom &a = seen[ends[0]], &b = seen[ends[1]], &c = seen[ends[2]];
+    if (isFar(a, b, c, reach)) continue;
     near.push_back(face);
-    const auto slit = slitOf(face, of_face, corners, plane, heights);
+    const auto slit =
+        slitOf(face, mesh.corners(face), corners, plane, {a.height, b.height, c.height});
     if (slit) slits.push_back(*slit);
   }
   std::vector<Vec3> seeds;
   seedsOfSlits(slits, mesh, corners, seeds);
   if (reach > 0.0) {
-    seedsUnderVertices(near, mesh, plane, reach, corners, seeds);
-    seedsBesideEdges(near, mesh, plane, reach, corners, seeds);
+    seedsUnderVertices(near, mesh, seen, reach, corners, seeds);
+    seedsBesideEdges(near, mesh, seen, reach, corners, seeds);
   }
   seeds.push_back(Vec3::Constant(1.0 / 3.0));
   return seeds;

@@ -4,6 +4,7 @@
 #include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tuning.h"
 
@@ -28,6 +29,12 @@ CenteredBox seenFrom(const Pose& frame_T_box, const CenteredBox& box) {
 bool areApart(const CenteredBox& box, const Vec3& low, const Vec3& high, double margin) {
   return ((box.center - box.half).array() > high.array() + margin).any() ||
          ((box.center + box.half).array() < low.array() - margin).any();
+}
+
+// Of numbers that are not negative: pairs as they are ordered by the triangle, and then by the
+// face.
+std::uint64_t pairOf(int triangle, int face) {
+  return (static_cast<std::uint64_t>(triangle) << 32U) | static_cast<std::uint64_t>(face);
 }
 
 // FCL's traversal of two trees: the first is the surface's.
@@ -82,7 +89,7 @@ class BesideShape : public SurfaceTraversal {
 class BesideMesh : public SurfaceTraversal {
  public:
   BesideMesh(const PlacedShape& mesh, const TriangleBvh& surface, double reach,
-             std::vector<std::pair<int, int>>& pairs)
+             std::vector<std::uint64_t>& pairs)
       : SurfaceTraversal(surface),
         mesh_T_tissue_(mesh.shape_T_tissue),
         faces_(mesh.shape->mesh().tree()),
@@ -104,11 +111,11 @@ class BesideMesh : public SurfaceTraversal {
   bool BVTesting(int first, int second) const override {
     if (first != seen_) see(first);
     const TriangleBvh::Node& face = faces_.node(second);
-    return areApart(box_, face.low, face.high, reach_);
+    return areApart(box_, face.low, face.high, reach_) || isOffPlane(face);
   }
   void leafTesting(int first, int second) const override {
-    pairs_.emplace_back(TriangleBvh::triangleOf(surface_.node(first)),
-                        TriangleBvh::triangleOf(faces_.node(second)));
+    pairs_.push_back(pairOf(TriangleBvh::triangleOf(surface_.node(first)),
+                            TriangleBvh::triangleOf(faces_.node(second))));
   }
 
  private:
@@ -117,21 +124,36 @@ class BesideMesh : public SurfaceTraversal {
     const auto& node = surface_.node(first);
     if (!TriangleBvh::isLeaf(node)) {
       box_ = seenFrom(mesh_T_tissue_, centered(node));
+      normal_ = Vec3::Zero();
       return;
     }
+    Corners corners = surface_.corners(TriangleBvh::triangleOf(node));
     Box box;
-    for (const Vec3& corner : surface_.corners(TriangleBvh::triangleOf(node))) {
-      box.extend(mesh_T_tissue_ * corner);
+    for (Vec3& corner : corners) {
+      corner = mesh_T_tissue_ * corner;
+      box.extend(corner);
     }
     box_ = {box.center(), 0.5 * box.diagonal()};
+    origin_ = corners[0];
+    normal_ = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
+  }
+
+  // All of a box is farther from the plane of the triangle than the reach. False without one.
+  bool isOffPlane(const TriangleBvh::Node& face) const {
+    const CenteredBox box = centered(face);
+    const double height = std::abs(normal_.dot(box.center - origin_));
+    const double beside = normal_.cwiseAbs().dot(box.half) + reach_;
+    return height > beside * (1.0 + tuning::kBeyondRounding) + tuning::kRounding;
   }
 
   const Pose& mesh_T_tissue_;
   const TriangleBvh& faces_;
   double reach_;
-  std::vector<std::pair<int, int>>& pairs_;
+  std::vector<std::uint64_t>& pairs_;
   mutable int seen_ = -1;    // the surface's node that was asked for last
   mutable CenteredBox box_;  // its box in the mesh's frame
+  // Of a triangle its plane there; else the normal is zero.
+  mutable Vec3 origin_ = Vec3::Zero(), normal_ = Vec3::Zero();
 };
 
 }  // namespace
@@ -155,10 +177,35 @@ FacePairs::FacePairs(const PlacedShape& mesh, const TriangleBvh& surface, double
 
 void FacePairs::facesNear(int triangle, std::vector<int>& faces) const {
   faces.clear();
-  for (auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(triangle, 0));
-       pair != pairs_.end() && pair->first == triangle; ++pair) {
-    faces.push_back(pair->second);
+  const std::uint64_t end = pairOf(triangle + 1, 0);
+  for (auto pair = std::lower_bound(pairs_.begin(), pairs_.end(), pairOf(triangle, 0));
+       pair != pairs_.end() && *pair < end; ++pair) {
+    faces.push_back(static_cast<int>(*pair & 0xffffffffU));
   }
+}
+
+const FacePairs& KeptFacePairs::of(const PlacedShape& mesh, const TriangleBvh& surface,
+                                   std::uint64_t tree, const std::vector<Vec3>& vertices,
+                                   double margin) {
+  if (tree == tree_ && holdFor(mesh.shape_T_tissue, vertices, margin)) return pairs_;
+  tree_ = tree;
+  reach_ = (1.0 + tuning::kPairsAhead) * margin;
+  pairs_ = FacePairs(mesh, surface, reach_);
+  vertices_.clear();
+  for (const Vec3& vertex : vertices) vertices_.push_back(mesh.shape_T_tissue * vertex);
+  return pairs_;
+}
+
+// Nothing came nearer by more than was sought in advance.
+bool KeptFacePairs::holdFor(const Pose& mesh_T_tissue, const std::vector<Vec3>& vertices,
+                            double margin) const {
+  const double ahead = reach_ - margin;
+  if (ahead < 0.0 || vertices.size() != vertices_.size()) return false;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (!((mesh_T_tissue * vertices[i] - vertices_[i]).squaredNorm() <= ahead * ahead))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace robot_tissue

@@ -2,7 +2,7 @@
 // tree and, beside a mesh, of the mesh's.
 #pragma once
 
-#include <utility>
+#include <cstdint>
 #include <vector>
 
 #include "placed_link.h"
@@ -24,7 +24,25 @@ class FacePairs {
   void facesNear(int triangle, std::vector<int>& faces) const;
 
  private:
-  std::vector<std::pair<int, int>> pairs_;
+  std::vector<std::uint64_t> pairs_;  // the triangle above, the face below: one number sorts sooner
+};
+
+// The pairs of the last search, as long as they have all that are near: they are sought a little
+// farther than asked for, so that they serve while tissue and tool move by less than that.
+class KeptFacePairs {
+ public:
+  // As FacePairs. `tree`: a number that is another one with each other surface; `vertices`: that it
+  // was moved to.
+  const FacePairs& of(const PlacedShape& mesh, const TriangleBvh& surface, std::uint64_t tree,
+                      const std::vector<Vec3>& vertices, double margin);
+
+ private:
+  bool holdFor(const Pose& mesh_T_tissue, const std::vector<Vec3>& vertices, double margin) const;
+
+  FacePairs pairs_;
+  std::uint64_t tree_ = 0;
+  double reach_ = -1.0;         // m: all pairs up to here; < 0: none yet
+  std::vector<Vec3> vertices_;  // of the surface in the mesh's frame, then (m)
 };
 
 }  // namespace robot_tissue
