@@ -29,12 +29,6 @@ double widthOf(const FlatFace& face) {
   return width;
 }
 
-const FaceEdge& outermost(const Rim& rim) {
-  return *std::min_element(
-      rim.edges.begin(), rim.edges.end(),
-      [](const FaceEdge& a, const FaceEdge& b) { return a.depth_m < b.depth_m; });
-}
-
 double leastDepth(const FlatFace& face) {
   double least = std::numeric_limits<double>::infinity();
   for (const FaceEdge& edge : face.edges) least = std::min(least, edge.depth_m);
@@ -90,39 +84,21 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
     findFirm(contacts, link);
     if (!findTurn(vertices, link)) continue;
     lookAround(vertices, link);
-    leaveSteep(number);
+    steadyShares(number);
   }
 }
 
-// Of the surface beside that edge, over the vertices there.
-double ToolRims::meanSlope(int link, const FaceEdge& edge) const {
-  double sum = 0.0;
-  int count = 0;
-  for (auto at_rim = at_rims_.lower_bound({link, 0}); at_rim != at_rims_.end(); ++at_rim) {
-    if (at_rim->first.first != link) break;
-    const AtRim& other = at_rim->second;
-    if (!other.rim.is_beyond || outermost(other.rim).outward.dot(edge.outward) < tuning::kSameEdge)
-      continue;
-    sum += other.slope;
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
-}
-
-// The law is of small slopes. Those of all of an edge count: of vertices by themselves the ones
-// that are left out would rise, and their neighbors would bear the more.
-void ToolRims::leaveSteep(int link) {
+// How much rims bear changes little in a load step, and stays in its rounds.
+void ToolRims::steadyShares(int link) {
   const auto first = at_rims_.lower_bound({link, 0}), last = at_rims_.lower_bound({link + 1, 0});
   for (auto at_rim = first; at_rim != last; ++at_rim) {
-    Rim& rim = at_rim->second.rim;
-    const double slope = meanSlope(link, outermost(rim));
-    double share = rim.share * fade(slope, tuning::kSteep, tuning::kGentle);
+    double& share = at_rim->second.rim.share;
     const auto last_share = last_shares_.find(at_rim->first);
     if (last_share != last_shares_.end()) {
       share = std::max(share, last_share->second - tuning::kMostOfShare);
       share = std::min(share, last_share->second + tuning::kMostOfShare);
     }
-    rim.share = shares_.try_emplace(at_rim->first, share).first->second;
+    share = shares_.try_emplace(at_rim->first, share).first->second;
   }
 }
 
@@ -214,7 +190,6 @@ void ToolRims::lookAround(const std::vector<Vec3>& vertices, const Link& link) {
   const TissueSurface& surface = world_.tissue.surface();
   struct Guess {
     Vec3 sum = Vec3::Zero();
-    double slope = 0.0;
     int count = 0;
   };
   std::map<int, Vec3> places;  // of the columns found so far
@@ -227,37 +202,48 @@ void ToolRims::lookAround(const std::vector<Vec3>& vertices, const Link& link) {
         const Vec3 way = link.turn * (surface.rest[at(vertex)] - surface.rest[at(from)]);
         const Vec3 level = way - link.facing.dot(way) * link.facing;
         if (level.norm() < tuning::kLevel * way.norm()) continue;
-        const double rise = link.facing.dot(vertices[at(from)] - vertices[at(vertex)]);
         Guess& guess = guesses[vertex];
         guess.sum += place + level;
-        guess.slope += rise / level.norm();
         ++guess.count;
       }
     }
     for (const auto& [vertex, guess] : guesses) {
-      places[vertex] = guess.sum / guess.count;
-      put(vertex, places[vertex], vertices, link, guess.slope / guess.count);
+      places[vertex] = placeOf(vertex, guess.sum / guess.count, vertices, link);
+      put(vertex, places[vertex], vertices, link);
     }
   }
 }
 
+// Where the vertex would be, did it stick to the face: what stands on it inside its edges is there.
+Vec3 ToolRims::placeOf(int vertex, const Vec3& guess, const std::vector<Vec3>& vertices,
+                       const Link& link) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,
+                                           vertices[at(vertex)], tuning::kRimReach * spacing);
+  if (!face) return guess;
+  const double stands = fade(std::abs(face->height_m), tuning::kOnFace * spacing, 0.0) *
+                        fade(leastDepth(*face), 0.0, tuning::kFirmDepth * spacing);
+  return guess + stands * (vertices[at(vertex)] - guess);
+}
+
 // `place`: where the vertex would be, did it stick to the face.
 void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices,
-                   const Link& link, double slope) {
+                   const Link& link) {
   const double spacing = world_.tissue.lattice().spacing();
   const auto face = world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing, place,
                                            tuning::kRimReach * spacing);
   if (!face) return;
   AtRim at_rim;
   at_rim.tool = link.tool;
-  at_rim.slope = slope;
   at_rim.normal = face->normal;
   at_rim.height = face->height_m + face->normal.dot(vertices[at(vertex)] - place);
   at_rim.rim.share = shareAt(*face, link);
+  const double least_depth = leastDepth(*face) / spacing;
+  if (least_depth <= tuning::kNotShown) return;
+  at_rim.rim.shown = fade(least_depth, tuning::kNotShown, tuning::kShown);
+  at_rim.rim.is_beyond = least_depth < 0.0;
   for (const FaceEdge& edge : face->edges) {
     if (edge.depth_m >= tuning::kFirmDepth * spacing) continue;
-    if (edge.depth_m <= -spacing) return;
-    if (edge.depth_m < 0.0) at_rim.rim.is_beyond = true;
     if (hasTissueBeyond(vertex, edge, link)) at_rim.rim.edges.push_back(edge);
   }
   if (at_rim.rim.edges.empty()) return;
@@ -345,12 +331,12 @@ ContactSet ToolRims::beyond(const std::vector<Vec3>& vertices) const {
   return contacts;
 }
 
-std::optional<Contact> ToolRims::beyond(const Contact& known,
-                                        const std::vector<Vec3>& vertices) const {
+// It may have come from one side of the edge to the other: what it bears, it bears on.
+std::optional<Contact> ToolRims::atRim(const Contact& known,
+                                       const std::vector<Vec3>& vertices) const {
   const int vertex = vertexAt(world_.tissue.surface(), known.place);
   const auto found = at_rims_.find({known.link, vertex});
-  if (found == at_rims_.end() || !found->second.rim.is_beyond) return std::nullopt;
-  if (found->second.rim.share <= 0.0) return std::nullopt;
+  if (found == at_rims_.end() || found->second.rim.share <= 0.0) return std::nullopt;
   return contactOf(known.link, vertex, found->second, vertices);
 }
 

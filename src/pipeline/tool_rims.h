@@ -33,8 +33,8 @@ class ToolRims {
   void mark(Contact& contact) const;
   // The vertices beside faces that their rims push.
   ContactSet beyond(const std::vector<Vec3>& vertices) const;
-  // The known touch of such a vertex as it is now; none where it is at no rim.
-  std::optional<Contact> beyond(const Contact& known, const std::vector<Vec3>& vertices) const;
+  // The known touch of a vertex at a rim, or beside it, as it is now; none where it is at none.
+  std::optional<Contact> atRim(const Contact& known, const std::vector<Vec3>& vertices) const;
   // Of what a contact would push that rims bear (1).
   double shareOf(const Contact& contact) const;
   // Part of a contact's depth (1) that is none, as rims give way.
@@ -47,7 +47,6 @@ class ToolRims {
     int tool = 0;
     Vec3 normal = Vec3::Zero();  // of the face
     double height = 0.0;         // over it (m)
-    double slope = 0.0;          // of the surface beside it, as rise over length at rest
     Rim rim;
   };
   // Of one link.
@@ -68,11 +67,11 @@ class ToolRims {
   void findFirm(const ContactSet& contacts, Link& link) const;
   bool findTurn(const std::vector<Vec3>& vertices, Link& link) const;
   void lookAround(const std::vector<Vec3>& vertices, const Link& link);
-  void put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices, const Link& link,
-           double slope);
+  Vec3 placeOf(int vertex, const Vec3& guess, const std::vector<Vec3>& vertices,
+               const Link& link) const;
+  void put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices, const Link& link);
   double shareAt(const FlatFace& face, const Link& link) const;
-  double meanSlope(int link, const FaceEdge& edge) const;
-  void leaveSteep(int link);
+  void steadyShares(int link);
   bool hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& link) const;
   Contact contactOf(int link, int vertex, const AtRim& at_rim,
                     const std::vector<Vec3>& vertices) const;

@@ -14,10 +14,16 @@ namespace robot_tissue {
 std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
   const Stopwatch watch(world_.report.contact_ms);
   std::vector<std::optional<Contact>> tracked;
+  const std::set<std::pair<int, int>> come_in = verticesComeIn();
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    if (touch.contact.rim.is_beyond) {
-      tracked.push_back(rims_.beyond(touch.contact, vertices_));
+    if (!touch.contact.rim.is_beyond && come_in.count({touch.contact.link, touch.vertex}) != 0) {
+      tracked.emplace_back();
       continue;
+    }
+    if (!touch.contact.rim.edges.empty()) {
+      tracked.push_back(rims_.atRim(touch.contact, vertices_));
+      if (tracked.back() || touch.contact.rim.is_beyond) continue;
+      tracked.pop_back();
     }
     Contact contact = touch.contact;
     contact.normal = touch.spring.normal;
@@ -29,6 +35,18 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
     tracked.push_back(stays ? std::optional<Contact>(contact) : std::nullopt);
   }
   return tracked;
+}
+
+// Links and vertices whose touch beside a face has come under it since: what else of the tool they
+// touched there, as its side, they do not any more.
+std::set<std::pair<int, int>> TouchFinder::verticesComeIn() const {
+  std::set<std::pair<int, int>> come_in;
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    if (!touch.contact.rim.is_beyond) continue;
+    const std::optional<Contact> now = rims_.atRim(touch.contact, vertices_);
+    if (now && !now->rim.is_beyond) come_in.insert({touch.contact.link, touch.vertex});
+  }
+  return come_in;
 }
 
 // Unit normal of the surface at the contact, into the tissue, as vertices and triangles have it;

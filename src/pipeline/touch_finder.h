@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "tool_rims.h"
@@ -32,6 +34,7 @@ class TouchFinder {
   void restoreDepths(const std::vector<double>& depths) { depths_ = depths; }
 
  private:
+  std::set<std::pair<int, int>> verticesComeIn() const;
   Vec3 inwardsAt(const Contact& contact) const;
   Vec3 inwardsBetween(const Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;

@@ -95,22 +95,24 @@ constexpr double kFlatFace = 0.966;
 // Likewise of a face that is met facet by facet: up to 25 degrees, as the surface around a dragged
 // tool leans. Less: facets round off under it, and let its edge in. Chosen.
 constexpr double kLevelFace = 0.906;
-// Cosine of the angle between a face and its link's force, likewise: 20 and 8 degrees. A tool that
-// ploughs presses forwards, too, and tissue lies against its front. Chosen.
-constexpr double kTiltedPush = 0.94;
-constexpr double kStraightPush = 0.99;
+// Cosine of the angle between a face and its link's force, likewise: 35 and 20 degrees. A tool that
+// ploughs presses forwards, too, and tissue lies against its front; one that slides with a friction
+// up to 0.36 does not. Less: that is held by its rim as by teeth. Chosen.
+constexpr double kTiltedPush = 0.819;
+constexpr double kStraightPush = 0.94;
 // Of the spacing (1): the same of a face's width. Chosen: two columns of nodes in any place.
 constexpr double kNarrowFace = 1.0;
 constexpr double kWideFace = 2.0;
-// Of the surface beside a face over the face (1): likewise, rise over length at rest. Chosen.
-constexpr double kSteep = 1.3;
-constexpr double kGentle = 0.8;
+// Spacings inside an edge: from here on, a vertex beside a face comes to be shown in its plane, and
+// is so in full. Of the law a vertex has a push from -1 on; the edge would stand in what is drawn
+// where the last vertex is a little inside it and the next one not yet shown. Chosen.
+constexpr double kNotShown = -1.15;
+constexpr double kShown = -1.05;
 // Share (1): the most that it changes by in a load step. More: forces jump where rims come and go.
 // Chosen.
 constexpr double kMostOfShare = 0.1;
-// Cosine of two edges of a face that are on opposite sides, and on one. Chosen.
+// Cosine of two edges of a face that are on opposite sides. Chosen.
 constexpr double kOppositeEdges = -0.7;
-constexpr double kSameEdge = 0.7;
 // Of their spread along it (1): points that spread less across a line are on it. Rounding.
 constexpr double kOnALine = 1e-3;
 // Share (1) of a touch that rims bear; more is all. Chosen.

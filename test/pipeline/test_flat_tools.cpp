@@ -91,7 +91,18 @@ TEST(FlatTools, ForceIsSmoothAsEdgesPassNodes) {
     last = forceOf(pipeline);
     EXPECT_NEAR(last, start, 0.08 * start) << step;
   }
-  EXPECT_LT(greatest_jump, 0.03 * start);
+  EXPECT_LT(greatest_jump, 0.02 * start);
+}
+
+// Without friction the way to a place does not count.
+TEST(FlatTools, DraggedToAPlaceIsPressedThere) {
+  const ToolGeometry tool = withFriction(0.0, toolOf(boxOf(kTool)));
+  constexpr double kDepth = 0.003;
+  Pipeline pipeline(block(), SolverConfig(), {tool});
+  walk(pipeline, {placeOf(-0.0005, -0.004)}, {placeOf(kDepth, -0.004)});
+  walk(pipeline, {placeOf(kDepth, -0.004)}, {placeOf(kDepth, 0.5 * kSpacing)});
+  const double right = pressedForce(block(), tool, 0.5 * kSpacing, kDepth);
+  EXPECT_NEAR(forceOf(pipeline), right, 0.01 * right);
 }
 
 }  // namespace

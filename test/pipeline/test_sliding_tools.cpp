@@ -2,6 +2,7 @@
 // triangles its surface is made of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -53,6 +54,63 @@ TEST(SlidingTools, WithoutFrictionAnEdgeIsNotHeldBack) {
   const Vec3 force = forceInTheMiddle(boxOnItsEdge());
   EXPECT_GT(force.z(), 0.3);
   EXPECT_LT(std::abs(force.x()), 0.12 * force.z());
+}
+
+// Force against the way over force up, least and greatest, of a flat tool around the block's
+// middle: its edges pass two columns of nodes each.
+struct Range {
+  double least = 1e9, greatest = -1e9;
+};
+
+Range asideOverUp(const ToolShape& shape, double friction) {
+  constexpr double kHalf = kSpacing;  // m: of the way that is looked at
+  Pipeline pipeline(block(), methodOf("elastic"), {withFriction(friction, toolOf(shape))});
+  const double down = kTop - 0.006;
+  const Vec3 start(kMiddle - kHalf - 0.008, kMiddle, down);
+  walk(pipeline, {{start.x(), kMiddle, kTop}}, {start});
+  walk(pipeline, {start}, {{kMiddle - kHalf, kMiddle, down}});
+  Range range;
+  for (int step = -10; step <= 10; ++step) {
+    pipeline.step(at(std::vector<Vec3>{{kMiddle + 0.1 * step * kHalf, kMiddle, down}}));
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << step;
+    const ToolReport& tool = pipeline.report().tools.front();
+    const double ratio = -tool.force_on_tool.x() / tool.force_on_tool.z();
+    range.least = std::min(range.least, ratio);
+    range.greatest = std::max(range.greatest, ratio);
+    EXPECT_LT(tool.max_penetration, 0.1 * kSpacing) << step;
+  }
+  return range;
+}
+
+ToolShape boxOnItsFace() {
+  ToolShape box = boxOf(Vec3::Constant(0.02));
+  box.pose.translation().z() = 0.01;
+  return box;
+}
+
+ToolShape uprightCylinder() {
+  ToolShape cylinder;
+  cylinder.type = ToolShape::Type::kCylinder;
+  cylinder.radius = 0.010;
+  cylinder.length = 0.02;
+  cylinder.pose.translation().z() = 0.01;
+  return cylinder;
+}
+
+TEST(SlidingTools, WithoutFrictionAFlatFaceIsNotHeldBack) {
+  for (const ToolShape& shape : {boxOnItsFace(), uprightCylinder()}) {
+    const Range range = asideOverUp(shape, 0.0);
+    EXPECT_GT(range.least, -0.03);
+    EXPECT_LT(range.greatest, 0.03);
+  }
+}
+
+TEST(SlidingTools, AFlatFaceIsHeldBackByFrictionAlone) {
+  for (const ToolShape& shape : {boxOnItsFace(), uprightCylinder()}) {
+    const Range range = asideOverUp(shape, 0.3);
+    EXPECT_GT(range.least, 0.27);
+    EXPECT_LT(range.greatest, 0.33);
+  }
 }
 
 }  // namespace

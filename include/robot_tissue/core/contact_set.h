@@ -18,6 +18,7 @@ struct FaceEdge {
 struct Rim {
   double share = 0.0;           // of the push that goes by these springs; 0: there is no rim
   bool is_beyond = false;       // the point is beside the face
+  double shown = 0.0;           // of its way to the face's plane on which it is shown
   std::vector<FaceEdge> edges;  // near the point; none: others bear what it would
 };
 
