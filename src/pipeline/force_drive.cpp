@@ -12,6 +12,7 @@ void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   const bool same_way =
       force && drive.force && force->normalized().dot(drive.force->normalized()) > 1.0 - 1e-9;
   if (!same_way) drive.way = 0.0;
+  drive.off = kInfinity;
   drive.force = force;
 }
 
@@ -36,28 +37,73 @@ RobotPose ForceDrive::driven(RobotPose pose, const ToolSet& tools) const {
   return pose;
 }
 
+// The corrections of one call.
+class ForceDrive::Search {
+ public:
+  // force: wanted (N); longest: a load step (m).
+  Search(double force, double longest) : force_(force), longest_(longest), reach_(longest) {}
+
+  // Where the tool is along its force (m), and what it met there (N).
+  void note(double way, double met);
+  double off() const { return std::abs(met_ - force_); }  // N
+  bool hasMet() const { return off() <= tuning::kForceMet * force_; }
+  // Next correction (m).
+  double next() const;
+  bool turnedBack() const { return turned_back_; }
+
+ private:
+  double bySecant() const;
+
+  double force_, longest_;
+  double reach_;                  // of the next correction (m)
+  double way_ = 0.0, met_ = 0.0;  // m, N
+  double stiffness_ = 0.0;        // N/m; 0: not known
+  bool is_first_ = true;
+  bool turned_back_ = false;
+};
+
+// A correction that went beyond where the force is met halves the next one at least: past a touch,
+// a whole load step may meet a hundred times the force.
+void ForceDrive::Search::note(double way, double met) {
+  if (!is_first_) {
+    const double length = way - way_;
+    if (met_ > 0.0 && met > 0.0 && (met - met_) / length > 0.0) stiffness_ = (met - met_) / length;
+    turned_back_ = turned_back_ || length < 0.0;
+    const bool went_beyond = (met > force_) != (met_ > force_);
+    reach_ = went_beyond ? 0.5 * std::abs(length) : std::min(2.0 * reach_, longest_);
+  }
+  is_first_ = false;
+  way_ = way;
+  met_ = met;
+}
+
+double ForceDrive::Search::bySecant() const {
+  if (stiffness_ > 0.0) return (force_ - met_) / stiffness_;
+  const double length = met_ > 0.0 ? tuning::kFirstCorrection * longest_ : longest_;
+  return met_ > force_ ? -length : length;
+}
+
+double ForceDrive::Search::next() const { return std::min(std::max(bySecant(), -reach_), reach_); }
+
 bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
   Drive& drive = drives_[tool];
   const Vec3 direction = drive.force->normalized();
-  const double wanted = drive.force->norm(), longest = way.longest;
-  double met = way.met().dot(direction), stiffness = 0.0;
-  int pushes = 0;
-  while (std::abs(met - wanted) > tuning::kForceMet * wanted &&
-         pushes++ < tuning::kMostCorrections) {
-    double length = stiffness > 0.0 ? (wanted - met) / stiffness
-                                    : (met > 0.0 ? tuning::kFirstCorrection * longest : longest);
-    if (met > wanted && stiffness <= 0.0) length = -length;
-    length = std::min(std::max(length, -longest), longest);
+  const double longest = way.longest;
+  Search search(drive.force->norm(), longest);
+  search.note(drive.way, way.met().dot(direction));
+  for (int pushes = 0; !search.hasMet() && pushes < tuning::kMostCorrections; ++pushes) {
+    const double length = search.next();
     if (drive.way + length > tuning::kFarthestPush * longest) break;
     drive.way += length;
     const bool goes_on = way.walk();
-    const double now = way.met().dot(direction);
-    if (met > 0.0 && now > 0.0 && (now - met) / length > 0.0) stiffness = (now - met) / length;
-    met = now;
+    search.note(drive.way, way.met().dot(direction));
     if (!goes_on) break;
   }
-  const bool met_it = std::abs(met - wanted) <= tuning::kForceMet * wanted || way.lost();
-  return !met_it && drive.way < (tuning::kFarthestPush - 1.0) * longest;
+  const bool nearer = !search.turnedBack() || search.off() < tuning::kNearerForce * drive.off;
+  const bool has_way_left = !search.hasMet() && !way.lost() && nearer &&
+                            drive.way < (tuning::kFarthestPush - 1.0) * longest;
+  drive.off = has_way_left ? search.off() : kInfinity;
+  return has_way_left;
 }
 
 }  // namespace robot_tissue

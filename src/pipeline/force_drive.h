@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/types.h"
 #include "tool_set.h"
 
 namespace robot_tissue {
@@ -25,7 +26,8 @@ class ForceDrive {
 
   // Moves the tool until its force is met: load steps until it touches, then by the secant through
   // the last two. `longest`: a load step (m); `met`: the force on the tissue (N); `walk`: takes the
-  // tool there, false: goes no farther; `lost`: no shape could follow. True: there is a way left.
+  // tool there, false: goes no farther; `lost`: no shape could follow. True: there is a way left,
+  // and the last calls came nearer.
   struct Way {
     double longest = 0.0;
     std::function<Vec3()> met;
@@ -38,7 +40,10 @@ class ForceDrive {
   struct Drive {
     std::optional<Vec3> force;  // N
     double way = 0.0;           // along the force, from its pose (m)
+    double off = kInfinity;     // from the force, where the calls that left a way ended (N)
   };
+
+  class Search;
 
   std::vector<Drive> drives_;
 };

@@ -180,6 +180,9 @@ constexpr int kMostCorrections = 12;
 constexpr double kForceMet = 0.005;
 // Load steps (1): the first motion, from which the stiffness is learned. Chosen.
 constexpr double kFirstCorrection = 0.1;
+// Of what the force was off where the last corrections ended (1): with more, these led nowhere, as
+// where tissue slips or tears under the tool, and it is looked for no further. Chosen.
+constexpr double kNearerForce = 0.7;
 // Load steps (1): a tool that finds nothing to push stops so far from its pose. Chosen.
 constexpr double kFarthestPush = 200.0;
 

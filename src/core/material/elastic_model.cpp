@@ -167,8 +167,7 @@ Vec3 ElasticModel::weight(const LatticeState& state) const {
 
 // The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis; in a
 // cell filled in part the greatest of the three.
-Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
-  const CellSet& cells = *state.cells;
+double ElasticModel::stiffnessAtRest(const CellSet& cells, int node) const {
   double stiffness = 0.0;
   for (auto met = cells.first(node); met != cells.last(node); ++met) {
     const Moduli moduli = cellModuli(cells.all()[at(met->cell)]);
@@ -183,6 +182,16 @@ Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
     stiffness += lattice_.spacing() * (moduli.shear * invariant + (moduli.bulk + third) * widest);
   }
   if (membrane_) stiffness += membrane_->restStiffness(node);
+  return stiffness;
+}
+
+Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
+  if (node_stiffness_of_ != state.cells) {
+    node_stiffness_of_ = state.cells;
+    node_stiffness_.assign(at(state.cells->nodeCount()), -1.0);
+  }
+  double& stiffness = node_stiffness_[at(node)];
+  if (stiffness < 0.0) stiffness = stiffnessAtRest(*state.cells, node);
   return Vec3::Constant(stiffness);
 }
 

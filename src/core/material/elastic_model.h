@@ -46,6 +46,7 @@ class ElasticModel : public EnergyModel {
   void setInertia(const InertialTerm* inertia) override { inertia_ = inertia; }
   void setMembrane(std::shared_ptr<const Membrane> membrane) override {
     membrane_ = std::move(membrane);
+    node_stiffness_of_.reset();
   }
   std::shared_ptr<const Membrane> membrane() const override { return membrane_; }
 
@@ -77,6 +78,7 @@ class ElasticModel : public EnergyModel {
   double cornerInertia(const Cell& cell, int corner) const;  // N/m; zero without a time step
   void addInertia(const Cell& cell, CellHessian& hessian) const;
   Vec3 inertialForce(int node) const;  // that does not hang on the shape (N)
+  double stiffnessAtRest(const CellSet& cells, int node) const;  // N/m
 
   const Lattice& lattice_;
   bool moves_in_time_;
@@ -84,6 +86,9 @@ class ElasticModel : public EnergyModel {
   bool has_membranes_;
   std::shared_ptr<const Membrane> membrane_;  // null: none
   std::vector<Substance> substances_;         // per composition of the lattice
+  // Per node (N/m), < 0: nobody asked yet; and the cells that it is of. Touches ask in every round.
+  mutable std::vector<double> node_stiffness_;
+  mutable std::shared_ptr<const CellSet> node_stiffness_of_;
 };
 
 }  // namespace robot_tissue

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "force_drive.h"
+
+namespace robot_tissue::test_force_drive {
+namespace {
+
+constexpr double kLoadStep = 1e-3;  // m
+constexpr double kWanted = 0.5;     // N
+
+// A tool that is pushed along z against a force that is a function of its way.
+class DrivenTool {
+ public:
+  template <typename ForceAt>
+  explicit DrivenTool(ForceAt force_at) {
+    drive_.setTools(1);
+    drive_.push(0, Vec3(0.0, 0.0, kWanted));
+    way_ = {kLoadStep, [this, force_at] { return Vec3(0.0, 0.0, force_at(gone())); },
+            [this] {
+              ++walks_;
+              return true;
+            },
+            [] { return false; }};
+  }
+
+  // Calls until none is asked for any more.
+  int follow() {
+    int calls = 1;
+    while (drive_.meetForce(0, way_) && calls < 100) ++calls;
+    return calls;
+  }
+  double gone() const { return drive_.offset(0).z(); }  // m
+  double met() const { return way_.met().z(); }         // N
+  int walks() const { return walks_; }
+
+ private:
+  ForceDrive drive_;
+  ForceDrive::Way way_;
+  int walks_ = 0;
+};
+
+TEST(ForceDrive, SoftTissueIsFollowedUntilTheForceIsMet) {
+  DrivenTool tool([](double way) { return std::max(0.0, way - 0.01) * kWanted / 0.1; });
+  EXPECT_LT(tool.follow(), 20);
+  EXPECT_NEAR(tool.met(), kWanted, 0.01 * kWanted);
+  EXPECT_NEAR(tool.gone(), 0.11, 0.002);
+}
+
+TEST(ForceDrive, StiffTissueIsMetToo) {
+  DrivenTool tool([](double way) { return std::max(0.0, way - 0.0101) * 1e5; });
+  tool.follow();
+  EXPECT_NEAR(tool.met(), kWanted, 0.01 * kWanted);
+}
+
+TEST(ForceDrive, AForceThatTissueLeapsPastIsLookedForNoFurther) {
+  DrivenTool tool([](double way) { return way < 0.0101 ? 0.0 : 100.0 * kWanted; });
+  EXPECT_LT(tool.follow(), 10);
+  EXPECT_NEAR(tool.gone(), 0.0101, 0.1 * kLoadStep) << "where it leaps";
+  EXPECT_LT(tool.walks(), 60);
+}
+
+}  // namespace
+}  // namespace robot_tissue::test_force_drive
