@@ -17,7 +17,7 @@ class Patience {
  public:
   // Iterations that a load step usually takes at most; a method that does not know them is never
   // out of patience. Nodes of the lattice: where they are many, less beyond the usual work is
-  // forborne, as it takes the longer.
+  // forborne, as it takes the longer, and once it is over less than the usual work.
   explicit Patience(int usual_iterations = std::numeric_limits<int>::max(), int nodes = 1);
 
   // What is solved while one lives is one load step; one within another is part of it.
@@ -35,8 +35,8 @@ class Patience {
     Patience& patience_;
   };
 
-  // From here on it is for all of a scene, and once it is over load steps have no more than the
-  // usual work; before, it is for one way of the tools, counts what did not converge alone, and
+  // From here on it is for all of a scene, and once it is over load steps have the usual work at
+  // most; before, it is for one way of the tools, counts what did not converge alone, and
   // bounds no solve.
   void limit() { is_for_scene_ = true; }
   void forget() { spent_ = spent_by_trials_ = 0; }
@@ -73,9 +73,10 @@ class Patience {
   void endSolve();
   void endLoadStep();
 
-  int usual_;             // iterations
-  double most_;           // work, spent over a scene
-  double most_on_a_way_;  // likewise
+  int usual_;               // iterations
+  double usual_when_over_;  // work, of a load step
+  double most_;             // work, spent over a scene
+  double most_on_a_way_;    // likewise
   bool is_for_scene_ = false;
   int depth_ = 0;           // of load steps
   double taken_ = 0.0;      // work, in the load step under way

@@ -15,11 +15,15 @@ double timesOf(Patience::Of what) {
   return what == Patience::Of::kTimeStep ? tuning::kTimesInTimeStep : 1.0;
 }
 
+// How many times as long iterations take as on a lattice whose load steps have all of the work.
+double largeness(int nodes) { return std::max(1.0, nodes / tuning::kManyNodes); }
+
 }  // namespace
 
 Patience::Patience(int usual_iterations, int nodes)
     : usual_(usual_iterations),
-      most_(tuning::kMostSpent * usual_iterations / std::max(1.0, nodes / tuning::kManyNodes)),
+      usual_when_over_(tuning::kUsualWork * usual_iterations / largeness(nodes)),
+      most_(tuning::kMostSpent * usual_iterations / largeness(nodes)),
       most_on_a_way_(tuning::kMostSpentOnAWay) {}
 
 int Patience::mostOfLoadStep() const {
@@ -35,7 +39,9 @@ void Patience::note(int iterations, bool converged, Of what, double cost) {
 
 int Patience::left(Of what, double cost) const {
   if (!is_for_scene_ || !isKnown()) return kNoBound;
-  const double work = tuning::kUsualWork * usual_ + most_ - spent_ - taken_;
+  const double of_load_step =
+      isOver() ? usual_when_over_ : std::max<double>(usual_, usual_when_over_ + most_ - spent_);
+  const double work = of_load_step - taken_;
   return std::max(0, static_cast<int>(timesOf(what) * work / cost - tuning::kEndsOfSolve * usual_));
 }
 

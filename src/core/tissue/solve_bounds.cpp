@@ -25,12 +25,16 @@ int Tissue::mostIterations() const {
   return std::max(1, patience_.left(solved(), costOfIteration()));
 }
 
-// Over that of an iteration with few touches. Where there are more of them than nodes, as of a fine
-// mesh on a coarse lattice, they are most of the work.
+// Over that of an iteration with few touches, on a lattice that is whole. Where there are more
+// touches than nodes, as of a fine mesh on a coarse lattice, they are most of the work; so are
+// cells that cuts parted.
 double Tissue::costOfIteration() const {
   double touches = 0.0;
   for (const LoadingPatch& patch : patches_) touches += static_cast<double>(patch.contacts.size());
-  return std::max(1.0, touches / static_cast<double>(state_.displacement.size()));
+  const double nodes = lattice_.nodeCount();
+  const double ghosts = static_cast<double>(state_.displacement.size()) - nodes;
+  return std::max({1.0, touches / (nodes + ghosts),
+                   (nodes + tuning::kNodesOfGhost * ghosts) / std::max(nodes, tuning::kFewNodes)});
 }
 
 Patience::Of Tissue::solved() const {
