@@ -116,7 +116,7 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
     // No face comes near: all of the triangle is inside, or all of it outside.
     const Seen& corner = seen(shape, triangle[0]);
     if (near_faces_.empty() && (!corner.is_near || corner.distance.value > 0.0)) return minima;
-    minima = meshMinima(asked, corners, near_faces_, accuracy, margin_);
+    minima = meshMinima(seeds_, asked, corners, near_faces_, accuracy, margin_);
   } else {
     minima = {convexMinimum(asked, corners, distances, accuracy, margin_)};
   }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh_seeds.h"
 #include "placed_link.h"
 #include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/surface.h"
@@ -64,6 +65,7 @@ class LinkContacts {
       vertex_asked_in_;                  // per vertex: the search in which its contact was told
   std::vector<std::vector<Seen>> seen_;  // per shape and vertex
   std::vector<int> near_faces_;
+  MeshSeeds seeds_;
   struct EdgePlace {
     std::size_t shape;
     double along;  // share of the edge

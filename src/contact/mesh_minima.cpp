@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "mesh_seeds.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -37,9 +36,9 @@ void keep(const TriangleMinimum& found, const Corners& corners,
 
 }  // namespace
 
-std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
-                                        const std::vector<int>& faces, double accuracy,
-                                        double limit) {
+std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
+                                        const Corners& corners, const std::vector<int>& faces,
+                                        double accuracy, double limit) {
   std::vector<TriangleMinimum> minima;
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   if (!(area.norm() > 0.0)) return minima;
@@ -55,7 +54,7 @@ std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corne
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);
   if (faces.empty() && at_center >= limit) return minima;
-  for (const Vec3& seed : seedsOn(corners, mesh, faces, reach)) {
+  for (const Vec3& seed : seeds.on(corners, mesh, faces, reach)) {
     const Vec3 start = pointOf(corners, seed);
     const double bound = boundAfter(at_center, (start - center).norm());
     const TriangleMinimum there{seed, shape.distanceWithin(start, bound)};

@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "collision_shape.h"
+#include "mesh_seeds.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
 
 // Local least distances below `limit` (m), the least first; corners in the frame of the shape,
 // which is a mesh. In: the mesh's faces that are nearer than the limit and the padding, ascending.
-std::vector<TriangleMinimum> meshMinima(const CollisionShape& shape, const Corners& corners,
-                                        const std::vector<int>& faces, double accuracy,
-                                        double limit);
+std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
+                                        const Corners& corners, const std::vector<int>& faces,
+                                        double accuracy, double limit);
 
 }  // namespace robot_tissue

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -14,82 +13,6 @@
 namespace robot_tissue {
 namespace {
 
-// The triangle's plane: height over it, and weights of points in it.
-class TrianglePlane {
- public:
-  explicit TrianglePlane(const Corners& corners) : origin_(corners[0]) {
-    const Vec3 ab = corners[1] - corners[0];
-    const Vec3 ac = corners[2] - corners[0];
-    const Vec3 area = ab.cross(ac);
-    normal_ = area.normalized();
-    to_b_ = ac.cross(area) / area.squaredNorm();
-    to_c_ = area.cross(ab) / area.squaredNorm();
-    for (std::size_t k = 0; k < 3; ++k) {
-      start_[k] = corners[k];
-      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
-      outwards_[k] = edge.cross(normal_).stableNormalized();
-      slack_[k] = tuning::kSquare * longestEdge(corners) * edge.norm() / area.norm();
-    }
-  }
-  double height(const Vec3& point) const { return normal_.dot(point - origin_); }
-  Vec3 weights(const Vec3& point) const {
-    const double b = to_b_.dot(point - origin_);
-    const double c = to_c_.dot(point - origin_);
-    return {1.0 - b - c, b, c};
-  }
-  // How far a point is beyond the line of the edge from corner k to the next (m); < 0: on the
-  // triangle's side.
-  double beyond(std::size_t k, const Vec3& point) const {
-    return outwards_[k].dot(point - start_[k]);
-  }
-  // A point that is farther on the triangle's side than this of its distance to the edge is nearer
-  // to the triangle than to the edge (leadsAway).
-  double slack(std::size_t k) const { return slack_[k]; }
-
- private:
-  Vec3 origin_, normal_, to_b_, to_c_;
-  std::array<Vec3, 3> start_, outwards_;
-  std::array<double, 3> slack_{};
-};
-
-// Where a point is, as seen from the triangle (m).
-struct SeenFrom {
-  double height = 0.0;
-  std::array<double, 3> beyond{};  // by edges, as TrianglePlane::beyond
-};
-
-// The mesh's vertices as seen from one triangle: each is looked at once, however many faces and
-// edges have it.
-class SeenVertices {
- public:
-  const TrianglePlane& plane() const { return *plane_; }
-  void begin(const ToolMesh& mesh, const TrianglePlane& plane) {
-    mesh_ = &mesh;
-    plane_ = &plane;
-    seen_.resize(std::max(seen_.size(), mesh.vertices().size()));
-    ++round_;
-  }
-  const SeenFrom& operator[](int vertex) {
-    Seen& seen = seen_[at(vertex)];
-    if (std::exchange(seen.round, round_) == round_) return seen.from;
-    const Vec3& point = mesh_->vertices()[at(vertex)];
-    seen.from.height = plane_->height(point);
-    for (std::size_t k = 0; k < 3; ++k) seen.from.beyond[k] = plane_->beyond(k, point);
-    return seen.from;
-  }
-
- private:
-  struct Seen {
-    std::uint64_t round = 0;
-    SeenFrom from;
-  };
-
-  const ToolMesh* mesh_ = nullptr;
-  const TrianglePlane* plane_ = nullptr;
-  std::vector<Seen> seen_;
-  std::uint64_t round_ = 0;
-};
-
 // All of a face is farther than `reach` from the triangle, to one side of it.
 bool isFar(const SeenFrom& a, const SeenFrom& b, const SeenFrom& c, double reach) {
   if (std::min({a.height, b.height, c.height}) > reach) return true;
@@ -99,13 +22,6 @@ bool isFar(const SeenFrom& a, const SeenFrom& b, const SeenFrom& c, double reach
   }
   return false;
 }
-
-// Where a face of the mesh cuts the triangle.
-struct Slit {
-  int face = 0;
-  Vec3 middle = Vec3::Zero();  // weights
-  double length = 0.0;         // m
-};
 
 // The part of a segment in the plane that is on the triangle, by weights of its ends.
 std::optional<std::array<Vec3, 2>> onTriangle(const Vec3& from, const Vec3& to) {
@@ -204,34 +120,16 @@ bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
   return way.dot(away) <= tuning::kSquare * way.norm() * away.norm();
 }
 
-// A set of numbers that is emptied by begin() without a pass over its array.
-class Marks {
- public:
-  void begin(std::size_t count) {
-    if (named_in_.size() < count) named_in_.resize(count, 0);
-    ++round_;
-  }
-  bool isFirst(int number) { return std::exchange(named_in_[at(number)], round_) != round_; }
-
- private:
-  std::vector<std::uint64_t> named_in_;
-  std::uint64_t round_ = 0;
-};
-
 // Nearest points of vertices whose neighbors are all farther from the triangle; corners of the
 // triangle are asked in any case.
 void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh, SeenVertices& seen,
-                        double reach, const Corners& corners, std::vector<Vec3>& seeds) {
-  thread_local Marks of_thread;
-  Marks& marks = of_thread;  // looked up once
-  marks.begin(mesh.vertices().size());
-  std::vector<int> vertices;
+                        Firsts& vertices, double reach, const Corners& corners,
+                        std::vector<Vec3>& seeds) {
+  vertices.begin(mesh.vertices().size());
   for (const int face : faces) {
-    for (const int vertex : mesh.triangles()[at(face)]) {
-      if (marks.isFirst(vertex)) vertices.push_back(vertex);
-    }
+    for (const int vertex : mesh.triangles()[at(face)]) vertices.add(vertex);
   }
-  for (const int number : vertices) {
+  for (const int number : vertices.all()) {
     const Vec3& vertex = mesh.vertices()[at(number)];
     if (std::abs(seen[number].height) > reach) continue;
     const Vec3 weights = nearestInTriangle(vertex, corners);
@@ -269,21 +167,17 @@ bool liesBeyond(double a, double b, double low, double high) {
 // Places on the triangle's edges that are nearest to an edge of the mesh: local least distances, as
 // on the triangle and on the mesh's faces beside the edge every way leads apart.
 void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenVertices& seen,
-                      double reach, const Corners& corners, std::vector<Vec3>& seeds) {
-  thread_local Marks of_thread;
-  Marks& marks = of_thread;  // looked up once
-  marks.begin(mesh.edges().size());
-  std::vector<int> edges;
+                      Firsts& edges, double reach, const Corners& corners,
+                      std::vector<Vec3>& seeds) {
+  edges.begin(mesh.edges().size());
   for (const int face : faces) {
-    for (const int edge : mesh.edgesOfTriangles()[at(face)]) {
-      if (marks.isFirst(edge)) edges.push_back(edge);
-    }
+    for (const int edge : mesh.edgesOfTriangles()[at(face)]) edges.add(edge);
   }
   std::array<double, 3> inside;
   for (std::size_t k = 0; k < 3; ++k) {
     inside[k] = -std::min(reach, 2.0 * seen.plane().slack(k) * reach + tuning::kRounding);
   }
-  for (const int number : edges) {
+  for (const int number : edges.all()) {
     const ToolMesh::Edge& edge = mesh.edges()[at(number)];
     const SeenFrom& first = seen[edge.ends[0]];
     const SeenFrom& last = seen[edge.ends[1]];
@@ -313,31 +207,29 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenV
 
 }  // namespace
 
-std::vector<Vec3> seedsOn(const Corners& corners, const ToolMesh& mesh,
-                          const std::vector<int>& faces, double reach) {
+const std::vector<Vec3>& MeshSeeds::on(const Corners& corners, const ToolMesh& mesh,
+                                       const std::vector<int>& faces, double reach) {
   const TrianglePlane plane(corners);
-  thread_local SeenVertices of_thread;
-  SeenVertices& seen = of_thread;  // looked up once
-  seen.begin(mesh, plane);
-  std::vector<Slit> slits;
-  std::vector<int> near;
+  seen_.begin(mesh, plane);
+  slits_.clear();
+  near_.clear();
+  seeds_.clear();
   for (const int face : faces) {
     const MeshTriangle& ends = mesh.triangles()[at(face)];
-    const SeenFrom &a = seen[ends[0]], &b = seen[ends[1]], &c = seen[ends[2]];
+    const SeenFrom &a = seen_[ends[0]], &b = seen_[ends[1]], &c = seen_[ends[2]];
     if (isFar(a, b, c, reach)) continue;
-    near.push_back(face);
+    near_.push_back(face);
     const auto slit =
         slitOf(face, mesh.corners(face), corners, plane, {a.height, b.height, c.height});
-    if (slit) slits.push_back(*slit);
+    if (slit) slits_.push_back(*slit);
   }
-  std::vector<Vec3> seeds;
-  seedsOfSlits(slits, mesh, corners, seeds);
+  seedsOfSlits(slits_, mesh, corners, seeds_);
   if (reach > 0.0) {
-    seedsUnderVertices(near, mesh, seen, reach, corners, seeds);
-    seedsBesideEdges(near, mesh, seen, reach, corners, seeds);
+    seedsUnderVertices(near_, mesh, seen_, vertices_, reach, corners, seeds_);
+    seedsBesideEdges(near_, mesh, seen_, edges_, reach, corners, seeds_);
   }
-  seeds.push_back(Vec3::Constant(1.0 / 3.0));
-  return seeds;
+  seeds_.push_back(Vec3::Constant(1.0 / 3.0));
+  return seeds_;
 }
 
 }  // namespace robot_tissue

@@ -1,0 +1,113 @@
+// A mesh as seen from a triangle: how high its vertices are over the triangle's plane, and how far
+// beyond its edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "robot_tissue/core/triangle_point.h"
+#include "tool_mesh.h"
+#include "triangle_minimum.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+
+// The triangle's plane: height over it, and weights of points in it.
+class TrianglePlane {
+ public:
+  explicit TrianglePlane(const Corners& corners) : origin_(corners[0]) {
+    const Vec3 ab = corners[1] - corners[0];
+    const Vec3 ac = corners[2] - corners[0];
+    const Vec3 area = ab.cross(ac);
+    normal_ = area.normalized();
+    to_b_ = ac.cross(area) / area.squaredNorm();
+    to_c_ = area.cross(ab) / area.squaredNorm();
+    for (std::size_t k = 0; k < 3; ++k) {
+      start_[k] = corners[k];
+      const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+      outwards_[k] = edge.cross(normal_).stableNormalized();
+      slack_[k] = tuning::kSquare * longestEdge(corners) * edge.norm() / area.norm();
+    }
+  }
+  double height(const Vec3& point) const { return normal_.dot(point - origin_); }
+  Vec3 weights(const Vec3& point) const {
+    const double b = to_b_.dot(point - origin_);
+    const double c = to_c_.dot(point - origin_);
+    return {1.0 - b - c, b, c};
+  }
+  // How far a point is beyond the line of the edge from corner k to the next (m); < 0: on the
+  // triangle's side.
+  double beyond(std::size_t k, const Vec3& point) const {
+    return outwards_[k].dot(point - start_[k]);
+  }
+  // A point that is farther on the triangle's side than this of its distance to the edge is nearer
+  // to the triangle than to the edge (leadsAway).
+  double slack(std::size_t k) const { return slack_[k]; }
+
+ private:
+  Vec3 origin_, normal_, to_b_, to_c_;
+  std::array<Vec3, 3> start_, outwards_;
+  std::array<double, 3> slack_{};
+};
+
+// Where a point is, as seen from the triangle (m).
+struct SeenFrom {
+  double height = 0.0;
+  std::array<double, 3> beyond{};  // by edges, as TrianglePlane::beyond
+};
+
+// The mesh's vertices as seen from one triangle: each is looked at once, however many faces and
+// edges have it.
+class SeenVertices {
+ public:
+  const TrianglePlane& plane() const { return *plane_; }
+  void begin(const ToolMesh& mesh, const TrianglePlane& plane) {
+    mesh_ = &mesh;
+    plane_ = &plane;
+    seen_.resize(std::max(seen_.size(), mesh.vertices().size()));
+    ++round_;
+  }
+  const SeenFrom& operator[](int vertex) {
+    Seen& seen = seen_[at(vertex)];
+    if (std::exchange(seen.round, round_) == round_) return seen.from;
+    const Vec3& point = mesh_->vertices()[at(vertex)];
+    seen.from.height = plane_->height(point);
+    for (std::size_t k = 0; k < 3; ++k) seen.from.beyond[k] = plane_->beyond(k, point);
+    return seen.from;
+  }
+
+ private:
+  struct Seen {
+    std::uint64_t round = 0;
+    SeenFrom from;
+  };
+
+  const ToolMesh* mesh_ = nullptr;
+  const TrianglePlane* plane_ = nullptr;
+  std::vector<Seen> seen_;
+  std::uint64_t round_ = 0;
+};
+
+// Numbers in the order in which they are first named; emptied by begin() without a pass over its
+// array.
+class Firsts {
+ public:
+  void begin(std::size_t count) {
+    if (named_in_.size() < count) named_in_.resize(count, 0);
+    ++round_;
+    all_.clear();
+  }
+  void add(int number) {
+    if (std::exchange(named_in_[at(number)], round_) != round_) all_.push_back(number);
+  }
+  const std::vector<int>& all() const { return all_; }
+
+ private:
+  std::vector<std::uint64_t> named_in_;
+  std::uint64_t round_ = 0;
+  std::vector<int> all_;
+};
+
+}  // namespace robot_tissue
