@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 # In the order in which `all` runs them: short ones first.
-STUDIES = ["rooms", "grasp", "dent_folds", "liver", "walls", "paper", "motion", "swing", "time_stability",
+STUDIES = ["rooms", "grasp", "dent_folds", "slides", "liver", "walls", "paper", "motion", "swing", "time_stability",
            "stiffening", "economy", "fidelity", "growth", "threads", "stages", "speed", "node", "still_node",
            "shape_topics", "replay_live", "screens", "soak", "heap", "contact_search", "contact", "accuracy",
            "stability", "speed_accuracy"]

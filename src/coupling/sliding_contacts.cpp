@@ -339,12 +339,11 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
 }
 
-// Touches beside a face say nothing of where it looks. Friction counts: what leans on the sides of
-// a link presses across it, and friction under it takes that up; the tool has neither.
+// Friction counts: what leans on the sides of a link presses across it, and friction under it takes
+// that up; the tool has neither.
 void SlidingContacts::noteFacing(const RobotPose& pose) {
   facing_.assign(pose.links.size(), Vec3::Zero());
   for (const ContactConstraint& touch : touches_) {
-    if (touch.contact.rim.is_beyond) continue;
     const Pose& tissue_T_link = pose.links[at(touch.contact.link)];
     facing_[at(touch.contact.link)] +=
         tissue_T_link.linear().transpose() * forceOf(touch.spring, *since_displacement_);

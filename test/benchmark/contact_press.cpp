@@ -1,7 +1,7 @@
 // Tools of every shape pressed into a block and dragged along it: how deep they are in the surface
 // that is shown, how smooth the force is, how long a millimeter takes.
 //   contact_press [TOOL|all] [SPEED in m/s at 100 updates a second, 0 = increments of 0.25 mm]
-//                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE]
+//                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE] [PRESS in mm]
 // Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update, ms of
 // processor.
 #include <cmath>
@@ -17,7 +17,6 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kPress = 0.015;  // m
 constexpr double kDrag = 0.030;   // m
 constexpr double kTop = 0.05;     // m
 constexpr double kClear = 0.001;  // m: above the block at the start
@@ -174,13 +173,14 @@ int main(int argc, char** argv) {
   const double friction = argc > 4 ? std::atof(argv[4]) : 0.3;
   const std::string method = argc > 5 ? argv[5] : "layered";
   const double tolerance = argc > 6 ? std::atof(argv[6]) : 0.01;
+  const double press = 1e-3 * (argc > 7 ? std::atof(argv[7]) : 15.0);
   const double increment = speed > 0.0 ? 0.01 * speed : 0.00025;
   std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status\n");
   for (const auto& [name, shape] : toolShapes()) {
     if (wanted != "all" && wanted != name) continue;
     Trial trial(name, shape, spacing, friction, method, tolerance);
     // Off the nodes, and off the middle between them.
-    const Vec3 above(0.0363, 0.0511, kTop + kClear), pressed = above - Vec3(0, 0, kPress + kClear);
+    const Vec3 above(0.0363, 0.0511, kTop + kClear), pressed = above - Vec3(0, 0, press + kClear);
     trial.go("appear", above, above, 1.0);
     trial.go("press", above, pressed, increment);
     trial.go("drag", pressed, pressed + Vec3(kDrag, 0, 0), increment);
