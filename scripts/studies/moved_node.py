@@ -108,5 +108,5 @@ def own_master(name):
 
 def tissue_node(**arguments):
     """On a block of 4,851 nodes; arguments of its launch file."""
-    told = [f"{name}:={value:g}" for name, value in arguments.items()]
+    told = [f"{name}:={value}" for name, value in arguments.items()]
     return running(["roslaunch", str(LAUNCH_FILE)] + told)

@@ -85,8 +85,7 @@ constexpr int kParts = 256;
 
 // Beside a mesh.
 // Of the margin of a search (1): so much farther pairs of triangles are kept for the next ones.
-// More: they serve for more searches, and each looks at more of them. The fingers of
-// test/benchmark/tool_speed take as long with 0.3 and 1.
+// More: they serve for more searches, and each looks at more of them. Chosen.
 constexpr double kPairsAhead = 0.5;
 
 // Flat faces.

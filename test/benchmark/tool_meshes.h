@@ -1,6 +1,7 @@
 // Meshes of tools, written where a scene or a study can load them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -59,6 +60,23 @@ inline std::string writeRing(double radius, double tube) {
     const double round = 2.0 * M_PI * (side % kSides) / kSides;
     const double out = radius + tube * std::cos(round);
     return {out * std::cos(along), tube * std::sin(round), out * std::sin(along)};
+  });
+}
+
+// A finger of 3,000 triangles: a capsule with bumps that stands upright, its tip at the origin;
+// radius and length (m). As scripts/studies/hand.py makes it.
+inline std::string writeFinger(double radius, double length) {
+  constexpr int kSides = 50, kRings = 31;
+  constexpr double kBump = 0.04, kWave = 400.0;  // of the radius, 1; 1/m
+  return writeRings("finger", kRings, kSides, [&](int ring, int side) -> Vec3 {
+    if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? length : 0.0};
+    const double straight = length - 2.0 * radius;
+    const double way = (M_PI * radius + straight) * (kRings - ring) / kRings;
+    const double along = std::min(std::max(way - 0.5 * M_PI * radius, 0.0), straight);
+    const double bend = (way - along) / radius, round = 2.0 * M_PI * (side % kSides) / kSides;
+    const double bump = 1.0 + kBump * std::cos(5.0 * round) * std::cos(kWave * way);
+    const double out = radius * std::sin(bend) * bump;
+    return {out * std::cos(round), out * std::sin(round), radius * (1.0 - std::cos(bend)) + along};
   });
 }
 

@@ -1,6 +1,9 @@
 // What an update of the pipeline takes while tools press a block and go round on it, and what of it
 // is contact. 100 x 100 x 50 mm, E 10 kPa, nu 0.45; 5 mm spacing (4,851 nodes) unless told.
-//   tool_speed [sphere|mesh|both] [SPEED in m/s] [RATE in Hz] [UPDATES] [SPACING in mm]
+//   tool_speed [sphere|mesh|both|hand|fingers] [SPEED in m/s] [RATE in Hz] [UPDATES] [SPACING in
+//   mm]
+// fingers: three, meshes of 3,000 triangles each; hand: two of them, as scripts/study node moves
+// them.
 // Writes one line an update: contact_ms (wall), solve_ms (wall), update_ms (of the processor),
 // substeps, force along z on the tools (N), penetration_mm, status. Sums up on stderr. What the
 // stages of an update take of it: scripts/study stages.
@@ -8,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -52,6 +56,31 @@ void sumUp(const char* name, const std::vector<double>& ms) {
                quantile(ms, 0.99), quantile(ms, 1.0));
 }
 
+std::vector<std::string> toolsOf(const std::string& which) {
+  if (which == "both") return {"sphere", "mesh"};
+  if (which == "fingers") return {"thumb", "index", "middle"};
+  if (which == "hand") return {"left", "right"};
+  return {which};
+}
+
+void addTool(const std::string& kind, std::vector<ToolGeometry>& tools, std::vector<Way>& ways) {
+  static const std::map<std::string, Vec3> fingers = {{"thumb", {0.032, 0.05, 0.0}},
+                                                      {"index", {0.062, 0.036, 0.0}},
+                                                      {"middle", {0.062, 0.064, 0.0}},
+                                                      {"left", {0.038, 0.05, 0.0}},
+                                                      {"right", {0.062, 0.05, 0.0}}};
+  if (kind == "sphere") {
+    tools.push_back(toolOf(kind, sphereOf(0.01), 0.3));
+    return ways.push_back({{0.03, 0.05, 0.0}, 0.01});
+  }
+  ToolShape mesh;
+  mesh.type = ToolShape::Type::kMesh;
+  const bool is_finger = fingers.count(kind) > 0;
+  mesh.resource = is_finger ? writeFinger(0.008, 0.045) : writeEllipsoid({0.01, 0.008, 0.012});
+  tools.push_back(toolOf(kind, mesh, 0.3));
+  ways.push_back(is_finger ? Way{fingers.at(kind), 0.0} : Way{{0.07, 0.05, 0.0}, 0.012});
+}
+
 int run(int argc, char** argv) {
   const std::string which = argc > 1 ? argv[1] : "both";
   const double speed = argument(argc, argv, 2, 0.05), rate = argument(argc, argv, 3, 200.0);
@@ -59,17 +88,7 @@ int run(int argc, char** argv) {
   const double spacing = 1e-3 * argument(argc, argv, 5, 5.0);
   std::vector<ToolGeometry> tools;
   std::vector<Way> ways;
-  if (which != "mesh") {
-    tools.push_back(toolOf("sphere", sphereOf(0.01), 0.3));
-    ways.push_back({{0.03, 0.05, 0.0}, 0.01});
-  }
-  if (which != "sphere") {
-    ToolShape mesh;
-    mesh.type = ToolShape::Type::kMesh;
-    mesh.resource = writeEllipsoid({0.01, 0.008, 0.012});
-    tools.push_back(toolOf("mesh", mesh, 0.3));
-    ways.push_back({{0.07, 0.05, 0.0}, 0.012});
-  }
+  for (const std::string& kind : toolsOf(which)) addTool(kind, tools, ways);
   Pipeline pipeline(blockOf({0.1, 0.1, kTop}, spacing), solverOf("layered", 0.01), tools);
   std::vector<double> contact, solve, total;
   std::printf("contact_ms,solve_ms,update_ms,substeps,fz,penetration_mm,status\n");
