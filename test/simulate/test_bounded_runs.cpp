@@ -145,6 +145,26 @@ steps:
   EXPECT_NE(readText(out / "tools.csv").find("\n0,1,probe,"), std::string::npos);
 }
 
+// Off an edge that is dragged tissue slips once in each spacing: load steps of up to two hundred
+// iterations, all of which come to balance.
+TEST_F(BoundedRun, FollowsAnEdgeThatTissueSlipsOff) {
+  std::ofstream(folder_ / "edge.yaml") << R"(
+tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}
+  spacing: 0.005
+  material: {young_modulus: 10000.0, poisson_ratio: 0.45}
+  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]
+tools:
+  - {name: edge, friction: 0.3, shapes: [{type: box, size: [0.02, 0.02, 0.02], rpy: [0, 0.785398, 0]}]}
+steps:
+  - move: {tool: edge, from: {xyz: [0.035, 0.05, 0.0646]}, to: {xyz: [0.035, 0.05, 0.056142]}, increments: 34}
+  - move: {tool: edge, to: {xyz: [0.047, 0.05, 0.056142]}, increments: 48}
+)";
+  const int status = statusOf(
+      start({(folder_ / "edge.yaml").string(), "--out", (folder_ / "out").string(), "--quiet"}));
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << err();
+}
+
 TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   for (const char* seconds : {"0", "-1", "nan", "inf", "1e300", "soon"}) {
     const fs::path out = folder_ / "out";

@@ -6,10 +6,10 @@
 
 namespace robot_tissue {
 
-// Counts the work of load steps beyond what is usual, all of it where they do not converge or no
-// shape follows. A slip or two are forgiven by and by; tissue that is crushed between tools, or
-// tears beside one, asks for hundreds of iterations in every other load step, for as long as it
-// goes on.
+// Counts the work of load steps beyond what is usual: little where it led to balance, but for time
+// steps, and all the work where they do not converge or no shape follows. A slip or two are
+// forgiven by and by; tissue that is crushed between tools, or tears beside one, asks for hundreds
+// of iterations in every other load step, for as long as it goes on.
 //
 // Work is in the method's iterations: a solve is as long as those it takes, and what it begins and
 // ends with takes as long as a few more.
@@ -80,6 +80,7 @@ class Patience {
   bool is_for_scene_ = false;
   int depth_ = 0;           // of load steps
   double taken_ = 0.0;      // work, in the load step under way
+  bool in_time_ = false;    // it is a time step
   double unsettled_ = 0.0;  // likewise, in the solve under way
   bool converged_ = true;   // its last solve, if there was any
   bool lost_ = false;       // the load step under way

@@ -34,6 +34,7 @@ void Patience::note(int iterations, bool converged, Of what, double cost) {
   const double work = cost * (iterations + tuning::kEndsOfSolve * usual_) / timesOf(what);
   taken_ += work;
   unsettled_ += work;
+  in_time_ = what == Of::kTimeStep;
   converged_ = converged;
 }
 
@@ -60,7 +61,7 @@ void Patience::endLoadStep() {
   if (is_for_scene_ && !settled) {
     spend(taken_);
   } else if (is_for_scene_ && taken_ > usual) {
-    spend(taken_ - usual);
+    spend((in_time_ ? 1.0 : tuning::kSpentBySettled) * (taken_ - usual));
   } else if (settled) {
     spent_ = std::max(spent_ - tuning::kForgiven * usual, 0.0);
   }
