@@ -2,10 +2,10 @@
 
 Starts a master and a node on a block of 4,851 nodes, for each run anew, and moves a tool through it: a sphere, a hand
 (palm and two fingers, meshes of 3,000 triangles each; the fingers' tips touch), or three such fingers. Pressed in by
-5 mm, once round at 20 mm/s, drawn out, again and again, with listeners to wrenches, state and markers. The program pose_age sends the poses and takes the time from a pose's stamp to
-when the last of its wrenches was received: sending, receiving and the scheduler are in it. Counts as well the wrenches
-that a listener gets with ~wrench_rate 1000. Needs the build's devel/setup.bash, and its target pose_age. What a tool
-that stands costs, the study still_node tells.
+5 mm, once round at 20 mm/s, drawn out, again and again, with listeners to wrenches, state and markers. The program
+pose_age sends the poses and takes the time from a pose's stamp to when the last of its wrenches was received: sending,
+receiving and the scheduler are in it. Counts as well the wrenches that a listener gets with ~wrench_rate 1000. Needs
+the build's devel/setup.bash, and its target pose_age. What a tool that stands costs, the study still_node tells.
 """
 import csv
 import io

@@ -76,6 +76,16 @@ inline ToolShape boxOf(const Vec3& size, const Vec3& center = Vec3::Zero()) {
   return box;
 }
 
+// Its lower end at the origin.
+inline ToolShape uprightCylinder(double radius, double length) {
+  ToolShape cylinder;
+  cylinder.type = ToolShape::Type::kCylinder;
+  cylinder.radius = radius;
+  cylinder.length = length;
+  cylinder.pose.translation().z() = 0.5 * length;
+  return cylinder;
+}
+
 // Solid above its origin, or below it when it looks up.
 inline ToolShape planeOf(bool looks_up) {
   ToolShape plane;

@@ -24,15 +24,7 @@ ToolShape sphereOf(double radius) {
   return sphere;
 }
 
-// Its tip at the origin, upright.
-ToolShape needle() {
-  ToolShape shape;
-  shape.type = ToolShape::Type::kCylinder;
-  shape.radius = 0.0005;
-  shape.length = 0.05;
-  shape.pose.translation().z() = 0.025;
-  return shape;
-}
+ToolShape needle() { return uprightCylinder(0.0005, 0.05); }
 
 const Appearance kAppearances[] = {
     {"SphereToItsMiddle", sphereOf(kRadius), Vec3(kMiddle, kMiddle, kTop), Vec3::UnitZ()},

@@ -82,23 +82,11 @@ Range asideOverUp(const ToolShape& shape, double friction) {
   return range;
 }
 
-ToolShape boxOnItsFace() {
-  ToolShape box = boxOf(Vec3::Constant(0.02));
-  box.pose.translation().z() = 0.01;
-  return box;
-}
-
-ToolShape uprightCylinder() {
-  ToolShape cylinder;
-  cylinder.type = ToolShape::Type::kCylinder;
-  cylinder.radius = 0.010;
-  cylinder.length = 0.02;
-  cylinder.pose.translation().z() = 0.01;
-  return cylinder;
-}
+const ToolShape kFlatTools[] = {boxOf(Vec3::Constant(0.02), Vec3(0.0, 0.0, 0.01)),
+                                uprightCylinder(0.010, 0.02)};
 
 TEST(SlidingTools, WithoutFrictionAFlatFaceIsNotHeldBack) {
-  for (const ToolShape& shape : {boxOnItsFace(), uprightCylinder()}) {
+  for (const ToolShape& shape : kFlatTools) {
     const Range range = asideOverUp(shape, 0.0);
     EXPECT_GT(range.least, -0.03);
     EXPECT_LT(range.greatest, 0.03);
@@ -106,7 +94,7 @@ TEST(SlidingTools, WithoutFrictionAFlatFaceIsNotHeldBack) {
 }
 
 TEST(SlidingTools, AFlatFaceIsHeldBackByFrictionAlone) {
-  for (const ToolShape& shape : {boxOnItsFace(), uprightCylinder()}) {
+  for (const ToolShape& shape : kFlatTools) {
     const Range range = asideOverUp(shape, 0.3);
     EXPECT_GT(range.least, 0.27);
     EXPECT_LT(range.greatest, 0.33);
