@@ -58,6 +58,7 @@ void FasRestriction<Real>::restrictSprings(std::size_t index) {
     }
     spring.anchor = coarse.constrained.meanOf(spring);
   }
+  coarse.constrained.leaveOutLoose();
 }
 
 template class FasRestriction<float>;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "robot_tissue/core/carriers.h"
@@ -101,6 +102,8 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
     for (LevelSpring::Carrier& carrier : spring.carriers)
       carrier.constrained = indexOf(carrier.node);
   }
+  acting_.resize(springs.size());
+  std::iota(acting_.begin(), acting_.end(), 0);
   for (OwnStiffness& own : own_stiffness) own.constrained = indexOf(own.node);
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
@@ -113,6 +116,14 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
   group_inverse_.assign(groups.size(), Matrix6::Zero());
   for (auto* vectors : {&right_hand_side, &force, &motion, &group_step_}) {
     vectors->assign(groups.size(), GroupVector::Zero());
+  }
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::leaveOutLoose() {
+  acting_.clear();
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    if (springs[i].acts()) acting_.push_back(static_cast<int>(i));
   }
 }
 
@@ -246,7 +257,7 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
     group_stiffness_.assign(groups.size(), Matrix6::Zero());
     joining_.clear();
   }
-  for (LevelSpring& spring : springs) addSpring(spring, what);
+  for (const int spring : acting_) addSpring(springs[at(spring)], what);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const ConstrainedNode& constrained = all_[i];
     if (constrained.group >= 0) {
@@ -266,11 +277,6 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
   if (what == Find::kForces) return;
   invertGroups();
   joined_.join(std::move(joining_), inverses_);
-}
-
-template <typename Real>
-void ConstrainedNodes<Real>::setForces(const Field<Real>& forces) {
-  for (std::size_t i = 0; i < all_.size(); ++i) forces_[i] = vectorAt(forces, all_[i].node);
 }
 
 template <typename Real>

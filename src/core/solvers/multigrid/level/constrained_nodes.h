@@ -30,6 +30,8 @@ struct LevelSpring {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // as it is now
   Vec3 anchor = Vec3::Zero();                           // mean displacement without a force
   const ContactSpring* contact = nullptr;               // whose law it has instead
+
+  bool acts() const { return contact != nullptr || !stiffness.isZero(0.0); }
 };
 
 // Of a node beside its cells', in the directions that it has (membranes).
@@ -63,6 +65,10 @@ class ConstrainedNodes {
   std::vector<GroupVector> force;            // on groups, unbalanced
   std::vector<GroupVector> motion;           // of groups, since it was last set to zero
 
+  // Springs that do not act are left out from now on, until this or `bind` is called again: most
+  // contacts that are looked at push nowhere.
+  void leaveOutLoose();
+
   // Springs in contact with a gap of less than this (spacings) already count as stiff. 0: those
   // that push alone, which takes the fewest cycles; more keeps nodes that a cycle throws towards a
   // tool out of it.
@@ -82,7 +88,9 @@ class ConstrainedNodes {
   void findForces(const CellOperator<Real>& cells, const Field<Real>& displacement, Find what,
                   Field<Real>& forces);
   // Forces are these now.
-  void setForces(const Field<Real>& forces);
+  void setForces(const Field<Real>& forces) {
+    for (std::size_t i = 0; i < all_.size(); ++i) forces_[i] = vectorAt(forces, all_[i].node);
+  }
   // With d the motion that would balance each node or group alone, D^-1 f:
   // step = keep * step + share * d, no component longer than `longest`; displacement += step.
   void step(double keep, double share, double longest, Field<Real>& displacement);
@@ -139,6 +147,7 @@ class ConstrainedNodes {
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
   std::vector<ConstrainedNode> all_;
+  std::vector<int> acting_;                      // of the springs
   std::vector<Vec3> places_;                     // displacement, per entry of all_
   std::vector<Vec3> forces_;                     // likewise
   std::vector<Eigen::Matrix3d> inverses_;        // of the stiffness, likewise
