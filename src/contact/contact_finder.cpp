@@ -27,6 +27,7 @@ struct Link {
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
   std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
+  std::vector<ClearPoints> clear_points;          // as shapes; of meshes
   std::size_t in_use = 0;                         // of the shapes, the first
 
   PlacedLink placedAt(const Pose& tissue_T_link) const {
@@ -50,6 +51,7 @@ Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geomet
   }
   link.in_use = link.shapes.size();
   link.face_pairs.resize(link.shapes.size());
+  link.clear_points.resize(link.shapes.size());
   return link;
 }
 
@@ -297,7 +299,15 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
     deepest = robot_tissue::deepest(contacts);
   }
   for (std::size_t i = 0; i < here.size(); ++i) {
-    deepest = deepestInside(here[i], links[link].surface_points[i], surface_tree.last(), deepest);
+    const std::vector<Vec3>& points = links[link].surface_points[i];
+    const TriangleBvh& tree = surface_tree.last();
+    if (here[i].shape->isMesh()) {
+      ClearPoints& clear = links[link].clear_points[i];
+      clear.beginLook(here[i], surface_tree.trees(), vertices, points.size());
+      deepest = deepestInside(here[i], points, tree, deepest, clear);
+    } else {
+      deepest = deepestInside(here[i], points, tree, deepest);
+    }
   }
   return deepest;
 }

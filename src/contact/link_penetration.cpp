@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "tuning.h"
 
@@ -70,6 +71,12 @@ std::vector<Vec3> meshPoints(const ToolMesh& mesh, double padding) {
   return points;
 }
 
+// The nearest point of the surface to one that is inside; nothing when it is outside.
+std::optional<TriangleBvh::Nearest> footOf(const Vec3& point, const TriangleBvh& surface) {
+  if (!surface.isInside(point)) return std::nullopt;
+  return surface.nearest(point, std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 
 std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
@@ -101,15 +108,13 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
 
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                      const TriangleBvh& surface, double known) {
-  const double infinity = std::numeric_limits<double>::infinity();
   const Box box = surface.bounds();
   double deepest = known;
   TriangleBvh::Nearest foot;
   Vec3 place = Vec3::Zero();
   const auto isDeeper = [&](const Vec3& point, double least) {
-    if (!box.contains(point)) return false;
-    if (surface.nearest(point, least, least) || !surface.isInside(point)) return false;
-    const auto nearest = surface.nearest(point, infinity);
+    if (!box.contains(point) || surface.nearest(point, least, least)) return false;
+    const auto nearest = footOf(point, surface);
     if (!nearest || nearest->distance <= least) return false;
     deepest = nearest->distance;
     foot = *nearest;
@@ -117,7 +122,7 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
     return true;
   };
   for (const Vec3& point : points) isDeeper(placed.tissue_T_shape * point, deepest);
-  if (placed.shape->isMesh() || foot.triangle < 0) return deepest;
+  if (foot.triangle < 0) return deepest;
   for (int move = 0; move < tuning::kMostMoves; ++move) {
     const Vec3 inwards = (place - foot.point).normalized();
     const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
@@ -125,6 +130,29 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                   deepest + tuning::kLeastGain)) {
       break;
     }
+  }
+  return deepest;
+}
+
+double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
+                     const TriangleBvh& surface, double known, ClearPoints& clear) {
+  const Box box = surface.bounds();
+  const double ahead = tuning::kLooksAhead * clear.lastWay();
+  double deepest = known;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (clear.isClear(i)) continue;
+    const Vec3 point = placed.tissue_T_shape * points[i];
+    if (!box.contains(point)) {
+      clear.note(i, box.exteriorDistance(point));
+      continue;
+    }
+    if (surface.nearest(point, deepest, deepest)) continue;
+    if (const auto nearest = footOf(point, surface)) {
+      deepest = std::max(deepest, nearest->distance);
+      continue;
+    }
+    const auto near = surface.nearest(point, ahead, clear.lastWay());
+    if (!near || near->distance > clear.lastWay()) clear.note(i, near ? near->distance : ahead);
   }
   return deepest;
 }

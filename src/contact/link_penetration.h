@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "clear_points.h"
 #include "placed_link.h"
 #include "triangle_bvh.h"
 
@@ -19,5 +20,10 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape);
 // surface.
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                      const TriangleBvh& surface, double known);
+
+// The same of a mesh, in a look that was begun of `clear`: its points that are still clear are left
+// out.
+double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
+                     const TriangleBvh& surface, double known, ClearPoints& clear);
 
 }  // namespace robot_tissue

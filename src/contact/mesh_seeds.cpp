@@ -13,16 +13,6 @@
 namespace robot_tissue {
 namespace {
 
-// All of a face is farther than `reach` from the triangle, to one side of it.
-bool isFar(const SeenFrom& a, const SeenFrom& b, const SeenFrom& c, double reach) {
-  if (std::min({a.height, b.height, c.height}) > reach) return true;
-  if (std::max({a.height, b.height, c.height}) < -reach) return true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (a.beyond[k] > reach && b.beyond[k] > reach && c.beyond[k] > reach) return true;
-  }
-  return false;
-}
-
 // The part of a segment in the plane that is on the triangle, by weights of its ends.
 std::optional<std::array<Vec3, 2>> onTriangle(const Vec3& from, const Vec3& to) {
   double first = 0.0;
@@ -37,8 +27,11 @@ std::optional<std::array<Vec3, 2>> onTriangle(const Vec3& from, const Vec3& to) 
   return std::array<Vec3, 2>{from + first * (to - from), from + last * (to - from)};
 }
 
-std::optional<Slit> slitOf(int face, const Corners& face_corners, const Corners& corners,
+std::optional<Slit> slitOf(int face, const ToolMesh& mesh, const Corners& corners,
                            const TrianglePlane& plane, const std::array<double, 3>& heights) {
+  const bool is_below = heights[0] < 0.0;
+  if ((heights[1] < 0.0) == is_below && (heights[2] < 0.0) == is_below) return std::nullopt;
+  const Corners face_corners = mesh.corners(face);
   std::array<Vec3, 2> ends;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +40,6 @@ std::optional<Slit> slitOf(int face, const Corners& face_corners, const Corners&
     const double t = heights[k] / (heights[k] - heights[next]);
     ends[count++] = plane.weights(face_corners[k] + t * (face_corners[next] - face_corners[k]));
   }
-  if (count < 2) return std::nullopt;
   const auto cut = onTriangle(ends[0], ends[1]);
   if (!cut) return std::nullopt;
   const auto& [from, to] = *cut;
@@ -131,7 +123,7 @@ void seedsUnderVertices(const std::vector<int>& faces, const ToolMesh& mesh, See
   }
   for (const int number : vertices.all()) {
     const Vec3& vertex = mesh.vertices()[at(number)];
-    if (std::abs(seen[number].height) > reach) continue;
+    if ((seen[number].sides & (kAbove | kBelow)) != 0U) continue;
     const Vec3 weights = nearestInTriangle(vertex, corners);
     const Vec3 away = pointOf(corners, weights) - vertex;
     if (weights.maxCoeff() == 1.0 || away.norm() > reach) continue;
@@ -159,11 +151,6 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
   return std::array<double, 2>{u, v};
 }
 
-// Both are outside of the range.
-bool liesBeyond(double a, double b, double low, double high) {
-  return std::min(a, b) > high || std::max(a, b) < low;
-}
-
 // Places on the triangle's edges that are nearest to an edge of the mesh: local least distances, as
 // on the triangle and on the mesh's faces beside the edge every way leads apart.
 void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenVertices& seen,
@@ -173,20 +160,15 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenV
   for (const int face : faces) {
     for (const int edge : mesh.edgesOfTriangles()[at(face)]) edges.add(edge);
   }
-  std::array<double, 3> inside;
-  for (std::size_t k = 0; k < 3; ++k) {
-    inside[k] = -std::min(reach, 2.0 * seen.plane().slack(k) * reach + tuning::kRounding);
-  }
   for (const int number : edges.all()) {
     const ToolMesh::Edge& edge = mesh.edges()[at(number)];
-    const SeenFrom& first = seen[edge.ends[0]];
-    const SeenFrom& last = seen[edge.ends[1]];
-    if (liesBeyond(first.height, last.height, -reach, reach)) continue;
+    const unsigned sides = seen[edge.ends[0]].sides & seen[edge.ends[1]].sides;
+    if ((sides & (kAbove | kBelow)) != 0U) continue;
     const Vec3& from = mesh.vertices()[at(edge.ends[0])];
     const Vec3& to = mesh.vertices()[at(edge.ends[1])];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      if (liesBeyond(first.beyond[k], last.beyond[k], inside[k], reach)) continue;
+      if ((sides & (beyondEdge(k) | insideEdge(k))) != 0U) continue;
       const auto shares = nearestWithin(corners[k], corners[next], from, to);
       if (!shares) continue;
       const Vec3 place = corners[k] + (*shares)[0] * (corners[next] - corners[k]);
@@ -210,17 +192,16 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenV
 const std::vector<Vec3>& MeshSeeds::on(const Corners& corners, const ToolMesh& mesh,
                                        const std::vector<int>& faces, double reach) {
   const TrianglePlane plane(corners);
-  seen_.begin(mesh, plane);
+  seen_.begin(mesh, plane, reach);
   slits_.clear();
   near_.clear();
   seeds_.clear();
   for (const int face : faces) {
     const MeshTriangle& ends = mesh.triangles()[at(face)];
     const SeenFrom &a = seen_[ends[0]], &b = seen_[ends[1]], &c = seen_[ends[2]];
-    if (isFar(a, b, c, reach)) continue;
+    if ((a.sides & b.sides & c.sides & (kAbove | kBelow | kBeyondAny)) != 0U) continue;
     near_.push_back(face);
-    const auto slit =
-        slitOf(face, mesh.corners(face), corners, plane, {a.height, b.height, c.height});
+    const auto slit = slitOf(face, mesh, corners, plane, {a.height, b.height, c.height});
     if (slit) slits_.push_back(*slit);
   }
   seedsOfSlits(slits_, mesh, corners, seeds_);

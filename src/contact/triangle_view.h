@@ -2,6 +2,7 @@
 // beyond its edges.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -52,33 +53,54 @@ class TrianglePlane {
   std::array<double, 3> slack_{};
 };
 
-// Where a point is, as seen from the triangle (m).
+// Where a point is, as seen from the triangle.
 struct SeenFrom {
-  double height = 0.0;
-  std::array<double, 3> beyond{};  // by edges, as TrianglePlane::beyond
+  double height = 0.0;  // m
+  unsigned sides = 0;   // those of Side that it is on
 };
+
+// To which sides a point lies off the part of space that is looked at: all points of a segment or a
+// face lie there if all its ends do.
+enum Side : unsigned { kAbove = 1U, kBelow = 2U, kBeyondFirst = 4U, kInsideFirst = 32U };
+constexpr unsigned kBeyondAny = 7U * kBeyondFirst;
+// Beyond the edge from corner k, and inside of it so far that no nearest point is on it.
+constexpr unsigned beyondEdge(std::size_t k) { return kBeyondFirst << k; }
+constexpr unsigned insideEdge(std::size_t k) { return kInsideFirst << k; }
 
 // The mesh's vertices as seen from one triangle: each is looked at once, however many faces and
 // edges have it.
 class SeenVertices {
  public:
-  const TrianglePlane& plane() const { return *plane_; }
-  void begin(const ToolMesh& mesh, const TrianglePlane& plane) {
+  // What is looked at reaches so far (m) from the triangle.
+  void begin(const ToolMesh& mesh, const TrianglePlane& plane, double reach) {
     mesh_ = &mesh;
     plane_ = &plane;
+    reach_ = reach;
+    for (std::size_t k = 0; k < 3; ++k) {
+      inside_[k] = -std::min(reach, 2.0 * plane.slack(k) * reach + tuning::kRounding);
+    }
     seen_.resize(std::max(seen_.size(), mesh.vertices().size()));
     ++round_;
   }
   const SeenFrom& operator[](int vertex) {
     Seen& seen = seen_[at(vertex)];
     if (std::exchange(seen.round, round_) == round_) return seen.from;
-    const Vec3& point = mesh_->vertices()[at(vertex)];
-    seen.from.height = plane_->height(point);
-    for (std::size_t k = 0; k < 3; ++k) seen.from.beyond[k] = plane_->beyond(k, point);
-    return seen.from;
+    return seen.from = look(mesh_->vertices()[at(vertex)]);
   }
 
  private:
+  SeenFrom look(const Vec3& point) const {
+    SeenFrom from;
+    from.height = plane_->height(point);
+    from.sides = (from.height > reach_ ? kAbove : 0U) | (from.height < -reach_ ? kBelow : 0U);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double beyond = plane_->beyond(k, point);
+      from.sides |= (beyond > reach_ ? beyondEdge(k) : 0U);
+      from.sides |= (beyond < inside_[k] ? insideEdge(k) : 0U);
+    }
+    return from;
+  }
+
   struct Seen {
     std::uint64_t round = 0;
     SeenFrom from;
@@ -86,6 +108,8 @@ class SeenVertices {
 
   const ToolMesh* mesh_ = nullptr;
   const TrianglePlane* plane_ = nullptr;
+  double reach_ = 0.0;
+  std::array<double, 3> inside_{};  // m: as TrianglePlane::beyond
   std::vector<Seen> seen_;
   std::uint64_t round_ = 0;
 };

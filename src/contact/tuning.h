@@ -73,6 +73,10 @@ constexpr int kCapRings = 2;
 // Moves from the deepest point to the shape's farthest along the way in, at most. More: deeper by
 // little, as a few moves meet the end. Chosen.
 constexpr int kMostMoves = 8;
+// Ways as of this look, so far is looked for the surface around a point that is outside: if it is
+// farther, the point need not be looked at in so many looks. More: each of these looks costs more.
+// Chosen.
+constexpr double kLooksAhead = 8.0;
 // m: a move that brings less is the last. Less: more moves. Chosen.
 constexpr double kLeastGain = 1e-7;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "contact_fixtures.h"
 #include "robot_tissue/contact/contact_finder.h"
@@ -132,6 +133,31 @@ TEST(Penetration, IsOfTheSurfaceAsItIsNow) {
                                        [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); });
   lowest->x() = std::nan("");
   EXPECT_NEAR(ask(), 0.0015, 1e-9);
+}
+
+// What a finder keeps of its last looks changes nothing of the next one: the prongs of a fork go
+// over bumps, the one and the other in turns.
+TEST(Penetration, OfAMeshOnItsWayIsThatOfOneThatComesAnew) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> bump(-1e-3, 1e-3), hop(0.0, 2e-3);
+  Sheet block = makeBlock(kCells, kSpacing);
+  for (Vec3& vertex : block.vertices) vertex.z() += bump(random);
+  const ToolGeometry fork =
+      makeTool({mesh(writeStl("way.stl", forkTriangles(0.001, 0.006, 0.01, 0.001)))});
+  const ContactFinder kept({fork});
+  Vec3 place(0.008, 0.0175, 4e-4);
+  int deep = 0;
+  for (int step = 0; step < 150; ++step) {
+    place.x() += step % 20 == 19 ? hop(random) : 1e-4;
+    for (Vec3& vertex : block.vertices) vertex.z() += 0.01 * bump(random);
+    const RobotPose pose = at(makePose(place));
+    const ContactFinder anew({fork});
+    const double depth = kept.penetrations({0}, pose, block.surface, block.vertices)[0];
+    EXPECT_EQ(depth, anew.penetrations({0}, pose, block.surface, block.vertices)[0]);
+    if (depth > 0.0) ++deep;
+  }
+  EXPECT_GT(deep, 30);
+  EXPECT_LT(deep, 150);
 }
 
 TEST(Penetration, BadPoseAndApartIsNone) {
