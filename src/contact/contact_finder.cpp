@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -15,7 +14,7 @@
 #include "placed_link.h"
 #include "shape_gap.h"
 #include "surface_traversal.h"
-#include "triangle_bvh.h"
+#include "surface_tree.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -34,6 +33,23 @@ struct Link {
     PlacedLink here = placed(shapes, tissue_T_link);
     if (here.size() > in_use) here.resize(in_use);
     return here;
+  }
+
+  // The longest way of a point of the link from one pose to another (m): that of a corner of a box
+  // around a shape.
+  double longestWay(const Pose& from, const Pose& to) const {
+    const Eigen::Matrix4d way = to.matrix() - from.matrix();
+    double longest = 0.0;
+    for (std::size_t i = 0; i < in_use; ++i) {
+      if (shapes[i].isPlane() && !way.isZero(0.0)) return std::numeric_limits<double>::infinity();
+      if (shapes[i].isPlane()) continue;
+      const Pose& pose = shapes[i].poseInLink();
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 point = pose * shapes[i].bounds().corner(static_cast<Box::CornerType>(corner));
+        longest = std::max(longest, (way * point.homogeneous()).norm());
+      }
+    }
+    return longest;
   }
 };
 
@@ -68,50 +84,6 @@ void requireLinks(const RobotPose& pose, std::size_t links) {
                    " links; allowed is one for each of the " + std::to_string(links) +
                    " links of the scene's tools");
 }
-
-bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
-}
-
-// FCL's tree over a surface: made from its rest shape, so that it depends on nothing before, and
-// refitted to the deformed one.
-class SurfaceTree {
- public:
-  const TriangleBvh& of(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
-    if (!isOf(surface)) {
-      revision_ = surface.revision;
-      rest_ = surface.rest;
-      tree_.emplace(rest_, surface.triangles);
-      ++trees_;
-      vertices_ = rest_;
-      ++moves_;
-    }
-    if (areSame(vertices, vertices_)) return *tree_;
-    vertices_ = vertices;
-    if (tree_->moveTo(vertices)) ++moves_;
-    return *tree_;
-  }
-  bool exists() const { return tree_.has_value(); }
-  const TriangleBvh& last() const { return *tree_; }
-  // Counts how often another surface was taken, or the same moved: what was found at another count
-  // is of another shape.
-  std::uint64_t moves() const { return moves_; }
-  std::uint64_t trees() const { return trees_; }  // counts other surfaces alone
-
- private:
-  bool isOf(const TissueSurface& surface) const {
-    if (!tree_) return false;
-    if (surface.revision != 0 || revision_ != 0) return surface.revision == revision_;
-    return surface.triangles == tree_->triangles() && areSame(surface.rest, rest_);
-  }
-
-  std::uint64_t revision_ = 0;
-  std::vector<Vec3> rest_;
-  std::vector<Vec3> vertices_;  // that the tree is of
-  std::optional<TriangleBvh> tree_;
-  std::uint64_t moves_ = 0;
-  std::uint64_t trees_ = 0;
-};
 
 // What the last find() met, so that neither it nor penetrations() look for the same again.
 struct Found {
@@ -149,6 +121,18 @@ struct ContactFinder::Impl {
            found.pose.links[link].matrix() == tissue_T_link.matrix();
   }
 
+  // Likewise of all links, but for a way that each may have gone since (m).
+  bool knowsPlaces(const RobotPose& pose, double margin, double way) const {
+    if (!surface_tree.exists() || found.margin != margin || found.move != surface_tree.moves() ||
+        found.pose.links.size() != links.size()) {
+      return false;
+    }
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (!(links[link].longestWay(found.pose.links[link], pose.links[link]) <= way)) return false;
+    }
+    return true;
+  }
+
   bool knowsAll(const RobotPose& pose, double margin) const {
     if (!surface_tree.exists() || found.margin != margin) return false;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -184,6 +168,27 @@ void ContactFinder::useShapes(std::size_t link, std::size_t count) {
   if (in_use == count) return;
   in_use = std::min(count, impl_->links[link].shapes.size());
   impl_->found = {};
+}
+
+ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& surface,
+                                    const std::vector<Vec3>& vertices, double margin,
+                                    double way) const {
+  requireLinks(pose, impl_->links.size());
+  requireVertices(surface, vertices);
+  impl_->boundsOf(surface, vertices);  // moves the tree
+  if (impl_->knowsAll(pose, margin) || !impl_->knowsPlaces(pose, margin, way)) {
+    return find(pose, surface, vertices, margin);
+  }
+  ContactSet again;
+  for (Contact contact : impl_->found.contacts.contacts) {
+    const std::size_t link = at(contact.link);
+    const auto out = wayOut(link, pose.links[link], contact.point, margin);
+    if (!out || out->depth_m <= -margin) continue;
+    contact.depth_m = out->depth_m;
+    if (!out->normal.isZero()) contact.normal = out->normal;
+    again.contacts.push_back(contact);
+  }
+  return again;
 }
 
 double ContactFinder::reach(std::size_t link) const {

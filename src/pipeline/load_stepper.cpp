@@ -56,7 +56,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     world_.sticking.ride(pose, world_.tissue);
     if (round == 1) {
       expectTimeStep(durationOf(good.pose, pose));
-      meet(pose);
+      meet(pose, wayOfKnownPlaces());
     }
     pushRigid(pose);  // robot pose -> contacts -> loading patches
     std::vector<LoadingPatch> patches = patchesOfTools(world_);
@@ -223,10 +223,23 @@ SolveReport LoadStepper::balance() {
   return world_.tissue.lastReport();
 }
 
-void LoadStepper::meet(const RobotPose& pose) {
+// How far a tool may have gone since the last search (m) for the places that it found to do for the
+// first solve, after which is searched anew. Where nothing touched there may be no solve, and in a
+// jam, as among tools that are thin for the lattice, all of it counts.
+double LoadStepper::wayOfKnownPlaces() const {
+  if (!anyToolIn(world_.tissue.patches(), world_)) return 0.0;
+  if (world_.tissue.lastReport().status != SolveStatus::kOk) return 0.0;
+  const double spacing = world_.tissue.lattice().spacing();
+  for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
+    if (world_.finder.thickness(link) < tuning::kThickForPlaces * spacing) return 0.0;
+  }
+  return tuning::kKnownPlaces * spacing;
+}
+
+void LoadStepper::meet(const RobotPose& pose, double way) {
   touch_finder_.beginStep();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
-  world_.sliding.meet(touch_finder_.touchesAt(pose, held), pose, world_.tissue, held);
+  world_.sliding.meet(touch_finder_.touchesAt(pose, held, way), pose, world_.tissue, held);
 }
 
 // Patches of all tools, also of those that touch nothing now: where they would touch the rest shape

@@ -53,7 +53,8 @@ class LoadStepper {
   double durationOf(const RobotPose& from, const RobotPose& to) const;
   void expectTimeStep(double duration);
   void beginTimeStep(double duration, Touched touched);
-  void meet(const RobotPose& pose);
+  void meet(const RobotPose& pose, double way = 0.0);
+  double wayOfKnownPlaces() const;
   void pushRigid(const RobotPose& pose);
   double deepestInRigid(const RobotPose& pose);
   std::vector<LoadingPatch> lastTouches() const;

@@ -151,16 +151,20 @@ bool TouchFinder::turn(const RobotPose& pose, Contact& contact) const {
   return world_.isInWound(at(contact.link)) ? turnAside(pose, contact) : turnOut(pose, contact);
 }
 
-ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
+ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement,
+                                   double way) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), displacement, vertices_);
-  return contactsOf(pose, vertices_);
+  return contactsOf(pose, vertices_, way);
 }
 
-ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) const {
+ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                                   double way) const {
   const double spacing = world_.tissue.lattice().spacing();
+  const TissueSurface& surface = world_.tissue.surface();
   const auto find = [&](double gap) {
-    return world_.finder.find(pose, world_.tissue.surface(), vertices, gap * spacing);
+    return way > 0.0 ? world_.finder.findAgain(pose, surface, vertices, gap * spacing, way)
+                     : world_.finder.find(pose, surface, vertices, gap * spacing);
   };
   if (!world_.anyInWound()) return find(tuning::kNearGap);
   ContactSet contacts = find(tuning::kPlaceOfLip + tuning::kNearGap);
@@ -173,8 +177,9 @@ ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3
 }
 
 // Contacts of points that give way, with the planes that turnOut finds.
-ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held) {
-  ContactSet contacts = contactsAt(pose, world_.tissue.state().displacement);
+ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held,
+                                  double way) {
+  ContactSet contacts = contactsAt(pose, world_.tissue.state().displacement, way);
   const auto stands = [&](const Contact& contact) {
     return !SlidingContacts::givesWay(contact.place, world_.tissue, held);
   };

@@ -18,10 +18,15 @@ class TouchFinder {
   explicit TouchFinder(World& world) : world_(world), rims_(world) {}
 
   // With gaps that a solve may close.
-  ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
+  ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement,
+                        double way = 0.0);
   // Likewise, of the surface with its vertices there.
-  ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) const;
-  ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held);
+  ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                        double way = 0.0) const;
+  // Where no tool went farther than `way` (m) since the last search of this shape, at the places
+  // that it found.
+  ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held,
+                       double way = 0.0);
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);

@@ -60,6 +60,11 @@ constexpr double kTouchingGap = 0.02;
 // Of the spacing (1): gaps up to it are contacts, as a solve may close them. More: more springs
 // that do nothing; less: more rounds. Chosen.
 constexpr double kNearGap = 0.25;
+// Of the spacing (1): tools that go so far at most meet the tissue, in the first solve, at the
+// places of the last search, if all are so thick. More of the first: fewer searches; new touches
+// are found after that solve only. Less of the second: jams of thin tools end otherwise. Chosen.
+constexpr double kKnownPlaces = 0.04;
+constexpr double kThickForPlaces = 0.5;
 // Of the spacing (1): a touch farther from its tool is forgotten. Chosen.
 constexpr double kReach = 1.0;
 // Of the spacing (1): off a tool, the distance from which its edges look round, so that the normal

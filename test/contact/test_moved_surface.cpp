@@ -2,6 +2,7 @@
 // last of them: its trees are moved, not made anew, and nothing of an earlier shape stays.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "contact_fixtures.h"
@@ -75,6 +76,49 @@ TEST(MovedSurface, IsSeenAsIfItWereNew) {
   }
   EXPECT_GT(met, kSteps / 4);
   EXPECT_LT(met, kSteps);
+}
+
+// Where the tool has gone a little, vertices touch it as a new search would find them, and other
+// places are as deep as they are there; where it went farther, all is searched anew.
+TEST(MovedSurface, PlacesOfTheLastSearchAreSeenFromWhereTheToolIs) {
+  constexpr double kMargin = 0.00125, kWay = 0.0002;
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ContactFinder finder(
+      {makeTool({mesh(writeStl("again.stl", ballTriangles(12, 0.008)))}, 0.0)});
+  Walk walk(block);
+  const auto depthAtVertices = [&](const ContactSet& found) {
+    std::map<int, double> depths;
+    for (const Contact& contact : found.contacts) {
+      const int vertex = vertexAt(block.surface, contact.place);
+      if (vertex >= 0 && contact.depth_m > kWay - kMargin) depths[vertex] = contact.depth_m;
+    }
+    return depths;
+  };
+  int met = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Vec3> vertices = walk.next();
+    RobotPose pose = at(walk.place());
+    finder.find(pose, block.surface, vertices, kMargin);
+    pose.links[0].translation() += 0.6 * kWay * Vec3(0.5, -0.3, 0.7);
+    const ContactSet again = finder.findAgain(pose, block.surface, vertices, kMargin, kWay);
+    for (const Contact& contact : again.contacts) {
+      const auto out = finder.wayOut(0, pose.links[0], contact.point, kMargin);
+      ASSERT_TRUE(out);
+      EXPECT_EQ(out->depth_m, contact.depth_m);
+    }
+    const ContactSet anew = finder.find(pose, block.surface, vertices, kMargin);
+    EXPECT_EQ(depthAtVertices(again), depthAtVertices(anew));
+    met += static_cast<int>(again.contacts.size());
+    pose.links[0].translation().x() += 1.1 * kWay;
+    const ContactSet far = finder.findAgain(pose, block.surface, vertices, kMargin, kWay);
+    const ContactSet new_far = finder.find(pose, block.surface, vertices, kMargin);
+    ASSERT_EQ(far.contacts.size(), new_far.contacts.size());
+    for (std::size_t i = 0; i < far.contacts.size(); ++i) {
+      EXPECT_EQ(far.contacts[i].point, new_far.contacts[i].point);
+      EXPECT_EQ(far.contacts[i].depth_m, new_far.contacts[i].depth_m);
+    }
+  }
+  EXPECT_GT(met, 200);
 }
 
 }  // namespace

@@ -66,6 +66,11 @@ class ContactFinder {
   // Throws InputError when the pose has not one entry a link or the surface not one vertex each.
   ContactSet find(const RobotPose& pose, const TissueSurface& surface,
                   const std::vector<Vec3>& vertices, double margin) const;
+  // Likewise, but as long as the surface is that of the last find() with this margin, and no point
+  // of a link has gone farther than `way` (m) since, at the places of then: depths and normals are
+  // those of now.
+  ContactSet findAgain(const RobotPose& pose, const TissueSurface& surface,
+                       const std::vector<Vec3>& vertices, double margin, double way) const;
 
   // Of a point (m, tissue frame) and a link; nothing when it is farther than `reach` from it.
   std::optional<WayOut> wayOut(std::size_t link, const Pose& tissue_T_link, const Vec3& point,

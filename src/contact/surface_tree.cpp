@@ -1,0 +1,36 @@
+#include "surface_tree.h"
+
+#include <cstring>
+
+namespace robot_tissue {
+namespace {
+
+bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+}  // namespace
+
+const TriangleBvh& SurfaceTree::of(const TissueSurface& surface,
+                                   const std::vector<Vec3>& vertices) {
+  if (!isOf(surface)) {
+    revision_ = surface.revision;
+    rest_ = surface.rest;
+    tree_.emplace(rest_, surface.triangles);
+    ++trees_;
+    vertices_ = rest_;
+    ++moves_;
+  }
+  if (areSame(vertices, vertices_)) return *tree_;
+  vertices_ = vertices;
+  if (tree_->moveTo(vertices)) ++moves_;
+  return *tree_;
+}
+
+bool SurfaceTree::isOf(const TissueSurface& surface) const {
+  if (!tree_) return false;
+  if (surface.revision != 0 || revision_ != 0) return surface.revision == revision_;
+  return surface.triangles == tree_->triangles() && areSame(surface.rest, rest_);
+}
+
+}  // namespace robot_tissue
