@@ -69,8 +69,8 @@ robot_tissue_room(solvers/multigrid/level
 robot_tissue_room(solvers/multigrid/hierarchy
   USES base simd lattice material loads solvers/multigrid/level
   FILES coarse_correction.cpp coarse_correction.h composite_grid.cpp composite_grid.h
-    fas_restriction.cpp fas_restriction.h grid_hierarchy.cpp grid_hierarchy.h grid_transfer.cpp
-    grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
+    fas_restriction.cpp fas_restriction.h free_ends.cpp free_ends.h grid_hierarchy.cpp
+    grid_hierarchy.h grid_transfer.cpp grid_transfer.h level_constraints.cpp level_constraints.h level_source.cpp level_source.h
     light_nodes.cpp light_nodes.h listed_cells.cpp listed_cells.h membrane_levels.cpp
     membrane_levels.h node_displacements.cpp node_displacements.h node_loads.cpp node_loads.h
     open_parts.cpp open_parts.h tuning.h uncovered_part.cpp uncovered_part.h)

@@ -117,7 +117,8 @@ TEST(LevelSource, ListsWhatIsCutAndNoMore) {
                        h * Vec3(20.5, 12, 17)}),
         block.state, SplitCells::kParted);
   const CellSet& cells = *block.state.cells;
-  std::vector<LevelSource> sources = levelSources(block.lattice, block.model, 1.0, 3);
+  std::vector<LevelSource> sources =
+      levelSources(block.lattice, block.model, wholeOf(block.lattice.size()), 1.0, 3);
   listCuts(block.lattice, block.model, cells, 1.0, sources);
   ASSERT_GT(sources.size(), 2U);
   const ListedCells& finest = sources[0].listed;

@@ -170,7 +170,7 @@ TEST(LevelSource, TellsWhereACoarserLatticeDiffers) {
   const auto sources = [](const TissueConfig& of) {
     const Lattice lattice(of);
     const ElasticModel model(lattice, of);
-    return levelSources(lattice, model, 1.0, 3);
+    return levelSources(lattice, model, wholeOf(lattice.size()), 1.0, 3);
   };
   ASSERT_FALSE(sources(config).empty());
   EXPECT_TRUE(sources(config).front().rough.isEmpty());
@@ -191,7 +191,7 @@ TEST(LevelSource, IsNoneOfWhatHasAWeight) {
   config.gravity = Vec3(0, 0, -9.81);
   const Lattice lattice(config);
   const ElasticModel model(lattice, config);
-  EXPECT_TRUE(levelSources(lattice, model, 1.0, 3).empty());
+  EXPECT_TRUE(levelSources(lattice, model, wholeOf(lattice.size()), 1.0, 3).empty());
 }
 
 // Cycles in a part led nowhere, and all is visited: where they went is not measured with the fields

@@ -7,6 +7,8 @@
 // the length of the way from where the nodes would go without a force: what forces do in that time.
 #pragma once
 
+#include <algorithm>
+
 #include "solvers/multigrid/cycle/composite_shape.h"
 #include "solvers/multigrid/cycle/fas_cg_cycle.h"
 #include "solvers/multigrid/cycle/motion_left.h"
@@ -17,8 +19,12 @@ namespace robot_tissue {
 // What is really left over what cycles see, learned from solve to solve.
 class ErrorFactor {
  public:
-  // Of a lattice whose least factor a trial at rest showed.
-  void restart(double least) { least_ = value_ = least; }
+  // Of a lattice whose least factor a trial at rest showed. `known`: from solves of another part of
+  // it, 1 where there were none.
+  void restart(double least, double known) {
+    least_ = least;
+    value_ = std::max(least, known);
+  }
   void forget() { value_ = least_; }
   double value() const { return value_; }
   // From what a solve showed in its first cycles (kLong of them), or later.

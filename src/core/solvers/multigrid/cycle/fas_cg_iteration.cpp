@@ -24,10 +24,10 @@ FasCgIteration<Real>::FasCgIteration(const On& on, const LayeredOptions& options
 
 template <typename Real>
 void FasCgIteration<Real>::resetOnTrial(const Lattice& lattice, const ElasticModel& model,
-                                        const LatticeState& state) {
+                                        const LatticeState& state, double known) {
   cycle_.reset();
-  estimator_.factor.restart(
-      leastErrorFactor(shape_, lattice, model, state, cycle_.smootherSteps()));
+  estimator_.factor.restart(leastErrorFactor(shape_, lattice, model, state, cycle_.smootherSteps()),
+                            known);
 }
 
 template <typename Real>

@@ -33,7 +33,10 @@ class FasCgIteration {
     cycle_.reset();
     estimator_.factor.forget();
   }
-  void resetOnTrial(const Lattice& lattice, const ElasticModel& model, const LatticeState& state);
+  // `known`: as ErrorFactor::restart.
+  void resetOnTrial(const Lattice& lattice, const ElasticModel& model, const LatticeState& state,
+                    double known);
+  double errorFactor() const { return estimator_.factor.value(); }
   // The shape is on the same levels, of which another part is open.
   void noteOpened() { estimator_.noteOpened(); }
   void forget() { estimator_.factor.forget(); }

@@ -21,6 +21,7 @@ FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model
     : lattice_(lattice),
       model_(model),
       part_(lattice, options.tolerance),
+      ends_(lattice, options.tolerance),
       forces_(shape_, options.tolerance),
       warm_start_(shape_),
       iteration_({shape_, part_, limits_, forces_}, options) {
@@ -37,6 +38,8 @@ void FasCgSolver<Real>::forget() {
   forces_.noteHeld(0.0);
   if (shape_.exists()) shape_.levels().forgetMembranes();
   knows_cells_ = false;
+  if (shape_.exists() && shape_.levels().grid().hasEnds()) cells_.reset();
+  ends_.forget();
 }
 
 template <typename Real>
@@ -59,12 +62,15 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
         measured_ == nullptr || part_.isEmpty() ||
         changedCells(lattice_, *measured_, *state.cells).share > tuning::kMeasuredAgain;
   }
-  if (!are_others && (!is_measure_due_ || part_.isEmpty())) return;
+  const double known_factor = ends_.between().isEmpty() ? 1.0 : iteration_.errorFactor();
+  const bool is_longer = ends_.renew(part_.seeds(), state.cells);
+  is_measure_due_ = is_measure_due_ || is_longer;
+  if (!are_others && !is_longer && (!is_measure_due_ || part_.isEmpty())) return;
   knows_cells_ = false;
-  const bool can_wait = shape_.exists() && !part_.isEmpty();
+  const bool can_wait = shape_.exists() && !part_.isEmpty() && !is_longer;
   const double before_ms = budget.elapsedMs();
   if (is_measure_due_ && (!can_wait || budget.leftMs() >= measuring_ms_)) {
-    measureLevels(state);
+    measureLevels(state, is_longer ? known_factor : 1.0, is_longer);
     measuring_ms_ = budget.elapsedMs() - before_ms;
   } else if (are_others) {
     const std::vector<double> stiffness = shape_.levels().grid().greatestStiffness();
@@ -81,12 +87,14 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
 }
 
 template <typename Real>
-void FasCgSolver<Real>::measureLevels(const LatticeState& state) {
+void FasCgSolver<Real>::measureLevels(const LatticeState& state, double known_factor,
+                                      bool is_longer) {
   KnownLevels known;
-  if (shape_.exists()) known.sources = shape_.levels().takeSources();
+  known.between = ends_.between();
+  if (shape_.exists() && !is_longer) known.sources = shape_.levels().takeSources();
   shape_.reset(std::make_unique<GridHierarchy<Real>>(lattice_, model_, *state.cells, workers_.get(),
                                                      std::move(known)));
-  iteration_.resetOnTrial(lattice_, model_, state);
+  iteration_.resetOnTrial(lattice_, model_, state, known_factor);
   measured_ = state.cells;
   is_measure_due_ = false;
 }
@@ -151,7 +159,7 @@ SolveStatus FasCgSolver<Real>::balance(SolveContext& solve) {
     solve.warm_started = warm_start_.take() && forces_.greatestAtStart() > 0.0 && warm_start_.go();
     const SolveStatus status = iteration_.run(solve);
     if (status == SolveStatus::kUnconverged && !shape_.levels().isWhole()) {
-      open(solve, shape_.levels().grid().whole());
+      open(solve, shape_.levels().grid().between());
     } else if (status == SolveStatus::kOk && part_.raise(shape_.missedBeyond())) {
       writeShape(solve);
       open(solve, part_.box());

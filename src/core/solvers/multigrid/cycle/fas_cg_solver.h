@@ -19,6 +19,7 @@
 #include "solvers/multigrid/cycle/fas_cg_iteration.h"
 #include "solvers/multigrid/cycle/multigrid_solver.h"
 #include "solvers/multigrid/cycle/warm_start.h"
+#include "solvers/multigrid/hierarchy/free_ends.h"
 
 namespace robot_tissue {
 
@@ -40,7 +41,7 @@ class FasCgSolver : public MultigridSolver {
  private:
   void takeTimeStep(const SolveContext& solve);
   void findLevels(const LatticeState& state, const Budget& budget);
-  void measureLevels(const LatticeState& state);
+  void measureLevels(const LatticeState& state, double known_factor, bool is_longer);
   void open(const SolveContext& solve, const GridBox& box);
   void prepare(const SolveContext& solve);
   SolveStatus balance(SolveContext& solve);
@@ -59,6 +60,7 @@ class FasCgSolver : public MultigridSolver {
   double measuring_ms_ = 0.0;                // what it takes
   CompositeShape<Real> shape_;
   OpenPart part_;
+  FreeEnds ends_;
   WayLimits limits_;
   ForceBalance<Real> forces_;
   WarmStart<Real> warm_start_;

@@ -24,6 +24,7 @@ class OpenPart {
   void findSeeds(const SolveContext& solve, const std::vector<int>& disturbed);
   void seedAll() { seeds_ = wholeOf(lattice_.size()); }  // as where all nodes move in time
   bool isEmpty() const { return seeds_.isEmpty(); }
+  const GridBox& seeds() const { return seeds_; }  // around them
   GridBox box() const;  // the part, in grid points; may reach beyond the lattice
   int layers() const { return static_cast<int>(layers_); }
   // Nodes in patches and contacts of this solve.

@@ -45,7 +45,9 @@ double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
   levels.forgetMembranes();
   shape.finest().findForces();
   double least = 1.0;
-  const int cycles = levels.isWhole() ? tuning::kTrialCycles : tuning::kTrialCyclesInPart;
+  const int in_whole =
+      levels.grid().hasEnds() ? tuning::kTrialCyclesBetweenEnds : tuning::kTrialCycles;
+  const int cycles = levels.isWhole() ? in_whole : tuning::kTrialCyclesInPart;
   for (int cycle = 0; cycle < cycles; ++cycle) {
     levels.correction().find();
     const double seen = shape.correctionNorm();

@@ -121,6 +121,9 @@ constexpr int kShortest = 4;
 // comes later. Up: slower to build, slower motions count.
 constexpr int kTrialCycles = 6;
 constexpr int kTrialCyclesInPart = 12;
+// Of a long block between its free ends, which bends: what bends is slow, and seen late (3 cells
+// across: 1 until 20 cycles, 4 and 44 at 24). Up: likewise.
+constexpr int kTrialCyclesBetweenEnds = 40;
 // Spacings from end to end of its random numbers: so small that the answer is linear.
 constexpr double kTrialMotion = 1e-3;
 // Share of the cells: once cuts have changed more since the trial, it is made again, and the

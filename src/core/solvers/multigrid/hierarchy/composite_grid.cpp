@@ -49,15 +49,6 @@ std::array<int, 3> lastOn(const LevelSource& source, const std::array<int, 3>& f
   return place;
 }
 
-GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
-  GridBox local = box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    local.low[axis] -= origin[axis];
-    local.high[axis] -= origin[axis];
-  }
-  return local;
-}
-
 double greatestShear(const ElasticModel& model, const Lattice& lattice) {
   double greatest = 0.0;
   for (const Cell& cell : lattice.cells())
@@ -74,20 +65,22 @@ CompositeGrid<Real>::CompositeGrid(const Lattice& lattice, const ElasticModel& m
       workers_(workers),
       spacing_(lattice.spacing()),
       modulus_(greatestShear(model, lattice)),
+      between_(known.between.isEmpty() ? wholeOf(lattice.size()) : known.between),
       sources_(std::move(known.sources)),
       light_nodes_(lightNodes(cells)) {
   if (sources_.empty() && !model.movesInTime() && model.membrane() == nullptr) {
-    sources_ = levelSources(lattice, model, modulus_, tuning::kFewestPoints);
+    sources_ = levelSources(lattice, model, between_, modulus_, tuning::kFewestPoints);
   }
+  if (!isBlock()) between_ = wholeOf(lattice.size());
   listCuts(lattice, model, cells, modulus_, sources_);
   if (!isBlock()) {
     openAll(model, cells);
   } else if (known.stiffness.empty()) {
     measureStiffness();
-    openParts(openPartsAround(sources_, middle(), tuning::kLayersAroundMiddle));
+    openParts(partsAround(middle(), tuning::kLayersAroundMiddle));
   } else {
     measureChanged(known);
-    openParts(openPartsAround(sources_, known.box, known.layers));
+    openParts(partsAround(from(known.box, between_.low), known.layers));
   }
 }
 
@@ -160,10 +153,19 @@ GridBox CompositeGrid<Real>::middle() const {
 template <typename Real>
 bool CompositeGrid<Real>::open(const GridBox& box, int layers) {
   if (!isBlock()) return false;
-  const std::vector<GridBox> free = openPartsAround(sources_, box, layers);
+  const std::vector<GridBox> free = partsAround(from(box, between_.low), layers);
   if (free == free_) return false;
   openParts(free);
   return true;
+}
+
+// What is between ends is open as a whole.
+template <typename Real>
+std::vector<GridBox> CompositeGrid<Real>::partsAround(const GridBox& box, int layers) const {
+  if (!hasEnds()) return openPartsAround(sources_, box, layers);
+  std::vector<GridBox> free;
+  for (const LevelSource& source : sources_) free.push_back(source.whole());
+  return free;
 }
 
 template <typename Real>
@@ -193,7 +195,7 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
   for (int k = points.low[2]; k <= points.high[2]; ++k) {
     for (int j = points.low[1]; j <= points.high[1]; ++j) {
       for (int i = points.low[0]; i <= points.high[0]; ++i) {
-        nodes_.push_back(lattice_.node(i, j, k));
+        nodes_.push_back(nodeAt(i, j, k));
         entries_.push_back(entryOf(nodes_.back()));
       }
     }
@@ -329,7 +331,8 @@ int CompositeGrid<Real>::entryOf(int node) const {
   const int ghost = node - lattice_.nodeCount();
   if (ghost >= 0) return levels_.front().grid().beside + ghost;
   const GridBox& points = points_.front();
-  const std::array<int, 3>& place = lattice_.gridIndex(node);
+  std::array<int, 3> place = lattice_.gridIndex(node);
+  for (std::size_t axis = 0; axis < 3; ++axis) place[axis] -= between_.low[axis];
   if (!points.has(place)) return -1;
   return levels_.front().grid().index(place[0] - points.low[0], place[1] - points.low[1],
                                       place[2] - points.low[2]);

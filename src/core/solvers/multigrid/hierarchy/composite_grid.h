@@ -35,7 +35,18 @@ struct KnownLevels {
   GridBox changed;                // points of the finest lattice around those cells
   GridBox box;                    // to be open from the first on, with so many layers
   int layers = 0;
+  GridBox between = kNowhere;  // FreeEnds::between; empty: all of the lattice
 };
+
+// A box as seen from that point.
+inline GridBox from(const GridBox& box, const std::array<int, 3>& origin) {
+  GridBox local = box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    local.low[axis] -= origin[axis];
+    local.high[axis] -= origin[axis];
+  }
+  return local;
+}
 
 template <typename Real>
 class CompositeGrid {
@@ -53,8 +64,10 @@ class CompositeGrid {
   bool isBlock() const { return !sources_.empty(); }
   bool isCut() const { return isBlock() && !sources_.front().listed.isEmpty(); }
   bool isWhole() const { return free_.front() == whole(); }  // all of the finest level is open
-  const GridBox& free() const { return free_.front(); }      // nodes of the finest lattice
-  GridBox whole() const { return wholeOf(lattice_.size()); }
+  // Nodes of the finest lattice that are open, and those between its ends, which are left out.
+  const GridBox& free() const { return isWhole() ? between_ : free_.front(); }
+  const GridBox& between() const { return between_; }
+  bool hasEnds() const { return between_ != wholeOf(lattice_.size()); }
 
   std::size_t levelCount() const { return levels_.size(); }
   // For the next grid; empty where this is no block.
@@ -85,7 +98,10 @@ class CompositeGrid {
   // Of the tissue, in the open part, and their entries in the finest level's fields.
   const std::vector<int>& nodes() const { return nodes_; }
   const std::vector<int>& entries() const { return entries_; }
-  int entryOf(int node) const;  // -1: not in the open part
+  int entryOf(int node) const;             // -1: not in the open part
+  int nodeAt(int i, int j, int k) const {  // at a point of the finest level's whole grid
+    return lattice_.node(i + between_.low[0], j + between_.low[1], k + between_.low[2]);
+  }
 
   const Lattice& lattice() const { return lattice_; }
   Workers* workers() const { return workers_; }
@@ -109,6 +125,8 @@ class CompositeGrid {
   void measureChanged(const KnownLevels& known);
   double stiffnessIn(std::size_t level, const GridBox& points) const;
   GridBox middle() const;
+  GridBox whole() const { return from(between_, between_.low); }  // points of the finest level
+  std::vector<GridBox> partsAround(const GridBox& box, int layers) const;
   void openParts(const std::vector<GridBox>& free);
   GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
   void addListed(std::size_t level, const LevelGrid& grid, Coarsening& to) const;
@@ -123,6 +141,7 @@ class CompositeGrid {
   Workers* workers_;
   double spacing_;
   double modulus_ = 1.0;
+  GridBox between_;                   // points of the lattice: those of the levels' grids
   std::vector<LevelSource> sources_;  // empty where parts cannot be open
   std::vector<GridBox> free_;         // per level, in points of its whole grid
   std::vector<GridBox> points_;
@@ -148,7 +167,7 @@ void CompositeGrid<Real>::forNodesAt(std::size_t level, Visit visit) const {
                                           std::min(j << level, last[1]),
                                           std::min(k << level, last[2])};
         visit(grid.index(i - points.low[0], j - points.low[1], k - points.low[2]),
-              lattice_.node(there[0], there[1], there[2]));
+              nodeAt(there[0], there[1], there[2]));
       }
     }
   }

@@ -223,12 +223,15 @@ std::vector<LevelCell> LevelSource::uncutIn(const GridBox& points, const LevelGr
 }
 
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
-                                      double modulus, int fewest) {
+                                      const GridBox& between, double modulus, int fewest) {
   if (!isBlock(lattice, model)) return {};
   std::vector<LevelSource> sources(1);
-  sources.front().size = lattice.size();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sources.front().size[axis] = between.high[axis] - between.low[axis] + 1;
+  }
   sources.front().rough = kNowhere;
   for (const Cell& cell : lattice.cells()) {
+    if (!hasCell(between, lattice.gridIndex(cell.nodes[0]))) continue;
     const Moduli moduli = model.cellModuli(cell);
     sources.front().shear.push_back(moduli.shear / modulus);
     sources.front().bulk.push_back(moduli.bulk / modulus);
@@ -236,7 +239,9 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
   }
   lessen(sources.front());
   Held held;
-  for (int node = 0; node < lattice.nodeCount(); ++node) held.push_back(lattice.isFixed(node));
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    if (between.has(lattice.gridIndex(node))) held.push_back(lattice.isFixed(node));
+  }
   while (*std::max_element(sources.back().size.begin(), sources.back().size.end()) > fewest) {
     LevelSource coarse = coarser(sources.back());
     coarse.rough = kNowhere;

@@ -40,11 +40,11 @@ struct LevelSource {
   }
 };
 
-// From the finest on, down to `fewest` points along the longest side, of the block as if nothing
-// was cut. Empty where the tissue was no block before cuts, or has a weight, which is no load of a
-// part: then all levels are open as a whole.
+// From the finest on, down to `fewest` points along the longest side, of what of the block is
+// between these points, as if nothing was cut. Empty where the tissue was no block before cuts, or
+// has a weight, which is no load of a part: then all levels are open as a whole.
 std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel& model,
-                                      double modulus, int fewest);
+                                      const GridBox& between, double modulus, int fewest);
 
 // Lists in each of them what is cut.
 void listCuts(const Lattice& lattice, const ElasticModel& model, const CellSet& cells,

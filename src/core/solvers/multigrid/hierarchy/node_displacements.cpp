@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/multigrid/hierarchy/free_ends.h"
 #include "solvers/multigrid/hierarchy/tuning.h"
 
 namespace robot_tissue {
@@ -48,9 +49,18 @@ void NodeDisplacements<Real>::takeCoarse(const std::vector<Vec3>& displacement) 
   }
 }
 
+// Of an end's node, that of the point at which the end begins: as good where an end turns little.
 template <typename Real>
 Vec3 NodeDisplacements<Real>::of(int node) const {
   const int entry = grid_.entryOf(node);
+  if (entry < 0 && grid_.hasEnds()) {
+    const std::array<int, 3>& place = grid_.lattice().gridIndex(node);
+    const GridBox& between = grid_.between();
+    const auto along = [&](std::size_t axis) {
+      return std::clamp(place[axis], between.low[axis], between.high[axis]);
+    };
+    return of(grid_.lattice().node(along(0), along(1), along(2)));
+  }
   if (entry < 0) return grid_.spacing() * valueAt(0, grid_.lattice().gridIndex(node));
   return grid_.spacing() * vectorAt(grid_.finest().displacement, entry);
 }
@@ -92,6 +102,7 @@ void NodeDisplacements<Real>::writeTo(std::vector<Vec3>& displacement,
     }
   }
   if (!grid_.isWhole()) writeInterpolated(displacement);
+  if (grid_.hasEnds()) moveEnds(grid_.lattice(), grid_.between(), displacement);
 }
 
 // Nodes outside of the finest level's open part. From the coarsest level down, each one's whole

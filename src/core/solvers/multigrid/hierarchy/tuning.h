@@ -35,6 +35,15 @@ constexpr double kMostOpen = 0.6;
 constexpr int kAroundMiddle = 8;
 constexpr int kLayersAroundMiddle = 6;
 
+// --- Free ends of long blocks (FreeEnds)
+
+// Of what balances in itself, e^-kDecay is left so far away as the block is wide: 4.2 in a strip's
+// plane (Timoshenko and Goodier 1970), less where a thin one bends (chosen). Up: shorter blocks,
+// and more is missed.
+constexpr double kDecay = 2.0;
+// Of the tolerance (1): what is left of it where an end begins (chosen). Up: likewise.
+constexpr double kLeftOfEnds = 0.1;
+
 // --- Membranes
 
 // Spacings: their stiffness is found anew where a node of theirs has moved farther (chosen). Up: it
