@@ -91,7 +91,6 @@ struct Found {
   RobotPose pose;
   double margin = 0.0;
   ContactSet contacts;
-  std::vector<double> deepest;  // per link (m)
 };
 
 }  // namespace
@@ -107,7 +106,8 @@ struct ContactFinder::Impl {
                    const std::vector<std::size_t>& near_shapes, const TissueSurface& surface,
                    const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
   double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
-                     const TissueSurface& surface, const std::vector<Vec3>& vertices);
+                     const TissueSurface& surface, const std::vector<Vec3>& vertices,
+                     const Bulge& bulge);
   // Box around the surface. Without a tree, which is made once a link comes near, from all
   // vertices.
   Box boundsOf(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
@@ -117,7 +117,7 @@ struct ContactFinder::Impl {
 
   // The last find() was of that link there, and of the surface that the tree is of.
   bool knows(std::size_t link, const Pose& tissue_T_link) const {
-    return link < found.deepest.size() && found.move == surface_tree.moves() &&
+    return link < found.pose.links.size() && found.move == surface_tree.moves() &&
            found.pose.links[link].matrix() == tissue_T_link.matrix();
   }
 
@@ -280,28 +280,28 @@ ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surfa
     if (near_shapes[link].empty()) continue;
     impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin, found);
   }
-  impl_->found = {impl_->surface_tree.moves(), pose, margin, found,
-                  std::vector<double>(links.size(), 0.0)};
-  for (const Contact& contact : found.contacts) {
-    double& deepest = impl_->found.deepest[at(contact.link)];
-    deepest = std::max(deepest, contact.depth_m);
-  }
+  impl_->found = {impl_->surface_tree.moves(), pose, margin, found};
   return found;
 }
 
 // `surface_tree` must be of these vertices.
 double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link,
                                         const Pose& tissue_T_link, const TissueSurface& surface,
-                                        const std::vector<Vec3>& vertices) {
-  double deepest = 0.0;
-  if (knows(link, tissue_T_link)) {
-    deepest = found.deepest[link];
-  } else {
+                                        const std::vector<Vec3>& vertices, const Bulge& bulge) {
+  const bool is_known = knows(link, tissue_T_link);
+  ContactSet asked;
+  if (!is_known) {
     std::vector<std::size_t> shapes(here.size());
     std::iota(shapes.begin(), shapes.end(), std::size_t{0});
-    ContactSet contacts;
-    addContacts(here, link, shapes, surface, vertices, 0.0, contacts);
-    deepest = robot_tissue::deepest(contacts);
+    addContacts(here, link, shapes, surface, vertices, 0.0, asked);
+  }
+  const auto of_link = [&](const SurfacePoint& point) -> Vec3 {
+    return bulge ? bulge(link, point) : Vec3::Zero();
+  };
+  double deepest = 0.0;
+  for (const Contact& contact : (is_known ? found.contacts : asked).contacts) {
+    if (at(contact.link) != link) continue;
+    deepest = std::max(deepest, contact.depth_m - of_link(contact.place).dot(contact.normal));
   }
   for (std::size_t i = 0; i < here.size(); ++i) {
     const std::vector<Vec3>& points = links[link].surface_points[i];
@@ -309,9 +309,9 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
     if (here[i].shape->isMesh()) {
       ClearPoints& clear = links[link].clear_points[i];
       clear.beginLook(here[i], surface_tree.trees(), vertices, points.size());
-      deepest = deepestInside(here[i], points, tree, deepest, clear);
+      deepest = deepestInside(here[i], points, tree, of_link, deepest, clear);
     } else {
-      deepest = deepestInside(here[i], points, tree, deepest);
+      deepest = deepestInside(here[i], points, tree, of_link, deepest);
     }
   }
   return deepest;
@@ -343,7 +343,8 @@ std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& t
 
 std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& links,
                                                 const RobotPose& pose, const TissueSurface& surface,
-                                                const std::vector<Vec3>& vertices) const {
+                                                const std::vector<Vec3>& vertices,
+                                                const Bulge& bulge) const {
   requireLinks(pose, impl_->links.size());
   requireVertices(surface, vertices);
   std::vector<double> depths(links.size(), 0.0);
@@ -352,7 +353,7 @@ std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& 
     const PlacedLink here = impl_->links[links[i]].placedAt(pose.links[links[i]]);
     if (!robot_tissue::boundsOf(here).intersects(bounds)) continue;
     if (!impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
-    depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices);
+    depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices, bulge);
   }
   return depths;
 }

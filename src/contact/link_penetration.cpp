@@ -77,6 +77,13 @@ std::optional<TriangleBvh::Nearest> footOf(const Vec3& point, const TriangleBvh&
   return surface.nearest(point, std::numeric_limits<double>::infinity());
 }
 
+// Of a point inside the triangles, in the surface that is off them by `bulge`.
+double depthOf(const Vec3& point, const TriangleBvh::Nearest& foot, const PointBulge& bulge) {
+  if (foot.distance <= 0.0) return 0.0;
+  const Vec3 inwards = (point - foot.point) / foot.distance;
+  return foot.distance - bulge({foot.triangle, foot.weights}).dot(inwards);
+}
+
 }  // namespace
 
 std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
@@ -107,7 +114,7 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
 }
 
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, double known) {
+                     const TriangleBvh& surface, const PointBulge& bulge, double known) {
   const Box box = surface.bounds();
   double deepest = known;
   TriangleBvh::Nearest foot;
@@ -116,7 +123,9 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
     if (!box.contains(point) || surface.nearest(point, least, least)) return false;
     const auto nearest = footOf(point, surface);
     if (!nearest || nearest->distance <= least) return false;
-    deepest = nearest->distance;
+    const double depth = depthOf(point, *nearest, bulge);
+    if (depth <= least) return false;
+    deepest = depth;
     foot = *nearest;
     place = point;
     return true;
@@ -135,7 +144,8 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
 }
 
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, double known, ClearPoints& clear) {
+                     const TriangleBvh& surface, const PointBulge& bulge, double known,
+                     ClearPoints& clear) {
   const Box box = surface.bounds();
   const double ahead = tuning::kLooksAhead * clear.lastWay();
   double deepest = known;
@@ -148,7 +158,7 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
     }
     if (surface.nearest(point, deepest, deepest)) continue;
     if (const auto nearest = footOf(point, surface)) {
-      deepest = std::max(deepest, nearest->distance);
+      deepest = std::max(deepest, depthOf(point, *nearest, bulge));
       continue;
     }
     const auto near = surface.nearest(point, ahead, clear.lastWay());

@@ -1,6 +1,7 @@
 // How deep a link is inside a closed surface.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "clear_points.h"
@@ -17,13 +18,15 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape);
 // Of the points (shape's frame), the depth of the deepest inside the surface (m), or `known` when
 // none is deeper: the distance to the nearest triangle. For a convex shape the deepest one then
 // moves on to where the shape reaches farthest from that triangle, so that it is exact over a flat
-// surface.
+// surface. The surface is off its triangles by `bulge` (m).
+using PointBulge = std::function<Vec3(const SurfacePoint& point)>;
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, double known);
+                     const TriangleBvh& surface, const PointBulge& bulge, double known);
 
 // The same of a mesh, in a look that was begun of `clear`: its points that are still clear are left
 // out.
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, double known, ClearPoints& clear);
+                     const TriangleBvh& surface, const PointBulge& bulge, double known,
+                     ClearPoints& clear);
 
 }  // namespace robot_tissue

@@ -28,8 +28,8 @@ robot_tissue_room(cutting
     cut.cpp cut.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
-  PUBLIC surface.h
-  FILES cell_parts.cpp cell_parts.h cut_mesh_surface.cpp cut_mesh_surface.h
+  PUBLIC curved_surface.h surface.h
+  FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h
     held_surface.cpp held_surface.h hinges.cpp hinges.h mesh_surface.cpp mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h
     surface.cpp)
 robot_tissue_room(membrane

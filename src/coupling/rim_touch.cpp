@@ -72,6 +72,7 @@ void putPlane(SlidingContacts::ContactConstraint& touch) {
   ContactSpring& spring = touch.spring;
   spring.plane_point =
       touch.tool_point - touch.compliance.normal * spring.multiplier * spring.normal;
+  spring.turning = spring.multiplier * touch.contact.turn;
 }
 
 double softened(double stiffness, double compliance) {

@@ -38,6 +38,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     touch.spring.friction_bound *= times;
     touch.tool_point = moved * touch.tool_point;
     touch.spring.normal = moved.linear() * touch.spring.normal;
+    touch.spring.turned_from = moved * touch.spring.turned_from;
     putPlane(touch);
     anchor(pose, touch);
   }
@@ -71,14 +72,15 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
                            const Held& held) {
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
-    touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
+    touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
     touch.firm_stiffness = touch.spring.stiffness;
     soften(tissue, touch);
   }
   for (const Contact& contact : contacts.contacts) {
-    if (!friction_[at(contact.tool)]) continue;
+    if (!friction_[at(contact.tool)] || contact.wanders) continue;
     if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
   }
+  wander(contacts, {}, pose, tissue, held);
   forgetLost(held);
   stickFirst(tissue);
 }
@@ -112,13 +114,15 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
   is_settled_ = whole && updateMultipliers(tissue);
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
+    if (touches_[i].contact.wanders) continue;
     if (wavers && touches_[i].found && tracked[i]) continue;
     if (!track(tracked[i], pose, tissue, touches_[i])) is_settled_ = false;
   }
   for (const Contact& contact : found.contacts) {
-    if (!friction_[at(contact.tool)]) continue;
+    if (!friction_[at(contact.tool)] || contact.wanders) continue;
     if (!take(contact, pose, tissue, held)) is_settled_ = false;
   }
+  if (!wander(found, tracked, pose, tissue, held)) is_settled_ = false;
   forgetLost(held);
   return is_settled_;
 }
@@ -132,6 +136,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   ContactSpring& spring = touch.spring;
   touch.found = contact.has_value();
   if (!contact) return spring.multiplier <= 0.0;
+  spring.rest += contact->bulge - touch.contact.bulge;
   putContact(*contact, tissue.surface(), touch);
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.contact.link)].linear() * touch.since_normal;
@@ -140,11 +145,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   }
   soften(tissue, touch);
   anchor(pose, touch);
-  const double gap = gapOf(spring, tissue.state().displacement);
-  const double slack = slackOf(touch, tissue);
-  return gap >= -slack &&
-         (gap <= slack ||
-          spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.contact.tool)]);
+  return isAtRest(touch, tissue);
 }
 
 // The depth or gap that counts as none (m): closing it would change the touch's force by less than
@@ -304,9 +305,10 @@ void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const T
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
   putContact(contact, tissue.surface(), touch);
-  touch.stiffening = carry(touch.contact.place, tissue, held, touch.spring);
+  touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
   touch.firm_stiffness = touch.spring.stiffness;
   touch.spring.normal = contact.normal;
+  touch.spring.turned_from = contact.point;
   touch.tool_point = planePointOf(contact, tissue);
   soften(tissue, touch);
   touch.since_normal = pose.links[at(touch.contact.link)].linear().transpose() * contact.normal;
@@ -325,7 +327,8 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
     touch.since_normal = link_R_tissue * spring.normal;
     if (spring.multiplier <= 0.0) continue;
     const double force = normalForceOf(spring, *since_displacement_);
-    const Vec3 drag = forceOf(spring, *since_displacement_) - force * spring.normal;
+    const Vec3 drag = forceOf(spring, *since_displacement_) - force * spring.normal -
+                      turningForceOf(spring, *since_displacement_);
     touch.friction_ratio = link_R_tissue * drag / spring.multiplier;
   }
   for (ContactConstraint& touch : touches_) {

@@ -94,6 +94,7 @@ void putContact(const Contact& contact, const TissueSurface& surface, Touch& tou
 void noteSolved(Touch& touch) {
   touch.solved = touch.spring;
   touch.solved_at = touch.contact.place.barycentric;
+  touch.solved_bulge = touch.contact.bulge;
 }
 
 bool SlidingContacts::takeSurface(const RobotPose& pose, const Tissue& tissue) {
@@ -122,6 +123,7 @@ void SlidingContacts::goOnAsSolved(const TissueSurface& surface) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), is_new), touches_.end());
   for (Touch& touch : touches_) {
     if (touch.vertex < 0) touch.contact.place.barycentric = touch.solved_at;
+    touch.contact.bulge = touch.solved_bulge;
     touch.spring = touch.solved;
     touch.spring.carriers = carriersAt(surface, touch.contact.place);
   }

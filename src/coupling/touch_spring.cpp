@@ -35,13 +35,13 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most) {
   return std::cos(most) * from + std::sin(most) * across.normalized();
 }
 
-double carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+double carry(const Contact& contact, const Tissue& tissue, const std::vector<std::uint8_t>& held,
              ContactSpring& spring) {
   const auto& surface = tissue.surface();
-  SurfacePoint point = place;
+  SurfacePoint point = contact.place;
   point.barycentric =
       (point.barycentric.array() < tuning::kNoShare).select(0.0, point.barycentric).eval();
-  spring.rest.setZero();
+  spring.rest = contact.bulge;
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(point.triangle)][at(corner)];
     spring.rest += point.barycentric[corner] * surface.rest[at(vertex)];

@@ -27,7 +27,7 @@ Vec3 turnedBy(const Vec3& from, const Vec3& to, double most);
 // point, 1 / sum of weight^2 / node stiffness over the carriers that give way. `held`: per node,
 // not 0 = it does not. Returns how much stiffer the tissue is there in the time step under way
 // (Tissue::stiffening).
-double carry(const SurfacePoint& place, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+double carry(const Contact& contact, const Tissue& tissue, const std::vector<std::uint8_t>& held,
              ContactSpring& spring);
 
 }  // namespace robot_tissue

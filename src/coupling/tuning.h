@@ -50,6 +50,8 @@ constexpr double kSameSideOfTool = 0.3;
 constexpr double kFarOff = 0.3;
 // Barycentric (1): points of a triangle that are nearer than this are one touch. Chosen.
 constexpr double kSamePoint = 0.25;
+// Of the spacing (1): farther on the tool, two touches that wander are not the same. Chosen.
+constexpr double kFarthestWander = 0.5;
 // Of the slack (1): a point that is so much deeper than the touch takes its place. Chosen.
 constexpr double kDeeperThanTouch = 0.2;
 // Barycentric (1): a corner's share that is none. Rounding.

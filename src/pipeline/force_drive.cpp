@@ -91,15 +91,18 @@ bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
   const double longest = way.longest;
   Search search(drive.force->norm(), longest);
   search.note(drive.way, way.met().dot(direction));
+  bool had_time = true;
   for (int pushes = 0; !search.hasMet() && pushes < tuning::kMostCorrections; ++pushes) {
     const double length = search.next();
     if (drive.way + length > tuning::kFarthestPush * longest) break;
     drive.way += length;
-    const bool goes_on = way.walk();
+    had_time = way.walk();
     search.note(drive.way, way.met().dot(direction));
-    if (!goes_on) break;
+    if (!had_time) break;
   }
-  const bool nearer = !search.turnedBack() || search.off() < tuning::kNearerForce * drive.off;
+  // What was cut short tells nothing of where corrections lead.
+  const bool nearer =
+      !had_time || !search.turnedBack() || search.off() < tuning::kNearerForce * drive.off;
   const bool has_way_left = !search.hasMet() && !way.lost() && nearer &&
                             drive.way < (tuning::kFarthestPush - 1.0) * longest;
   drive.off = has_way_left ? search.off() : kInfinity;

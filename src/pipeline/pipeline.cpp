@@ -389,7 +389,7 @@ void Pipeline::describeTools() {
 void Pipeline::findDepths() const {
   if (!std::exchange(world_.depths_are_due, false)) return;
   const Stopwatch watch(world_.report.contact_ms);
-  const std::vector<double> deepest = deepestPoints(world_);
+  const std::vector<double> deepest = deepestPoints(world_, parts_->touch_finder);
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     world_.report.tools[tool].max_penetration = deepest[tool];
   }

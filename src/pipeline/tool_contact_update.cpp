@@ -129,8 +129,8 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
   } else if (!new_surface) {
-    const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose), contacts,
-                                               world_.pose, world_.tissue, held, shape);
+    const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose, contacts),
+                                               contacts, world_.pose, world_.tissue, held, shape);
     if (settled && (!world_.tissue.isUntouched() || world_.sliding.touches().empty())) return false;
   }
   if (round == Round::kLast) return true;

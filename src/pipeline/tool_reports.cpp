@@ -51,7 +51,7 @@ Vec3 normalOf(const World& world, std::size_t tool) {
 
 }  // namespace
 
-std::vector<double> deepestPoints(const World& world) {
+std::vector<double> deepestPoints(const World& world, TouchFinder& touch_finder) {
   const RobotPose& pose = world.report.lost ? world.asked : world.pose;
   std::vector<std::size_t> near, tool_of;
   for (std::size_t tool = 0; tool < world.tools.size(); ++tool) {
@@ -64,8 +64,7 @@ std::vector<double> deepestPoints(const World& world) {
   }
   std::vector<double> deepest(world.tools.size(), 0.0);
   if (near.empty()) return deepest;
-  const std::vector<double> depths =
-      world.finder.penetrations(near, pose, world.tissue.surface(), world.tissue.vertices());
+  const std::vector<double> depths = touch_finder.penetrations(near, pose);
   for (std::size_t i = 0; i < near.size(); ++i) {
     deepest[tool_of[i]] = std::max(deepest[tool_of[i]], depths[i]);
   }

@@ -4,13 +4,14 @@
 #include <cstddef>
 
 #include "grasping.h"
+#include "touch_finder.h"
 #include "world.h"
 
 namespace robot_tissue {
 
 // Of each tool the deepest point in the tissue (m), also of one that touches nothing that gives
 // way.
-std::vector<double> deepestPoints(const World& world);
+std::vector<double> deepestPoints(const World& world, TouchFinder& touch_finder);
 
 // The report of a tool, but for max_penetration (deepestPoints) and offset (ForceDrive), which the
 // caller puts in.

@@ -41,6 +41,8 @@ class ToolRims {
   double partOfDepth(const Contact& contact) const;
   // Rims bear all that it would.
   static bool isTakenOver(const Contact& contact);
+  // Whether tissue sticks to the tool, so that it has no rims.
+  bool isSticking(int tool) const;
 
  private:
   struct AtRim {
@@ -60,7 +62,6 @@ class ToolRims {
   };
 
   void takeSurface();
-  bool isSticking(int tool) const;
   Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
   std::optional<FlatFace> faceUnder(const Contact& contact, const Link& link,
                                     const Vec3& facing) const;

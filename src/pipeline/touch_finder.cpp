@@ -11,13 +11,18 @@
 namespace robot_tissue {
 
 // The contact of each touch in the present shape: its point, and the plane of its link there.
-std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose) {
+std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose,
+                                                              const ContactSet& found) {
   const Stopwatch watch(world_.report.contact_ms);
   std::vector<std::optional<Contact>> tracked;
   const std::set<std::pair<int, int>> come_in = verticesComeIn();
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (!touch.contact.rim.is_beyond && come_in.count({touch.contact.link, touch.vertex}) != 0) {
       tracked.emplace_back();
+      continue;
+    }
+    if (touch.contact.wanders) {
+      tracked.push_back(goAlong(pose, found, touch));
       continue;
     }
     if (!touch.contact.rim.edges.empty()) {
@@ -28,7 +33,8 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
     Contact contact = touch.contact;
     contact.normal = touch.spring.normal;
     contact.depth_m = 0.0;
-    contact.point = pointOf(touch.spring, world_.tissue.state().displacement);
+    contact.point = pointOf(touch.spring, world_.tissue.state().displacement) - contact.bulge;
+    curve(vertices_, contact);
     const bool near = turn(pose, contact);
     rims_.mark(contact);
     const bool stays = near && !ToolRims::isTakenOver(contact);
@@ -54,40 +60,47 @@ std::set<std::pair<int, int>> TouchFinder::verticesComeIn() const {
 Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
   const TissueSurface& surface = world_.tissue.surface();
   const int vertex = vertexAt(surface, contact.place);
-  if (vertex >= 0) return -areas_.doubleAreaAt(vertex, surface, vertices_).normalized();
+  if (vertex >= 0) return -curved_.doubleAreaAt(vertex, surface, vertices_).normalized();
   return -doubleArea(vertices_, surface.triangles[at(contact.place.triangle)]).normalized();
 }
 
-// The same between vertices, where it goes evenly from one to the other (Phong 1975), as that of
-// the smooth surface that the triangles stand for: what slides along them would catch on facets as
-// on teeth.
+// The same between vertices, of the curved surface: what slides along triangles would catch on
+// facets as on teeth.
 Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
-  const TissueSurface& surface = world_.tissue.surface();
-  const int triangle = contact.place.triangle;
-  Vec3 smooth = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const int vertex = surface.triangles[at(triangle)][at(k)];
-    smooth -= contact.place.barycentric[k] *
-              areas_.doubleAreaBeside(triangle, vertex, surface, vertices_).normalized();
-  }
   const double share = smooth_[at(contact.link)];
-  return (share * smooth.normalized() + (1.0 - share) * inwardsAt(contact)).normalized();
+  const Vec3 smooth = curved_.normalAt(contact.place, world_.tissue.surface(), vertices_);
+  return ((1.0 - share) * inwardsAt(contact) - share * smooth).normalized();
+}
+
+// Brings a contact, which is of a triangle, onto the curved surface. Its depth to first order.
+void TouchFinder::curve(const std::vector<Vec3>& vertices, Contact& contact) const {
+  const TissueSurface& surface = world_.tissue.surface();
+  const double share = smooth_[at(contact.link)];
+  contact.bulge.setZero();
+  if (share == 0.0 || vertexAt(surface, contact.place) >= 0) return;
+  contact.bulge = share * curved_.bulgeAt(contact.place, surface, vertices);
+  contact.point += contact.bulge;
+  contact.depth_m -= contact.bulge.dot(contact.normal);
 }
 
 // A link thinner than half a spacing is among so few triangles that these count by themselves, one
 // thicker than a spacing touches the smooth surface. Under a flat face normals are the face's;
 // triangles at its edge lie partly on it, and their smooth normals would let it in.
-void TouchFinder::findSmooth(const RobotPose& pose, const ContactSet& contacts) {
+std::vector<double> TouchFinder::smoothnesses(const RobotPose& pose, const ContactSet& contacts,
+                                              const std::vector<Vec3>& vertices) const {
   const double spacing = world_.tissue.lattice().spacing();
-  smooth_.assign(pose.links.size(), 0.0);
+  std::vector<double> smooth(pose.links.size(), 0.0);
   std::set<int> touching;
-  for (const Contact& contact : contacts.contacts) touching.insert(contact.link);
+  for (const Contact& contact : contacts.contacts) {
+    if (!rims_.isSticking(contact.tool)) touching.insert(contact.link);
+  }
   for (const int link : touching) {
     const double thick = 2.0 * world_.finder.thickness(at(link)) / spacing - 1.0;
     if (thick <= 0.0) continue;
-    smooth_[at(link)] = std::min(1.0, thick) *
-                        (1.0 - rims_.flatness(link, pose.links[at(link)], contacts, vertices_));
+    smooth[at(link)] = std::min(1.0, thick) *
+                       (1.0 - rims_.flatness(link, pose.links[at(link)], contacts, vertices));
   }
+  return smooth;
 }
 
 // A tool presses a surface inwards, as the surface lies: that way its point goes out of the tool,
@@ -106,9 +119,9 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   if (!nearest) return false;
   const double farthest = tuning::kDetour * std::max(nearest->depth_m, 0.0) +
                           tuning::kDetourBeyond * std::min(spacing, world_.finder.thickness(link));
-  const auto along =
-      world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
-                                tuning::kOffEdge * spacing, tuning::kReach * spacing, farthest);
+  const double off = tuning::kOffEdge + smooth_[link] * (tuning::kOffSharpEdge - tuning::kOffEdge);
+  const auto along = world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
+                                               off * spacing, tuning::kReach * spacing, farthest);
   const WayOut& out = along ? *along : *nearest;
   if (out.normal.norm() < 0.5) return true;
   contact.normal = out.normal;
@@ -155,11 +168,19 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
                                    double way) {
   const Stopwatch watch(world_.report.contact_ms);
   deform(world_.tissue.surface(), displacement, vertices_);
-  return contactsOf(pose, vertices_, way);
+  return flatContacts(pose, vertices_, way);
 }
 
-ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices,
-                                   double way) const {
+ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) {
+  ContactSet contacts = flatContacts(pose, vertices);
+  curved_.takeSurface(world_.tissue.surface());
+  smooth_.resize(pose.links.size(), 0.0);
+  for (Contact& contact : contacts.contacts) curve(vertices, contact);
+  return contacts;
+}
+
+ContactSet TouchFinder::flatContacts(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                                     double way) const {
   const double spacing = world_.tissue.lattice().spacing();
   const TissueSurface& surface = world_.tissue.surface();
   const auto find = [&](double gap) {
@@ -186,13 +207,18 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
-  areas_.takeSurface(world_.tissue.surface());
-  findSmooth(pose, contacts);
+  curved_.takeSurface(world_.tissue.surface());
+  smooth_ = smoothnesses(pose, contacts, vertices_);
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay
   std::size_t kept = 0;
   for (Contact& contact : all) {
+    curve(vertices_, contact);
     const double depth = contact.depth_m;
     if (!turn(pose, contact) && world_.isInWound(at(contact.link))) continue;
+    contact.wanders = wanders(pose, contact);
+    if (contact.wanders) {
+      contact.turn = curved_.hollowAt(contact.place, world_.tissue.surface(), vertices_);
+    }
     nearest.push_back(depth);
     all[kept++] = contact;
   }
@@ -216,6 +242,19 @@ void TouchFinder::takeRims(const std::vector<std::uint8_t>& held, ContactSet& co
   for (const Contact& contact : rims_.beyond(vertices_).contacts) {
     if (SlidingContacts::givesWay(contact.place, world_.tissue, held)) all.push_back(contact);
   }
+}
+
+std::vector<double> TouchFinder::penetrations(const std::vector<std::size_t>& links,
+                                              const RobotPose& pose) {
+  const TissueSurface& surface = world_.tissue.surface();
+  const std::vector<Vec3>& vertices = world_.tissue.vertices();
+  curved_.takeSurface(surface);
+  const auto smooth = smoothnesses(pose, flatContacts(pose, vertices), vertices);
+  const auto bulge = [&](std::size_t link, const SurfacePoint& point) -> Vec3 {
+    if (smooth[link] == 0.0) return Vec3::Zero();
+    return smooth[link] * curved_.bulgeAt(point, surface, vertices);
+  };
+  return world_.finder.penetrations(links, pose, surface, vertices, bulge);
 }
 
 // A tool that no longer touches the deformed surface may be in the way of its return to rest.

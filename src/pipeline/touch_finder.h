@@ -1,14 +1,15 @@
 // Where the tools touch the tissue, and which way out of them the tissue's points go.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "robot_tissue/core/curved_surface.h"
 #include "tool_rims.h"
-#include "vertex_areas.h"
 #include "world.h"
 
 namespace robot_tissue {
@@ -17,18 +18,19 @@ class TouchFinder {
  public:
   explicit TouchFinder(World& world) : world_(world), rims_(world) {}
 
-  // With gaps that a solve may close.
+  // With gaps that a solve may close: of the triangles. Where no tool went farther than `way` (m)
+  // since the last search of this shape, at the places that it found; so touchesAt.
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement,
                         double way = 0.0);
-  // Likewise, of the surface with its vertices there.
-  ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices,
-                        double way = 0.0) const;
-  // Where no tool went farther than `way` (m) since the last search of this shape, at the places
-  // that it found.
+  // Of the curved surface with its vertices there.
+  ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held,
                        double way = 0.0);
   // After touchesAt.
-  std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose);
+  std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose, const ContactSet& found);
+  // How deep each of these links is in the surface that it touches (m), as
+  // ContactFinder::penetrations.
+  std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);
 
   void beginStep() { rims_.beginStep(); }
@@ -39,19 +41,32 @@ class TouchFinder {
   void restoreDepths(const std::vector<double>& depths) { depths_ = depths; }
 
  private:
+  // Of the surface's triangles: numbers of its ends, the lower first, and which corners these are.
+  struct Edge {
+    std::array<int, 2> corners;
+    std::array<int, 2> vertices;
+  };
+  bool wanders(const RobotPose& pose, const Contact& contact) const;
+  std::optional<Edge> edgeAt(const SurfacePoint& place) const;
+  std::optional<Contact> goAlong(const RobotPose& pose, const ContactSet& found,
+                                 const SlidingContacts::ContactConstraint& touch) const;
   std::set<std::pair<int, int>> verticesComeIn() const;
   Vec3 inwardsAt(const Contact& contact) const;
   Vec3 inwardsBetween(const Contact& contact) const;
+  ContactSet flatContacts(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                          double way = 0.0) const;
+  void curve(const std::vector<Vec3>& vertices, Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   bool turnAside(const RobotPose& pose, Contact& contact) const;
   bool turn(const RobotPose& pose, Contact& contact) const;
-  void findSmooth(const RobotPose& pose, const ContactSet& contacts);
+  std::vector<double> smoothnesses(const RobotPose& pose, const ContactSet& contacts,
+                                   const std::vector<Vec3>& vertices) const;
   void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
   World& world_;
   ToolRims rims_;
   std::vector<Vec3> vertices_;  // of the last contacts
-  VertexAreas areas_;
+  CurvedSurface curved_;
   std::vector<double> depths_;
   std::vector<double> smooth_;  // per link (1): how much of the surface that it touches is smooth
 };

@@ -70,17 +70,27 @@ constexpr double kReach = 1.0;
 // Of the spacing (1): off a tool, the distance from which its edges look round, so that the normal
 // does not jump there. More: rounder edges. Chosen.
 constexpr double kOffEdge = 0.03;
+// The same where the link touches a smooth surface: what it touches first along an edge is a point
+// between vertices, and so far beside it a vertex is pushed as that is. Less: an edge is pushed
+// aside by each vertex that it passes. Chosen.
+constexpr double kOffSharpEdge = 0.2;
 // The way out across the surface may be so much longer than the nearest one (1), and so much of the
 // lesser of spacing and thickness (1). More: points behind thin tools go out in front. Chosen.
 constexpr double kDetour = 2.0;
 constexpr double kDetourBeyond = 0.5;
 // Cosine of two normals that look to the same side. Chosen.
 constexpr double kSameSide = 0.3;
+// An edge of a link is sharp where from so far (spacings) on one side of it to so far on the other,
+// and as far off the link, the nearest way out turns by more than 40 degrees (cosine). Chosen.
+constexpr double kBesideEdge = 0.1;
+constexpr double kSharpTurn = 0.766;
+// Smoothness (1) of the surface that a link touches, from which its edges wander. Chosen.
+constexpr double kMostlySmooth = 0.5;
+// Barycentric weight (1): with more of one corner, a touch that wanders has come to a vertex.
+// Chosen.
+constexpr double kAtVertex = 0.99;
 // Barycentric weight (1): with more of each corner, a point is on no edge of its triangle. Chosen.
 constexpr double kInsideTriangle = 1e-3;
-// Cosine of the angle by which the surface at rest folds at an edge of its own (1): 40 degrees, as
-// at sharp edges of tools. Less: rounded where it is sharp. Chosen.
-constexpr double kSharpFold = 0.766;
 
 // Contacts: rims of flat faces.
 // Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side

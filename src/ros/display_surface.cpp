@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "robot_tissue/core/curved_surface.h"
 #include "robot_tissue/core/disjoint_sets.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "tuning.h"
@@ -36,6 +37,10 @@ double bend(const Vec3& direction, const Vec3& chord) {
 void DisplaySurface::bind(const TissueSurface& surface) {
   triangles_ = surface.triangles;
   opened_ = surface.opened;
+  corner_weights_.clear();
+  for (const MeshTriangle& corners : triangles_) {
+    corner_weights_.push_back(CurvedSurface::cornerWeights(surface.rest, corners));
+  }
   const std::vector<Side> sides = findEdges();
   findNormals(surface, sides);
   findNodes(surface);
@@ -92,7 +97,7 @@ void DisplaySurface::findNormals(const TissueSurface& surface, const std::vector
     const Side &side = sides[i], &other = sides[i + 1];
     if (side.low != other.low || side.high != other.high) continue;
     if (opened_[at(side.triangle)] != opened_[at(other.triangle)]) continue;
-    if (restNormal(side).dot(restNormal(other)) < tuning::kCreaseCosine) continue;
+    if (restNormal(side).dot(restNormal(other)) < CurvedSurface::kSharpFold) continue;
     normals.join(cornerOf(side, side.low), cornerOf(other, side.low));
     normals.join(cornerOf(side, side.high), cornerOf(other, side.high));
   }
@@ -137,20 +142,13 @@ void DisplaySurface::fit(const std::vector<Vec3>& vertices) {
   limitPieces();
 }
 
-// Weights of Max (1999): exact where the vertices are those of a sphere, and the same whichever
-// diagonal halves a square.
 void DisplaySurface::fitNormals() {
   normals_.assign(3 * triangles_.size(), Vec3::Zero());
   for (std::size_t triangle = 0; triangle < triangles_.size(); ++triangle) {
-    const MeshTriangle& corners = triangles_[triangle];
-    const Vec3 area = doubleArea(vertices_, corners);
-    std::array<double, 3> length2{};
+    const Vec3 normal = doubleArea(vertices_, triangles_[triangle]).stableNormalized();
     for (std::size_t k = 0; k < 3; ++k) {
-      length2[k] = (vertices_[at(corners[next(k)])] - vertices_[at(corners[k])]).squaredNorm();
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double product = length2[k] * length2[next(next(k))];
-      if (product > 0.0) normals_[at(normal_of_[triangle][k])] += area / product;
+      normals_[at(normal_of_[triangle][k])] +=
+          corner_weights_[triangle][static_cast<int>(k)] * normal;
     }
   }
   for (Vec3& normal : normals_) normal.stableNormalize();
@@ -163,14 +161,15 @@ Vec3 DisplaySurface::controlPoint(int vertex, int other, const std::array<int, 2
   const Vec3 way = vertices_[at(other)] - here;
   const Vec3& normal = normals_[at(normals[0])];
   if (normals[0] == normals[1]) {
-    const double rise = way.dot(normal), most = tuning::kMostRise * way.norm();
+    const double rise = way.dot(normal), most = CurvedSurface::kMostRise * way.norm();
     return here + (way - std::clamp(rise, -most, most) * normal) / 3.0;
   }
   const Vec3 line = normal.cross(normals_[at(normals[1])]);
   const Vec3 along = line.dot(way) * line / std::max(line.squaredNorm(), 1e-30);
   // Nearly one plane, or a corner where the line leads elsewhere: straight.
-  const bool leads_there = line.norm() > tuning::kLeastSine &&
-                           along.squaredNorm() > (1.0 - tuning::kMostRise) * way.squaredNorm();
+  const bool leads_there =
+      line.norm() > tuning::kLeastSine &&
+      along.squaredNorm() > (1.0 - CurvedSurface::kMostRise) * way.squaredNorm();
   return here + (leads_there ? along : way) / 3.0;
 }
 

@@ -59,12 +59,6 @@ constexpr double kPlaneThickness = 0.2;
 constexpr double kSmallestForce = 1e-9;
 
 // The surface as it is drawn.
-// 1: cosine of 40 degrees, between neighboring triangles at rest; what is sharper stays sharp.
-// More: blunt edges of an organ stay sharp, too. Chosen.
-constexpr double kCreaseCosine = 0.766;
-// 1: of an edge's length, by which a tangent plane lifts the end of a curve, at most. More: rounder
-// where the lattice folds, to the point of bulges. Chosen.
-constexpr double kMostRise = 0.5;
 // 1: sine of the angle between the planes that meet in a crease; below, their line is uncertain.
 constexpr double kLeastSine = 0.2;
 // rad: bends of an edge, both ends together, up to which it is drawn straight, and in two pieces;

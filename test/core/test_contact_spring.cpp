@@ -131,6 +131,26 @@ TEST_P(SpringInContact, StiffnessIsMinusTheForcesSlope) {
   }
 }
 
+// What holds a point back from where its normal was looked for is part of the energy.
+TEST_P(SpringInContact, TurningHoldsBackByItsStiffness) {
+  constexpr double kDifference = 1e-7;
+  const ContactSpring fixed = spring_;
+  spring_.turning = Vec3(20.0, 5.0, 0.0).asDiagonal();
+  spring_.turned_from = pointOf(spring_, displacement_) - Vec3(2e-3, 1e-3, 4e-3);
+  EXPECT_LT((turningForceOf(spring_, displacement_) - Vec3(-0.04, -0.005, 0.0)).norm(), 1e-12);
+  const Vec3 force = forceOf(spring_, displacement_);
+  EXPECT_LT((force - forceOf(fixed, displacement_) - Vec3(-0.04, -0.005, 0.0)).norm(), 1e-12);
+  const Eigen::Matrix3d stiffer =
+      stiffnessOf(spring_, displacement_) - stiffnessOf(fixed, displacement_);
+  EXPECT_LT((stiffer - spring_.turning).norm(), 1e-12);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kDifference * Vec3::Unit(axis);
+    const double slope = (energyOf(spring_, movedBy(step)) - energyOf(spring_, movedBy(-step))) /
+                         (2.0 * kDifference);
+    EXPECT_NEAR(force[axis], -slope, 1e-7);
+  }
+}
+
 TEST_P(SpringInContact, EnergyIsConvex) {
   Shaker shaker(5);
   for (int trial = 0; trial < 50; ++trial) {

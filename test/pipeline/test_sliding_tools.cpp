@@ -56,6 +56,32 @@ TEST(SlidingTools, WithoutFrictionAnEdgeIsNotHeldBack) {
   EXPECT_LT(std::abs(force.x()), 0.12 * force.z());
 }
 
+// A round tool touches the curved surface, not the triangles, which are off it by L^2 / 8 R.
+TEST(SlidingTools, ABallPressesACoarseLatticeAsAFineOne) {
+  const auto force = [](double spacing) {
+    Pipeline pipeline(block("elastic", spacing), methodOf("elastic"), {withFriction(0.0, probe())});
+    walk(pipeline, -0.001, kDepth);
+    return pipeline.report().tools.front().force_on_tool.z();
+  };
+  const double fine = force(0.5 * kSpacing);
+  EXPECT_GT(fine, 0.5);
+  EXPECT_NEAR(force(kSpacing), fine, 0.03 * fine);
+}
+
+// Its touches go along it as tissue slides past, and do not pile up where they once were.
+TEST(SlidingTools, AnEdgeIsNoDeeperDraggedThanPressed) {
+  Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.0, toolOf(boxOnItsEdge()))});
+  const double y = kMiddle, down = kTop - 0.004;
+  walk(pipeline, {{0.018, y, kTop}}, {{0.018, y, down}});
+  const int pressed = pipeline.report().tools.front().contacts;
+  for (double x = 0.018; x < kMiddle + kSpacing; x += 0.05 * kSpacing) {
+    pipeline.step(at(std::vector<Vec3>{{x, y, down}}));
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << x;
+    EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.1 * kSpacing) << x;
+    EXPECT_LT(pipeline.report().tools.front().contacts, 2 * pressed + 4) << x;
+  }
+}
+
 // Force against the way over force up, least and greatest, of a flat tool around the block's
 // middle: its edges pass two columns of nodes each.
 struct Range {

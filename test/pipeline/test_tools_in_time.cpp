@@ -8,8 +8,8 @@
 namespace robot_tissue::test_tools_in_time {
 namespace {
 
-constexpr double kCoarse = 0.01;  // m, spacing
-constexpr double kRate = 200.0;   // poses a second
+constexpr double kCoarse = 0.005;  // m, spacing
+constexpr double kRate = 200.0;    // poses a second
 constexpr double kGravity = 9.81;
 
 TissueConfig inTime(TissueConfig tissue, double damping_time) {

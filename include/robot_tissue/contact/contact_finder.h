@@ -8,6 +8,7 @@
 // not for several threads at once.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -94,10 +95,12 @@ class ContactFinder {
 
   // Of each of these links the deepest point inside the surface, or of the surface inside the link
   // (m); 0 when they do not overlap: points of the surface as in find, and corners, edges and rims
-  // of the link. Throws InputError as find.
+  // of the link. With a bulge, how far the surface is off its triangles there (m, tissue frame), to
+  // first order in it. Throws InputError as find.
+  using Bulge = std::function<Vec3(std::size_t link, const SurfacePoint& point)>;
   std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose,
-                                   const TissueSurface& surface,
-                                   const std::vector<Vec3>& vertices) const;
+                                   const TissueSurface& surface, const std::vector<Vec3>& vertices,
+                                   const Bulge& bulge = {}) const;
 
   // Distance between two links (m), e.g. jaws; 0 when they overlap, infinite when one has no shapes
   // or no rigid pose.

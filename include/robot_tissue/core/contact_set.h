@@ -32,6 +32,11 @@ struct Contact {
   Vec3 normal = Vec3::Zero();  // unit, from the tool into the tissue: the way out of the tool
   double depth_m = 0.0;        // penetration depth along the normal; < 0: a gap
   Rim rim;
+  Vec3 bulge = Vec3::Zero();  // how far the point is off its triangle (m, CurvedSurface)
+  bool wanders = false;       // at a sharp edge or corner of the link, which tissue slides past
+  // How fast the hollow that wanders past turns its normal back with the way (1/m): symmetric, of
+  // no negative direction.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
 };
 
 struct ContactSet {

@@ -5,7 +5,9 @@
 //   gap                     g = n . (x - plane_point)
 //   normal force            f = max(0, multiplier - k g)
 //   friction                t = t_0 - k_t (1 - n n^T) (x - anchor), cut to friction_bound
-//   force on the tissue     f n + t, at x
+//   turning                 -M (x - turned_from): as a curved surface slides under the tool's edge,
+//                           its normal turns, and with it the force
+//   force on the tissue     f n + t - M (x - turned_from), at x
 //
 // Between solves the multiplier takes f and friction_bound the friction's share of f: then the gap
 // goes to zero whatever k is, and friction obeys Coulomb's law. In a solve both are constant, so
@@ -40,6 +42,9 @@ struct ContactSpring {
   Vec3 friction_force = Vec3::Zero();  // t_0: across the normal, when it was at the anchor (N)
   double friction_stiffness = 0.0;     // k_t (N/m)
   double friction_bound = 0.0;         // N; 0: slides freely
+  // Symmetric, of no negative direction: M (N/m), and where the normal is as it is taken (m).
+  Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
+  Vec3 turned_from = Vec3::Zero();
   // At a tool's rim the surface is shown where the tool has it: off the spring's point by so much
   // times the normal force, along the normal (m/N).
   double shown_compliance = 0.0;
@@ -73,6 +78,8 @@ Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // m
 
 double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
+
+Vec3 turningForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
 
 double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacement);  // T (N)
 

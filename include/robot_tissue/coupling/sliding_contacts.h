@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "robot_tissue/core/contact_set.h"
@@ -43,13 +44,14 @@ class SlidingContacts {
 
   // What is kept of a contact from round to round, and from load step to load step.
   struct ContactConstraint {
-    Contact contact;                // as it was seen in the last update
-    int vertex = -1;                // of the surface; -1: a point of a triangle
-    Corners corners;                // of its triangle, at rest (m)
-    ContactSpring spring;           // as the next solve will have it
-    ContactSpring solved;           // as the last one had it; without carriers: it had none
-    Vec3 solved_at = Vec3::Zero();  // where in the triangle that was, by weights
-    double firm_stiffness = 0.0;    // k, without its compliance (N/m)
+    Contact contact;                   // as it was seen in the last update
+    int vertex = -1;                   // of the surface; -1: a point of a triangle
+    Corners corners;                   // of its triangle, at rest (m)
+    ContactSpring spring;              // as the next solve will have it
+    ContactSpring solved;              // as the last one had it; without carriers: it had none
+    Vec3 solved_at = Vec3::Zero();     // where in the triangle that was, by weights
+    Vec3 solved_bulge = Vec3::Zero();  // Contact::bulge there
+    double firm_stiffness = 0.0;       // k, without its compliance (N/m)
     TouchCompliance compliance;
     Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
@@ -126,6 +128,14 @@ class SlidingContacts {
            ContactConstraint& touch);
   bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
              ContactConstraint& touch);
+  bool isAtRest(const ContactConstraint& touch, const Tissue& tissue) const;
+  bool wander(const ContactSet& found, const std::vector<std::optional<Contact>>& tracked,
+              const RobotPose& pose, const Tissue& tissue, const Held& held);
+  using Wander = std::tuple<double, std::size_t, std::size_t>;  // m, touch, place
+  std::vector<Wander> nearestFirst(const std::vector<const Contact*>& places, double reach);
+  bool moveTo(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
+              ContactConstraint& touch);
+  bool handOn(const ContactConstraint& lost, double reach, const Tissue& tissue);
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
   std::vector<PressGrowth::Press> presses(std::size_t links) const;
   bool updateMultipliers(const Tissue& tissue);

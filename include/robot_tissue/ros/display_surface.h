@@ -78,6 +78,7 @@ class DisplaySurface {
 
   std::vector<MeshTriangle> triangles_;
   std::vector<std::uint8_t> opened_;
+  std::vector<Vec3> corner_weights_;  // per triangle, in the normals of its corners (m^-2)
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edge_of_;              // per triangle: from corner k to the next
   std::vector<std::array<int, 3>> normal_of_;            // per triangle and corner

@@ -20,6 +20,10 @@ Vec3 trialFriction(const ContactSpring& spring, const Vec3& point) {
          spring.friction_stiffness * (slip - spring.normal.dot(slip) * spring.normal);
 }
 
+Vec3 turningForceAt(const ContactSpring& spring, const Vec3& point) {
+  return -spring.turning * (point - spring.turned_from);
+}
+
 double tensionAt(const ContactSpring& thread, const Vec3& way) {
   return std::max(0.0, thread.stiffness * (way.norm() - thread.rest_length));
 }
@@ -59,6 +63,10 @@ double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displ
   return pressAt(spring, pointOf(spring, displacement));
 }
 
+Vec3 turningForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
+  return turningForceAt(spring, pointOf(spring, displacement));
+}
+
 double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacement) {
   return tensionAt(thread, pointOf(thread, displacement));
 }
@@ -76,7 +84,7 @@ Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 
 Vec3 forceAt(const ContactSpring& spring, const Vec3& point) {
   if (spring.is_thread) return pullAt(spring, point);
-  Vec3 force = pressAt(spring, point) * spring.normal;
+  const Vec3 force = pressAt(spring, point) * spring.normal + turningForceAt(spring, point);
   if (spring.friction_bound <= 0.0) return force;
   const Vec3 trial = trialFriction(spring, point);
   const double length = trial.norm();
@@ -90,9 +98,11 @@ double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displaceme
     return 0.5 * tension * tension / spring.stiffness;
   }
   const double normal_force = normalForceOf(spring, displacement);
-  const double energy = 0.5 * normal_force * normal_force / spring.stiffness;
+  const Vec3 point = pointOf(spring, displacement), slid = point - spring.turned_from;
+  const double energy =
+      0.5 * normal_force * normal_force / spring.stiffness + 0.5 * slid.dot(spring.turning * slid);
   if (spring.friction_bound <= 0.0) return energy;
-  const double length = trialFriction(spring, pointOf(spring, displacement)).norm();
+  const double length = trialFriction(spring, point).norm();
   const double most = spring.friction_bound;
   const double of_friction = length <= most ? 0.5 * length * length : most * (length - 0.5 * most);
   return energy + of_friction / spring.friction_stiffness;
@@ -105,7 +115,7 @@ Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>
 Eigen::Matrix3d stiffnessAt(const ContactSpring& spring, const Vec3& point) {
   if (spring.is_thread) return threadStiffnessAt(spring, point);
   const Eigen::Matrix3d along = spring.normal * spring.normal.transpose();
-  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d stiffness = spring.turning;
   if (pressAt(spring, point) > 0.0) stiffness += spring.stiffness * along;
   if (spring.friction_bound <= 0.0) return stiffness;
   const Vec3 trial = trialFriction(spring, point);

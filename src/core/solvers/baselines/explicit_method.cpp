@@ -29,8 +29,9 @@ void ExplicitMethod::measureContacts() {
   for (const LoadingPatch& patch : shape_.patches) {
     for (const ContactSpring& spring : patch.contacts) {
       for (const NodeWeight& carrier : spring.carriers) {
-        contact_stiffness_[at(carrier.node)] += endsOf(spring) * std::abs(carrier.weight) *
-                                                (spring.stiffness + spring.friction_stiffness);
+        contact_stiffness_[at(carrier.node)] +=
+            endsOf(spring) * std::abs(carrier.weight) *
+            (spring.stiffness + spring.friction_stiffness + spring.turning.norm());
       }
     }
   }

@@ -1,0 +1,56 @@
+// The smooth surface that a surface's triangles stand for: over each a cubic patch through its
+// corners, across their normals (PN triangles: Vlachos et al. 2001). Sharp where the surface at
+// rest is. It is what is drawn, and what tools touch (own).
+#pragma once
+
+#include <vector>
+
+#include "robot_tissue/core/surface.h"
+
+namespace robot_tissue {
+
+class CurvedSurface {
+ public:
+  // Cosine of the angle by which neighboring triangles at rest meet in a sharp edge: 40 degrees.
+  // More: blunt edges of an organ are sharp, too. Chosen.
+  static constexpr double kSharpFold = 0.766;
+  // Of the length of an edge (1), by which a normal at its end lifts it at most. More: rounder
+  // where the lattice folds, to the point of bulges. Chosen.
+  static constexpr double kMostRise = 0.5;
+
+  // Weights of a triangle's normal in those of its corners (m^-2; Max 1999), from its place at
+  // rest: exact there where the vertices are those of a sphere, and the same whichever diagonal
+  // halves a square. As the tissue is stretched they stay, so that no normal turns with what grows
+  // beside it.
+  static Vec3 cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners);
+
+  // What follows is of that surface. Without a look at all of it where its revision is known.
+  void takeSurface(const TissueSurface& surface);
+
+  // With its vertices there (m): unit normal outwards, even from corner to corner of the point's
+  // triangle; zero where it has none.
+  Vec3 normalAt(const SurfacePoint& point, const TissueSurface& surface,
+                const std::vector<Vec3>& vertices) const;
+  // How far the surface is from the triangle's point (m); zero at corners.
+  Vec3 bulgeAt(const SurfacePoint& point, const TissueSurface& surface,
+               const std::vector<Vec3>& vertices) const;
+  // Where it is hollow, how fast its normal turns against the way along it (1/m): symmetric, of no
+  // negative direction.
+  Eigen::Matrix3d hollowAt(const SurfacePoint& point, const TissueSurface& surface,
+                           const std::vector<Vec3>& vertices) const;
+  // Twice the sum of the areas of all triangles at the vertex, outwards (m^2).
+  Vec3 doubleAreaAt(int vertex, const TissueSurface& surface,
+                    const std::vector<Vec3>& vertices) const;
+
+ private:
+  Vec3 cornerNormal(int triangle, std::size_t corner, const TissueSurface& surface,
+                    const std::vector<Vec3>& vertices) const;
+
+  std::uint64_t revision_ = 0;        // of the surface; 0: none yet
+  std::vector<int> triangles_;        // of each vertex, ascending
+  std::vector<std::size_t> first_;    // per vertex, in triangles_, and their end
+  std::vector<Vec3> rest_normals_;    // per triangle, unit
+  std::vector<Vec3> corner_weights_;  // likewise, of its corners
+};
+
+}  // namespace robot_tissue

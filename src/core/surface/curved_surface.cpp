@@ -1,0 +1,120 @@
+#include "robot_tissue/core/curved_surface.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "robot_tissue/core/triangle_mesh.h"
+
+namespace robot_tissue {
+
+Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners) {
+  const Vec3 &a = rest[at(corners[0])], &b = rest[at(corners[1])], &c = rest[at(corners[2])];
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  const double area = doubleArea(rest, corners).norm();
+  const auto weight = [&](double product) { return product > 0.0 ? area / product : 0.0; };
+  return {weight(ab * ca), weight(bc * ab), weight(ca * bc)};
+}
+
+void CurvedSurface::takeSurface(const TissueSurface& surface) {
+  if (revision_ != 0 && revision_ == surface.revision) return;
+  revision_ = surface.revision;
+  first_.assign(surface.rest.size() + 1, 0);
+  for (const MeshTriangle& corners : surface.triangles) {
+    for (const int corner : corners) ++first_[at(corner) + 1];
+  }
+  for (std::size_t vertex = 1; vertex < first_.size(); ++vertex) {
+    first_[vertex] += first_[vertex - 1];
+  }
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  triangles_.resize(first_.back());
+  rest_normals_.resize(surface.triangles.size());
+  corner_weights_.resize(surface.triangles.size());
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    const MeshTriangle& corners = surface.triangles[triangle];
+    rest_normals_[triangle] = doubleArea(surface.rest, corners).stableNormalized();
+    corner_weights_[triangle] = cornerWeights(surface.rest, corners);
+    for (const int corner : corners) triangles_[next[at(corner)]++] = static_cast<int>(triangle);
+  }
+}
+
+Vec3 CurvedSurface::doubleAreaAt(int vertex, const TissueSurface& surface,
+                                 const std::vector<Vec3>& vertices) const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
+    sum += doubleArea(vertices, surface.triangles[at(triangles_[i])]);
+  }
+  return sum;
+}
+
+// Of the triangles around the corner that no sharp edge parts from its own.
+Vec3 CurvedSurface::cornerNormal(int triangle, std::size_t corner, const TissueSurface& surface,
+                                 const std::vector<Vec3>& vertices) const {
+  const int vertex = surface.triangles[at(triangle)][corner];
+  const Vec3& own = rest_normals_[at(triangle)];
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
+    const auto other = at(triangles_[i]);
+    if (own.dot(rest_normals_[other]) < kSharpFold) continue;
+    const MeshTriangle& corners = surface.triangles[other];
+    const auto k = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
+    sum += corner_weights_[other][k] * doubleArea(vertices, corners).stableNormalized();
+  }
+  return sum.stableNormalized();
+}
+
+Vec3 CurvedSurface::normalAt(const SurfacePoint& point, const TissueSurface& surface,
+                             const std::vector<Vec3>& vertices) const {
+  Vec3 normal = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal +=
+        point.barycentric[static_cast<int>(k)] * cornerNormal(point.triangle, k, surface, vertices);
+  }
+  return normal.stableNormalized();
+}
+
+// Of the normal that goes evenly from corner to corner: N = sum of u_k N_k, dN/dx = sum of N_k
+// times the gradient of u_k in the triangle.
+Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point, const TissueSurface& surface,
+                                        const std::vector<Vec3>& vertices) const {
+  const MeshTriangle& corners = surface.triangles[at(point.triangle)];
+  const Vec3 area = doubleArea(vertices, corners);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 across = vertices[at(corners[(k + 2) % 3])] - vertices[at(corners[(k + 1) % 3])];
+    const Vec3 gradient = area.cross(across) / area.squaredNorm();
+    turn -= cornerNormal(point.triangle, k, surface, vertices) * gradient.transpose();
+  }
+  const Vec3 normal = area.normalized();
+  const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() - normal * normal.transpose();
+  const Eigen::Matrix3d even = along * (turn + turn.transpose()) * along / 2.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(even);
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         parts.eigenvectors().transpose();
+}
+
+// The patch has no other control points than those a third along its edges, brought into the
+// tangent planes of the edges' ends, and the middle that makes it as quadratic as may be. Less the
+// flat triangle, with weights u and the rise w_ij = N_i (x_j - x_i) of corner j over the plane of
+// corner i: - sum over i, j != i of w_ij N_i (u_i^2 u_j + u_0 u_1 u_2 / 2).
+Vec3 CurvedSurface::bulgeAt(const SurfacePoint& point, const TissueSurface& surface,
+                            const std::vector<Vec3>& vertices) const {
+  const MeshTriangle& corners = surface.triangles[at(point.triangle)];
+  const Vec3& u = point.barycentric;
+  Vec3 bulge = Vec3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const auto corner = static_cast<std::size_t>(i);
+    const Vec3 normal = cornerNormal(point.triangle, corner, surface, vertices);
+    double lift = 0.0;
+    for (int j = 0; j < 3; ++j) {
+      if (j == i) continue;
+      const Vec3 way = vertices[at(corners[at(j)])] - vertices[at(corners[corner])];
+      const double most = kMostRise * way.norm();
+      const double rise = std::min(most, std::max(-most, normal.dot(way)));
+      lift += rise * (u[i] * u[i] * u[j] + 0.5 * u.prod());
+    }
+    bulge -= lift * normal;
+  }
+  return bulge;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,135 @@
+// The smooth surface through the vertices of a triangulated one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "robot_tissue/core/curved_surface.h"
+#include "robot_tissue/core/triangle_mesh.h"
+
+namespace robot_tissue::test_curved_surface {
+namespace {
+
+constexpr int kCells = 10;          // along each side
+constexpr double kSpacing = 0.005;  // m
+
+// A square of triangles at rest in the plane z = 0 or, beyond `fold`, upright.
+TissueSurface square(int fold = kCells) {
+  TissueSurface surface;
+  for (int j = 0; j <= kCells; ++j) {
+    for (int i = 0; i <= kCells; ++i) {
+      const int along = std::min(i, fold);
+      surface.rest.push_back(kSpacing * Vec3(along, j, along - i));
+    }
+  }
+  const auto vertex = [](int i, int j) { return i + (kCells + 1) * j; };
+  for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < kCells; ++i) {
+      surface.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+      surface.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+    }
+  }
+  surface.revision = 1;
+  return surface;
+}
+
+constexpr double kRadius = 0.03;  // m
+
+// Lifted onto a ball, or pressed into a bowl (sign -1), of kRadius around the square's middle.
+std::vector<Vec3> onBall(const TissueSurface& surface, double sign) {
+  std::vector<Vec3> vertices = surface.rest;
+  const Vec3 middle(0.5 * kCells * kSpacing, 0.5 * kCells * kSpacing, 0.0);
+  for (Vec3& vertex : vertices) {
+    const double off = (vertex - middle).norm();
+    vertex.z() = sign * std::sqrt(kRadius * kRadius - std::min(off * off, 0.9 * kRadius * kRadius));
+  }
+  return vertices;
+}
+
+struct Place {
+  SurfacePoint point;
+  Vec3 flat;  // of the triangle (m)
+};
+
+void forEachInnerPlace(const TissueSurface& surface, const std::vector<Vec3>& vertices,
+                       const std::function<void(const Place&)>& look) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (int j = 3; j < kCells - 3; ++j) {
+    for (int i = 3; i < kCells - 3; ++i) {
+      const int triangle = 2 * (i + kCells * j) + static_cast<int>(random() % 2);
+      double u = share(random), v = share(random);
+      if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+      const MeshTriangle& corners = surface.triangles[at(triangle)];
+      const Vec3 weights(1.0 - u - v, u, v);
+      Vec3 flat = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) flat += weights[k] * vertices[at(corners[at(k)])];
+      look({{triangle, weights}, flat});
+    }
+  }
+}
+
+TEST(CurvedSurface, OfABallIsNearlyTheBall) {
+  const TissueSurface surface = square();
+  CurvedSurface curved;
+  curved.takeSurface(surface);
+  const Vec3 center(0.5 * kCells * kSpacing, 0.5 * kCells * kSpacing, 0.0);
+  for (const double sign : {1.0, -1.0}) {
+    const std::vector<Vec3> vertices = onBall(surface, sign);
+    double off = 0.0, flat_off = 0.0, turned = 0.0;
+    forEachInnerPlace(surface, vertices, [&](const Place& place) {
+      const Vec3 point = place.flat + curved.bulgeAt(place.point, surface, vertices);
+      off = std::max(off, std::abs((point - center).norm() - kRadius));
+      flat_off = std::max(flat_off, std::abs((place.flat - center).norm() - kRadius));
+      const Vec3 normal = sign * (point - center).normalized();
+      turned = std::max(turned, (curved.normalAt(place.point, surface, vertices) - normal).norm());
+    });
+    EXPECT_GT(flat_off, 5e-5);
+    EXPECT_LT(off, 0.1 * flat_off);
+    EXPECT_LT(turned, 0.02);
+  }
+}
+
+TEST(CurvedSurface, OfAPlaneIsThePlaneAlsoWhereItIsStretched) {
+  const TissueSurface surface = square();
+  std::vector<Vec3> vertices = surface.rest;
+  for (Vec3& vertex : vertices) vertex.x() += 5.0 * vertex.x() * vertex.x();
+  CurvedSurface curved;
+  curved.takeSurface(surface);
+  forEachInnerPlace(surface, vertices, [&](const Place& place) {
+    EXPECT_LT(curved.bulgeAt(place.point, surface, vertices).norm(), 1e-15);
+    EXPECT_LT(curved.hollowAt(place.point, surface, vertices).norm(), 1e-9);
+  });
+}
+
+TEST(CurvedSurface, IsSharpWhereTheSurfaceAtRestIs) {
+  const int fold = kCells / 2;
+  const TissueSurface surface = square(fold);
+  CurvedSurface curved;
+  curved.takeSurface(surface);
+  forEachInnerPlace(surface, surface.rest, [&](const Place& place) {
+    EXPECT_LT(curved.bulgeAt(place.point, surface, surface.rest).norm(), 1e-15);
+  });
+}
+
+// A bowl turns its normal by its curvature a way, in each direction along it; a ball is not hollow.
+TEST(CurvedSurface, IsAsHollowAsABowl) {
+  const TissueSurface surface = square();
+  CurvedSurface curved;
+  curved.takeSurface(surface);
+  const std::vector<Vec3> bowl = onBall(surface, -1.0), ball = onBall(surface, 1.0);
+  forEachInnerPlace(surface, bowl, [&](const Place& place) {
+    const Eigen::Matrix3d hollow = curved.hollowAt(place.point, surface, bowl);
+    EXPECT_LT((hollow - hollow.transpose()).norm(), 1e-9);
+    const Vec3 normal = doubleArea(bowl, surface.triangles[at(place.point.triangle)]).normalized();
+    EXPECT_LT((hollow * normal).norm(), 1e-9);
+    const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
+    EXPECT_NEAR(along.dot(hollow * along) * kRadius, 1.0, 0.05);
+    EXPECT_NEAR(across.dot(hollow * across) * kRadius, 1.0, 0.05);
+    EXPECT_LT(curved.hollowAt(place.point, surface, ball).norm() * kRadius, 0.01);
+  });
+}
+
+}  // namespace
+}  // namespace robot_tissue::test_curved_surface
