@@ -8,8 +8,7 @@
 namespace robot_tissue::test_tools_in_time {
 namespace {
 
-constexpr double kCoarse = 0.005;  // m, spacing
-constexpr double kRate = 200.0;    // poses a second
+constexpr double kRate = 200.0;  // poses a second
 constexpr double kGravity = 9.81;
 
 TissueConfig inTime(TissueConfig tissue, double damping_time) {
@@ -55,13 +54,13 @@ class UnevenPoses : public testing::TestWithParam<Case> {
     EXPECT_NEAR(force(), force_at_rest, 0.06 * force_at_rest) << stamp_;
   }
   static double forceWithoutTime() {
-    Pipeline still(block("elastic", kCoarse), methodOf("elastic"),
+    Pipeline still(block("elastic", kSpacing), methodOf("elastic"),
                    {withFriction(GetParam().friction, probe())});
     walk(still, -0.001, kDepth);
     return still.report().tools.front().force_on_tool.norm();
   }
 
-  Pipeline pipeline_{inTime(block("elastic", kCoarse), GetParam().damping_time),
+  Pipeline pipeline_{inTime(block("elastic", kSpacing), GetParam().damping_time),
                      methodOf("elastic"),
                      {withFriction(GetParam().friction, probe())}};
   std::mt19937 random_{1};
@@ -155,7 +154,7 @@ class CutAboveATable : public testing::Test {
   static constexpr double kStep = 0.005;       // s
 
   static TissueConfig hanging() {
-    TissueConfig tissue = inTime(block("elastic", kCoarse), 0.02);
+    TissueConfig tissue = inTime(block("elastic", kSpacing), 0.02);
     tissue.gravity = Vec3(0.0, 0.0, -kGravity);
     tissue.fixed = {{Vec3(-1.0, -1.0, kTop - 1e-6), Vec3(1.0, 1.0, kTop + 1e-6)}};
     return tissue;
@@ -191,14 +190,14 @@ TEST_F(CutAboveATable, TheFreePieceLandsAndRestsForNothing) {
   int steps = 0;
   for (; steps < 1000 && (steps == 0 || pipeline_.tissue().isMoving()); ++steps) {
     ASSERT_EQ(pipeline_.wait(kStep).status, SolveStatus::kOk) << steps;
-    ASSERT_GT(lowest(), -kFall - 0.05 * kCoarse) << steps;
+    ASSERT_GT(lowest(), -kFall - 0.05 * kSpacing) << steps;
     has_landed = has_landed || pipeline_.forceBalance().supports.z() > 0.0;
     if (has_landed) after_landing = std::max(after_landing, height());
   }
   ASSERT_FALSE(pipeline_.tissue().isMoving());
   EXPECT_TRUE(has_landed);
   EXPECT_LT(after_landing, start - 0.5 * kFall);  // it bounces back by less than half
-  EXPECT_NEAR(lowest(), -kFall, 0.01 * kCoarse);
+  EXPECT_NEAR(lowest(), -kFall, 0.01 * kSpacing);
   const double weight = kGravity * 1000.0 * kWidth * kWidth * 0.02;  // parted in springs' middles
   EXPECT_NEAR(pipeline_.forceBalance().supports.z(), weight, 0.3 * weight);
   const ForceBalance balance = pipeline_.forceBalance();
