@@ -73,7 +73,7 @@ TEST_F(RunningNode, WrenchGrowsWithDepthWithTheRightSignAndFrame) {
 }
 
 TEST_F(RunningNode, ContactsTellPatchAndNormal) {
-  press(0.004);
+  press(0.005);
   ASSERT_TRUE(waitForContacts());
   // Those of a shape that had yet to come to balance, on a busy machine, are deeper.
   ASSERT_TRUE(waitFor(
