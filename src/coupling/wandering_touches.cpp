@@ -1,5 +1,5 @@
-// Touches between vertices of the curved surface: where an edge, a corner or a round side of a link
-// is deepest. They are of the link's place, and go along the surface as the tissue slides by.
+// Touches between vertices of the curved surface where a sharp edge or corner of a link is deepest.
+// They are of the link's place, and go along the surface as the tissue slides by.
 #include <algorithm>
 #include <tuple>
 #include <vector>
