@@ -59,51 +59,79 @@ ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& di
 void ElasticCell::measureFull() {
   mean_ = determinantOf(meanWeights(spacing_));
   const double share = 1.0 / (12.0 * spacing_ * spacing_);
-  invariant_pairs_.setZero();
   invariant_ = 0.0;
   for (int corner = 0; corner < kCorners; ++corner) {
     Vec3 pull = Vec3::Zero();
     for (const int other : acrossDiagonals(corner)) {
       const Vec3 diagonal = position_[at(corner)] - position_[at(other)];
       pull += diagonal;
-      invariant_pairs_(corner, other) = -1.0;
       invariant_ += 0.5 * share * diagonal.squaredNorm();  // each diagonal is met at both ends
     }
     invariant_slope_[at(corner)] = share * pull;
-    invariant_pairs_(corner, corner) = 4.0;
+    invariant_own_[at(corner)] = 4.0;
   }
 }
 
+// By the means F e_a, q_ab, q_abc of fill_law.h, times h. What the corners add to each sums up to
+// zero: places relative to one of them keep digits.
 void ElasticCell::measureFill(const CellFill& fill) {
-  const FillLaw law = fillLaw(fill);
+  const FillLaw& law = fill_law_.emplace(fillLaw(fill));
   const std::array<CornerSlopes, kCorners> slopes = cornerSlopes(law);
   Corners weights;
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero(), bending = Eigen::Matrix3d::Zero();
+  Vec3 twisting = Vec3::Zero();
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    const Vec3 place = position_[corner] - position_[0];
     weights[corner] = slopes[corner].strain / spacing_;
+    strain += place * slopes[corner].strain.transpose();
+    bending += place * slopes[corner].bending.transpose();
+    twisting += slopes[corner].twisting * place;
   }
-  mean_ = determinantOf(weights);
+  mean_ = determinantOf(weights, strain / spacing_);
+  bending *= law.bending.asDiagonal();
+  twisting *= law.twisting;
   invariant_ = 0.0;
-  for (int i = 0; i < kCorners; ++i) {
-    Vec3& slope = invariant_slope_[at(i)];
-    slope.setZero();
-    for (int j = 0; j < kCorners; ++j) {
-      const double pair = invariantBetween(law, slopes[at(i)], slopes[at(j)]);
-      invariant_pairs_(i, j) = 12.0 * pair;
-      // The sum over j of a pair is zero: positions relative to the corner keep digits.
-      slope += pair * (position_[at(j)] - position_[at(i)]) / (spacing_ * spacing_);
-    }
-    invariant_ += slope.dot(position_[at(i)] - position_[0]);
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    Vec3& slope = invariant_slope_[corner];
+    slope = strain * slopes[corner].strain + bending * slopes[corner].bending +
+            slopes[corner].twisting * twisting;
+    slope /= spacing_ * spacing_;
+    invariant_ += slope.dot(position_[corner] - position_[0]);
+    invariant_own_[corner] = 12.0 * invariantBetween(law, slopes[corner], slopes[corner]);
   }
+}
+
+ElasticCell::Pairs ElasticCell::invariantPairs() const {
+  Pairs pairs = Pairs::Zero();
+  if (!fill_law_) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      for (const int other : acrossDiagonals(corner)) pairs(corner, other) = -1.0;
+      pairs(corner, corner) = 4.0;
+    }
+    return pairs;
+  }
+  const std::array<CornerSlopes, kCorners> slopes = cornerSlopes(*fill_law_);
+  for (int one = 0; one < kCorners; ++one) {
+    for (int other = 0; other < kCorners; ++other) {
+      pairs(one, other) = 12.0 * invariantBetween(*fill_law_, slopes[at(one)], slopes[at(other)]);
+    }
+  }
+  return pairs;
 }
 
 ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight) const {
-  Determinant determinant;
-  determinant.weight = weight;
-  Eigen::Matrix3d& gradient = determinant.gradient;
-  gradient.setZero();
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
   for (int corner = 0; corner < kCorners; ++corner) {
     gradient += position_[at(corner)] * weight[at(corner)].transpose();
   }
+  return determinantOf(weight, gradient);
+}
+
+ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight,
+                                                    const Eigen::Matrix3d& gradient) {
+  Determinant determinant;
+  determinant.weight = weight;
+  determinant.gradient = gradient;
   Eigen::Matrix3d cofactors;
   cofactors.col(0) = gradient.col(1).cross(gradient.col(2));
   cofactors.col(1) = gradient.col(2).cross(gradient.col(0));
@@ -198,8 +226,7 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
   const Vec3& j = mean_.slope[c];
   Eigen::Matrix3d density = cross_slope_ * (l * j.transpose() + j * l.transpose());
   density += volume_term_.curvature * j * j.transpose();
-  density.diagonal().array() +=
-      a_ / (12.0 * spacing_ * spacing_) * invariant_pairs_(corner, corner);
+  density.diagonal().array() += a_ / (12.0 * spacing_ * spacing_) * invariant_own_[c];
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   for (int i = 0; i < squeezed_count_; ++i) {
     const Vec3& slope = squeezed_[at(i)].slope[c];
@@ -234,10 +261,10 @@ CellHessian ElasticCell::hessian() const {
   density += cross_slope_ * (l * j.transpose() + j * l.transpose());
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   const double share = a_ / (12.0 * spacing_ * spacing_);
+  const Pairs pairs = invariantPairs();
   for (int one = 0; one < kCorners; ++one) {
     for (int other = 0; other < kCorners; ++other) {
-      density.block<3, 3>(3 * one, 3 * other).diagonal().array() +=
-          share * invariant_pairs_(one, other);
+      density.block<3, 3>(3 * one, 3 * other).diagonal().array() += share * pairs(one, other);
     }
   }
   for (int i = 0; i < squeezed_count_; ++i) add(barrier(squeezed_[at(i)]), squeezed_[at(i)]);

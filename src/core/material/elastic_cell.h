@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "config/material.h"
 #include "material/energy_model.h"
@@ -52,11 +53,14 @@ class ElasticCell {
     double curvature = 0.0;
   };
 
+  // (1/2) d2I1/dx_i dx_j, times the unit matrix (1/12h^2).
   using Pairs = Eigen::Matrix<double, kCorners, kCorners>;
 
   void measureFull();
   void measureFill(const CellFill& fill);
+  Pairs invariantPairs() const;
   Determinant determinantOf(const Corners& weight) const;
+  static Determinant determinantOf(const Corners& weight, const Eigen::Matrix3d& gradient);
   void findSqueezedCorners();
   Curve neoHookean() const;
   void findLaw();
@@ -69,9 +73,10 @@ class ElasticCell {
   Determinant mean_;
   std::array<Determinant, kCorners> squeezed_;  // where the barrier rises, the first of them
   int squeezed_count_ = 0;
-  double invariant_ = 3.0;   // I1
-  Corners invariant_slope_;  // (1/2) dI1/dx (1/m)
-  Pairs invariant_pairs_;    // (1/2) d2I1/dx_i dx_j, times the unit matrix (1/12h^2)
+  std::optional<FillLaw> fill_law_;             // none: the cell is full
+  double invariant_ = 3.0;                      // I1
+  Corners invariant_slope_;                     // (1/2) dI1/dx (1/m)
+  std::array<double, kCorners> invariant_own_;  // of invariantPairs, each corner with itself
   // E / h^3 without the barrier is a function of J and I1, all Pa: a is twice its derivative by I1,
   // cross_slope_ that of a by J, steepness_ four times the second derivative by I1.
   double a_ = 0.0;

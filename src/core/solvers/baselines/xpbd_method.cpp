@@ -101,18 +101,19 @@ void XpbdMethod::projectOddCells() {
     const ElasticCell shaped = model_.shaped(shape_.state, cell);
     const double energy = shaped.energy();
     if (!(energy > 0.0)) continue;
-    std::array<Vec3, kCorners> forces;
+    std::array<Vec3, kCorners> forces, answers;
     double answer = 0.0, rate = 0.0;
     for (int corner = 0; corner < kCorners; ++corner) {
       const int node = cell.nodes[at(corner)];
       forces[at(corner)] = -shaped.gradient(corner);
-      answer += mobilityOf(node).dot(forces[at(corner)].cwiseAbs2());
+      answers[at(corner)] = mobilityOf(node).cwiseProduct(forces[at(corner)]);
+      answer += answers[at(corner)].dot(forces[at(corner)]);
       if (damping_ > 0.0) rate += damping_ * forces[at(corner)].dot(wayOf(node));
     }
     answer *= 1.0 + damping_;
     const double share = (1.0 - rate / (2.0 * energy)) / (1.0 + answer / (2.0 * energy));
     for (int corner = 0; corner < kCorners; ++corner) {
-      push(cell.nodes[at(corner)], forces[at(corner)], share);
+      move(cell.nodes[at(corner)], share * answers[at(corner)]);
     }
   }
 }
@@ -279,9 +280,13 @@ Vec3 XpbdMethod::mobilityOf(int node) const {
 }
 
 void XpbdMethod::push(int node, const Vec3& force, double share) {
-  const Vec3 motion = share / field_->unit() * mobilityOf(node).cwiseProduct(force);
+  move(node, share * mobilityOf(node).cwiseProduct(force));
+}
+
+void XpbdMethod::move(int node, const Vec3& motion) {
+  const int slot = field_->slotOf(node);
   for (int axis = 0; axis < 3; ++axis) {
-    field_->moved()[at(axis)][field_->slotOf(node)] += static_cast<float>(motion[axis]);
+    field_->moved()[at(axis)][slot] += static_cast<float>(motion[axis] / field_->unit());
   }
 }
 

@@ -51,6 +51,7 @@ class XpbdMethod : public RelaxationMethod {
   Vec3 mobilityOf(int node) const;
   Vec3 wayOf(int node) const;
   void push(int node, const Vec3& force, double share);
+  void move(int node, const Vec3& motion);  // m
 
   double stretch_ = 1.0;        // square of the time step, in node stiffnesses over masses
   double keep_ = 0.0;           // of the velocity
