@@ -70,8 +70,8 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
                     patches.empty() ? Touched::kByNone : Touched::kByTools);
     }
     follow(std::move(patches));  // loading patches -> solve
-    if (!world_.tools.anyRigid()) return settlesFrom(good, otherwise);
-    if (leaptFrom(good) || turnedOver(good) || isRefused(otherwise)) return false;
+    if (!settlesFrom(good, otherwise)) return false;
+    if (!world_.tools.anyRigid() || world_.unfinished) return true;
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return true;
     const bool is_last = round == tuning::kRigidRounds || world_.tissue.patience().left() == 0;
@@ -153,12 +153,17 @@ bool LoadStepper::turnedOver(const Checkpoint& good) const {
          world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells;
 }
 
-// Whether a link is deeper in tissue that gives way than throughAt, and than it was.
+// Whether a link is deeper in tissue that gives way than throughAt, and than it was. Of rigid tools
+// deepestInRigid tells.
 bool LoadStepper::wentThrough(const Checkpoint& good) const {
   const std::vector<double>& depths = touch_finder_.depths();
-  for (std::size_t link = 0; link < world_.tools.linkCount() && link < depths.size(); ++link) {
-    const double before = link < good.depths.size() ? good.depths[link] : 0.0;
-    if (depths[link] > std::max(throughAt(link), before)) return true;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (world_.tools.isRigid(static_cast<int>(tool))) continue;
+    const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
+    for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
+      const double before = link < good.depths.size() ? good.depths[link] : 0.0;
+      if (depths[link] > std::max(throughAt(link), before)) return true;
+    }
   }
   return false;
 }

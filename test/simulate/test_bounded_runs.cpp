@@ -165,6 +165,32 @@ steps:
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << err();
 }
 
+// A support leaves a block less than half of its room: its touches would have to press harder than
+// any tissue does. A tool that holds nodes hard, far away, does not make a shape of that.
+TEST_F(BoundedRun, TakesNoShapeThatNoTissueBearsBesideARigidToolEither) {
+  for (const std::string patch : {"conforming", "rigid"}) {
+    std::ofstream(folder_ / "crushed.yaml") << R"(
+tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.06, 0.06, 0.04]}
+  spacing: 0.02
+  material: {young_modulus: 10000.0, poisson_ratio: 0.49, law: fung, stiffening: 300}
+  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]
+supports: [{type: plane, point: [0, 0, 0.015], normal: [0, 0, -1], friction: 0}]
+tools:
+  - {name: probe, shapes: [{type: sphere, radius: 0.01}]}
+  - {name: bystander, patch: )" << patch << R"(, shapes: [{type: sphere, radius: 0.01}]}
+steps:
+  - move: {tool: probe, from: {xyz: [-0.011, 0.03, 0.02]}, to: {xyz: [-0.007, 0.03, 0.02]}, increments: 2}
+  - move: {tool: bystander, from: {xyz: [0.3, 0, 0.3]}, to: {xyz: [0.3, 0, 0.31]}, increments: 1}
+)";
+    const fs::path out = folder_ / patch;
+    const int status =
+        statusOf(start({(folder_ / "crushed.yaml").string(), "--out", out.string()}));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << err();
+    EXPECT_NE(readText(out / "increments.csv").find("\n0,2,UNCONVERGED"), std::string::npos);
+  }
+}
+
 TEST_F(BoundedRun, RefusesATimeThatIsNone) {
   for (const char* seconds : {"0", "-1", "nan", "inf", "1e300", "soon"}) {
     const fs::path out = folder_ / "out";
