@@ -57,6 +57,13 @@ class SimTime : public NodeTest {
     });
   }
 
+  std::vector<geometry_msgs::TransformStamped> transforms() const override {
+    auto all = NodeTest::transforms();
+    all.back().transform.translation.x += 0.4 * aside_;
+    all.back().transform.translation.y += 0.6 * aside_;
+    return all;
+  }
+
   // From this time on, until the node is at work.
   void playFrom(double seconds, double depth) {
     now_ = ros::Time(seconds);
@@ -91,6 +98,7 @@ class SimTime : public NodeTest {
   ros::Time now_, played_from_;
   ros::Duration step_{0.02};  // of the clock
   int steps_ = 0;
+  double aside_ = 0.0;  // m: of the probe, off the node under it
   std::vector<std::string> warnings_;
   std::vector<ros::Time> stamps_;  // of states
 };
@@ -148,14 +156,16 @@ TEST_F(SimTime, ABagThatPlaysAgainWarnsOnceAtMost) {
   }
 }
 
-// The same poses at the wall's speed and at five times that: which are followed hangs on the
-// machine, but not what is told of one.
+// The same poses one by one, at the wall's speed and at five times that: which are followed hangs
+// on the machine, but not what is told of one. Right over a node all touches around it come and go
+// at once, and when they do hangs on the way there.
 TEST_F(SimTime, ABagTellsTheSameOfAPoseAtAnySpeed) {
   constexpr int kPoses = 100;
-  std::map<int, double> told[2];  // by the number of its pose: force along z (N)
-  double start = 500.0;
-  for (const double speed : {1.0, 5.0}) {
-    std::map<int, double>& forces = told[speed > 1.0 ? 1 : 0];
+  aside_ = 0.005;
+  std::map<int, double> slowly;  // by the number of its pose: force along z (N)
+  double greatest = 0.0, start = 500.0;
+  for (const double speed : {0.0, 1.0, 5.0}) {
+    std::map<int, double> forces;
     playFrom(start, -0.01);
     const ros::Time begin = now_;
     const ros::Subscriber listener = node_.subscribe<geometry_msgs::WrenchStamped>(
@@ -166,27 +176,28 @@ TEST_F(SimTime, ABagTellsTheSameOfAPoseAtAnySpeed) {
           forces[static_cast<int>(std::round(steps))] = wrench->wrench.force.z;
         });
     ASSERT_TRUE(waitFor([&] { return listener.getNumPublishers() > 0; }));
-    ros::WallRate beat(speed / step_.toSec());
+    ros::WallRate beat(std::max(speed, 1.0) / step_.toSec());
     for (int pose = 1; pose <= kPoses; ++pose) {
       depth_ = 0.004 * std::sin(M_PI * pose / kPoses);
       tick();
       ros::spinOnce();
-      beat.sleep();
+      if (speed > 0.0) beat.sleep();
+      int looks = 0;  // one that the node leaves out for its rate does not come
+      if (speed == 0.0) waitFor([&] { return forces.count(pose) > 0 || ++looks > kLooksAPose; });
     }
     drain();
     start += 100.0;
+    if (speed == 0.0) slowly = forces;
+    for (const auto& [pose, force] : forces) greatest = std::max(greatest, std::abs(force));
+    EXPECT_GT(forces.size(), 1U) << "at speed " << speed;
+    for (const auto& [pose, force] : forces) {
+      const auto known = slowly.find(pose);
+      if (known == slowly.end()) continue;
+      EXPECT_NEAR(force, known->second, 0.05 * greatest) << "pose " << pose << ", speed " << speed;
+    }
   }
-  double greatest = 0.0;
-  for (const auto& [pose, force] : told[0]) greatest = std::max(greatest, std::abs(force));
   EXPECT_GT(greatest, 0.1);
-  int both = 0;
-  for (const auto& [pose, force] : told[0]) {
-    const auto other = told[1].find(pose);
-    if (other == told[1].end()) continue;
-    ++both;
-    EXPECT_NEAR(force, other->second, 0.05 * greatest) << "pose " << pose;
-  }
-  EXPECT_GT(both, 5);
+  EXPECT_GT(slowly.size(), 0.9 * kPoses);
 }
 
 TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
