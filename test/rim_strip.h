@@ -29,9 +29,16 @@ using RimSprings = Eigen::Matrix<double, 6, 1>;
 
 class Strip {
  public:
+  // A plate without friction holds its nodes normal to the surface alone: of its motions that one
+  // is meant then.
+  enum class Plate { kBonded, kSliding };
+
   // Lengths under the plate and beside it in heights. The spacing is 1 m, so is the slice's width.
-  Strip(int cells, double poisson_ratio, int bonded, int beside)
-      : cells_(cells), columns_((bonded + beside) * cells + 1), rim_column_(bonded * cells) {
+  Strip(int cells, double poisson_ratio, int bonded, int beside, Plate plate = Plate::kBonded)
+      : cells_(cells),
+        columns_((bonded + beside) * cells + 1),
+        rim_column_(bonded * cells),
+        plate_(plate) {
     Material material;
     material.young_modulus = 1.0;
     material.poisson_ratio = poisson_ratio;
@@ -83,16 +90,17 @@ class Strip {
 
   int node(int column, int row) const { return column * (cells_ + 1) + row; }
   // Nodes at the far end under the plate move as in an endless strip.
-  bool isHeld(int column, int row) const {
-    return row == 0 || column == 0 || (row == cells_ && column < rim_column_);
+  bool isHeld(int column, int row, int axis) const {
+    const bool by_plate = row == cells_ && column < rim_column_;
+    return row == 0 || column == 0 || (by_plate && (plate_ == Plate::kBonded || axis == 2));
   }
   void numberNodes() {
-    unknown_.assign(at(columns_ * (cells_ + 1)), -1);
+    unknown_.assign(at(3 * columns_ * (cells_ + 1)), -1);
     for (int column = 0; column < columns_; ++column) {
       for (int row = 0; row <= cells_; ++row) {
-        if (isHeld(column, row)) continue;
-        unknown_[at(node(column, row))] = count_;
-        count_ += 3;
+        for (int axis = 0; axis < 3; ++axis) {
+          if (!isHeld(column, row, axis)) unknown_[at(3 * node(column, row) + axis)] = count_++;
+        }
       }
     }
   }
@@ -127,7 +135,9 @@ class Strip {
     gap_ = std::sqrt(shear_) * (carried - moved) * scale;
   }
 
-  int rimUnknown(int i) const { return unknown_[at(node(rim_column_ + i / 3, cells_))] + i % 3; }
+  int rimUnknown(int i) const {
+    return unknown_[at(3 * node(rim_column_ + i / 3, cells_) + i % 3)];
+  }
   Eigen::Matrix<double, 6, 1> atRim(const Eigen::VectorXd& motion) const {
     Eigen::Matrix<double, 6, 1> result;
     for (int i = 0; i < 6; ++i) result[i] = motion[rimUnknown(i)];
@@ -136,23 +146,24 @@ class Strip {
 
   void addCell(int column, int row, std::vector<Eigen::Triplet<double>>& entries,
                Eigen::MatrixXd& loads, Eigen::Matrix3d& held_energy) const {
-    constexpr double kNothing = 1e-12;  // Pa m; the modulus is 1 Pa
-    std::array<int, kSliceCorners> first;
+    constexpr double kNothing = 1e-12;        // Pa m; the modulus is 1 Pa
+    std::array<int, kSliceCorners> first;     // of the corners' three components
     std::array<double, kSliceCorners> share;  // of the plate's motion, where the node is held
     for (int corner = 0; corner < kSliceCorners; ++corner) {
       const int height = row + corner / 2;
-      first[at(corner)] = unknown_[at(node(column + corner % 2, height))];
+      first[at(corner)] = 3 * node(column + corner % 2, height);
       share[at(corner)] = static_cast<double>(height) / cells_;
     }
     for (int i = 0; i < kSliceSize; ++i) {
       for (int j = 0; j < kSliceSize; ++j) {
         const double value = slice_(i, j);
-        const int a = first[at(i / 3)], b = first[at(j / 3)];
+        const int a = unknown_[at(first[at(i / 3)] + i % 3)];
+        const int b = unknown_[at(first[at(j / 3)] + j % 3)];
         if (std::abs(value) < kNothing) continue;
-        if (a >= 0 && b >= 0 && a + i % 3 >= b + j % 3) {
-          entries.emplace_back(a + i % 3, b + j % 3, value);
+        if (a >= 0 && b >= 0 && a >= b) {
+          entries.emplace_back(a, b, value);
         } else if (a >= 0 && b < 0) {
-          loads(a + i % 3, j % 3) -= value * share[at(j / 3)];
+          loads(a, j % 3) -= value * share[at(j / 3)];
         } else if (a < 0 && b < 0) {
           held_energy(i % 3, j % 3) += value * share[at(i / 3)] * share[at(j / 3)];
         }
@@ -163,10 +174,11 @@ class Strip {
   int cells_;
   int columns_;
   int rim_column_;
+  Plate plate_;
   double shear_ = 0.0;
   Vec3 plate_scale_;  // motion for which W0 h is 1/2
   SliceHessian slice_;
-  std::vector<int> unknown_;  // per node, of its x; -1: held
+  std::vector<int> unknown_;  // per node and axis; -1: held
   int count_ = 0;
   Matrix6 compliance_;
   Motions gap_;

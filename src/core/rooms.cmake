@@ -25,7 +25,7 @@ robot_tissue_room(lattice
 robot_tissue_room(cutting
   USES base geometry config lattice
   FILES blade_surface.cpp blade_surface.h cell_division.cpp cell_division.h crumbs.cpp crumbs.h
-    cut.cpp cut.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
+    cut.cpp cut.h cut_front.cpp cut_front.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC curved_surface.h surface.h
@@ -104,7 +104,7 @@ robot_tissue_room(tissue
     solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC method_names.h patience.h tissue.h
-  FILES history.cpp history.h load_ramp.h load_stepping.cpp patience.cpp registry.cpp registry.h solve_bounds.cpp
+  FILES front_ties.cpp front_ties.h history.cpp history.h load_ramp.h load_stepping.cpp patience.cpp registry.cpp registry.h solve_bounds.cpp
     round_gain.h suturing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h time_stepping.cpp
     tissue.cpp tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_pieces.cpp tissue_state.cpp
     tissue_state.h tissue_surface.cpp tissue_surgery.cpp topology_change.h tuning.h)

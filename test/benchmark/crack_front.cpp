@@ -3,18 +3,17 @@
 // and drawn apart; its force and the opening of its mouth are those of a cut of a depth in lattices
 // of h/2 and h/4, whose fronts are on nodes. By method newton.
 //
-// `tied` is what was tried against it: the cut goes on to the next nodes, and springs of a rim's
-// law (loads/rim_law.h: by symmetry a front is the rim of a plate without friction on each half, so
-// half its stiffness) tie the nodes that it opened.
-//   crack_front
+// `tied` is what cuts are, `closed` one that ends at the last springs it severed.
+//   crack_front [RATIO ...]   (Poisson's; 0.25, 0.45 and 0.49)
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "../core/elastic_fixtures.h"
 #include "cutting/cut.h"
-#include "loads/rim_law.h"
+#include "tissue/front_ties.h"
 
 using namespace robot_tissue;
 
@@ -22,7 +21,6 @@ namespace {
 
 constexpr double kFar = 1.0;
 constexpr double kSpacing = 0.005;
-constexpr double kRigid = 1e4;                     // shear moduli times spacing
 constexpr std::array<int, 3> kCells = {12, 2, 8};  // of h
 
 struct Crack {
@@ -36,37 +34,17 @@ struct Answer {
   double force, opening;
 };
 
-void cutTo(ElasticBlock& block, double x, double z) {
+void cutTo(ElasticBlock& block, double x, double z, bool is_tied) {
   const std::vector<Vec3> corners = {
       {x, -kFar, z}, {x, kFar, z}, {x, kFar, kFar}, {x, -kFar, kFar}};
-  sever(block.lattice, springsAcross(block.lattice, block.state, corners), block.state,
-        block.model.splitCells());
-}
-
-// A plate without friction (doc/model.md, "The rim"; tables of contact_rim), nu 0.25 and 0.45.
-RimMode slidingPlate(double nu) { return nu < 0.35 ? RimMode{0.171, 5.7} : RimMode{0.131, 9.0}; }
-
-// Of the gap between both halves, at the height of the nodes' layer `k`, across the cut.
-std::vector<ContactSpring> ties(const ElasticBlock& block, double x, int k, double stiffness) {
-  const int i = static_cast<int>(std::ceil(x - 1e-9)) - 1;
-  const double along = x - i;
-  std::vector<ContactSpring> springs;
-  const int last = block.lattice.size()[1] - 1;
-  for (int j = 0; j <= last; ++j) {
-    const int below = block.lattice.cellAt({i, std::min(j, last - 1), k});
-    const int side = j == last ? 2 : 0;  // corner of that cell
-    const Cell* left = block.state.cells->owner(below, side);
-    const Cell* right = block.state.cells->owner(below, side | 1);
-    ContactSpring spring;
-    spring.is_thread = true;
-    spring.stiffness = (j == 0 || j == last ? 0.5 : 1.0) * stiffness;
-    spring.carriers = {{left->nodes[at(side)], -(1.0 - along)},
-                       {left->nodes[at(side | 1)], -along},
-                       {right->nodes[at(side)], 1.0 - along},
-                       {right->nodes[at(side | 1)], along}};
-    springs.push_back(spring);
+  const std::vector<Crossing> crossings = springsAcross(block.lattice, block.state, corners);
+  const SplitCells split = block.model.splitCells();
+  if (is_tied) {
+    const BladeSurface blade = BladeSurface::of(corners, block.lattice.spacing());
+    sever(block.lattice, crossings, blade, block.state, split);
+  } else {
+    sever(block.lattice, crossings, block.state, split);
   }
-  return springs;
 }
 
 Answer solve(const Crack& crack, int finer, bool is_cut = true) {
@@ -80,19 +58,10 @@ Answer solve(const Crack& crack, int finer, bool is_cut = true) {
   std::vector<LoadingPatch> patches = {
       displaced(block.lattice.nodesIn(nodeBox(config, {n[0], 0, 0}, n)), Vec3(0.0006, 0, 0))};
   const double x = crack.x * finer, end = n[2] - crack.depth * finer;  // spacings
-  if (is_cut && !crack.is_tied) cutTo(block, x * h, end * h);
-  if (is_cut && crack.is_tied) {
-    const RimMode plate = slidingPlate(crack.nu);
-    // The nodes that are neither free nor rigid.
-    const int layer = static_cast<int>(std::floor(end + 1.0 - plate.shift));
-    cutTo(block, x * h, (layer - 1) * h);
-    const double mu = config.material.young_modulus / (2.0 * (1.0 + crack.nu));
-    const double stiffness = std::min(kRigid, rimStiffness(plate, end - layer));
-    LoadingPatch tie;
-    tie.name = "ties";
-    tie.contacts = ties(block, x, layer, 0.5 * stiffness * mu * h);
-    patches.push_back(tie);
-  }
+  if (is_cut) cutTo(block, x * h, end * h, crack.is_tied);
+  LoadingPatch ties;
+  ties.contacts = tiesOfFronts(block.lattice, block.state, block.model);
+  if (!ties.contacts.empty()) patches.push_back(ties);
   const SolveReport report = block.solve(patches);
   if (report.status != SolveStatus::kOk) std::printf("NOT OK: ");
   const auto moved = [&](double place) {
@@ -139,7 +108,8 @@ void compare(double x, double nu) {
       const Crack crack = {x, 2.0 + beyond, nu, is_tied};
       const Answer answer = solve(crack, 1);
       const double uncut = solve(crack, 1, false).force;
-      std::printf("%.2f,%.2f,%.2f,%s,%+.3f,%+.3f\n", x - 6.0, nu, beyond, is_tied ? "tied" : "cut",
+      std::printf("%.2f,%.2f,%.2f,%s,%+.3f,%+.3f\n", x - 6.0, nu, beyond,
+                  is_tied ? "tied" : "closed",
                   crack.depth - trueDepth(answer.force / uncut, half.force, quarter.force),
                   crack.depth - trueDepth(answer.opening, half.opening, quarter.opening));
       std::fflush(stdout);
@@ -149,9 +119,12 @@ void compare(double x, double nu) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  std::vector<double> ratios = {0.25, 0.45, 0.49};
+  if (argc > 1) ratios.clear();
+  for (int i = 1; i < argc; ++i) ratios.push_back(std::atof(argv[i]));
   std::printf("off_nodes_h,nu,front_beyond_nodes_h,cure,short_by_force_h,short_by_opening_h\n");
-  for (const double nu : {0.25, 0.45}) {
+  for (const double nu : ratios) {
     for (const double x : {6.0, 6.5}) compare(x, nu);
   }
 }

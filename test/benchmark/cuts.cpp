@@ -5,6 +5,7 @@
 #include "../core/elastic_fixtures.h"
 #include "cutting/cut.h"
 #include "robot_tissue/core/surface.h"
+#include "tissue/front_ties.h"
 
 using namespace robot_tissue;
 
@@ -14,7 +15,9 @@ constexpr double kFar = 1.0;
 constexpr double kNu = 0.45;
 
 void cut(ElasticBlock& block, const std::vector<Vec3>& corners, SplitCells split) {
-  sever(block.lattice, springsAcross(block.lattice, block.state, corners), block.state, split);
+  const BladeSurface blade = BladeSurface::of(corners, block.lattice.spacing());
+  sever(block.lattice, springsAcross(block.lattice, block.state, corners), blade, block.state,
+        split);
 }
 
 const char* nameOf(SplitCells split) { return split == SplitCells::kParted ? "ghosts" : "lost"; }
@@ -79,7 +82,10 @@ void stretchNotched(int cells_per_10_mm) {
   config.fixed.push_back(nodeBox(config, {0, 0, 0}, {0, 2 * n, 5 * n}));
   const Box end = nodeBox(config, {11 * n, 0, 0}, {11 * n, 2 * n, 5 * n});
   const auto stretch = [&](ElasticBlock& block) {
-    const auto report = block.solve({displaced(block.lattice.nodesIn(end), Vec3(0.0055, 0, 0))});
+    LoadingPatch ties;
+    ties.contacts = tiesOfFronts(block.lattice, block.state, block.model);
+    const auto report =
+        block.solve({displaced(block.lattice.nodesIn(end), Vec3(0.0055, 0, 0)), ties});
     if (report.status != SolveStatus::kOk) std::printf("NOT OK: ");
     return report.patches[0].force.x();
   };

@@ -10,10 +10,13 @@
 //   rim_shift, rim_stiffness   the same of the rim itself, below; a "coupling" spring included
 //   stiffness_at_depth, law_at_depth   strip_stiffness for a plate that ends `depth` spacings
 //                        beyond the rim column, and what rim_law.h says
+//   sliding_shift, sliding_stiffness   of a plate without friction that moves normal to the
+//                        surface, as its rim's: that rim mixes nothing
 //   law_shift            shift that the springs of rim_law.h leave
 // Values of rim_law.h are rim_shift (across, along, normal) and rim_stiffness at the limit.
 // cells: of the lower of two strips, the other has twice as many; "limit": extrapolated from the
 // last three, with errors of 1/cells and 1/cells^2.
+//   rim_strip [sliding]
 //
 // The rim itself: near it, a motion across and one normal to the surface mix, and the mixture turns
 // with the logarithm of the strip's height (stresses there go as r^(-1/2 + i eps), eps =
@@ -70,10 +73,10 @@ Row limitOf(const std::vector<Row>& rows) {
 
 class Strips {
  public:
-  Strips(double poisson_ratio, int highest) : ratio_(poisson_ratio) {
+  Strips(double poisson_ratio, int highest, Strip::Plate plate) : ratio_(poisson_ratio) {
     for (int cells = kLowest; cells <= highest; cells *= 2) {
       cells_.push_back(cells);
-      strips_.emplace_back(cells, poisson_ratio, kBonded, kBeside);
+      strips_.emplace_back(cells, poisson_ratio, kBonded, kBeside, plate);
     }
   }
 
@@ -100,6 +103,7 @@ class Strips {
   }
   void reportShifts() const;
   void reportScan() const;
+  void reportSliding() const;
 
  private:
   double ratio_;
@@ -200,14 +204,32 @@ void Strips::reportScan() const {
   }
 }
 
+void Strips::reportSliding() const {
+  const auto shift = [](const Strip& coarse, const Strip& fine) {
+    RimSprings rigid = RimSprings::Zero();
+    rigid[2] = std::numeric_limits<double>::infinity();
+    return seemingDepth(coarse, fine, rigid)(2, 2);
+  };
+  reportLimit("sliding_shift", [&](const Strip& coarse, const Strip& fine) {
+    return Row{0.0, 0.0, shift(coarse, fine), 0.0};
+  });
+  reportLimit("sliding_stiffness", [&](const Strip& coarse, const Strip& fine) {
+    const double left = 1.0 / shift(coarse, fine) - 1.0;
+    return Row{0.0, 0.0, left / fine.compliance()(2, 2), 0.0};
+  });
+}
+
 }  // namespace
 }  // namespace robot_tissue
 
-int main() {
+int main(int argc, char** argv) {
   using namespace robot_tissue;
+  const bool sliding_alone = argc > 1 && std::string(argv[1]) == "sliding";
   std::printf("quantity,poisson_ratio,cells,depth,across,along,normal,coupling\n");
   for (const double ratio : {0.25, 0.30, 0.35, 0.40, 0.45, 0.47, 0.49}) {
-    const Strips strips(ratio, ratio < 0.42 ? 128 : 256);
+    Strips(ratio, 64, Strip::Plate::kSliding).reportSliding();
+    if (sliding_alone) continue;
+    const Strips strips(ratio, ratio < 0.42 ? 128 : 256, Strip::Plate::kBonded);
     strips.reportShifts();
     strips.reportScan();
   }

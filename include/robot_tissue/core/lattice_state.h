@@ -10,6 +10,14 @@
 
 namespace robot_tissue {
 
+// A spring that is whole, where the surface along which a blade parted those beside it goes on: the
+// blade ended before it.
+struct SpringAhead {
+  int spring = 0;
+  double along = 0.5;     // where that surface passes, from the lower end, of the length (1)
+  double distance = 0.0;  // from the blade's end to there, in spacings
+};
+
 struct LatticeState {
   std::vector<Vec3> displacement;     // per node, the ghosts last, from rest (m)
   std::vector<std::uint8_t> severed;  // per spring, 1 = cut
@@ -17,6 +25,7 @@ struct LatticeState {
   // Per spring that is severed, how far along it from its lower end, of its length (1), material
   // was parted; 0: it was not, there is none left along the spring. Empty: half way along all.
   std::vector<double> parted_at;
+  std::vector<SpringAhead> ahead;        // of the fronts of cuts, ascending
   std::shared_ptr<const CellSet> cells;  // what the cuts left of the lattice's
   int pieces = 1;                        // parts of the lattice that springs hold together
   // Per cell of the lattice, bit c: the eighth at its corner c was removed. Empty: nothing was.

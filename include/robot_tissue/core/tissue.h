@@ -31,7 +31,9 @@ class SolverMethod;
 class TimeIntegrator;
 class TissueModel;
 class Threads;
+class BladeSurface;
 struct Crossing;
+struct SpringAhead;
 struct NodeMotion;
 struct LoadRamp;
 struct SavedState;
@@ -270,7 +272,9 @@ class Tissue {
   SolveReport solve(const std::vector<int>& disturbed);
   void disturb(const std::vector<int>& nodes);
   void rememberDisturbed();
-  SolveReport severAndBalance(const std::vector<Crossing>& crossings);
+  SolveReport severAndBalance(const std::vector<Crossing>& crossings,
+                              const BladeSurface* blade = nullptr);
+  SolveReport goNearer(std::vector<SpringAhead> ahead);
   bool takesNoTime() const;
   void findFreePieces();
   std::vector<std::size_t> fallingPieces();
@@ -337,6 +341,7 @@ class Tissue {
   SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
   Vec3 patchForce(const LoadingPatch& patch) const;
   void planMembranes(const TissueConfig& tissue);
+  void renewTies();
   void rebuildSurface();
 
   Lattice lattice_;

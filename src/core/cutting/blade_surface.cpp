@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cutting/cell_division.h"
+#include "robot_tissue/core/triangle_point.h"
 
 namespace robot_tissue {
 namespace {
@@ -175,6 +176,22 @@ std::optional<Crossing> BladeSurface::crossing(const Vec3& from, const Vec3& to)
     return Crossing{-1, along, point, std::abs(triangle.normal.dot((to - from).normalized()))};
   }
   return std::nullopt;
+}
+
+BladeSurface::Nearest BladeSurface::nearestTo(const Vec3& point) const {
+  const Vec3 shifted = point + slack_ * kShift;
+  Nearest nearest;
+  double least = kInfinity;
+  for (const Triangle& triangle : triangles_) {
+    const Vec3 weights = nearestInTriangle(shifted, triangle.corners);
+    const auto& [a, b, c] = triangle.corners;
+    const Vec3 found = weights[0] * a + weights[1] * b + weights[2] * c;
+    const double distance = (found - shifted).norm();
+    if (distance >= least) continue;
+    least = distance;
+    nearest = {found - slack_ * kShift, triangle.normal};
+  }
+  return nearest;
 }
 
 std::vector<Crossing> BladeSurface::crossings(const Lattice& lattice,

@@ -33,11 +33,17 @@ class BladeSurface {
   static BladeSurface of(const std::vector<Vec3>& corners, double spacing);
 
   const Box& bounds() const { return bounds_; }
+  bool isEmpty() const { return triangles_.empty(); }
   // Of a segment from one point to the other (m); the first triangle that it crosses counts. The
   // surface counts as shifted by a thousandth of the spacing, always to the same side: a node on it
   // is on one side of it, whichever triangle looks, so that no spring is missed or cut twice. Where
   // the crossing is told without that shift, and may be beyond an end by it.
   std::optional<Crossing> crossing(const Vec3& from, const Vec3& to) const;
+  struct Nearest {
+    Vec3 point, normal;  // of the surface (m; unit)
+  };
+  // Without the shift; of a surface that has any area.
+  Nearest nearestTo(const Vec3& point) const;
   // Of all springs that are not severed yet, in the deformed shape, in ascending order.
   std::vector<Crossing> crossings(const Lattice& lattice, const LatticeState& state) const;
 

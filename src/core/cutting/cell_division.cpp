@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cutting/cut_front.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
@@ -126,19 +127,24 @@ CellDivision::CellDivision() {
   }
 }
 
-CellDivision::CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell)
+CellDivision::CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell,
+                           Ahead ahead)
     : CellDivision() {
-  placeEdges(lattice, state, cell);
+  placeEdges(lattice, state, cell, ahead);
   for (int side = 0; side < 6; ++side) placeFace(side / 2, side % 2);
   placeInside();
 }
 
-void CellDivision::placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell) {
+void CellDivision::placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell,
+                              Ahead ahead) {
   for (int corner = 0; corner < kCorners; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       if (corner >> axis & 1) continue;
       const int spring = lattice.springOf(cell.nodes[robot_tissue::at(corner)], 2 * axis + 1);
-      const double parted_at = partedAt(state, spring);
+      double parted_at = partedAt(state, spring);
+      if (ahead == Ahead::kParted) {
+        if (const SpringAhead* front = aheadAt(state, spring)) parted_at = front->along;
+      }
       if (parted_at == 0.0) continue;
       const CellPoint edge = edgeOf(corner, axis);
       parted_[indexOf(edge)] = true;
@@ -270,7 +276,9 @@ std::array<FillIntegrals, kCorners> cornerFills(const Lattice& lattice, const La
     }
     return fills;
   }
-  const CellDivision division(lattice, state, cell);
+  const bool is_front = frontParts(lattice, state, cell) != std::array<int, kCorners>{};
+  const CellDivision division(
+      lattice, state, cell, is_front ? CellDivision::Ahead::kParted : CellDivision::Ahead::kWhole);
   for (int corner = 0; corner < kCorners; ++corner) {
     FillIntegrals& even = fills[at(corner)];
     for (const Tetrahedron& solid : division.aroundCorner(corner)) even += integralsOver(solid);

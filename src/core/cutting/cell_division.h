@@ -44,8 +44,12 @@ bool hasPartedSprings(const Lattice& lattice, const LatticeState& state, const C
 class CellDivision {
  public:
   CellDivision();  // of a cell of which nothing is parted
+  // Whether springs ahead count as parted (cut_front.h): for the material, but not for the shown
+  // surface, as cells beside it do not know of them.
+  enum class Ahead { kWhole, kParted };
   // Of the lattice's cell, with what was removed of it.
-  CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell);
+  CellDivision(const Lattice& lattice, const LatticeState& state, const Cell& cell,
+               Ahead ahead = Ahead::kWhole);
 
   // From the cell's lowest corner, in spacings.
   const Vec3& at(const CellPoint& point) const { return points_[indexOf(point)]; }
@@ -57,7 +61,7 @@ class CellDivision {
     return robot_tissue::at(point[0] + 3 * point[1] + 9 * point[2]);
   }
   bool isParted(const CellPoint& edge) const { return parted_[indexOf(edge)]; }
-  void placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell);
+  void placeEdges(const Lattice& lattice, const LatticeState& state, const Cell& cell, Ahead ahead);
   void placeFace(int across, int side);
   int partedEdges(const CellPoint& face, int across) const;
   void placeInside();

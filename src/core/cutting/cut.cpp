@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cutting/cut_front.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 
@@ -122,20 +123,48 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
   return crossings;
 }
 
-void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, LatticeState& state,
-           SplitCells split) {
+namespace {
+
+void severSprings(const std::vector<Crossing>& crossings, LatticeState& state) {
   if (state.parted_at.empty()) state.parted_at.assign(state.severed.size(), 0.5);
   for (const Crossing& crossing : crossings) {
     state.severed[at(crossing.spring)] = 1;
     state.parted_at[at(crossing.spring)] = std::clamp(crossing.along, kEnd, 1.0 - kEnd);
   }
   state.springs_cut += static_cast<int>(crossings.size());
+}
+
+// `before`: what was ahead then.
+void partCells(const Lattice& lattice, const std::vector<Crossing>& crossings,
+               const std::vector<SpringAhead>& before, LatticeState& state, SplitCells split) {
   std::vector<int> springs;
   for (const Crossing& crossing : crossings) springs.push_back(crossing.spring);
   if (!holdTogether(lattice, state, springs)) state.pieces = countPieces(lattice, state);
+  state.ahead = stillAhead(lattice, state);
+  for (const SpringAhead& each : before) springs.push_back(each.spring);
+  for (const SpringAhead& each : state.ahead) springs.push_back(each.spring);
   const auto left = cellsLeft(lattice, state, split, springs);
   state.displacement = carriedOver(*state.cells, state.displacement, *left);
   state.cells = left;
+}
+
+}  // namespace
+
+void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, LatticeState& state,
+           SplitCells split) {
+  const std::vector<SpringAhead> before = state.ahead;
+  severSprings(crossings, state);
+  partCells(lattice, crossings, before, state, split);
+}
+
+void sever(const Lattice& lattice, const std::vector<Crossing>& crossings,
+           const BladeSurface& blade, LatticeState& state, SplitCells split) {
+  const std::vector<SpringAhead> before = state.ahead;
+  severSprings(crossings, state);
+  if (!blade.isEmpty() && split == SplitCells::kParted) {
+    state.ahead = springsAhead(lattice, state, blade, crossings);
+  }
+  partCells(lattice, crossings, before, state, split);
 }
 
 std::vector<Crossing> halfWay(const std::vector<int>& springs) {

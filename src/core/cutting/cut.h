@@ -30,6 +30,10 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
 void sever(const Lattice& lattice, const std::vector<Crossing>& crossings, LatticeState& state,
            SplitCells split = SplitCells::kLost);
 
+// The same of a blade, whose front is kept (cut_front.h).
+void sever(const Lattice& lattice, const std::vector<Crossing>& crossings,
+           const BladeSurface& blade, LatticeState& state, SplitCells split);
+
 // What no blade severs parts half way along it.
 std::vector<Crossing> halfWay(const std::vector<int>& springs);
 

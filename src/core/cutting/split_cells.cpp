@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cutting/cell_division.h"
+#include "cutting/cut_front.h"
 #include "lattice/slivers.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
@@ -11,10 +12,6 @@ namespace robot_tissue {
 namespace {
 
 using Parts = std::array<int, kCorners>;
-
-bool isWhole(const Parts& parts) {
-  return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
-}
 
 int lowestOwn(const Cell& cell) {
   int corner = 0;
@@ -54,16 +51,19 @@ PartFills partFills(const Lattice& lattice, const LatticeState& state, const Cel
 // 8 * cell + corner until then, so that a set that holds a node of the lattice becomes that node.
 class GhostMaker {
  public:
-  GhostMaker(const Lattice& lattice, const CellSet& before, std::vector<Cell> cells)
+  GhostMaker(const Lattice& lattice, const LatticeState& state, std::vector<Cell> cells)
       : lattice_(lattice),
-        before_(before),
+        state_(state),
+        before_(*state.cells),
         cells_(std::move(cells)),
         same_(at(lattice.nodeCount()) + kCorners * cells_.size()),
-        ghosts_(before.ghosts()) {}
+        ghosts_(state.cells->ghosts()) {}
 
   std::shared_ptr<const CellSet> make() {
     for (std::size_t index = 0; index < cells_.size(); ++index) {
-      if (cells_[index].isPart()) joinToNeighbors(index);
+      if (!cells_[index].isPart()) continue;
+      joinToNeighbors(index);
+      joinAhead(index);
     }
     for (Ghost& ghost : ghosts_) ghost.fixed = false;
     ghost_of_.assign(kCorners * cells_.size(), -1);
@@ -115,6 +115,24 @@ class GhostMaker {
     }
   }
 
+  // At a front what the blade left whole is one: its part has no ghosts at both ends of springs
+  // ahead.
+  void joinAhead(std::size_t index) {
+    if (state_.ahead.empty()) return;
+    const Cell& whole = lattice_.cells()[at(cells_[index].place)];
+    if (isOnePart(frontParts(lattice_, state_, whole))) return;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (corner >> axis & 1) continue;
+        const int spring = lattice_.springOf(whole.nodes[at(corner)], 2 * axis + 1);
+        if (state_.severed[at(spring)] != 0 || aheadAt(state_, spring) == nullptr) continue;
+        for (const int end : {corner, corner | 1 << axis}) {
+          same_.join(numberOf(index, end), whole.nodes[at(end)]);
+        }
+      }
+    }
+  }
+
   void number(std::size_t index) {
     Cell& cell = cells_[index];
     const auto originals = lattice_.cells()[at(cell.place)].nodes;
@@ -152,6 +170,7 @@ class GhostMaker {
   }
 
   const Lattice& lattice_;
+  const LatticeState& state_;
   const CellSet& before_;
   std::vector<Cell> cells_;
   DisjointSets same_;
@@ -161,6 +180,10 @@ class GhostMaker {
 };
 
 }  // namespace
+
+bool isOnePart(const std::array<int, kCorners>& parts) {
+  return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });
+}
 
 std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
                                     const std::array<int, kCorners>& corners) {
@@ -185,8 +208,9 @@ namespace {
 // What springs that may be severed leave of the lattice's cell, on its nodes.
 void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split, const Cell& cell,
              std::vector<Cell>& left) {
-  const Parts parts = cellParts(lattice, state, cell.nodes);
-  if (isWhole(parts)) {
+  Parts parts = cellParts(lattice, state, cell.nodes);
+  if (isOnePart(parts) && split == SplitCells::kParted) parts = frontParts(lattice, state, cell);
+  if (isOnePart(parts)) {
     if (takenOf(state, cell.place) == 0) left.push_back(cell);
     return;
   }
@@ -227,7 +251,7 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
       left.push_back(cell);
     }
   }
-  return GhostMaker(lattice, *state.cells, std::move(left)).make();
+  return GhostMaker(lattice, state, std::move(left)).make();
 }
 
 std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,
@@ -249,7 +273,7 @@ std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeSt
     }
     if (is_cut) addLeft(lattice, state, split, cell, left);
   }
-  return GhostMaker(lattice, *state.cells, std::move(left)).make();
+  return GhostMaker(lattice, state, std::move(left)).make();
 }
 
 std::vector<Vec3> carriedOver(const CellSet& from, const std::vector<Vec3>& displacement,

@@ -28,6 +28,8 @@ namespace robot_tissue {
 std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
                                     const std::array<int, kCorners>& corners);
 
+bool isOnePart(const std::array<int, kCorners>& parts);
+
 // What the severed springs, and what was removed, leave of the lattice's cells. Ghosts of
 // state.cells keep their numbers.
 std::shared_ptr<const CellSet> cellsLeft(const Lattice& lattice, const LatticeState& state,

@@ -22,6 +22,17 @@ constexpr Measured kMeasured[] = {
 };
 constexpr RimMode kAlong = {0.204, 3.54};  // shear alone: the same for all ratios
 
+struct Sliding {
+  double poisson_ratio;
+  RimMode normal;
+};
+
+// Likewise: sliding_shift and sliding_stiffness.
+constexpr Sliding kSliding[] = {
+    {0.25, {0.1695, 5.39}}, {0.30, {0.1595, 6.06}}, {0.35, {0.1496, 6.87}},  {0.40, {0.1396, 7.85}},
+    {0.45, {0.1300, 9.07}}, {0.47, {0.1263, 9.61}}, {0.49, {0.1220, 10.18}},
+};
+
 RimMode between(const RimMode& low, const RimMode& high, double share) {
   return {low.shift + share * (high.shift - low.shift),
           low.stiffness + share * (high.stiffness - low.stiffness)};
@@ -41,6 +52,19 @@ RimLaw rimLaw(double poisson_ratio) {
     low = &high;
   }
   return {kAlong, low->across, low->normal};
+}
+
+RimMode slidingRim(double poisson_ratio) {
+  const Sliding* low = kSliding;
+  for (const Sliding& high : kSliding) {
+    if (poisson_ratio <= high.poisson_ratio) {
+      const double width = high.poisson_ratio - low->poisson_ratio;
+      const double share = width > 0.0 ? (poisson_ratio - low->poisson_ratio) / width : 0.0;
+      return between(low->normal, high.normal, share);
+    }
+    low = &high;
+  }
+  return low->normal;
 }
 
 double rimStiffness(const RimMode& mode, double depth) {

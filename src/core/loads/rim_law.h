@@ -25,6 +25,10 @@ struct RimLaw {
 // outside 0.25 to 0.49.
 RimLaw rimLaw(double poisson_ratio);
 
+// Of a plate that slides on the tissue without friction, for motion normal to the surface: by
+// symmetry what the front of a cut is to each of its sides.
+RimMode slidingRim(double poisson_ratio);
+
 // Stiffness of the spring between the patch and a node at a depth inside its edge (spacings,
 // negative outside), in shear modulus times spacing; infinity = rigid, 0 = free.
 double rimStiffness(const RimMode& mode, double depth);

@@ -31,6 +31,7 @@ class ElasticModel : public EnergyModel {
   Vec3 weight(const LatticeState& state) const override;
   Vec3 nodeStiffness(const LatticeState& state, int node) const override;
   Moduli moduliAt(const LatticeState& state, int node) const override;
+  Moduli moduliIn(const Cell& cell) const override { return cellModuli(cell); }
   double energy(const LatticeState& state) const override;
   std::vector<Vec3> nodeForces(const LatticeState& state) const override;
   NodeBalance nodeBalance(const LatticeState& state, int node) const override;

@@ -47,6 +47,9 @@ class TissueModel {
   // where it meets four full ones. Zero where the model has none.
   virtual Moduli moduliAt(const LatticeState&, int) const { return {}; }
 
+  // Of the cell, of what it is filled with. Zero where the model has none.
+  virtual Moduli moduliIn(const Cell&) const { return {}; }
+
   // Cells so strained that the law goes on otherwise there than it is told to (elastic_law.h).
   virtual int cellsBeyondLaw(const LatticeState&) const { return 0; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cutting/cut.h"
+#include "cutting/cut_front.h"
 #include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
@@ -18,18 +19,20 @@ namespace {
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::uint32_t kPlain = 1;
 constexpr std::uint32_t kWithExtras = 2;
 constexpr std::uint32_t kWithPieceNumbers = 3;
 constexpr std::uint32_t kWithPartings = 4;
+constexpr std::uint32_t kWithBites = 5;
 // Bits of what later versions have more: the third from version 3 on, the fourth from 4 on, the
-// fifth from 5 on.
+// fifth from 5 on, the sixth from 6 on.
 constexpr std::uint8_t kHasRemovals = 1;
 constexpr std::uint8_t kHasSutures = 2;
 constexpr std::uint8_t kHasPieceNumbers = 4;
 constexpr std::uint8_t kHasPartings = 8;
 constexpr std::uint8_t kHasBites = 16;
+constexpr std::uint8_t kHasFronts = 32;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -116,13 +119,15 @@ std::uint8_t extrasOf(const SavedState& state) {
   if (!state.pieces.areCounted()) extras |= kHasPieceNumbers;
   if (!state.lattice.parted_at.empty()) extras |= kHasPartings;
   if (haveBites(state.sutures)) extras |= kHasBites;
+  if (!state.lattice.ahead.empty()) extras |= kHasFronts;
   return extras;
 }
 
 // The lowest version that holds these.
 std::uint32_t versionOf(std::uint8_t extras) {
   if (extras == 0) return kPlain;
-  if ((extras & kHasBites) != 0) return kVersion;
+  if ((extras & kHasFronts) != 0) return kVersion;
+  if ((extras & kHasBites) != 0) return kWithBites;
   if ((extras & kHasPartings) != 0) return kWithPartings;
   return (extras & kHasPieceNumbers) != 0 ? kWithPieceNumbers : kWithExtras;
 }
@@ -130,7 +135,8 @@ std::uint32_t versionOf(std::uint8_t extras) {
 std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
   if (version == kPlain) return 0;
   const std::uint8_t extras = in.u8();
-  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings | kHasBites;
+  const unsigned all =
+      kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings | kHasBites | kHasFronts;
   const bool has_lost_bites = (extras & kHasBites) != 0 && (extras & kHasSutures) == 0;
   if (extras > all || versionOf(extras) != version || has_lost_bites) {
     throw InputError("is damaged: it has nothing of its version, or more");
@@ -154,6 +160,37 @@ void takePartings(LatticeState& state, ByteReader& in) {
       throw InputError("is damaged: a spring is parted beyond its ends");
     }
     state.parted_at[spring] = along;
+  }
+}
+
+void putFronts(const LatticeState& state, ByteWriter& out) {
+  out.count(state.ahead.size());
+  for (const SpringAhead& each : state.ahead) {
+    out.index(each.spring);
+    out.f64(each.along);
+    out.f64(each.distance);
+  }
+}
+
+void takeFronts(const Lattice& lattice, LatticeState& state, ByteReader& in) {
+  const int springs = static_cast<int>(state.severed.size());
+  state.ahead.resize(in.count(sizeof(std::uint32_t) + 2 * sizeof(double)));
+  for (SpringAhead& each : state.ahead) {
+    each.spring = takeNode(springs, in);
+    each.along = in.f64();
+    each.distance = in.f64();
+    const bool is_place = each.along >= kEnd && each.along <= 1.0 - kEnd;
+    if (!is_place || !(each.distance >= 0.0 && each.distance <= kFarthest)) {
+      throw InputError("is damaged: the front of a cut is nowhere");
+    }
+  }
+  const auto not_before = [](const SpringAhead& one, const SpringAhead& other) {
+    return one.spring >= other.spring;
+  };
+  const bool ascends =
+      std::adjacent_find(state.ahead.begin(), state.ahead.end(), not_before) == state.ahead.end();
+  if (!ascends || stillAhead(lattice, state).size() != state.ahead.size()) {
+    throw InputError("is damaged: the front of a cut does not fit its severed springs");
   }
 }
 
@@ -191,6 +228,7 @@ CellSet cellsOfOneCut(const Lattice& lattice, const LatticeState& state, SplitCe
   whole.severed = state.severed;
   whole.springs_cut = state.springs_cut;
   whole.parted_at = state.parted_at;
+  whole.ahead = state.ahead;
   whole.taken = state.taken;
   return *cellsLeft(lattice, whole, split);
 }
@@ -295,6 +333,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   if (extras != 0) body.u8(extras);
   if ((extras & kHasPartings) != 0) putPartings(state.lattice, body);
   if ((extras & kHasRemovals) != 0) putRemovals(state.lattice, body);
+  if ((extras & kHasFronts) != 0) putFronts(state.lattice, body);
   putGhosts(lattice, split, state.lattice, body);
   for (const Vec3& displacement : state.lattice.displacement) body.vec3(displacement);
   putLoads(state.loads, body);
@@ -321,6 +360,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   const std::uint8_t extras = takeExtras(opened.version, in);
   if ((extras & kHasPartings) != 0) takePartings(state, in);
   if ((extras & kHasRemovals) != 0) takeRemovals(lattice, state, in);
+  if ((extras & kHasFronts) != 0) takeFronts(lattice, state, in);
   state.pieces = countPieces(lattice, state);
   state.cells = takeCells(lattice, split, state, in);
   takeDisplacement(lattice, state, in);

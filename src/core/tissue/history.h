@@ -19,6 +19,7 @@ class History {
   struct Entry {
     std::vector<bool> severed;        // per spring
     std::vector<double> parted_at;    // as LatticeState's
+    std::vector<SpringAhead> ahead;   // likewise
     std::vector<std::uint8_t> taken;  // as LatticeState's
     std::vector<SutureThread> sutures;
     std::shared_ptr<const PieceNumbers> pieces;

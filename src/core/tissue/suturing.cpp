@@ -6,6 +6,7 @@
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "surface/nearest_point.h"
+#include "tissue/front_ties.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/threads.h"
@@ -162,7 +163,7 @@ SolveReport Tissue::settleFromRest() {
 }
 
 SolveReport Tissue::solveWithThreads(const std::vector<int>& disturbed) {
-  if (!threads_->anyWhole()) return method_->solve(patches_, disturbed, state_);
+  if (!threads_->act()) return method_->solve(patches_, disturbed, state_);
   patches_.push_back(threads_->patch());
   SolveReport report = method_->solve(patches_, disturbed, state_);
   patches_.pop_back();
@@ -184,6 +185,8 @@ SolveReport Tissue::solveAndBreak(const std::vector<int>& disturbed) {
   }
   return report;
 }
+
+void Tissue::renewTies() { threads_->tie(tiesOfFronts(lattice_, state_, *model_)); }
 
 void Tissue::rebindThreads() {
   for (const int node : threads_->rebind(surface_, lattice_.spacing())) {

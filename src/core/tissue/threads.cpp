@@ -45,7 +45,7 @@ void Threads::mend(const std::vector<std::string>& names) {
 LoadingPatch Threads::patch() const {
   LoadingPatch patch;
   patch.name = "threads of sutures";
-  std::vector<ContactSpring> springs;
+  std::vector<ContactSpring> springs = fronts_;
   for (const SutureThread& thread : threads_) {
     if (!thread.broken) springs.push_back(springOf(thread));
   }
@@ -65,12 +65,14 @@ std::vector<int> Threads::nodes() const {
 
 Vec3 Threads::forceOn(int node, const std::vector<Vec3>& displacement) const {
   Vec3 force = Vec3::Zero();
-  for (const SutureThread& thread : threads_) {
-    if (thread.broken) continue;
-    const ContactSpring spring = springOf(thread);
+  const auto add = [&](const ContactSpring& spring) {
     for (const NodeWeight& carrier : spring.carriers) {
       if (carrier.node == node) force += carrier.weight * forceOf(spring, displacement);
     }
+  };
+  for (const ContactSpring& tie : fronts_) add(tie);
+  for (const SutureThread& thread : threads_) {
+    if (!thread.broken) add(springOf(thread));
   }
   return force;
 }

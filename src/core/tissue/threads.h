@@ -1,5 +1,5 @@
-// The threads of the tissue's sutures. To a solve they are one loading patch without nodes, whose
-// contacts they are.
+// The threads of the tissue's sutures, and the ties of its cuts' fronts. To a solve they are one
+// loading patch without nodes, whose contacts they are.
 #pragma once
 
 #include <functional>
@@ -25,9 +25,14 @@ class Threads {
   std::vector<std::string> whole() const;
   void mend(const std::vector<std::string>& names);
 
+  // What holds the fronts of cuts together acts as threads without length do.
+  void tie(std::vector<ContactSpring> fronts) { fronts_ = std::move(fronts); }
+  // The whole threads and the ties of fronts; of the latter none where no thread is and no cut
+  // ends.
   LoadingPatch patch() const;
+  bool act() const { return !fronts_.empty() || anyWhole(); }
+  Vec3 forceOn(int node, const std::vector<Vec3>& displacement) const;  // of all of these (N)
   std::vector<int> nodes() const;                                       // of whole threads
-  Vec3 forceOn(int node, const std::vector<Vec3>& displacement) const;  // N
   // Whole threads act with their present length where that is more than their rest length; then
   // go a share of the way to that. How much is left of the longest way (m).
   void loosen(const std::vector<Vec3>& displacement);
@@ -49,6 +54,7 @@ class Threads {
 
  private:
   std::vector<SutureThread> threads_;
+  std::vector<ContactSpring> fronts_;
 };
 
 // Binds the end to what carries its place on the surface at rest. False: the surface is too far

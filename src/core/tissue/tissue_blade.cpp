@@ -1,10 +1,12 @@
 // Tissue: springs that blades cut, and those that tear.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "cutting/blade_surface.h"
 #include "cutting/crumbs.h"
 #include "cutting/cut.h"
+#include "cutting/cut_front.h"
 #include "cutting/tear.h"
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
@@ -18,18 +20,37 @@ bool Tissue::mayReach(const Box& bounds) const {
   return grownBy(tuning::kNodesBeyondSurface * lattice_.spacing(), bounds_).intersects(bounds);
 }
 
-// Severs the springs and balances what they leave.
-SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings) {
+// Severs the springs and balances what they leave. Tissue that may tear has cuts that end at the
+// last springs severed, as tears do: what tears next is told by the strain there.
+SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings,
+                                    const BladeSurface* blade) {
   std::vector<int> disturbed;
   for (const Crossing& crossing : crossings) {
     disturbed.push_back(lattice_.springs()[at(crossing.spring)].a);
     disturbed.push_back(lattice_.springs()[at(crossing.spring)].b);
   }
   const int pieces_before = state_.pieces;
-  sever(lattice_, crossings, state_, model_->splitCells());
+  if (blade != nullptr && tear_strains_.empty()) {
+    sever(lattice_, crossings, *blade, state_, model_->splitCells());
+  } else {
+    sever(lattice_, crossings, state_, model_->splitCells());
+  }
   if (state_.pieces != pieces_before) renumberPieces();
   dropFreed();
   return changeTopology(disturbed);
+}
+
+// The blade severs nothing, but what is ahead of it bears less.
+SolveReport Tissue::goNearer(std::vector<SpringAhead> ahead) {
+  const TopologyChange change(*this, History::Kind::kStrokeGoesOn);
+  state_.ahead = std::move(ahead);
+  renewTies();
+  std::vector<int> disturbed;
+  for (const SpringAhead& each : state_.ahead) {
+    disturbed.push_back(lattice_.springs()[at(each.spring)].a);
+    disturbed.push_back(lattice_.springs()[at(each.spring)].b);
+  }
+  return takesNoTime() ? asItIs() : solve(disturbed);
 }
 
 CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
@@ -40,7 +61,12 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   if (!mayReach(surface.bounds())) return report;
   const std::vector<Crossing> crossings =
       sparingCrumbs(lattice_, state_, surface.crossings(lattice_, state_));
-  if (crossings.empty()) return report;
+  if (crossings.empty()) {
+    if (stroke == Stroke::kBegins || state_.ahead.empty()) return report;
+    std::vector<SpringAhead> ahead = springsAhead(lattice_, state_, surface, {});
+    if (haveComeNearer(state_.ahead, ahead)) report.solve = goNearer(std::move(ahead));
+    return report;
+  }
   for (const Crossing& crossing : crossings) {
     report.center += crossing.point / static_cast<double>(crossings.size());
   }
@@ -49,7 +75,7 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   const TopologyChange change(
       *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
   const int torn = springs_torn_;
-  severAndBalance(crossings);
+  severAndBalance(crossings, &surface);
   report.solve = tear();
   report.springs_torn = springs_torn_ - torn;
   report.pieces = state_.pieces;

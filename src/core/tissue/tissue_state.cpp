@@ -93,6 +93,7 @@ bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
     model_->setMembrane(membranes_->on(surface_));
   }
   method_ = makeMethod(solver, lattice_, *model_);
+  renewTies();
   for (auto* patches : {&patches_, &due_}) {
     for (LoadingPatch& patch : *patches) scaleRim(state_, *earlier, *model_, patch);
   }

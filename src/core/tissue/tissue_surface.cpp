@@ -69,6 +69,7 @@ void Tissue::planMembranes(const TissueConfig& tissue) {
 }
 
 void Tissue::rebuildSurface() {
+  renewTies();
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);
   surface_.revision = newRevision();

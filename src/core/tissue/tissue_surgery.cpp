@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "cutting/blade_surface.h"
 #include "cutting/crumbs.h"
 #include "cutting/cut.h"
 #include "cutting/removal.h"
@@ -28,6 +29,7 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   state.severed.assign(entry.severed.begin(), entry.severed.end());
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
   state.parted_at = entry.parted_at;
+  state.ahead = entry.ahead;
   state.taken = entry.taken;
   if (!state.taken.empty()) noteTaken(lattice, state);
   state.pieces = countPieces(lattice, state);
@@ -115,7 +117,8 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   if (crossing.empty()) return report;
   const TopologyChange change(*this, History::Kind::kByItself);
   const int torn = springs_torn_;
-  severAndBalance(crossing);
+  const BladeSurface blade = BladeSurface::of(corners, lattice_.spacing());
+  severAndBalance(crossing, &blade);
   report.solve = tear();
   report.springs_torn = springs_torn_ - torn;
   report.pieces = state_.pieces;

@@ -18,6 +18,7 @@ class Tissue::TopologyChange {
       tissue_.history_->begin(kind,
                               {{state.severed.begin(), state.severed.end()},
                                state.parted_at,
+                               state.ahead,
                                state.taken,
                                tissue_.threads_->all(),
                                tissue_.piece_numbers_,
