@@ -153,11 +153,11 @@ bool LoadStepper::turnedOver(const Checkpoint& good) const {
          world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells;
 }
 
-// Whether a link is deeper in tissue that gives way than throughAt, and than it was. Of rigid tools
-// deepestInRigid tells.
+// Whether a link or support is deeper in tissue that gives way than throughAt, and than it was. Of
+// rigid tools deepestInRigid tells.
 bool LoadStepper::wentThrough(const Checkpoint& good) const {
   const std::vector<double>& depths = touch_finder_.depths();
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+  for (std::size_t tool = 0; tool < world_.tools.sizeWithSupports(); ++tool) {
     if (world_.tools.isRigid(static_cast<int>(tool))) continue;
     const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
     for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
@@ -219,12 +219,16 @@ void LoadStepper::pushRigid(const RobotPose& pose) {
   }
 }
 
+// There is no shape to go back to: one that is none of tissue is kept, and told as unconverged.
 SolveReport LoadStepper::balance() {
   world_.sliding.ride(world_.pose, world_.tissue);
   world_.sticking.ride(world_.pose, world_.tissue);
   meet(world_.pose);
   world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(), Bedding::kSupports);
   tear();
+  if (wentThrough({}) || SlidingContacts::pushesAbsurdly(world_.tissue)) {
+    world_.tissue.noteUnconverged();
+  }
   return world_.tissue.lastReport();
 }
 

@@ -16,11 +16,11 @@ constexpr double kFinestByNewton = 0.004;  // m; below, it needs too much memory
 constexpr double kSmall = 0.0005;          // m: the reference's increments
 constexpr double kSmallTurn = M_PI / 36.0;
 constexpr double kGravity = 9.81;  // m/s^2
-const Vec3 kExtent(0.10, 0.10, 0.05);
+const Vec3 kBlock(0.10, 0.10, 0.05);
 
 TissueConfig blockOf(double spacing = kSpacing, double poisson_ratio = kPoisson) {
   TissueConfig tissue;
-  tissue.shape.max() = kExtent;
+  tissue.shape.max() = kBlock;
   tissue.spacing = spacing;
   tissue.material.young_modulus = kYoung;
   tissue.material.poisson_ratio = poisson_ratio;
@@ -46,7 +46,7 @@ Rung moved(const std::string& name, const std::string& group, const TissueConfig
   rung.name = name;
   rung.group = group;
   rung.tissue = tissue;
-  rung.patches = {patchAt(kExtent.z())};
+  rung.patches = {patchAt(kBlock.z())};
   rung.go = [way](Specimen& specimen, double share) { specimen.move(0, share * way); };
   rung.measure = [](const Specimen& specimen) { return specimen.force(0); };
   rung.unit = "N";
@@ -80,9 +80,9 @@ void addThroughs(std::vector<Rung>& rungs) {
   const Vec3 way(0.0, 0.0, -0.06);
   TissueConfig held_by_sides = blockOf();
   held_by_sides.fixed = {{Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)},
-                         {Vec3(kExtent.x() - 1e-6, -1.0, -1.0), Vec3(1.0, 1.0, 1.0)},
+                         {Vec3(kBlock.x() - 1e-6, -1.0, -1.0), Vec3(1.0, 1.0, 1.0)},
                          {Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1e-6, 1.0)},
-                         {Vec3(-1.0, kExtent.y() - 1e-6, -1.0), Vec3(1.0, 1.0, 1.0)}};
+                         {Vec3(-1.0, kBlock.y() - 1e-6, -1.0), Vec3(1.0, 1.0, 1.0)}};
   rungs.push_back(moved("through_sheet", "through", held_by_sides, way));
   Rung floor = moved("through_floor", "through", blockOf(), way);
   floor.has_no_shape = true;
@@ -139,7 +139,7 @@ Rung sliver(const std::string& name) {
   rung.name = name;
   rung.group = "sliver";
   rung.tissue = blockOf();
-  rung.tissue.fixed = {{Vec3(-1.0, -1.0, kExtent.z() - 1e-6), Vec3(1.0, 1.0, 1.0)}};
+  rung.tissue.fixed = {{Vec3(-1.0, -1.0, kBlock.z() - 1e-6), Vec3(1.0, 1.0, 1.0)}};
   const double half = 1.5 * kSpacing;
   rung.cuts = {{Vec3(-0.01, half, -0.01), Vec3(0.11, half, -0.01), Vec3(0.11, half, half),
                 Vec3(-0.01, half, half)},
@@ -149,7 +149,7 @@ Rung sliver(const std::string& name) {
 }
 
 void addSlivers(std::vector<Rung>& rungs) {
-  const Box end = {Vec3(kExtent.x(), 0.0, 0.0), Vec3(kExtent.x(), kSpacing, kSpacing)};
+  const Box end = {Vec3(kBlock.x(), 0.0, 0.0), Vec3(kBlock.x(), kSpacing, kSpacing)};
   Rung pulled = sliver("sliver_pulled");
   const Vec3 way(0.0, 0.0, -0.02);
   pulled.patches = {end};

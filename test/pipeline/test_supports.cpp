@@ -114,5 +114,25 @@ TEST(Supports, BoxBearsAFixedBlocksOverhang) {
   EXPECT_LT(balance.unbalanced().norm(), 0.02 * balance.weight.norm());
 }
 
+// A support from above that stands in the tissue where that is at rest.
+SolveStatus settledBelow(double height, double& top) {
+  ToolShape ceiling = planeOf(false);
+  ceiling.pose.translation().z() = height;
+  Pipeline pipeline(block(), {}, {}, {{"ceiling", ceiling, 0.0}});
+  const SolveStatus status = pipeline.settle().status;
+  EXPECT_EQ(pipeline.tissue().lastReport().status, status);
+  top = pipeline.tissue().vertices().front().z();
+  for (const Vec3& vertex : pipeline.tissue().vertices()) top = std::max(top, vertex.z());
+  return status;
+}
+
+TEST(Supports, WhatStaysThroughOneIsToldAsUnconverged) {
+  double top = 0.0;
+  EXPECT_EQ(settledBelow(0.95 * kTop, top), SolveStatus::kOk);
+  EXPECT_LT(top, 0.95 * kTop + 0.05 * kSpacing);
+  const SolveStatus status = settledBelow(0.2 * kTop, top);
+  EXPECT_TRUE(status == SolveStatus::kUnconverged || top < 0.2 * kTop + 0.25 * kSpacing) << top;
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_supports

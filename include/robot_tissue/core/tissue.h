@@ -137,6 +137,8 @@ class Tissue {
   int cellsBeyondLaw() const;
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
+  // Of a shape that cannot be right for a reason that the tissue does not know.
+  void noteUnconverged();
   // Displacements as they are shown (m): nodes of a patch's rim where the patch has them, of a
   // tool's where the tool has them.
   std::vector<Vec3> shownDisplacement() const;

@@ -178,6 +178,10 @@ void Tissue::reset() {
   bounds_ = boundsOf(vertices_);
 }
 
+void Tissue::noteUnconverged() {
+  last_report_.status = std::max(last_report_.status, SolveStatus::kUnconverged);
+}
+
 bool Tissue::resistsInversion() const { return model_->resistsInversion(); }
 
 int Tissue::cellsBeyondLaw() const { return model_->cellsBeyondLaw(state_); }
