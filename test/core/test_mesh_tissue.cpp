@@ -206,6 +206,30 @@ TEST_P(BothModels, PressCutReleaseResetOfABall) {
   EXPECT_EQ(tissue.surface().triangles, uncut.triangles);
 }
 
+// A wall of 0.4 or 0.8 spacings, most of it oblique, dented by a spacing: light corners of its cells
+// snap through on the way.
+TEST(MeshTissue, ThinShellsAreBalancedByCyclesAsByNewton) {
+  for (const double wall : {0.002, 0.004}) {
+    const TriangleMesh shell =
+        joined(sphereMesh(0.03, 4), insideOut(sphereMesh(0.03 - wall, 4)));
+    TissueConfig config = tissueOf(shell);
+    config.spacing = 0.005;
+    config.material.poisson_ratio = 0.45;
+    config.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, -0.015)});
+    const Box top{Vec3(-0.012, -0.012, 0.024), Vec3(0.012, 0.012, 1.0)};
+    double force[2];
+    for (const bool by_newton : {false, true}) {
+      SolverConfig solver;
+      if (by_newton) solver.method = "newton";
+      Tissue tissue(config, solver);
+      tissue.load(loadOf({displacedPatch("press", top, {0.0, 0.0, -0.005})}));
+      EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk) << wall << ' ' << by_newton;
+      force[by_newton ? 1 : 0] = tissue.lastReport().patches.front().force.z();
+    }
+    EXPECT_NEAR(force[0] / force[1], 1.0, 0.01) << wall;
+  }
+}
+
 // A ball of radius r cut in two at the middle of the cells that the blade meets: each half is
 // closed, and opened by the disk between them.
 TEST_P(BothModels, BallCutThroughHasTwoClosedHalves) {

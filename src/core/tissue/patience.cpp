@@ -63,7 +63,8 @@ void Patience::endLoadStep() {
   } else if (is_for_scene_ && taken_ > usual) {
     spend((in_time_ ? 1.0 : tuning::kSpentBySettled) * (taken_ - usual));
   } else if (settled) {
-    spent_ = std::max(spent_ - tuning::kForgiven * usual, 0.0);
+    const double forgiven = tuning::kForgiven * usual;
+    spent_ = std::max(spent_ - (in_time_ ? forgiven / tuning::kTimesInTimeStep : forgiven), 0.0);
   }
   taken_ = 0.0;
   lost_ = false;

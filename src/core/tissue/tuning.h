@@ -80,9 +80,9 @@ constexpr double kManyNodes = 15000.0;
 // of the second: later where it is small. Measured by `layered` on 4,851 nodes and 608 ghosts: 15.
 constexpr double kNodesOfGhost = 15.0;
 constexpr double kFewNodes = 5000.0;
-// Iterations of a time step that count as one (1). Less: motions that only touch now and then are
-// given up; more: jams that swing are followed for longer. Chosen: a box's edge dragged at 20 mm/s
-// spends 21 of the 1,500.
+// Iterations of a time step that count as one, and easy time steps that forgive as much as one easy
+// load step (1). Less: motions that only touch now and then are given up; more: jams that swing are
+// followed for longer. Chosen: a box's edge dragged at 20 mm/s spends 21 of the 1,500.
 constexpr int kTimesInTimeStep = 4;
 // Iterations' work in load steps that did not converge, since the last whole one on a tool's way,
 // where nobody asked for an end of the scene: then the way is given up. More: hopeless ways take

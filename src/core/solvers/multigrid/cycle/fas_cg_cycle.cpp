@@ -64,7 +64,7 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   if (own_slope > 0.0 && stepByLineSearch(slope)) {
     std::swap(direction_before_, direction_);
   } else {
-    smoothFrom(start_);
+    stepPlainly();
   }
 }
 
@@ -118,6 +118,24 @@ bool FasCgCycle<Real>::stepByLineSearch(double slope) {
     shape_.moveFrom(start_, direction_, length);
     return shape_.workOfForces(direction_);
   });
+}
+
+// Where a cycle led nowhere. Steps of the smoother alone may lead astray, too, as where a light
+// corner of a wall is about to snap through: they are gone as far as the forces work along them, and
+// one step, D^-1 f, goes along the forces in any case.
+template <typename Real>
+void FasCgCycle<Real>::stepPlainly() {
+  fresh_ = true;
+  for (const int steps : {tuning::kPlainSteps, 1}) {
+    shape_.restore(start_);
+    shape_.keepForces(force_);
+    shape_.finest().smoothAndFindForces(steps);
+    shape_.keepPlaces(direction_);
+    direction_.add(start_, -1.0);
+    const double slope = workOf(force_, direction_);
+    if (slope > 0.0 && stepByLineSearch(slope)) return;
+  }
+  smoothFrom(start_);
 }
 
 template <typename Real>

@@ -48,6 +48,7 @@ class FasCgCycle {
   bool isSteady(const SolveContext& solve, const MotionLeft& left) const;
   double joinLastDirection(double own_slope);
   bool stepByLineSearch(double slope);
+  void stepPlainly();
 
   CompositeShape<Real>& shape_;
   double longest_step_;
