@@ -206,12 +206,11 @@ TEST_P(BothModels, PressCutReleaseResetOfABall) {
   EXPECT_EQ(tissue.surface().triangles, uncut.triangles);
 }
 
-// A wall of 0.4 or 0.8 spacings, most of it oblique, dented by a spacing: light corners of its cells
-// snap through on the way.
+// A wall of 0.4 or 0.8 spacings, most of it oblique, dented by a spacing: light corners of its
+// cells snap through on the way.
 TEST(MeshTissue, ThinShellsAreBalancedByCyclesAsByNewton) {
   for (const double wall : {0.002, 0.004}) {
-    const TriangleMesh shell =
-        joined(sphereMesh(0.03, 4), insideOut(sphereMesh(0.03 - wall, 4)));
+    const TriangleMesh shell = joined(sphereMesh(0.03, 4), insideOut(sphereMesh(0.03 - wall, 4)));
     TissueConfig config = tissueOf(shell);
     config.spacing = 0.005;
     config.material.poisson_ratio = 0.45;

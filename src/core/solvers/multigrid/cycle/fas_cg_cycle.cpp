@@ -121,8 +121,8 @@ bool FasCgCycle<Real>::stepByLineSearch(double slope) {
 }
 
 // Where a cycle led nowhere. Steps of the smoother alone may lead astray, too, as where a light
-// corner of a wall is about to snap through: they are gone as far as the forces work along them, and
-// one step, D^-1 f, goes along the forces in any case.
+// corner of a wall is about to snap through: they are gone as far as the forces work along them,
+// and one step, D^-1 f, goes along the forces in any case.
 template <typename Real>
 void FasCgCycle<Real>::stepPlainly() {
   fresh_ = true;
