@@ -1,5 +1,7 @@
 #include "loads/rim_law.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace robot_tissue {
@@ -38,33 +40,34 @@ RimMode between(const RimMode& low, const RimMode& high, double share) {
           low.stiffness + share * (high.stiffness - low.stiffness)};
 }
 
+// Rows of a table between which a ratio is, and its share of the way; the outermost row beyond it.
+template <typename Row>
+struct Place {
+  const Row& low;
+  const Row& high;
+  double share;
+};
+
+template <typename Row, std::size_t kRows>
+Place<Row> placeIn(const Row (&table)[kRows], double poisson_ratio) {
+  std::size_t high = 0;
+  while (high + 1 < kRows && poisson_ratio > table[high].poisson_ratio) ++high;
+  const Row& low = table[high == 0 ? 0 : high - 1];
+  const double width = table[high].poisson_ratio - low.poisson_ratio;
+  const double share = width > 0.0 ? (poisson_ratio - low.poisson_ratio) / width : 0.0;
+  return {low, table[high], std::min(share, 1.0)};
+}
+
 }  // namespace
 
 RimLaw rimLaw(double poisson_ratio) {
-  const Measured* low = kMeasured;
-  for (const Measured& high : kMeasured) {
-    if (poisson_ratio <= high.poisson_ratio) {
-      const double width = high.poisson_ratio - low->poisson_ratio;
-      const double share = width > 0.0 ? (poisson_ratio - low->poisson_ratio) / width : 0.0;
-      return {kAlong, between(low->across, high.across, share),
-              between(low->normal, high.normal, share)};
-    }
-    low = &high;
-  }
-  return {kAlong, low->across, low->normal};
+  const auto [low, high, share] = placeIn(kMeasured, poisson_ratio);
+  return {kAlong, between(low.across, high.across, share), between(low.normal, high.normal, share)};
 }
 
 RimMode slidingRim(double poisson_ratio) {
-  const Sliding* low = kSliding;
-  for (const Sliding& high : kSliding) {
-    if (poisson_ratio <= high.poisson_ratio) {
-      const double width = high.poisson_ratio - low->poisson_ratio;
-      const double share = width > 0.0 ? (poisson_ratio - low->poisson_ratio) / width : 0.0;
-      return between(low->normal, high.normal, share);
-    }
-    low = &high;
-  }
-  return low->normal;
+  const auto [low, high, share] = placeIn(kSliding, poisson_ratio);
+  return between(low.normal, high.normal, share);
 }
 
 double rimStiffness(const RimMode& mode, double depth) {
