@@ -62,6 +62,7 @@ set_source_files_properties(src/core/solvers/multigrid/level/constrained_balance
 robot_tissue_room(solvers/multigrid/level
   USES base simd lattice membrane material loads
   FILES cell_barrier.h cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h
+  filled_block.h
     conjugate_gradients.h constrained_balance.cpp constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
     level_membrane.cpp level_membrane.h
     skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp

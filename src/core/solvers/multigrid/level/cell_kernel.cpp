@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solvers/multigrid/level/cell_block.h"
+#include "solvers/multigrid/level/filled_block.h"
 
 namespace robot_tissue {
 namespace {
@@ -123,8 +124,8 @@ template <typename V>
 ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
                                         const FilledCell<typename V::Real>* cells, int count) {
   using L = typename V::Lanes;
-  Block<V> block;
-  typename Block<V>::Fill fill;
+  FilledBlock<V> block;
+  typename FilledBlock<V>::Fill fill;
   block.shear = block.bulk = block.exponent = L{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
   for (auto* values : {&fill.centroid, &fill.pairs, &fill.bending, &fill.between_parts}) {
