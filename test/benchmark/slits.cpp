@@ -11,6 +11,7 @@
 
 #include "../core/elastic_fixtures.h"
 #include "cutting/cut.h"
+#include "loads/patch_rim.h"
 #include "tissue/front_ties.h"
 
 using namespace robot_tissue;
@@ -129,16 +130,20 @@ Answer drawn(const Slit& slit, int finer) {
   return {force, coarseNodesOf(block, finer)};
 }
 
-// Held below, a lip pushed sidewards away from the slit by 0.5 mm along its upper outer edge.
+// Held below, a lip pushed sidewards away from the slit by 0.5 mm, by the outer 10 mm of its upper
+// face: with rims, as what a line of nodes, or an edge without them, meets hangs on the lattice.
 Answer pushed(const Slit& slit, int finer, bool is_right) {
   TissueConfig config = blockFor(slit, finer);
   config.fixed.push_back(nodeBox(config, {0, 0, 0}, {12 * finer, 4 * finer, 0}));
   ElasticBlock block(config);
   cutSlit(slit, block);
-  const int i = (is_right ? 10 : 2) * finer;
-  const Box strip = nodeBox(config, {i, 0, 8 * finer}, {i, 4 * finer, 8 * finer});
+  const int from = (is_right ? 10 : 0) * finer, to = from + 2 * finer;
+  const Box strip = nodeBox(config, {from, 0, 8 * finer}, {to, 4 * finer, 8 * finer});
   const Vec3 way(is_right ? 0.0005 : -0.0005, 0.0, 0.0);
-  const double force = solveFor(block, {displaced(block.lattice.nodesIn(strip), way)}, 0);
+  LoadingPatch patch = displaced(block.lattice.nodesIn(strip), way);
+  patch.rim = rimOf(block.lattice, block.model, block.state, strip, patch.nodes);
+  for (RimSpring& spring : patch.rim) spring.anchor = way;
+  const double force = solveFor(block, {patch}, 0);
   return {std::abs(force), coarseNodesOf(block, finer)};
 }
 
