@@ -70,8 +70,8 @@ void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch) {
 
 void putPlane(SlidingContacts::ContactConstraint& touch) {
   ContactSpring& spring = touch.spring;
-  spring.plane_point =
-      touch.tool_point - touch.compliance.normal * spring.multiplier * spring.normal;
+  const double inside = touch.entry + touch.compliance.normal * spring.multiplier;
+  spring.plane_point = touch.tool_point - inside * spring.normal;
   spring.turning = spring.multiplier * touch.contact.turn;
 }
 

@@ -44,19 +44,6 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   }
 }
 
-std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) const {
-  std::vector<PressGrowth::Press> presses(links);
-  for (const ContactConstraint& touch : touches_) {
-    PressGrowth::Press& press = presses[at(touch.contact.link)];
-    press.force += touch.spring.multiplier;
-    press.place += touch.spring.multiplier * touch.tool_point;
-  }
-  for (PressGrowth::Press& press : presses) {
-    if (press.force > 0.0) press.place /= press.force;
-  }
-  return presses;
-}
-
 // Friction's anchor: where the point was at the last commit, moved with the link since. Its
 // friction force there is the ratio of friction to normal force at the commit times the present
 // multiplier: where normal force goes from one touch to its neighbors, friction goes with it.
@@ -72,6 +59,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
                            const Held& held) {
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
+    if (!tissue.goesInTime()) touch.entry = 0.0;
     touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
     touch.firm_stiffness = touch.spring.stiffness;
     soften(tissue, touch);
@@ -283,6 +271,10 @@ void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const T
   touch.vertex = vertexAt(tissue.surface(), contact.place);
   touch.tool_point = contact.point;
   touch.friction_ratio = frictionRatioAround(touch);
+  if (tissue.goesInTime()) {
+    const double most = tuning::kMostEntry * tissue.lattice().spacing();
+    touch.entry = std::min(std::max(contact.depth_m, 0.0), most);
+  }
   touches_.push_back(touch);
   put(contact, pose, tissue, held, touches_.back());
 }
@@ -316,6 +308,7 @@ void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const T
 }
 
 void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
+  const double went_s = std::max(pose.stamp_s - std::exchange(since_s_, pose.stamp_s), 0.0);
   since_links_ = pose.links;
   since_displacement_ = tissue.displacements();
   growth_.note(pose.links, presses(pose.links.size()));
@@ -337,38 +330,14 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
   const auto left = [&](const ContactConstraint& touch) {
     if (touch.spring.multiplier > 0.0) return false;
     const double far = touch.vertex >= 0 ? tuning::kFarOff * tissue.lattice().spacing() : 0.0;
-    return gapOf(touch.spring, *since_displacement_) > far;
+    return gapOf(touch.spring, *since_displacement_) > far + touch.entry;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
-}
-
-// Friction counts: what leans on the sides of a link presses across it, and friction under it takes
-// that up; the tool has neither.
-void SlidingContacts::noteFacing(const RobotPose& pose) {
-  facing_.assign(pose.links.size(), Vec3::Zero());
-  for (const ContactConstraint& touch : touches_) {
-    const Pose& tissue_T_link = pose.links[at(touch.contact.link)];
-    facing_[at(touch.contact.link)] +=
-        tissue_T_link.linear().transpose() * forceOf(touch.spring, *since_displacement_);
-  }
-}
-
-Vec3 SlidingContacts::facing(int link, const Pose& tissue_T_link) const {
-  if (at(link) >= facing_.size()) return Vec3::Zero();
-  return tissue_T_link.linear() * facing_[at(link)].normalized();
+  for (ContactConstraint& touch : touches_) touch.entry *= std::exp(-went_s / tuning::kEntryTime);
 }
 
 void SlidingContacts::pass(const RobotPose& pose) {
   if (!since_links_.empty()) since_links_ = pose.links;
-}
-
-bool SlidingContacts::pushesAbsurdly(const Tissue& tissue) {
-  const auto is_absurd = [&](const ContactSpring& spring) {
-    return normalForceOf(spring, tissue.state().displacement) > mostForceOf(spring, tissue);
-  };
-  return std::any_of(tissue.patches().begin(), tissue.patches().end(), [&](const auto& patch) {
-    return std::any_of(patch.contacts.begin(), patch.contacts.end(), is_absurd);
-  });
 }
 
 void SlidingContacts::clear() {
@@ -379,14 +348,6 @@ void SlidingContacts::clear() {
 void SlidingContacts::clear(int tool) {
   const auto its = [&](const ContactConstraint& touch) { return touch.contact.tool == tool; };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), its), touches_.end());
-}
-
-bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
-  return std::any_of(touches_.begin(), touches_.end(), [&](const ContactConstraint& touch) {
-    return touch.contact.tool == tool &&
-           (touch.spring.multiplier > 0.0 ||
-            normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
-  });
 }
 
 ContactSprings SlidingContacts::springsOf(int tool) const {

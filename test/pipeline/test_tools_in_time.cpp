@@ -210,5 +210,35 @@ TEST_F(CutAboveATable, TheFreePieceLandsAndRestsForNothing) {
   EXPECT_EQ(pipeline_.tissue().state().displacement, at_rest);
 }
 
+// Points that come under an edge between those that touched before come out by and by: pushed out
+// at once, they make the force jump by 17 % of the greatest.
+TEST(AnEdgeInTime, IsDraggedWithoutJumps) {
+  constexpr double kSpeed = 0.02;  // m/s
+  TissueConfig tissue = inTime(block("elastic", kSpacing), 0.01);
+  tissue.shape.max() = Vec3(0.1, 0.1, 0.05);
+  Pipeline pipeline(tissue, methodOf("elastic"),
+                    {withFriction(0.3, toolOf(boxOf(Vec3::Constant(0.02))))});
+  RobotPose pose = at({Vec3::Zero()});
+  pose.links.front().linear() = Eigen::AngleAxisd(M_PI / 4.0, Vec3::UnitY()).toRotationMatrix();
+  const auto step = [&](double x, double depth) {
+    pose.links.front().translation() = Vec3(x, 0.05, 0.05 + 0.01 * std::sqrt(2.0) - depth);
+    pose.stamp_s += 1.0 / kRate;
+    pipeline.step(pose);
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << x;
+    return pipeline.report().tools.front().force_on_tool;
+  };
+  const double stride = kSpeed / kRate;
+  Vec3 before = Vec3::Zero();
+  for (double depth = -0.0005; depth < 0.005; depth += stride) before = step(0.035, depth);
+  double jump = 0.0, greatest = 0.0;
+  for (double x = 0.035; x < 0.045; x += stride) {
+    const Vec3 force = step(x, 0.005);
+    jump = std::max(jump, (force - before).norm());
+    greatest = std::max(greatest, force.norm());
+    before = force;
+  }
+  EXPECT_LT(jump, 0.1 * greatest);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tools_in_time

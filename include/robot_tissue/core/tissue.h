@@ -181,6 +181,7 @@ class Tissue {
   void beginTimeStep(double duration, Touched touched = Touched::kByNone);
   void endTimeStep();
   bool isInTimeStep() const { return in_time_step_; }
+  bool goesInTime() const { return in_time_step_ || expects_time_step_; }  // in one, or soon
   void stopTime();
   // Time goes by while no tool moves, in steps of an error within the tolerance.
   SolveReport wait(double duration);

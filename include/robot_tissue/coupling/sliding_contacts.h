@@ -12,6 +12,10 @@
 // frame, normals from the tool into the tissue), poses of the links. Out: the springs of each tool.
 // Points that held nodes carry, but for a tenth of their weight, are never taken.
 //
+// In time a point that is found deep, as between points that touched before, comes out by and by:
+// its plane is in the tool by `entry`, which goes to zero. At once it would have a speed that it
+// never had, and viscosity would answer to that.
+//
 // At the rim of a flat face a touch gives way, by a compliance c: its plane is c times the
 // multiplier below the tool's, its spring k in series with 1 / c. Then the gap goes to -c f. (With
 // f = multiplier - k' (g + c multiplier), k' = k / (1 + k c), f is the multiplier for g = -c f.)
@@ -57,6 +61,7 @@ class SlidingContacts {
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
     Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
     double stiffening = 1.0;             // of the tissue, in the time step under way
+    double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
     bool found = false;                  // in the last update
   };
 
@@ -155,6 +160,7 @@ class SlidingContacts {
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
   std::vector<Vec3> facing_;                  // per link, of its forces (N, link's frame)
   std::vector<Pose> since_links_;             // at the last commit
+  double since_s_ = 0.0;                      // likewise, RobotPose::stamp_s
   Tissue::Displacements since_displacement_;  // likewise (m)
 };
 

@@ -1,0 +1,56 @@
+// What touches press with: by links and by tools.
+#include <algorithm>
+#include <vector>
+
+#include "robot_tissue/coupling/sliding_contacts.h"
+#include "touch_spring.h"
+
+namespace robot_tissue {
+
+std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) const {
+  std::vector<PressGrowth::Press> presses(links);
+  for (const ContactConstraint& touch : touches_) {
+    PressGrowth::Press& press = presses[at(touch.contact.link)];
+    press.force += touch.spring.multiplier;
+    press.place += touch.spring.multiplier * touch.tool_point;
+  }
+  for (PressGrowth::Press& press : presses) {
+    if (press.force > 0.0) press.place /= press.force;
+  }
+  return presses;
+}
+
+// Friction counts: what leans on the sides of a link presses across it, and friction under it takes
+// that up; the tool has neither.
+void SlidingContacts::noteFacing(const RobotPose& pose) {
+  facing_.assign(pose.links.size(), Vec3::Zero());
+  for (const ContactConstraint& touch : touches_) {
+    const Pose& tissue_T_link = pose.links[at(touch.contact.link)];
+    facing_[at(touch.contact.link)] +=
+        tissue_T_link.linear().transpose() * forceOf(touch.spring, *since_displacement_);
+  }
+}
+
+Vec3 SlidingContacts::facing(int link, const Pose& tissue_T_link) const {
+  if (at(link) >= facing_.size()) return Vec3::Zero();
+  return tissue_T_link.linear() * facing_[at(link)].normalized();
+}
+
+bool SlidingContacts::pushesAbsurdly(const Tissue& tissue) {
+  const auto is_absurd = [&](const ContactSpring& spring) {
+    return normalForceOf(spring, tissue.state().displacement) > mostForceOf(spring, tissue);
+  };
+  return std::any_of(tissue.patches().begin(), tissue.patches().end(), [&](const auto& patch) {
+    return std::any_of(patch.contacts.begin(), patch.contacts.end(), is_absurd);
+  });
+}
+
+bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const ContactConstraint& touch) {
+    return touch.contact.tool == tool &&
+           (touch.spring.multiplier > 0.0 ||
+            normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
+  });
+}
+
+}  // namespace robot_tissue
