@@ -49,11 +49,11 @@ double forceOf(Tissue& tissue, const TissueConfig& config) {
   return report.patches[0].force.x();
 }
 
-double forceAt(double depth, const std::string& method = "newton") {
+double forceAt(double depth, const std::string& method = "newton", double tolerance = 1e-4) {
   const TissueConfig config = block();
   SolverConfig solver;
   solver.method = method;
-  solver.tolerance = 1e-4;
+  solver.tolerance = tolerance;
   Tissue tissue(config, solver);
   tissue.cut(slit(depth));
   return forceOf(tissue, config);
@@ -73,9 +73,11 @@ TEST(CutFront, ForceFallsEvenlyAsTheBladeGoesThroughACell) {
 
 TEST(CutFront, AllMethodsFindTheSame) {
   const double force = forceAt(2.4);
-  for (const char* method : {"layered", "vbd", "explicit"}) {
+  for (const char* method : {"layered", "explicit"}) {
     EXPECT_NEAR(forceAt(2.4, method), force, 3e-3 * force) << method;
   }
+  // Rounding, which hangs on how it is compiled, ends its sweeps near 1e-4.
+  EXPECT_NEAR(forceAt(2.4, "vbd", 5e-4), force, 3e-3 * force);
 }
 
 TEST(CutFront, NothingPullsInALinearDeformationOrATurn) {
