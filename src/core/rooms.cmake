@@ -97,7 +97,7 @@ robot_tissue_room(solvers/baselines/kernels
   VECTOR_LOOPS force_kernels.cpp lane_sums.cpp vbd_kernels.cpp xpbd_kernels.cpp)
 robot_tissue_room(solvers/baselines
   USES base simd material loads solvers solvers/baselines/kernels
-  FILES explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
+  FILES contact_passage.cpp contact_passage.h explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
     relaxation_method.h relaxation_waves.cpp soa_field.cpp soa_field.h soa_sweeps.cpp tuning.h
     vbd_method.cpp vbd_method.h xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue

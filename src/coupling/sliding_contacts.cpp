@@ -51,6 +51,7 @@ void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) co
   const Pose& link = pose.links[at(touch.contact.link)];
   const Pose moved = link * since_links_[at(touch.contact.link)].inverse();
   touch.spring.anchor = moved * pointOf(touch.spring, *since_displacement_);
+  touch.spring.plane_way = touch.tool_point - moved.inverse() * touch.tool_point;
   const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.friction_ratio);
   touch.spring.friction_force = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
 }
@@ -98,6 +99,7 @@ bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
   const bool whole = shape == ContactUpdate::Shape::kSolved;
   cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
   const bool wavers = cut_rounds_ > tuning::kMostTurningRounds;
+  if (tissue.goesThroughTime()) takeMeans(tissue);
   for (ContactConstraint& touch : touches_) noteSolved(touch);
   is_settled_ = whole && updateMultipliers(tissue);
   if (!whole) pressHarder(tissue);

@@ -7,6 +7,18 @@
 
 namespace robot_tissue {
 
+// What the method says that springs pushed with in the mean of the time step.
+void SlidingContacts::takeMeans(const Tissue& tissue) {
+  for (const LoadingPatch& patch : tissue.patches()) {
+    if (!patch.tool) continue;
+    std::size_t next = 0;
+    for (ContactConstraint& touch : touches_) {
+      if (touch.contact.tool != *patch.tool || next == patch.contacts.size()) continue;
+      touch.spring = patch.contacts[next++];
+    }
+  }
+}
+
 std::vector<PressGrowth::Press> SlidingContacts::presses(std::size_t links) const {
   std::vector<PressGrowth::Press> presses(links);
   for (const ContactConstraint& touch : touches_) {

@@ -177,6 +177,7 @@ double LoadStepper::throughAt(std::size_t link) const {
 // Whether the solve ended before it was done, as where tissue slips far: a point is left too deep
 // or, unconverged, the forces on the tissue do not add up to zero.
 bool LoadStepper::isUnsettled() const {
+  if (world_.tissue.goesThroughTime()) return false;
   if (contact_update_.leftInside() > tuning::kTooDeep * world_.tissue.lattice().spacing()) {
     return true;
   }

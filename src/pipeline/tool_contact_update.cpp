@@ -131,6 +131,7 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   } else if (!new_surface) {
     const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose, contacts),
                                                contacts, world_.pose, world_.tissue, held, shape);
+    if (world_.tissue.goesThroughTime()) return false;
     if (settled && (!world_.tissue.isUntouched() || world_.sliding.touches().empty())) return false;
   }
   if (round == Round::kLast) return true;

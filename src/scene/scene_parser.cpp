@@ -53,14 +53,11 @@ void readStepsPart(const Entry& entry, SceneReading& reading) {
   }
 }
 
-// Their small time steps take a tool where it will be at the end of the whole one (doc/time.md).
+// One iteration a small step does not carry damping from cell to cell (doc/time.md).
 void remarkToolsInTime(const Entry& entry, Scene& scene) {
-  const std::string& method = scene.solver.method;
-  if (!scene.tissue.time || scene.tools.empty()) return;
-  if (method != "xpbd" && method != "explicit") return;
-  scene.remarks.push_back(
-      entry.line("beside tissue.time the forces of method " + method +
-                 " on tools are not to be trusted, those of layered, newton and vbd are"));
+  if (!scene.tissue.time || scene.tools.empty() || scene.solver.method != "xpbd") return;
+  scene.remarks.push_back(entry.line(
+      "beside tissue.time the forces of method xpbd on tools are up to a fifth too low"));
 }
 
 const KeyTable<SceneReading> kSceneKeys = {

@@ -45,6 +45,9 @@ struct ContactSpring {
   // Symmetric, of no negative direction: M (N/m), and where the normal is as it is taken (m).
   Eigen::Matrix3d turning = Eigen::Matrix3d::Zero();
   Vec3 turned_from = Vec3::Zero();
+  // Of the plane in the load step under way (m): known to methods that go through a time step in
+  // steps of their own; the law above is of its end.
+  Vec3 plane_way = Vec3::Zero();
   // At a tool's rim the surface is shown where the tool has it: off the spring's point by so much
   // times the normal force, along the normal (m/N).
   double shown_compliance = 0.0;

@@ -182,6 +182,8 @@ class Tissue {
   void endTimeStep();
   bool isInTimeStep() const { return in_time_step_; }
   bool goesInTime() const { return in_time_step_ || expects_time_step_; }  // in one, or soon
+  // Likewise, and in steps of the method's own: contacts pushed as it says, in the mean.
+  bool goesThroughTime() const;
   void stopTime();
   // Time goes by while no tool moves, in steps of an error within the tolerance.
   SolveReport wait(double duration);

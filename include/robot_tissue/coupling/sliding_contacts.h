@@ -143,6 +143,7 @@ class SlidingContacts {
   bool handOn(const ContactConstraint& lost, double reach, const Tissue& tissue);
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
   std::vector<PressGrowth::Press> presses(std::size_t links) const;
+  void takeMeans(const Tissue& tissue);
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
   void forgetLost(const Held& held);

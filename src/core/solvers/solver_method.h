@@ -46,6 +46,10 @@ class SolverMethod {
   // method has a faster way than the model; empty: it has none.
   virtual std::vector<Vec3> cellForces(const LatticeState&) { return {}; }
 
+  // Whether it goes through a time step in steps of its own: contacts go along their plane_way, and
+  // are left with the force that they had in the mean.
+  virtual bool goesThroughTimeSteps() const { return false; }
+
   // Of the nodes at the end of the last time step (m/s), where the method goes through it in steps
   // of its own; null: they follow from the shape.
   virtual const std::vector<Vec3>* velocities() const { return nullptr; }

@@ -14,6 +14,10 @@ namespace robot_tissue {
 
 bool Tissue::isMoving() const { return time_ && in_time_ && time_->moves(); }
 
+bool Tissue::goesThroughTime() const {
+  return goesInTime() && method_->goesThroughTimeSteps();
+}
+
 double Tissue::longestTimeStep() const { return time_->longestStep(); }
 
 // Whether loads that go and cuts leave the shape as it is, to be moved by time.

@@ -243,7 +243,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool late = isBounded() && left_ms <= 2.0 * look_ms + shortestMs(of_round);
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-    const bool whole = !goBack(*before) && solved;
+    const bool whole = (goesThroughTime() || !goBack(*before)) && solved;
     if (whole) ++whole_rounds;
     gain.note(of_round, state_.displacement, whole);
     const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;

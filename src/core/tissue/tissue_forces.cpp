@@ -68,7 +68,8 @@ std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const
 }
 
 double Tissue::stiffening(int node) const {
-  const double stiffness = expects_time_step_ ? nodeStiffness(node) : 0.0;
+  const bool is_solved = expects_time_step_ && !goesThroughTime();
+  const double stiffness = is_solved ? nodeStiffness(node) : 0.0;
   if (!(stiffness > 0.0)) return 1.0;
   return time_->stiffness().elastic_scale + time_->inertia(node) / stiffness;
 }

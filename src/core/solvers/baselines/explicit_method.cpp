@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/baselines/soa_field.h"
 #include "solvers/baselines/tuning.h"
@@ -167,25 +168,33 @@ double ExplicitMethod::takePower() {
 
 // Per node: N, m, m/s, kg.
 struct ExplicitMethod::Passage {
+  Passage(const InertialTerm& inertia, std::vector<double> node_masses, std::vector<Vec3> at_end,
+          ConstrainedState& shape)
+      : term(inertia),
+        masses(std::move(node_masses)),
+        before(shape.state.displacement),
+        end(std::move(at_end)),
+        contacts(shape) {}
+
+  bool isDamped() const { return term.damping_time > 0.0; }
+
   const InertialTerm& term;
   std::vector<double> masses;
   std::vector<Vec3> before,
       end;  // of the time step; what is held goes evenly from one to the other
   std::vector<Vec3> force, elastic_before;
   double step = 0.0;  // s
-
-  bool isDamped() const { return term.damping_time > 0.0; }
+  ContactPassage contacts;
 };
 
 SolveStatus ExplicitMethod::goThrough(int& steps) {
-  Passage passage{*model_.inertia(), model_.nodeMasses(*shape_.state.cells), {}, {}, {}, {}};
-  const double duration = passage.term.duration;
+  const InertialTerm& term = *model_.inertia();
   std::vector<Vec3>& place = shape_.state.displacement;
-  passage.end = place;
+  const std::vector<Vec3> end = place;
   for (std::size_t node = 0; node < place.size(); ++node) {
-    place[node] = passage.term.free_motion[node] - duration * passage.term.velocity[node];
+    place[node] = term.free_motion[node] - term.duration * term.velocity[node];
   }
-  passage.before = place;
+  Passage passage(term, model_.nodeMasses(*shape_.state.cells), end, shape_);
   field_->takeAll(shape_.state);
   field_->findSqueezed();
   measureContacts();
@@ -194,11 +203,11 @@ SolveStatus ExplicitMethod::goThrough(int& steps) {
   cells_ = shape_.state.cells;
   held_ = hold_.dirichletMask();
   const double longest = longestStableStep(passage.masses, passage.term.damping_time);
-  const double count = std::max(1.0, std::ceil(duration / longest));
+  const double count = std::max(1.0, std::ceil(term.duration / longest));
   SolveStatus status = SolveStatus::kUnconverged;
   if (count <= mostIterations()) {
     steps = static_cast<int>(count);
-    passage.step = duration / count;
+    passage.step = term.duration / count;
     status = pass(passage, steps);
   }
   if (status != SolveStatus::kUnconverged) return status;
@@ -231,6 +240,7 @@ SolveStatus ExplicitMethod::pass(Passage& passage, int steps) {
       if (hold_.carriers()[node] >= 0) continue;  // moved with its patch
       place[node] = held + hold_.freePart(index, free - held);
     }
+    pushTouches(passage, {share, 1.0 / steps});
     field_->takeAll(shape_.state);
     if (step % tuning::kWeighings == 0) field_->findSqueezed();
     findForcesOn(passage);
@@ -243,6 +253,7 @@ SolveStatus ExplicitMethod::pass(Passage& passage, int steps) {
     const Vec3 held = (place[node] - passage.before[node]) / passage.term.duration;
     velocity_[node] = held + hold_.freePart(index, velocity_[node] - held);
   }
+  passage.contacts.tellMeans();
   return SolveStatus::kOk;
 }
 
@@ -259,16 +270,30 @@ void ExplicitMethod::findForcesOn(Passage& passage) {
     passage.force[node] = field_->forceOn(static_cast<int>(node));
   }
   if (!passage.isDamped()) return;
-  std::vector<Vec3> of_contacts(place.size(), Vec3::Zero());
-  for (const LoadingPatch& patch : shape_.patches) addContactForces(patch, place, of_contacts);
+  std::vector<Vec3> of_threads(place.size(), Vec3::Zero());
+  for (const LoadingPatch& patch : shape_.patches) addContactForces(patch, place, of_threads);
   const bool first = passage.elastic_before.empty();
   passage.elastic_before.resize(place.size());
   for (std::size_t node = 0; node < place.size(); ++node) {
-    const Vec3 elastic = passage.force[node] - of_contacts[node];
+    const Vec3 elastic = passage.force[node] - of_threads[node];
     const Vec3 rate = (elastic - passage.elastic_before[node]) / passage.step;
     if (!first) passage.force[node] += passage.term.damping_time * rate;
     passage.elastic_before[node] = elastic;
   }
+}
+
+void ExplicitMethod::pushTouches(Passage& passage, const ContactPassage::SmallStep& step) {
+  const auto mobility = [&](int node) -> Vec3 {
+    const double mass = passage.masses[at(node)];
+    if (mass <= 0.0 || hold_.carriers()[at(node)] >= 0) return Vec3::Zero();
+    return hold_.freePart(node, Vec3::Constant(passage.step * passage.step / mass));
+  };
+  const auto push = [&](int node, const Vec3& force) {
+    const Vec3 motion = mobility(node).cwiseProduct(force);
+    shape_.state.displacement[at(node)] += motion;
+    velocity_[at(node)] += motion / passage.step;
+  };
+  passage.contacts.push(step, mobility, push);
 }
 
 void ExplicitMethod::accelerate(Passage& passage, double step) {

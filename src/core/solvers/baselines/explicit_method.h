@@ -9,6 +9,7 @@
 //   h <= 2 / w ((1 + s^2)^(1/2) - s),   s = damping_time w / 2 (Belytschko, Liu and Moran 2000)
 #pragma once
 
+#include "solvers/baselines/contact_passage.h"
 #include "solvers/baselines/relaxation_method.h"
 
 namespace robot_tissue {
@@ -37,6 +38,7 @@ class ExplicitMethod : public RelaxationMethod {
   SolveStatus pass(Passage& passage, int steps);
   void accelerate(Passage& passage, double step);
   void findForcesOn(Passage& passage);
+  void pushTouches(Passage& passage, const ContactPassage::SmallStep& step);
   double longestStableStep(const std::vector<double>& masses, double damping_time) const;
 
   void measureContacts();

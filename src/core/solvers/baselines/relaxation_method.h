@@ -43,6 +43,7 @@ class RelaxationMethod : public SolverMethod {
   void forget() override;
   bool remembers() const override { return true; }
   bool findsEquilibrium() const override { return true; }
+  bool goesThroughTimeSteps() const override { return time_steps_ == TimeSteps::kGoneThrough; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   void limitIterations(int most) override { most_iterations_ = most; }
   double patchStep() const override;

@@ -194,13 +194,15 @@ SolveStatus XpbdMethod::goThrough(int& steps) {
   const double count = std::max(1.0, std::ceil(term.duration / smallStep(masses)));
   if (count <= mostIterations()) {
     steps = static_cast<int>(count);
+    ContactPassage contacts(shape_);
     for (int step = 1; step <= steps; ++step) {
       for (std::size_t node = 0; node < place.size(); ++node) {  // what is held goes evenly
         const Vec3 held = before[node] + (step / count) * (end[node] - before[node]);
         if (hold_.carriers()[node] >= 0) continue;
         place[node] = held + hold_.freePart(static_cast<int>(node), place[node] - held);
       }
-      makeSmallStep(term.duration / count, masses, term.damping_time);
+      makeSmallStep({term.duration / count, step / count, 1.0 / count, term.damping_time}, masses,
+                    contacts);
       if (isLate() && step < steps) return SolveStatus::kLate;
     }
     for (std::size_t node = 0; node < place.size(); ++node) {
@@ -208,6 +210,7 @@ SolveStatus XpbdMethod::goThrough(int& steps) {
       velocity_[node] = held + hold_.freePart(static_cast<int>(node), velocity_[node] - held);
     }
     if (std::all_of(place.begin(), place.end(), [](const Vec3& p) { return p.allFinite(); })) {
+      contacts.tellMeans();
       return SolveStatus::kOk;
     }
   }
@@ -217,10 +220,10 @@ SolveStatus XpbdMethod::goThrough(int& steps) {
   return SolveStatus::kUnconverged;
 }
 
-void XpbdMethod::makeSmallStep(double step, const std::vector<double>& masses,
-                               double damping_time) {
-  predict(step, masses);
-  damping_ = damping_time / step;
+void XpbdMethod::makeSmallStep(const SmallStep& step, const std::vector<double>& masses,
+                               ContactPassage& contacts) {
+  predict(step.duration, masses);
+  damping_ = step.damping_time / step.duration;
   const SoaField::Arrays& start = field_->spare(kShortened);
   const SoaDamping damping{static_cast<float>(damping_), {start[0], start[1], start[2]}};
   pushPatches();
@@ -229,6 +232,7 @@ void XpbdMethod::makeSmallStep(double step, const std::vector<double>& masses,
   projectOddCells();
   projectRims();
   projectContacts();
+  pushTouches(contacts, {step.end, step.share});
   for (std::size_t node = 0; node < predicted.size(); ++node) {
     const int index = static_cast<int>(node), slot = field_->slotOf(index);
     if (hold_.carriers()[node] >= 0) continue;
@@ -239,8 +243,18 @@ void XpbdMethod::makeSmallStep(double step, const std::vector<double>& masses,
     }
     pushed = hold_.freePart(index, field_->unit() * pushed);
     shape_.state.displacement[node] = predicted[node] + pushed;
-    velocity_[node] += pushed / step;
+    velocity_[node] += pushed / step.duration;
   }
+}
+
+void XpbdMethod::pushTouches(ContactPassage& contacts, const ContactPassage::SmallStep& step) {
+  const auto push_node = [this](int node, const Vec3& force) {
+    push(node, force, 1.0);
+    field_->giveAll(node, shape_.state);
+  };
+  for (const int node : hold_.touched()) field_->giveAll(node, shape_.state);
+  contacts.push(
+      step, [this](int node) { return mobilityOf(node); }, push_node);
 }
 
 void XpbdMethod::keepPlaces(int spare) {

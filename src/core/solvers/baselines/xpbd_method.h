@@ -15,6 +15,7 @@
 // square of a small step; it is chosen by the tolerance (own).
 #pragma once
 
+#include "solvers/baselines/contact_passage.h"
 #include "solvers/baselines/relaxation_method.h"
 
 namespace robot_tissue {
@@ -37,7 +38,14 @@ class XpbdMethod : public RelaxationMethod {
   double shrinkage() const override;
 
   SolveStatus goThrough(int& steps) override;
-  void makeSmallStep(double step, const std::vector<double>& masses, double damping_time);
+  struct SmallStep {
+    double duration;      // s
+    double end;           // share of the time step that is gone after it
+    double share;         // of the time step
+    double damping_time;  // s
+  };
+  void makeSmallStep(const SmallStep& step, const std::vector<double>& masses,
+                     ContactPassage& contacts);
   void predict(double step, const std::vector<double>& masses);
   void keepPlaces(int spare);
   double smallStep(const std::vector<double>& masses) const;
@@ -48,6 +56,7 @@ class XpbdMethod : public RelaxationMethod {
   void projectOddCells();
   void projectRims();
   void projectContacts();
+  void pushTouches(ContactPassage& contacts, const ContactPassage::SmallStep& step);
   Vec3 mobilityOf(int node) const;
   Vec3 wayOf(int node) const;
   void push(int node, const Vec3& force, double share);
