@@ -10,8 +10,8 @@ from pathlib import Path
 # In the order in which `all` runs them: short ones first.
 STUDIES = ["rooms", "grasp", "dent_folds", "slides", "liver", "walls", "paper", "motion", "swing", "time_stability",
            "time_tools", "stiffening", "economy", "fidelity", "growth", "threads", "stages", "speed", "node",
-           "still_node", "shape_topics", "replay_live", "screens", "soak", "heap", "contact_search", "contact", "accuracy",
-           "stability", "speed_accuracy"]
+           "still_node", "shape_topics", "replay_live", "screens", "soak", "heap", "contact_search", "contact",
+           "tool_accuracy", "accuracy", "stability", "speed_accuracy"]
 
 
 def title_of(name):
