@@ -4,7 +4,7 @@ Runs the programs of test/benchmark (contact_press, contact_hertz, contact_frict
 contact_random only with --only random, a quarter of an hour), one after the other, each up to its
 study's limit: what it wrote by then is kept. Writes doc/data/contact_*.csv to four digits, draws
 doc/images/contact_press.png and contact_hertz.png from them and prints the tables of
-doc/contact.md. --plot draws and prints only.
+doc/contact_measured.md. --plot draws and prints only.
 """
 
 import csv

@@ -1,7 +1,7 @@
 """Measures what finding contacts costs, without any solve.
 
 Runs the program `contact_search` of test/benchmark (built on demand: make contact_search) at each
-number of cells and writes doc/data/contact_search.csv with the commit; doc/contact.md quotes it.
+number of cells and writes doc/data/contact_search.csv with the commit; doc/contact_measured.md quotes it.
 Times are of the processor, medians of 60 searches; each case is repeated, and the least told.
 """
 

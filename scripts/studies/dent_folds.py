@@ -4,7 +4,7 @@ Presses a tool into a block of 100 x 100 x 50 mm at 5 mm, drags it, and looks at
 `simulate` writes: the greatest angle between the outward normals of two neighboring triangles, and
 how many edges have more than 90 and 120 degrees, away from the block's own edges. Flat skin has 0,
 a triangle that lies folded back on its neighbor 180. Writes doc/data/dent_folds.csv with the
-commit; doc/contact.md quotes it.
+commit; doc/contact_measured.md quotes it.
 """
 
 import subprocess

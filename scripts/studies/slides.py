@@ -3,7 +3,7 @@
 Tools are pressed in, dragged by 30 mm, 0.25 mm an update, and drawn out, without friction and with
 0.3, at two spacings. By symmetry nothing holds back a tool without friction in the middle of the
 block; with friction that alone does, where the tool is flat. Writes doc/data/slides.csv with the
-commit and prints the table of doc/contact.md. Some minutes.
+commit and prints the table of doc/contact_measured.md. Some minutes.
 """
 
 import csv
