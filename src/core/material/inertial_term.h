@@ -18,6 +18,7 @@ struct InertialTerm {
   // Least length that a solve's error is relative to, otherwise the way from the free motion; as a
   // vector of all nodes (m).
   double least_way = 0.0;
+  bool beside_contacts = false;  // a step of first order (doc/time.md)
   // What the terms above are made of, for methods that go through the step in shorter ones.
   double duration = 0.0;       // s
   double damping_time = 0.0;   // s: stress is elastic and so much of its rate

@@ -73,6 +73,7 @@ const InertialTerm& TimeIntegrator::begin(const LatticeState& state,
   term_.elastic_scale = stiffness_.elastic_scale;
   term_.per_mass = stiffness_.per_mass;
   term_.duration = h;
+  term_.beside_contacts = scheme_ == Scheme::kBackwardEuler;
   term_.damping_time = damping_time_;
   term_.velocity = v;
   term_.free_motion.resize(nodes);

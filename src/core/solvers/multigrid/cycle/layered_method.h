@@ -21,7 +21,7 @@ class LayeredMethod : public SolverMethod {
 
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
-  void beginStep(const LatticeState&) override { solver_->beginStep(); }
+  void beginStep(const LatticeState& state) override;
   void limitWays(std::vector<WayLimit>&& limits) override { solver_->limitWays(std::move(limits)); }
   void forget() override;
   bool remembers() const override { return true; }
@@ -38,7 +38,8 @@ class LayeredMethod : public SolverMethod {
   }
 
  private:
-  void makeSolver(Precision precision);
+  Precision precisionIn(const LatticeState& state) const;
+  void use(Precision precision);
 
   const Lattice& lattice_;
   const ElasticModel& model_;
@@ -47,6 +48,7 @@ class LayeredMethod : public SolverMethod {
   DofConstraints hold_;
   Precision precision_;
   std::unique_ptr<MultigridSolver> solver_;
+  std::unique_ptr<MultigridSolver> other_;  // in the other precision; null: was not used yet
 };
 
 }  // namespace robot_tissue

@@ -12,6 +12,9 @@ namespace robot_tissue::cycle_tuning {
 
 // Tolerance that single precision reaches (model.md). Up: more solves in double, slower.
 constexpr double kSinglePrecision = 1e-3;
+// Of what a time step's solve may be off: a displacement's rounding. A ball and an edge dragged, 10
+// to 100 ms of damping: 0.04 to 0.2, forces as in double and half the time. Up: fine steps tremble.
+constexpr double kRoundingInTime = 0.5;
 // Of the greatest force (1): left unbalanced by a solve in single precision that did not converge,
 // so little may be rounding (4e-5 pressed by 40 of 50 mm at nu 0.49). Up: hopeless solves are made
 // twice.
