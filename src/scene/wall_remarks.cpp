@@ -14,8 +14,8 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 // Of a wall's stiffness in bending (1). One that lies along no plane of the grid bends by squares
 // of the coordinates, which trilinear cells do not have: it is stiffer by kOblique sin(2 a)^4
-// (h / t)^2, a its angle, t its thickness. The number is that of thin_walls (doc/accuracy.md).
-constexpr double kOblique = 1.1;
+// (h / t)^3, a its angle, t its thickness. The number is that of thin_walls (doc/accuracy.md).
+constexpr double kOblique = 0.8;
 constexpr double kTooStiff = 0.1;    // more is told. Chosen
 constexpr double kThinShare = 0.05;  // of the surface: less is not told. Chosen
 
@@ -43,11 +43,11 @@ void lookAt(const WallSample& wall, double spacing, Walls& walls) {
     walls.thinnest = std::min(walls.thinnest, wall.thickness);
   }
   const double oblique = obliqueness(wall.normal);
-  const double too_stiff = kOblique * std::pow(oblique * spacing / wall.thickness, 2);
+  const double at_a_spacing = kOblique * oblique * oblique;  // in a wall of that thickness
+  const double too_stiff = at_a_spacing * std::pow(spacing / wall.thickness, 3);
   if (!(too_stiff > kTooStiff)) return;
   walls.stiff_share += wall.area;
-  walls.spacing =
-      std::min(walls.spacing, std::sqrt(kTooStiff / kOblique) * wall.thickness / oblique);
+  walls.spacing = std::min(walls.spacing, std::cbrt(kTooStiff / at_a_spacing) * wall.thickness);
   if (too_stiff <= walls.too_stiff) return;
   walls.too_stiff = too_stiff;
   walls.stiffest = wall.thickness;

@@ -30,6 +30,9 @@ struct Cell {
   std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
   std::shared_ptr<const CellFill> fill;  // what of that cell's volume h^3 it holds; null: all
 
+  // What its share of the moduli is multiplied by (core/lattice/oblique_walls.h).
+  double moduli_factor = 1.0;
+
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
   double share() const { return fill == nullptr ? 1.0 : fill->share; }  // of h^3, in (0, 1]

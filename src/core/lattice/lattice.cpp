@@ -5,6 +5,7 @@
 
 #include "geometry/mesh_slicing.h"
 #include "lattice/connectivity.h"
+#include "lattice/oblique_walls.h"
 #include "lattice/slivers.h"
 
 namespace robot_tissue {
@@ -92,10 +93,10 @@ Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config
 
 Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
   placeNodes(tissue.filled);
+  compositions_ = compositionsOf(config, tissue);
   placeCells(tissue);
   placeEighths(config);
   placeSprings();
-  compositions_ = compositionsOf(config, tissue);
   weigh(config);
   fix(config.fixed);
 }
@@ -119,12 +120,14 @@ void Lattice::placeNodes(const std::vector<double>& filled) {
 }
 
 void Lattice::placeCells(const FilledGrid& tissue) {
+  const std::vector<double> factors = moduliFactors(tissue, compositions_);
   std::vector<Cell> cells;
   auto partial = tissue.partial.begin();
   for (int number = 0; number < grid_.cellCount(); ++number) {
     if (tissue.filled[at(number)] <= 0.0) continue;
     Cell cell;
     cell.place = static_cast<int>(cells.size());
+    if (!factors.empty()) cell.moduli_factor = factors[cells.size()];
     if (partial != tissue.partial.end() && partial->first == number) {
       cell.fill = std::make_shared<const CellFill>((partial++)->second);
     }

@@ -9,7 +9,9 @@ namespace robot_tissue {
 FillLaw fillLaw(const CellFill& fill) {
   FillLaw law;
   law.centroid = fill.centroid;
+  law.places = fill.strain_places;
   law.pairs = {fill.products(1, 2), fill.products(0, 2), fill.products(0, 1)};
+  law.pairs = law.pairs.cwiseProduct(law.places);
   const double least = fill.spread[0], middle = fill.spread[1];
   law.bending = Vec3::Constant(std::max(2.0 * least, elastic_law::kLeastBending / 6.0));
   law.twisting = std::max(3.0 * least * middle, elastic_law::kLeastBending / 48.0);
@@ -27,7 +29,8 @@ std::array<CornerSlopes, kCorners> cornerSlopes(const FillLaw& law) {
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       const double beside = side[b] * law.centroid[b] + side[c] * law.centroid[c];
-      of.strain[a] = side[a] * (0.25 + 0.5 * beside + side[b] * side[c] * law.pairs[a]);
+      of.strain[a] =
+          side[a] * (0.25 + 0.5 * law.places[a] * beside + side[b] * side[c] * law.pairs[a]);
       of.bending[a] = side[b] * side[c] * (0.5 + side[a] * law.centroid[a]);
     }
     of.twisting = side.prod();

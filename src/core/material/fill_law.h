@@ -17,7 +17,8 @@ namespace robot_tissue {
 
 struct FillLaw {
   Vec3 centroid;          // h
-  Vec3 pairs;             // mean products p_ab (h^2)
+  Vec3 pairs;             // mean products p_ab (h^2), times `places`
+  Vec3 places;            // where each F e_a is taken, CellFill::strain_places
   Vec3 bending;           // w_ab
   double twisting = 0.0;  // w_abc
 };

@@ -128,7 +128,8 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   typename FilledBlock<V>::Fill fill;
   block.shear = block.bulk = block.exponent = L{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
-  for (auto* values : {&fill.centroid, &fill.pairs, &fill.bending, &fill.between_parts}) {
+  for (auto* values :
+       {&fill.centroid, &fill.places, &fill.pairs, &fill.bending, &fill.between_parts}) {
     for (L& value : *values) value = L{};
   }
   fill.twisting = L{};
@@ -139,6 +140,7 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
     block.exponent[cell] = of.stiffening;
     for (int axis = 0; axis < 3; ++axis) {
       fill.centroid[axis][cell] = of.centroid[at(axis)];
+      fill.places[axis][cell] = of.places[at(axis)];
       fill.pairs[axis][cell] = of.pairs[at(axis)];
       fill.bending[axis][cell] = of.bending[at(axis)];
       fill.between_parts[axis][cell] = of.between_parts[at(axis)];

@@ -71,6 +71,7 @@ void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int 
 template <typename Real>
 struct FilledCell : LooseCell<Real> {
   std::array<Real, 3> centroid{};
+  std::array<Real, 3> places{};
   std::array<Real, 3> pairs{};
   std::array<Real, 3> bending{};
   Real twisting = 0;

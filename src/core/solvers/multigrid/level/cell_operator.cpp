@@ -21,6 +21,7 @@ FilledCell<Real> filledCell(const LooseCell<Real>& cell, const LevelFill& fill) 
   FilledCell<Real> filled;
   static_cast<LooseCell<Real>&>(filled) = cell;
   filled.centroid = rounded<Real>(fill.law.centroid);
+  filled.places = rounded<Real>(fill.law.places);
   filled.pairs = rounded<Real>(fill.law.pairs);
   filled.bending = rounded<Real>(fill.law.bending);
   filled.twisting = static_cast<Real>(fill.law.twisting);

@@ -14,7 +14,7 @@ struct FilledBlock : Block<V> {
 
   // As FilledCell.
   struct Fill {
-    L centroid[3], pairs[3], bending[3], between_parts[3];
+    L centroid[3], places[3], pairs[3], bending[3], between_parts[3];
     L twisting;
   };
 
@@ -32,6 +32,7 @@ struct FilledBlock : Block<V> {
 
   // From modes about the cell's middle to those whose means are over the fill:
   //   m_a - 2 (m_ab c_b + m_ac c_c) + 4 m_abc p_bc,   m_ab - 2 m_abc c_c,   m_abc
+  // with c and p in m_a times the fill's `places`
   // (sign 1), or back (sign -1).
   template <int kSign>
   ROBOT_TISSUE_INLINE void shiftModes(const Fill& fill) {
@@ -43,7 +44,8 @@ struct FilledBlock : Block<V> {
         const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
         const L bent =
             mode[pairMode(c)][axis] * fill.centroid[b] + mode[pairMode(b)][axis] * fill.centroid[c];
-        mode[1 << a0][axis] -= kTwo * bent - Real(2) * kTwo * fill.pairs[a0] * twist;
+        mode[1 << a0][axis] -=
+            kTwo * fill.places[a0] * bent - Real(2) * kTwo * fill.pairs[a0] * twist;
       }
       if (kSign > 0) shiftPairs(fill, kTwo, axis);
     }
@@ -64,8 +66,9 @@ struct FilledBlock : Block<V> {
         const int a0 = (c + 1) % 3, b = (c + 2) % 3;
         twist += Real(4) * fill.pairs[c] * mode[1 << c][axis] -
                  Real(2) * fill.centroid[c] * mode[pairMode(c)][axis];
-        mode[pairMode(c)][axis] -= Real(2) * (fill.centroid[b] * mode[1 << a0][axis] +
-                                              fill.centroid[a0] * mode[1 << b][axis]);
+        mode[pairMode(c)][axis] -=
+            Real(2) * (fill.centroid[b] * fill.places[a0] * mode[1 << a0][axis] +
+                       fill.centroid[a0] * fill.places[b] * mode[1 << b][axis]);
       }
       mode[7][axis] = twist;
     }
@@ -159,8 +162,9 @@ struct FilledBlock : Block<V> {
       for (int axis = 0; axis < 3; ++axis) side[axis] = Real((corner >> axis & 1) != 0 ? 1 : -1);
       for (int a0 = 0; a0 < 3; ++a0) {
         const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
-        const L strain = Real(0.5) * (side[b] * fill.centroid[b] + side[c] * fill.centroid[c]) +
-                         side[b] * side[c] * fill.pairs[a0] + Real(0.25);
+        const L beside = side[b] * fill.centroid[b] + side[c] * fill.centroid[c];
+        const L strain =
+            Real(0.5) * fill.places[a0] * beside + side[b] * side[c] * fill.pairs[a0] + Real(0.25);
         const L bend = side[a0] * fill.centroid[a0] + Real(0.5);
         shape += strain * strain + fill.bending[a0] * bend * bend;
         widest = greater(widest, strain * strain * squares[a0]);
