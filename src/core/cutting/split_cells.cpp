@@ -223,7 +223,9 @@ void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split
     for (int corner = part; corner < kCorners; ++corner) {
       if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
     }
-    parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
+    CellFill fill = fillOf(fills[at(part)]);
+    if (cell.fill) fill.strain_places = cell.fill->strain_places;
+    parted.fill = std::make_shared<const CellFill>(fill);
     left.push_back(parted);
   }
 }
