@@ -11,7 +11,7 @@ robot_tissue_room(geometry
   FILES cell_fill.cpp exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
     mesh_columns.h mesh_pieces.cpp mesh_pieces.h
     mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h mesh_walls.cpp self_intersection.cpp tetrahedron.cpp
-    tetrahedron.h triangle_mesh.cpp triangle_point.cpp tuning.h)
+    tetrahedron.h triangle_mesh.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
   PUBLIC body_load.h removed_space.h scene.h suture.h tool_role.h
