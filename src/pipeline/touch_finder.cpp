@@ -16,6 +16,7 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
   const Stopwatch watch(world_.report.contact_ms);
   std::vector<std::optional<Contact>> tracked;
   const std::set<std::pair<int, int>> come_in = verticesComeIn();
+  curved_.take(world_.tissue.surface(), vertices_);
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (!touch.contact.rim.is_beyond && come_in.count({touch.contact.link, touch.vertex}) != 0) {
       tracked.emplace_back();
@@ -34,7 +35,7 @@ std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& p
     contact.normal = touch.spring.normal;
     contact.depth_m = 0.0;
     contact.point = pointOf(touch.spring, world_.tissue.state().displacement) - contact.bulge;
-    curve(vertices_, contact);
+    curve(contact);
     const bool near = turn(pose, contact);
     rims_.mark(contact);
     const bool stays = near && !ToolRims::isTakenOver(contact);
@@ -60,7 +61,7 @@ std::set<std::pair<int, int>> TouchFinder::verticesComeIn() const {
 Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
   const TissueSurface& surface = world_.tissue.surface();
   const int vertex = vertexAt(surface, contact.place);
-  if (vertex >= 0) return -curved_.doubleAreaAt(vertex, surface, vertices_).normalized();
+  if (vertex >= 0) return -curved_.doubleAreaAt(vertex).normalized();
   return -doubleArea(vertices_, surface.triangles[at(contact.place.triangle)]).normalized();
 }
 
@@ -68,17 +69,18 @@ Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
 // facets as on teeth.
 Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
   const double share = smooth_[at(contact.link)];
-  const Vec3 smooth = curved_.normalAt(contact.place, world_.tissue.surface(), vertices_);
+  const Vec3 smooth = curved_.normalAt(contact.place);
   return ((1.0 - share) * inwardsAt(contact) - share * smooth).normalized();
 }
 
-// Brings a contact, which is of a triangle, onto the curved surface. Its depth to first order.
-void TouchFinder::curve(const std::vector<Vec3>& vertices, Contact& contact) const {
+// Brings a contact, which is of a triangle, onto the curved surface that was taken. Its depth to
+// first order.
+void TouchFinder::curve(Contact& contact) const {
   const TissueSurface& surface = world_.tissue.surface();
   const double share = smooth_[at(contact.link)];
   contact.bulge.setZero();
   if (share == 0.0 || vertexAt(surface, contact.place) >= 0) return;
-  contact.bulge = share * curved_.bulgeAt(contact.place, surface, vertices);
+  contact.bulge = share * curved_.bulgeAt(contact.place);
   contact.point += contact.bulge;
   contact.depth_m -= contact.bulge.dot(contact.normal);
 }
@@ -173,9 +175,9 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
 
 ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) {
   ContactSet contacts = flatContacts(pose, vertices);
-  curved_.takeSurface(world_.tissue.surface());
+  curved_.take(world_.tissue.surface(), vertices);
   smooth_.resize(pose.links.size(), 0.0);
-  for (Contact& contact : contacts.contacts) curve(vertices, contact);
+  for (Contact& contact : contacts.contacts) curve(contact);
   return contacts;
 }
 
@@ -207,17 +209,17 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
-  curved_.takeSurface(world_.tissue.surface());
+  curved_.take(world_.tissue.surface(), vertices_);
   smooth_ = smoothnesses(pose, contacts, vertices_);
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay
   std::size_t kept = 0;
   for (Contact& contact : all) {
-    curve(vertices_, contact);
+    curve(contact);
     const double depth = contact.depth_m;
     if (!turn(pose, contact) && world_.isInWound(at(contact.link))) continue;
     contact.wanders = wanders(pose, contact);
     if (contact.wanders) {
-      contact.turn = curved_.hollowAt(contact.place, world_.tissue.surface(), vertices_);
+      contact.turn = curved_.hollowAt(contact.place);
     }
     nearest.push_back(depth);
     all[kept++] = contact;
@@ -248,11 +250,11 @@ std::vector<double> TouchFinder::penetrations(const std::vector<std::size_t>& li
                                               const RobotPose& pose) {
   const TissueSurface& surface = world_.tissue.surface();
   const std::vector<Vec3>& vertices = world_.tissue.vertices();
-  curved_.takeSurface(surface);
+  curved_.take(surface, vertices);
   const auto smooth = smoothnesses(pose, flatContacts(pose, vertices), vertices);
   const auto bulge = [&](std::size_t link, const SurfacePoint& point) -> Vec3 {
     if (smooth[link] == 0.0) return Vec3::Zero();
-    return smooth[link] * curved_.bulgeAt(point, surface, vertices);
+    return smooth[link] * curved_.bulgeAt(point);
   };
   return world_.finder.penetrations(links, pose, surface, vertices, bulge);
 }

@@ -88,9 +88,9 @@ std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const Contact
     const int vertex = surface.triangles[at(contact.place.triangle)][at(k)];
     contact.point += contact.place.barycentric[k] * vertices_[at(vertex)];
   }
-  curve(vertices_, contact);
+  curve(contact);
   if (!turn(pose, contact)) return std::nullopt;
-  contact.turn = curved_.hollowAt(contact.place, surface, vertices_);
+  contact.turn = curved_.hollowAt(contact.place);
   return contact;
 }
 

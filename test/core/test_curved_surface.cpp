@@ -73,17 +73,17 @@ void forEachInnerPlace(const TissueSurface& surface, const std::vector<Vec3>& ve
 TEST(CurvedSurface, OfABallIsNearlyTheBall) {
   const TissueSurface surface = square();
   CurvedSurface curved;
-  curved.takeSurface(surface);
   const Vec3 center(0.5 * kCells * kSpacing, 0.5 * kCells * kSpacing, 0.0);
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Vec3> vertices = onBall(surface, sign);
+    curved.take(surface, vertices);
     double off = 0.0, flat_off = 0.0, turned = 0.0;
     forEachInnerPlace(surface, vertices, [&](const Place& place) {
-      const Vec3 point = place.flat + curved.bulgeAt(place.point, surface, vertices);
+      const Vec3 point = place.flat + curved.bulgeAt(place.point);
       off = std::max(off, std::abs((point - center).norm() - kRadius));
       flat_off = std::max(flat_off, std::abs((place.flat - center).norm() - kRadius));
       const Vec3 normal = sign * (point - center).normalized();
-      turned = std::max(turned, (curved.normalAt(place.point, surface, vertices) - normal).norm());
+      turned = std::max(turned, (curved.normalAt(place.point) - normal).norm());
     });
     EXPECT_GT(flat_off, 5e-5);
     EXPECT_LT(off, 0.1 * flat_off);
@@ -96,10 +96,10 @@ TEST(CurvedSurface, OfAPlaneIsThePlaneAlsoWhereItIsStretched) {
   std::vector<Vec3> vertices = surface.rest;
   for (Vec3& vertex : vertices) vertex.x() += 5.0 * vertex.x() * vertex.x();
   CurvedSurface curved;
-  curved.takeSurface(surface);
+  curved.take(surface, vertices);
   forEachInnerPlace(surface, vertices, [&](const Place& place) {
-    EXPECT_LT(curved.bulgeAt(place.point, surface, vertices).norm(), 1e-15);
-    EXPECT_LT(curved.hollowAt(place.point, surface, vertices).norm(), 1e-9);
+    EXPECT_LT(curved.bulgeAt(place.point).norm(), 1e-15);
+    EXPECT_LT(curved.hollowAt(place.point).norm(), 1e-9);
   });
 }
 
@@ -107,9 +107,9 @@ TEST(CurvedSurface, IsSharpWhereTheSurfaceAtRestIs) {
   const int fold = kCells / 2;
   const TissueSurface surface = square(fold);
   CurvedSurface curved;
-  curved.takeSurface(surface);
+  curved.take(surface, surface.rest);
   forEachInnerPlace(surface, surface.rest, [&](const Place& place) {
-    EXPECT_LT(curved.bulgeAt(place.point, surface, surface.rest).norm(), 1e-15);
+    EXPECT_LT(curved.bulgeAt(place.point).norm(), 1e-15);
   });
 }
 
@@ -117,18 +117,49 @@ TEST(CurvedSurface, IsSharpWhereTheSurfaceAtRestIs) {
 TEST(CurvedSurface, IsAsHollowAsABowl) {
   const TissueSurface surface = square();
   CurvedSurface curved;
-  curved.takeSurface(surface);
   const std::vector<Vec3> bowl = onBall(surface, -1.0), ball = onBall(surface, 1.0);
   forEachInnerPlace(surface, bowl, [&](const Place& place) {
-    const Eigen::Matrix3d hollow = curved.hollowAt(place.point, surface, bowl);
+    curved.take(surface, bowl);
+    const Eigen::Matrix3d hollow = curved.hollowAt(place.point);
     EXPECT_LT((hollow - hollow.transpose()).norm(), 1e-9);
     const Vec3 normal = doubleArea(bowl, surface.triangles[at(place.point.triangle)]).normalized();
     EXPECT_LT((hollow * normal).norm(), 1e-9);
     const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
     EXPECT_NEAR(along.dot(hollow * along) * kRadius, 1.0, 0.05);
     EXPECT_NEAR(across.dot(hollow * across) * kRadius, 1.0, 0.05);
-    EXPECT_LT(curved.hollowAt(place.point, surface, ball).norm() * kRadius, 0.01);
+    curved.take(surface, ball);
+    EXPECT_LT(curved.hollowAt(place.point).norm() * kRadius, 0.01);
   });
+}
+
+// What is kept of the shape before, or of another surface, leaves no trace.
+TEST(CurvedSurface, IsOfTheShapeThatWasTakenLast) {
+  const TissueSurface flat = square();
+  TissueSurface folded = square(kCells / 2);
+  folded.revision = flat.revision + 1;
+  CurvedSurface curved;
+  const auto expectTaken = [&](const TissueSurface& surface, const std::vector<Vec3>& vertices) {
+    curved.take(surface, vertices);
+    CurvedSurface fresh;
+    fresh.take(surface, vertices);
+    forEachInnerPlace(surface, vertices, [&](const Place& place) {
+      EXPECT_EQ(curved.bulgeAt(place.point), fresh.bulgeAt(place.point));
+      EXPECT_EQ(curved.normalAt(place.point), fresh.normalAt(place.point));
+      EXPECT_EQ(curved.hollowAt(place.point), fresh.hollowAt(place.point));
+    });
+    for (int vertex = 0; vertex < static_cast<int>(vertices.size()); ++vertex) {
+      EXPECT_EQ(curved.doubleAreaAt(vertex), fresh.doubleAreaAt(vertex));
+    }
+  };
+  const std::vector<Vec3> ball = onBall(flat, 1.0), bowl = onBall(flat, -1.0);
+  expectTaken(flat, ball);
+  expectTaken(flat, bowl);
+  expectTaken(flat, bowl);
+  std::vector<Vec3> dented = bowl;
+  dented[dented.size() / 2].z() -= 1e-4;
+  expectTaken(flat, dented);
+  expectTaken(folded, folded.rest);
+  expectTaken(flat, ball);
 }
 
 }  // namespace

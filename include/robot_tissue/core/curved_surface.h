@@ -24,33 +24,43 @@ class CurvedSurface {
   // beside it.
   static Vec3 cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners);
 
-  // What follows is of that surface. Without a look at all of it where its revision is known.
-  void takeSurface(const TissueSurface& surface);
+  // What follows is of that surface with its vertices there (m). Without a look at all of it where
+  // its revision is known; what was found of the same vertices stays.
+  void take(const TissueSurface& surface, const std::vector<Vec3>& vertices);
 
-  // With its vertices there (m): unit normal outwards, even from corner to corner of the point's
-  // triangle; zero where it has none.
-  Vec3 normalAt(const SurfacePoint& point, const TissueSurface& surface,
-                const std::vector<Vec3>& vertices) const;
+  // Unit normal outwards, even from corner to corner of the point's triangle; zero where it has
+  // none.
+  Vec3 normalAt(const SurfacePoint& point) const;
   // How far the surface is from the triangle's point (m); zero at corners.
-  Vec3 bulgeAt(const SurfacePoint& point, const TissueSurface& surface,
-               const std::vector<Vec3>& vertices) const;
+  Vec3 bulgeAt(const SurfacePoint& point) const;
   // Where it is hollow, how fast its normal turns against the way along it (1/m): symmetric, of no
   // negative direction.
-  Eigen::Matrix3d hollowAt(const SurfacePoint& point, const TissueSurface& surface,
-                           const std::vector<Vec3>& vertices) const;
+  Eigen::Matrix3d hollowAt(const SurfacePoint& point) const;
   // Twice the sum of the areas of all triangles at the vertex, outwards (m^2).
-  Vec3 doubleAreaAt(int vertex, const TissueSurface& surface,
-                    const std::vector<Vec3>& vertices) const;
+  Vec3 doubleAreaAt(int vertex) const;
 
  private:
-  Vec3 cornerNormal(int triangle, std::size_t corner, const TissueSurface& surface,
-                    const std::vector<Vec3>& vertices) const;
+  // A normal, and the shape that it is of; found where it is asked for.
+  struct Normal {
+    Vec3 normal = Vec3::Zero();
+    std::uint64_t shape = 0;  // 0: of none
+  };
 
-  std::uint64_t revision_ = 0;        // of the surface; 0: none yet
-  std::vector<int> triangles_;        // of each vertex, ascending
-  std::vector<std::size_t> first_;    // per vertex, in triangles_, and their end
-  std::vector<Vec3> rest_normals_;    // per triangle, unit
-  std::vector<Vec3> corner_weights_;  // likewise, of its corners
+  void takeSurface(const TissueSurface& surface);
+  const Vec3& triangleNormal(std::size_t triangle) const;
+  const Vec3& cornerNormal(int triangle, std::size_t corner) const;
+  Vec3 findCornerNormal(int triangle, std::size_t corner) const;
+
+  std::uint64_t revision_ = 0;                // of the surface; 0: none yet
+  std::vector<MeshTriangle> corners_;         // per triangle
+  std::vector<int> triangles_;                // of each vertex, ascending
+  std::vector<std::size_t> first_;            // per vertex, in triangles_, and their end
+  std::vector<Vec3> rest_normals_;            // per triangle, unit
+  std::vector<Vec3> corner_weights_;          // likewise, of its corners
+  std::vector<Vec3> vertices_;                // m
+  std::uint64_t shape_ = 0;                   // counts surfaces, and their vertices
+  mutable std::vector<Normal> of_triangles_;  // unit
+  mutable std::vector<Normal> of_corners_;    // three a triangle, unit
 };
 
 }  // namespace robot_tissue

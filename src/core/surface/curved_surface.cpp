@@ -2,10 +2,18 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cstring>
 
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
+namespace {
+
+bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+}
+
+}  // namespace
 
 Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners) {
   const Vec3 &a = rest[at(corners[0])], &b = rest[at(corners[1])], &c = rest[at(corners[2])];
@@ -15,9 +23,17 @@ Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTrian
   return {weight(ab * ca), weight(bc * ab), weight(ca * bc)};
 }
 
+void CurvedSurface::take(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
+  const bool is_known = revision_ != 0 && revision_ == surface.revision;
+  if (!is_known) takeSurface(surface);
+  if (is_known && areSame(vertices, vertices_)) return;
+  vertices_ = vertices;
+  ++shape_;
+}
+
 void CurvedSurface::takeSurface(const TissueSurface& surface) {
-  if (revision_ != 0 && revision_ == surface.revision) return;
   revision_ = surface.revision;
+  corners_ = surface.triangles;
   first_.assign(surface.rest.size() + 1, 0);
   for (const MeshTriangle& corners : surface.triangles) {
     for (const int corner : corners) ++first_[at(corner) + 1];
@@ -35,54 +51,64 @@ void CurvedSurface::takeSurface(const TissueSurface& surface) {
     corner_weights_[triangle] = cornerWeights(surface.rest, corners);
     for (const int corner : corners) triangles_[next[at(corner)]++] = static_cast<int>(triangle);
   }
+  of_triangles_.assign(corners_.size(), {});
+  of_corners_.assign(3 * corners_.size(), {});
 }
 
-Vec3 CurvedSurface::doubleAreaAt(int vertex, const TissueSurface& surface,
-                                 const std::vector<Vec3>& vertices) const {
+Vec3 CurvedSurface::doubleAreaAt(int vertex) const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    sum += doubleArea(vertices, surface.triangles[at(triangles_[i])]);
+    sum += doubleArea(vertices_, corners_[at(triangles_[i])]);
   }
   return sum;
 }
 
+const Vec3& CurvedSurface::triangleNormal(std::size_t triangle) const {
+  Normal& known = of_triangles_[triangle];
+  if (known.shape == shape_) return known.normal;
+  known = {doubleArea(vertices_, corners_[triangle]).stableNormalized(), shape_};
+  return known.normal;
+}
+
+const Vec3& CurvedSurface::cornerNormal(int triangle, std::size_t corner) const {
+  Normal& known = of_corners_[3 * at(triangle) + corner];
+  if (known.shape != shape_) known = {findCornerNormal(triangle, corner), shape_};
+  return known.normal;
+}
+
 // Of the triangles around the corner that no sharp edge parts from its own.
-Vec3 CurvedSurface::cornerNormal(int triangle, std::size_t corner, const TissueSurface& surface,
-                                 const std::vector<Vec3>& vertices) const {
-  const int vertex = surface.triangles[at(triangle)][corner];
+Vec3 CurvedSurface::findCornerNormal(int triangle, std::size_t corner) const {
+  const int vertex = corners_[at(triangle)][corner];
   const Vec3& own = rest_normals_[at(triangle)];
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
     const auto other = at(triangles_[i]);
     if (own.dot(rest_normals_[other]) < kSharpFold) continue;
-    const MeshTriangle& corners = surface.triangles[other];
+    const MeshTriangle& corners = corners_[other];
     const auto k = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-    sum += corner_weights_[other][k] * doubleArea(vertices, corners).stableNormalized();
+    sum += corner_weights_[other][k] * triangleNormal(other);
   }
   return sum.stableNormalized();
 }
 
-Vec3 CurvedSurface::normalAt(const SurfacePoint& point, const TissueSurface& surface,
-                             const std::vector<Vec3>& vertices) const {
+Vec3 CurvedSurface::normalAt(const SurfacePoint& point) const {
   Vec3 normal = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    normal +=
-        point.barycentric[static_cast<int>(k)] * cornerNormal(point.triangle, k, surface, vertices);
+    normal += point.barycentric[static_cast<int>(k)] * cornerNormal(point.triangle, k);
   }
   return normal.stableNormalized();
 }
 
 // Of the normal that goes evenly from corner to corner: N = sum of u_k N_k, dN/dx = sum of N_k
 // times the gradient of u_k in the triangle.
-Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point, const TissueSurface& surface,
-                                        const std::vector<Vec3>& vertices) const {
-  const MeshTriangle& corners = surface.triangles[at(point.triangle)];
-  const Vec3 area = doubleArea(vertices, corners);
+Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point) const {
+  const MeshTriangle& corners = corners_[at(point.triangle)];
+  const Vec3 area = doubleArea(vertices_, corners);
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 across = vertices[at(corners[(k + 2) % 3])] - vertices[at(corners[(k + 1) % 3])];
+    const Vec3 across = vertices_[at(corners[(k + 2) % 3])] - vertices_[at(corners[(k + 1) % 3])];
     const Vec3 gradient = area.cross(across) / area.squaredNorm();
-    turn -= cornerNormal(point.triangle, k, surface, vertices) * gradient.transpose();
+    turn -= cornerNormal(point.triangle, k) * gradient.transpose();
   }
   const Vec3 normal = area.normalized();
   const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() - normal * normal.transpose();
@@ -96,18 +122,17 @@ Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point, const TissueS
 // tangent planes of the edges' ends, and the middle that makes it as quadratic as may be. Less the
 // flat triangle, with weights u and the rise w_ij = N_i (x_j - x_i) of corner j over the plane of
 // corner i: - sum over i, j != i of w_ij N_i (u_i^2 u_j + u_0 u_1 u_2 / 2).
-Vec3 CurvedSurface::bulgeAt(const SurfacePoint& point, const TissueSurface& surface,
-                            const std::vector<Vec3>& vertices) const {
-  const MeshTriangle& corners = surface.triangles[at(point.triangle)];
+Vec3 CurvedSurface::bulgeAt(const SurfacePoint& point) const {
+  const MeshTriangle& corners = corners_[at(point.triangle)];
   const Vec3& u = point.barycentric;
   Vec3 bulge = Vec3::Zero();
   for (int i = 0; i < 3; ++i) {
     const auto corner = static_cast<std::size_t>(i);
-    const Vec3 normal = cornerNormal(point.triangle, corner, surface, vertices);
+    const Vec3& normal = cornerNormal(point.triangle, corner);
     double lift = 0.0;
     for (int j = 0; j < 3; ++j) {
       if (j == i) continue;
-      const Vec3 way = vertices[at(corners[at(j)])] - vertices[at(corners[corner])];
+      const Vec3 way = vertices_[at(corners[at(j)])] - vertices_[at(corners[corner])];
       const double most = kMostRise * way.norm();
       const double rise = std::min(most, std::max(-most, normal.dot(way)));
       lift += rise * (u[i] * u[i] * u[j] + 0.5 * u.prod());
