@@ -15,61 +15,11 @@
 #include "shape_gap.h"
 #include "surface_traversal.h"
 #include "surface_tree.h"
+#include "touching_link.h"
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-struct Link {
-  int tool = 0;
-  std::vector<CollisionShape> shapes;
-  std::vector<GapShape> gap_shapes;               // as shapes
-  std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
-  std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
-  std::vector<ClearPoints> clear_points;          // as shapes; of meshes
-  std::size_t in_use = 0;                         // of the shapes, the first
-
-  PlacedLink placedAt(const Pose& tissue_T_link) const {
-    PlacedLink here = placed(shapes, tissue_T_link);
-    if (here.size() > in_use) here.resize(in_use);
-    return here;
-  }
-
-  // The longest way of a point of the link from one pose to another (m): that of a corner of a box
-  // around a shape.
-  double longestWay(const Pose& from, const Pose& to) const {
-    const Eigen::Matrix4d way = to.matrix() - from.matrix();
-    double longest = 0.0;
-    for (std::size_t i = 0; i < in_use; ++i) {
-      if (shapes[i].isPlane() && !way.isZero(0.0)) return std::numeric_limits<double>::infinity();
-      if (shapes[i].isPlane()) continue;
-      const Pose& pose = shapes[i].poseInLink();
-      for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 point = pose * shapes[i].bounds().corner(static_cast<Box::CornerType>(corner));
-        longest = std::max(longest, (way * point.homogeneous()).norm());
-      }
-    }
-    return longest;
-  }
-};
-
-Link makeLink(int tool, const std::string& tool_name, const LinkGeometry& geometry,
-              std::vector<std::string>& warnings) {
-  Link link;
-  link.tool = tool;
-  const std::string owner =
-      "tool '" + tool_name + "'" + (geometry.link.empty() ? "" : ", link '" + geometry.link + "'");
-  for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
-    link.shapes.emplace_back(geometry.shapes[i], owner + ", shape " + std::to_string(i + 1),
-                             warnings);
-    link.gap_shapes.emplace_back(link.shapes.back());
-    link.surface_points.push_back(surfacePoints(link.shapes.back()));
-  }
-  link.in_use = link.shapes.size();
-  link.face_pairs.resize(link.shapes.size());
-  link.clear_points.resize(link.shapes.size());
-  return link;
-}
 
 void requireVertices(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
   if (vertices.size() == surface.rest.size()) return;
@@ -96,7 +46,7 @@ struct Found {
 }  // namespace
 
 struct ContactFinder::Impl {
-  std::vector<Link> links;
+  std::vector<TouchingLink> links;
   std::vector<std::string> warnings;
   BroadPhase broad_phase;
 
@@ -155,7 +105,7 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
     : impl_(std::make_unique<Impl>()) {
   for (std::size_t t = 0; t < tools.size(); ++t) {
     for (const LinkGeometry& link : tools[t].links) {
-      impl_->links.push_back(makeLink(static_cast<int>(t), tools[t].name, link, impl_->warnings));
+      impl_->links.emplace_back(static_cast<int>(t), tools[t].name, link, impl_->warnings);
       impl_->broad_phase.addLink(impl_->links.back().shapes);
     }
   }
@@ -164,9 +114,8 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
 std::size_t ContactFinder::linkCount() const { return impl_->links.size(); }
 
 void ContactFinder::useShapes(std::size_t link, std::size_t count) {
-  std::size_t& in_use = impl_->links[link].in_use;
-  if (in_use == count) return;
-  in_use = std::min(count, impl_->links[link].shapes.size());
+  if (impl_->links[link].shapesInUse() == count) return;
+  impl_->links[link].useShapes(count);
   impl_->found = {};
 }
 
@@ -193,8 +142,8 @@ ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& 
 
 double ContactFinder::reach(std::size_t link) const {
   double farthest = 0.0;
-  const Link& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.in_use; ++i) {
+  const TouchingLink& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.shapesInUse(); ++i) {
     const CollisionShape& shape = of.shapes[i];
     if (shape.isPlane()) continue;
     const Box& box = shape.bounds();
@@ -212,15 +161,15 @@ double ContactFinder::reach(std::size_t link) const {
 
 Vec3 ContactFinder::center(std::size_t link) const {
   Vec3 sum = Vec3::Zero();
-  const Link& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.in_use; ++i) sum += of.shapes[i].poseInLink().translation();
-  return of.in_use == 0 ? sum : Vec3(sum / static_cast<double>(of.in_use));
+  const TouchingLink& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.shapesInUse(); ++i) sum += of.shapes[i].poseInLink().translation();
+  return of.shapesInUse() == 0 ? sum : Vec3(sum / static_cast<double>(of.shapesInUse()));
 }
 
 double ContactFinder::thickness(std::size_t link) const {
   double thinnest = std::numeric_limits<double>::infinity();
-  const Link& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.in_use; ++i) {
+  const TouchingLink& of = impl_->links[link];
+  for (std::size_t i = 0; i < of.shapesInUse(); ++i) {
     thinnest = std::min(thinnest, of.shapes[i].thickness());
   }
   return thinnest;
@@ -319,7 +268,7 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
 
 std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue_T_link,
                                             const Vec3& point, double reach) const {
-  return robot_tissue::wayOut(impl_->links[link].placedAt(tissue_T_link), point, reach);
+  return impl_->links[link].wayOutAt(tissue_T_link, point, reach);
 }
 
 // Sphere tracing (Hart 1996): at a depth d every way out to `clear` off the link is at least d +
@@ -359,8 +308,8 @@ std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& 
 }
 
 bool ContactFinder::hasFlatFaces(std::size_t link) const {
-  const Link& of = impl_->links[link];
-  const auto end = of.shapes.begin() + static_cast<std::ptrdiff_t>(of.in_use);
+  const TouchingLink& of = impl_->links[link];
+  const auto end = of.shapes.begin() + static_cast<std::ptrdiff_t>(of.shapesInUse());
   return std::any_of(of.shapes.begin(), end,
                      [](const CollisionShape& shape) { return robot_tissue::hasFlatFaces(shape); });
 }
@@ -373,8 +322,8 @@ std::optional<FlatFace> ContactFinder::flatFace(std::size_t link, const Pose& ti
 
 double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {
   requireLinks(pose, impl_->links.size());
-  const Link& a = impl_->links[link];
-  const Link& b = impl_->links[other];
+  const TouchingLink& a = impl_->links[link];
+  const TouchingLink& b = impl_->links[other];
   const PlacedLink a_here = a.placedAt(pose.links[link]);
   const PlacedLink b_here = b.placedAt(pose.links[other]);
   double least = std::numeric_limits<double>::infinity();

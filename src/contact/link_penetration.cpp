@@ -157,12 +157,17 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
       continue;
     }
     if (surface.nearest(point, deepest, deepest)) continue;
-    if (const auto nearest = footOf(point, surface)) {
-      deepest = std::max(deepest, depthOf(point, *nearest, bulge));
-      continue;
+    const auto foot = surface.nearest(point, std::numeric_limits<double>::infinity());
+    if (!foot) continue;
+    // Inside or outside is the dearest question: not where neither answer tells anything.
+    const bool is_far = foot->distance > clear.lastWay();
+    const double depth = depthOf(point, *foot, bulge);
+    if (!is_far && depth <= deepest) continue;
+    if (surface.isInside(point)) {
+      deepest = std::max(deepest, depth);
+    } else if (is_far) {
+      clear.note(i, std::min(foot->distance, ahead));
     }
-    const auto near = surface.nearest(point, ahead, clear.lastWay());
-    if (!near || near->distance > clear.lastWay()) clear.note(i, near ? near->distance : ahead);
   }
   return deepest;
 }

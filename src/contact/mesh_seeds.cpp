@@ -109,7 +109,12 @@ void seedsOfSlits(const std::vector<Slit>& slits, const ToolMesh& mesh, const Co
 // vector `away` from `place`.
 bool leadsAway(const Vec3& place, const Vec3& other, const Vec3& away) {
   const Vec3 way = other - place;
-  return way.dot(away) <= tuning::kSquare * way.norm() * away.norm();
+  const double nearer = way.dot(away);
+  if (nearer <= 0.0) return true;
+  const double product = way.squaredNorm() * away.squaredNorm();
+  // Most lead so clearly nearer that no roots need be taken.
+  if (nearer * nearer > 4.0 * tuning::kSquare * tuning::kSquare * product) return false;
+  return nearer <= tuning::kSquare * way.norm() * away.norm();
 }
 
 // Nearest points of vertices whose neighbors are all farther from the triangle; corners of the
@@ -145,8 +150,12 @@ std::optional<std::array<double, 2>> nearestWithin(const Vec3& a, const Vec3& b,
   const double uu = ab.squaredNorm(), uv = ab.dot(cd), vv = cd.squaredNorm();
   const double determinant = uu * vv - uv * uv;
   if (!(determinant > tuning::kSquare * uu * vv)) return std::nullopt;
-  const double u = (ac.dot(ab) * vv - ac.dot(cd) * uv) / determinant;
-  const double v = (ac.dot(ab) * uv - ac.dot(cd) * uu) / determinant;
+  const double along_ab = ac.dot(ab) * vv - ac.dot(cd) * uv;
+  const double along_cd = ac.dot(ab) * uv - ac.dot(cd) * uu;
+  // Most miss each other so clearly that nothing need be divided.
+  const double end = determinant * (1.0 + tuning::kBeyondRounding);
+  if (along_ab < 0.0 || along_ab > end || along_cd < 0.0 || along_cd > end) return std::nullopt;
+  const double u = along_ab / determinant, v = along_cd / determinant;
   if (u < 0.0 || u > 1.0 || v < 0.0 || v > 1.0) return std::nullopt;
   return std::array<double, 2>{u, v};
 }
@@ -168,7 +177,7 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenV
     const Vec3& to = mesh.vertices()[at(edge.ends[1])];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      if ((sides & (beyondEdge(k) | insideEdge(k))) != 0U) continue;
+      if ((sides & (beyondEdge(k) | insideEdge(k) | beforeEdge(k) | afterEdge(k))) != 0U) continue;
       const auto shares = nearestWithin(corners[k], corners[next], from, to);
       if (!shares) continue;
       const Vec3 place = corners[k] + (*shares)[0] * (corners[next] - corners[k]);

@@ -20,14 +20,25 @@ struct Cut {
   }
 };
 
+// Of a triangle, which is asked for many of its parts.
+struct Measures {
+  explicit Measures(const Corners& corners)
+      : twice_area((corners[1] - corners[0]).cross(corners[2] - corners[0]).norm()) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      across[k] = (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
+    }
+  }
+  double twice_area;             // m^2
+  std::array<double, 3> across;  // m: lengths of the edges, each by the corner across it
+};
+
 // A smaller triangle of the same form around a point of the triangle, as the weights of its
 // corners. It reaches `radius` (m) from the point towards each edge, but not out of the triangle.
-std::array<Vec3, 3> partAround(const Corners& corners, const Vec3& weights, double radius) {
-  const double twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+std::array<Vec3, 3> partAround(const Measures& triangle, const Vec3& weights, double radius) {
   Vec3 least;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double edge = (corners[(k + 2) % 3] - corners[(k + 1) % 3]).norm();
-    const double share = twice_area > 0.0 ? radius * edge / twice_area : 1.0;
+    const double share =
+        triangle.twice_area > 0.0 ? radius * triangle.across[k] / triangle.twice_area : 1.0;
     least[static_cast<int>(k)] = std::max(0.0, weights[static_cast<int>(k)] - share);
   }
   const double rest = 1.0 - least.sum();
@@ -77,25 +88,36 @@ void HighestPlane::add(const Vec3& corner_values) {
   planes_[count_++] = corner_values;
   if (count_ > 1 && corner_values.dot(weights_) <= least_) return;
   least_ = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) tryPoint(Vec3::Unit(k));
+  for (int k = 0; k < 3; ++k) tryOnEdge(k, (k + 1) % 3, 1.0);
   for (std::size_t i = 0; i + 1 < count_; ++i) {
     const Vec3 difference = corner_values - planes_[i];
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3;
       if ((difference[a] < 0.0) == (difference[b] < 0.0)) continue;
-      Vec3 weights = Vec3::Zero();
-      weights[a] = difference[b] / (difference[b] - difference[a]);
-      weights[b] = 1.0 - weights[a];
-      tryPoint(weights);
+      tryOnEdge(a, b, difference[b] / (difference[b] - difference[a]));
     }
     for (std::size_t j = 0; j < i; ++j) {
       const Vec3 cross = difference.cross(corner_values - planes_[j]);
       const double sum = cross.sum();
-      if (sum == 0.0) continue;
-      const Vec3 weights = cross / sum;
-      if (weights.minCoeff() >= 0.0) tryPoint(weights);
+      // Where they meet off the triangle, which is mostly so, nothing need be divided.
+      const bool is_on = sum > 0.0 ? cross.minCoeff() >= 0.0 : sum < 0.0 && cross.maxCoeff() <= 0.0;
+      if (is_on) tryPoint(cross / sum);
     }
   }
+}
+
+// The point of the edge from corner a to b with this weight of a: as tryPoint.
+void HighestPlane::tryOnEdge(int a, int b, double weight) {
+  const double other = 1.0 - weight;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = count_; i-- > 0;) {
+    highest = std::max(highest, planes_[i][a] * weight + planes_[i][b] * other);
+    if (highest >= least_) return;
+  }
+  least_ = highest;
+  weights_.setZero();
+  weights_[a] = weight;
+  weights_[b] = other;
 }
 
 void HighestPlane::tryPoint(const Vec3& weights) {
@@ -137,10 +159,13 @@ TriangleMinimum convexMinimum(const CollisionShape& shape, const Corners& corner
 TriangleMinimum localMinimum(const CollisionShape& shape, const Corners& corners,
                              const TriangleMinimum& seed, double accuracy) {
   TriangleMinimum best = seed;
-  std::vector<Cut> cuts = {{pointOf(corners, seed.weights), best.distance}};
+  const Measures measures(corners);
+  std::vector<Cut> cuts;
+  cuts.reserve(tuning::kMostLocalSteps + 1);
+  cuts.push_back({pointOf(corners, seed.weights), best.distance});
   double radius = std::max(tuning::kFirstPart * longestEdge(corners), -best.distance.value);
   for (std::size_t step = 0; step < tuning::kMostLocalSteps; ++step) {
-    const Forecast next = forecast(cuts, corners, partAround(corners, best.weights, radius));
+    const Forecast next = forecast(cuts, corners, partAround(measures, best.weights, radius));
     const double gain = best.distance.value - next.least;
     if (gain <= accuracy) break;
     const Vec3 point = pointOf(corners, next.weights);

@@ -28,6 +28,7 @@ class HighestPlane {
   const Vec3& leastWeights() const { return weights_; }
 
  private:
+  void tryOnEdge(int a, int b, double weight);
   void tryPoint(const Vec3& weights);
 
   std::array<Vec3, kMost> planes_;

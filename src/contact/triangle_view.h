@@ -29,6 +29,7 @@ class TrianglePlane {
       start_[k] = corners[k];
       const Vec3 edge = corners[(k + 1) % 3] - corners[k];
       outwards_[k] = edge.cross(normal_).stableNormalized();
+      along_[k] = edge / edge.squaredNorm();
       slack_[k] = tuning::kSquare * longestEdge(corners) * edge.norm() / area.norm();
     }
   }
@@ -43,13 +44,15 @@ class TrianglePlane {
   double beyond(std::size_t k, const Vec3& point) const {
     return outwards_[k].dot(point - start_[k]);
   }
+  // Where along that edge a point is: 0 at its first corner, 1 at its second.
+  double along(std::size_t k, const Vec3& point) const { return along_[k].dot(point - start_[k]); }
   // A point that is farther on the triangle's side than this of its distance to the edge is nearer
   // to the triangle than to the edge (leadsAway).
   double slack(std::size_t k) const { return slack_[k]; }
 
  private:
   Vec3 origin_, normal_, to_b_, to_c_;
-  std::array<Vec3, 3> start_, outwards_;
+  std::array<Vec3, 3> start_, outwards_, along_;
   std::array<double, 3> slack_{};
 };
 
@@ -61,11 +64,21 @@ struct SeenFrom {
 
 // To which sides a point lies off the part of space that is looked at: all points of a segment or a
 // face lie there if all its ends do.
-enum Side : unsigned { kAbove = 1U, kBelow = 2U, kBeyondFirst = 4U, kInsideFirst = 32U };
+enum Side : unsigned {
+  kAbove = 1U,
+  kBelow = 2U,
+  kBeyondFirst = 4U,
+  kInsideFirst = 32U,
+  kBeforeFirst = 256U,
+  kAfterFirst = 2048U
+};
 constexpr unsigned kBeyondAny = 7U * kBeyondFirst;
 // Beyond the edge from corner k, and inside of it so far that no nearest point is on it.
 constexpr unsigned beyondEdge(std::size_t k) { return kBeyondFirst << k; }
 constexpr unsigned insideEdge(std::size_t k) { return kInsideFirst << k; }
+// Before the edge's first corner, and after its second: surely, as they are nowhere on it.
+constexpr unsigned beforeEdge(std::size_t k) { return kBeforeFirst << k; }
+constexpr unsigned afterEdge(std::size_t k) { return kAfterFirst << k; }
 
 // The mesh's vertices as seen from one triangle: each is looked at once, however many faces and
 // edges have it.
@@ -97,6 +110,9 @@ class SeenVertices {
       const double beyond = plane_->beyond(k, point);
       from.sides |= (beyond > reach_ ? beyondEdge(k) : 0U);
       from.sides |= (beyond < inside_[k] ? insideEdge(k) : 0U);
+      const double along = plane_->along(k, point);
+      from.sides |= (along < -tuning::kSurelyOffEdge ? beforeEdge(k) : 0U);
+      from.sides |= (along > 1.0 + tuning::kSurelyOffEdge ? afterEdge(k) : 0U);
     }
     return from;
   }

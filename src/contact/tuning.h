@@ -42,6 +42,9 @@ constexpr double kSameAlong = 0.02;
 constexpr double kAtOnePoint = 1e-9;
 // Cosine, and its square's shortage from 1: two directions are square, or not parallel. Rounding.
 constexpr double kSquare = 1e-9;
+// Of an edge (1): a point that is farther before or after it along it has its foot on none of it.
+// Far above rounding where segments are nearly parallel (kSquare); more: more of them are compared.
+constexpr double kSurelyOffEdge = 1e-3;
 
 // Equal or not.
 // m, and of a distance (1): what a bound of a distance is widened by. Less: the nearest face may be

@@ -121,5 +121,37 @@ TEST(MovedSurface, PlacesOfTheLastSearchAreSeenFromWhereTheToolIs) {
   EXPECT_GT(met, 200);
 }
 
+// What was asked for before, at the same point, place or reach or at others, leaves no trace.
+TEST(MovedSurface, WaysOutAreThoseOfAFinderThatIsAskedForTheFirstTime) {
+  constexpr double kReach = 0.002;
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ToolGeometry tool =
+      makeTool({mesh(writeStl("ways.stl", ballTriangles(12, 0.008))), sphere(0.01)}, 0.0);
+  ContactFinder finder({tool});
+  Walk walk(block);
+  int found = 0;
+  for (int step = 0; step < 12; ++step) {
+    const Pose pose = walk.place();
+    const std::size_t shapes = step % 3 == 0 ? 1 : 2;
+    finder.useShapes(0, shapes);
+    for (std::size_t i = 0; i < block.vertices.size(); i += 5) {
+      const Vec3& vertex = block.vertices[i];
+      if ((vertex - pose.translation()).norm() > 0.014) continue;
+      for (const double reach : {kReach, kReach, 2.0 * kReach}) {
+        ContactFinder fresh({tool});
+        fresh.useShapes(0, shapes);
+        const auto out = finder.wayOut(0, pose, vertex, reach);
+        const auto expected = fresh.wayOut(0, pose, vertex, reach);
+        ASSERT_EQ(out.has_value(), expected.has_value());
+        if (!out) continue;
+        EXPECT_EQ(out->depth_m, expected->depth_m);
+        EXPECT_EQ(out->normal, expected->normal);
+        ++found;
+      }
+    }
+  }
+  EXPECT_GT(found, 50);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_moved_surface

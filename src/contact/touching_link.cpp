@@ -1,0 +1,72 @@
+#include "touching_link.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "link_penetration.h"
+
+namespace robot_tissue {
+namespace {
+
+// Bit for bit.
+bool areSame(const Pose& a, const Pose& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(Pose::MatrixType)) == 0;
+}
+
+}  // namespace
+
+TouchingLink::TouchingLink(int tool_index, const std::string& tool_name,
+                           const LinkGeometry& geometry, std::vector<std::string>& warnings)
+    : tool(tool_index) {
+  const std::string owner =
+      "tool '" + tool_name + "'" + (geometry.link.empty() ? "" : ", link '" + geometry.link + "'");
+  for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
+    shapes.emplace_back(geometry.shapes[i], owner + ", shape " + std::to_string(i + 1), warnings);
+    gap_shapes.emplace_back(shapes.back());
+    surface_points.push_back(surfacePoints(shapes.back()));
+  }
+  in_use_ = shapes.size();
+  face_pairs.resize(shapes.size());
+  clear_points.resize(shapes.size());
+}
+
+void TouchingLink::useShapes(std::size_t count) {
+  in_use_ = std::min(count, shapes.size());
+  last_pose_.reset();
+}
+
+const PlacedLink& TouchingLink::placedAt(const Pose& tissue_T_link) const {
+  if (last_pose_ && areSame(*last_pose_, tissue_T_link)) return last_placed_;
+  last_placed_ = placed(shapes, tissue_T_link);
+  if (last_placed_.size() > in_use_) last_placed_.resize(in_use_);
+  last_pose_ = tissue_T_link;
+  last_asked_.reset();
+  return last_placed_;
+}
+
+std::optional<WayOut> TouchingLink::wayOutAt(const Pose& tissue_T_link, const Vec3& point,
+                                             double reach) const {
+  const PlacedLink& here = placedAt(tissue_T_link);
+  if (!last_asked_ || last_asked_->point != point || last_asked_->reach != reach) {
+    last_asked_ = Asked{point, reach, wayOut(here, point, reach)};
+  }
+  return last_asked_->out;
+}
+
+double TouchingLink::longestWay(const Pose& from, const Pose& to) const {
+  const Eigen::Matrix4d way = to.matrix() - from.matrix();
+  double longest = 0.0;
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    if (shapes[i].isPlane() && !way.isZero(0.0)) return std::numeric_limits<double>::infinity();
+    if (shapes[i].isPlane()) continue;
+    const Pose& pose = shapes[i].poseInLink();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 point = pose * shapes[i].bounds().corner(static_cast<Box::CornerType>(corner));
+      longest = std::max(longest, (way * point.homogeneous()).norm());
+    }
+  }
+  return longest;
+}
+
+}  // namespace robot_tissue
