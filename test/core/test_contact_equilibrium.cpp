@@ -151,6 +151,25 @@ INSTANTIATE_TEST_SUITE_P(Plane, PressedBySprings,
                                            Press{"AgainstAPatchByForce", 0.45, 2e-3, true}),
                          [](const auto& row) { return row.param.name; });
 
+// A solve that overflows, as in a jam of tools, leaves nothing behind: the next one is as of a
+// method that had none.
+TEST(ASolveThatOverflows, LeavesNothingBehind) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(6, 6, 4, 0.45));
+  LayeredBlock fresh(config);
+  const std::vector<LoadingPatch> loads = {planeOn(fresh.lattice, fresh.model, 0.01)};
+  ASSERT_EQ(fresh.solve(loads).status, SolveStatus::kOk);
+  for (int digits = 0; digits < 30; ++digits) {
+    LayeredBlock block(config);
+    const int moved = block.lattice.node(3, 3, 2);
+    block.state.displacement[at(moved)] = Vec3(0.3, 0.2, 1.0) * kSpacing * std::pow(10.0, digits);
+    block.solve(loads);
+    block.state = block.lattice.restState();
+    block.method.forget();
+    EXPECT_EQ(block.solve(loads).status, SolveStatus::kOk) << digits;
+    EXPECT_EQ(block.state.displacement, fresh.state.displacement) << digits;
+  }
+}
+
 // Also a point that fixed nodes carry in part hands its share to them.
 TEST(SpringOnAFixedNode, IsPartOfWhatTheFixedNodesHold) {
   SolverConfig solver;

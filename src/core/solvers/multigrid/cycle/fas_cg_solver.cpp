@@ -116,7 +116,12 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   for (int round = 0; round < tuning::kMostTurns; ++round) {
     report.status = balance(solve);
     wants_double_ = isForDouble(solve, report.status);
-    if (!shape_.levels().isFinite() || wants_double_) return giveUp(solve);
+    if (wants_double_) return giveUp(solve);
+    if (!shape_.levels().isFinite()) {
+      report = giveUp(solve);
+      forgetLevels();
+      return report;
+    }
     writeShape(solve);
     if (!settlePatches(solve) || report.status != SolveStatus::kOk) break;
   }
@@ -136,6 +141,13 @@ bool FasCgSolver<Real>::isForDouble(const SolveContext& solve, SolveStatus statu
   return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged && !solve.in_contact &&
          (solve.cycles < solve.budget.mostCycles() || solve.cycles > 2 * tuning::kUsualCycles) &&
          forces_.residual(solve.shape) <= tuning::kRoundedForces;
+}
+
+// They are made anew for the next solve: what is not finite stays where nothing sets it anew.
+template <typename Real>
+void FasCgSolver<Real>::forgetLevels() {
+  cells_.reset();
+  measured_.reset();
 }
 
 // As it was when the solve began.

@@ -47,6 +47,7 @@ class FasCgSolver : public MultigridSolver {
   SolveStatus balance(SolveContext& solve);
   void writeShape(SolveContext& solve) const;
   bool settlePatches(SolveContext& solve);
+  void forgetLevels();
   SolveReport giveUp(const SolveContext& solve);
   bool isForDouble(const SolveContext& solve, SolveStatus status) const;
   void answer(const SolveContext& solve, SolveReport& report);

@@ -44,7 +44,7 @@ void CoarseCorrection<Real>::find() {
   }
   group_motion_ = prolongedGroupMotion(1);
   if (!grid_.isWhole()) takeUncoveredMotion();
-  if (!isFinite()) clear();
+  if (!isFinite()) giveUp();
 }
 
 template <typename Real>
@@ -121,8 +121,13 @@ bool CoarseCorrection<Real>::isFinite() const {
   return std::isfinite(sum);
 }
 
+// No motion. The levels go back to where they started: not all entries are set anew when a shape is
+// restricted, and a number that is not finite would stay there for good, in all further solves.
 template <typename Real>
-void CoarseCorrection<Real>::clear() {
+void CoarseCorrection<Real>::giveUp() {
+  for (std::size_t level = 1; level < grid_.levelCount(); ++level) {
+    grid_.level(level).displacement = restriction_.start(level);
+  }
   for (auto& values : motions_.front()) std::fill(values.begin(), values.end(), Real(0));
   for (GroupVector& vector : group_motion_) vector.setZero();
   for (Field<Real>& of_level : uncovered_motion_) {

@@ -38,7 +38,7 @@ class CoarseCorrection {
   std::vector<GroupVector> prolongedGroupMotion(std::size_t coarse) const;
   void takeUncoveredMotion();
   bool isFinite() const;
-  void clear();
+  void giveUp();
 
   CompositeGrid<Real>& grid_;
   FasRestriction<Real>& restriction_;
