@@ -221,11 +221,11 @@ TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {
     // more for each row.
     if (name == "tear_beside_a_tool_slow") {
       EXPECT_LT(iterationsIn(out / "increments.csv"), 5000);
-      EXPECT_NE(err().find("steps[1].cut: it took far too many iterations"), std::string::npos);
+      EXPECT_NE(err().find("it took far too many iterations"), std::string::npos);
     }
+    // Once a jam without end; each of its time steps comes to balance.
     if (name == "jam_in_time_slow") {
-      EXPECT_NE(err().find("steps[0].move: it took far too many iterations"), std::string::npos);
-      EXPECT_NE(readText(out / "increments.csv").find("\n1,3,UNCONVERGED"), std::string::npos);
+      EXPECT_EQ(code, 0) << err();
     }
     // A push that meets its force nowhere looks for it no further.
     if (name == "push_in_a_jam_slow") {

@@ -63,8 +63,6 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   std::swap(force_before_, force_);
   if (own_slope > 0.0 && stepByLineSearch(slope)) {
     std::swap(direction_before_, direction_);
-  } else if (solve.in_contact) {
-    smoothFrom(start_);
   } else {
     stepPlainly();
   }
