@@ -112,10 +112,11 @@ def measure(simulate):
                            "median_ms", "mean_ms", "force_off_percent", "shape_off_percent"], table)
 
 
+# What did not end OK is in the table alone.
 def draw():
     plt = pyplot()
     figure, axes = plt.subplots(2, 2, figsize=(10, 8), sharex=True)
-    rows = [row for row in rows_of(TABLE) if row["mean_ms"]]
+    rows = [row for row in rows_of(TABLE) if row["status"] == "OK"]
     for line, tool in enumerate(TOOLS):
         for column, (key, name) in enumerate((("force_off_percent", "force"),
                                               ("shape_off_percent", "shape"))):
@@ -132,8 +133,9 @@ def draw():
             plot.grid(True, which="both", alpha=0.3)
     for plot in axes[1]:
         plot.set_xlabel("ms an update of 0.5 mm (mean)")
-    axes[0][0].legend(fontsize=7, ncol=2)
-    figure.tight_layout()
+    handles, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, fontsize=7, ncol=6, loc="upper center")
+    figure.tight_layout(rect=(0, 0, 1, 0.94))
     figure.savefig(CHART, dpi=90)
 
 
