@@ -1,5 +1,6 @@
 // What finding contacts costs, without any solve. Prints CSV, a row a tool and a surface, for
-// scripts/study contact_search; doc/contact_measured.md quotes it. Not a test: nothing here passes or fails.
+// scripts/study contact_search; doc/contact_measured.md quotes it. Not a test: nothing here passes
+// or fails.
 //
 //   contact_search CELLS [TOOL]     (of the block of 100 x 100 x 50 mm along its length, even)
 //

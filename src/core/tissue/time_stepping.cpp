@@ -14,9 +14,7 @@ namespace robot_tissue {
 
 bool Tissue::isMoving() const { return time_ && in_time_ && time_->moves(); }
 
-bool Tissue::goesThroughTime() const {
-  return goesInTime() && method_->goesThroughTimeSteps();
-}
+bool Tissue::goesThroughTime() const { return goesInTime() && method_->goesThroughTimeSteps(); }
 
 double Tissue::longestTimeStep() const { return time_->longestStep(); }
 
