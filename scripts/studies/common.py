@@ -38,6 +38,12 @@ def write_rows(path, columns, rows, head=""):
     part.replace(path)
 
 
+def print_rows(rows):
+    """A line each, of what is known."""
+    for row in rows:
+        print(", ".join(f"{key} {value}" for key, value in row.items() if value))
+
+
 def numbers(rows, column):
     return [float(row[column]) for row in rows]
 

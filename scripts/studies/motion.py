@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, percentile, program,
-                            progress, pyplot, rows_of, worst, write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, percentile, print_rows,
+                            program, progress, pyplot, rows_of, worst, write_rows)
 
 BARS, DRAGS, SWING = DATA / "motion.csv", DATA / "motion_drag.csv", DATA / "motion_swing.csv.gz"
 LENGTH, THICK, MODULUS, POISSON, DENSITY = 0.4, 0.04, 1e7, 0.25, 1000.0
@@ -218,5 +218,4 @@ def run(options):
     if not options.plot:
         measure(options)
     draw()
-    for row in rows_of(BARS) + rows_of(DRAGS):
-        print(", ".join(f"{key} {value}" for key, value in row.items()))
+    print_rows(rows_of(BARS) + rows_of(DRAGS))

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import yaml
 
-from studies.common import (DATA, add_plot, add_programs, numbers, program, progress, rows_of,
-                            worst, write_rows)
+from studies.common import (DATA, add_plot, add_programs, numbers, print_rows, program, progress,
+                            rows_of, worst, write_rows)
 
 TABLE = DATA / "stiffening.csv"
 METHODS = ["layered", "newton", "vbd", "xpbd", "explicit"]
@@ -69,5 +69,4 @@ def add_arguments(parser):
 def run(options):
     if not options.plot:
         measure(program("simulate", options.programs))
-    for row in rows_of(TABLE):
-        print(", ".join(f"{key} {value}" for key, value in row.items()))
+    print_rows(rows_of(TABLE))

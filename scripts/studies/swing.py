@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, program, progress,
-                            pyplot, rows_of, worst, write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, print_rows, program,
+                            progress, pyplot, rows_of, worst, write_rows)
 
 TABLE = DATA / "swing.csv"
 METHODS = ["layered", "newton", "vbd", "xpbd", "explicit"]
@@ -110,5 +110,4 @@ def run(options):
     if not options.plot:
         measure(program("simulate", options.programs))
     draw()
-    for row in rows_of(TABLE):
-        print(", ".join(f"{key} {value}" for key, value in row.items()))
+    print_rows(rows_of(TABLE))

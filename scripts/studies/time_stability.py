@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from studies.common import (DATA, add_plot, add_programs, program, progress, rows_of, worst,
-                            write_rows)
+from studies.common import (DATA, add_plot, add_programs, print_rows, program, progress, rows_of,
+                            worst, write_rows)
 
 TABLE = DATA / "time_stability.csv"
 METHODS = ["layered", "newton", "vbd", "xpbd", "explicit"]
@@ -132,5 +132,4 @@ def add_arguments(parser):
 def run(options):
     if not options.plot:
         measure(program("simulate", options.programs))
-    for row in rows_of(TABLE):
-        print(", ".join(f"{key} {value}" for key, value in row.items() if value))
+    print_rows(rows_of(TABLE))

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from studies.common import (DATA, add_plot, add_programs, program, progress, rows_of, worst,
-                            write_rows)
+from studies.common import (DATA, add_plot, add_programs, print_rows, program, progress, rows_of,
+                            worst, write_rows)
 from studies.motion import TOOLS, drag_scene, simulated
 
 TABLE = DATA / "time_tools.csv"
@@ -62,5 +62,4 @@ def add_arguments(parser):
 def run(options):
     if not options.plot:
         measure(program("simulate", options.programs))
-    for row in rows_of(TABLE):
-        print(", ".join(f"{key} {value}" for key, value in row.items() if value))
+    print_rows(rows_of(TABLE))

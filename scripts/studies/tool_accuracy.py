@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, percentile, program,
-                            progress, pyplot, rows_of, worst, write_rows)
+from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, percentile, print_rows,
+                            program, progress, pyplot, rows_of, worst, write_rows)
 
 TABLE, CHART = DATA / "tool_accuracy.csv", IMAGES / "tool_accuracy.png"
 SPACINGS = [0.01, 0.005, 0.0025]
@@ -148,5 +148,4 @@ def run(options):
     if not options.plot:
         measure(program("simulate", options.programs))
     draw()
-    for row in rows_of(TABLE):
-        print(", ".join(f"{key} {value}" for key, value in row.items() if value))
+    print_rows(rows_of(TABLE))
