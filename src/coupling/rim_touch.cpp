@@ -75,6 +75,16 @@ void putPlane(SlidingContacts::ContactConstraint& touch) {
   spring.turning = spring.multiplier * touch.contact.turn;
 }
 
+void goHalfWay(const Rim& before, Rim& rim) {
+  if (before.edges.size() != rim.edges.size()) return;
+  for (std::size_t i = 0; i < rim.edges.size(); ++i) {
+    const FaceEdge& was = before.edges[i];
+    FaceEdge& edge = rim.edges[i];
+    if (was.outward.dot(edge.outward) < tuning::kSameEdge) continue;
+    edge.depth_m = 0.5 * (was.depth_m + edge.depth_m);
+  }
+}
+
 double softened(double stiffness, double compliance) {
   return stiffness / (1.0 + stiffness * compliance);
 }

@@ -15,6 +15,10 @@ void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch);
 // The spring's plane: below the tool's by what the multiplier presses the rim together.
 void putPlane(SlidingContacts::ContactConstraint& touch);
 
+// How deep the point is inside the edges goes half of the way from what it was a round before. The
+// push hangs on it, and it on the push: going all of the way, both would go to and fro.
+void goHalfWay(const Rim& before, Rim& rim);
+
 // In series with a spring of that stiffness (N/m).
 double softened(double stiffness, double compliance);
 

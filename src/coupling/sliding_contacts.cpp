@@ -127,7 +127,9 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   touch.found = contact.has_value();
   if (!contact) return spring.multiplier <= 0.0;
   spring.rest += contact->bulge - touch.contact.bulge;
+  const Rim rim_before = touch.contact.rim;
   putContact(*contact, tissue.surface(), touch);
+  goHalfWay(rim_before, touch.contact.rim);
   if (contact->normal.norm() > 0.5) {
     const Vec3 since = pose.links[at(touch.contact.link)].linear() * touch.since_normal;
     spring.normal = turnedBy(since, contact->normal, tuning::kMostTurn);
@@ -139,15 +141,17 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
 }
 
 // The depth or gap that counts as none (m): closing it would change the touch's force by less than
-// kSlackOfForce of what its tool presses with, within bounds.
+// kSlackOfForce of what its tool presses with, within bounds. Where the touch gives way by c, beside
+// the tissue's stiffness K, closing a gap changes the force by so much less: by K gap / (1 + c K).
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
-  const double stiffness = touch.firm_stiffness;
+  const double stiffness = touch.firm_stiffness / tuning::kContactStiffness;
   const double spacing = tissue.lattice().spacing();
-  const double slack = stiffness > 0.0 ? tuning::kSlackOfForce * tuning::kContactStiffness *
-                                             pressed_[at(touch.contact.tool)] / stiffness
-                                       : 0.0;
-  return std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
-                  tuning::kMostSlack * spacing);
+  const double slack =
+      stiffness > 0.0 ? tuning::kSlackOfForce * pressed_[at(touch.contact.tool)] / stiffness : 0.0;
+  const double of_firm =
+      std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
+               tuning::kMostSlack * spacing);
+  return (1.0 + touch.compliance.normal * stiffness) * of_firm;
 }
 
 // Takes a contact that the search found: as a new touch or, on a triangle whose deepest point has

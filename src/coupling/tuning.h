@@ -68,6 +68,8 @@ constexpr double kMostEntry = 0.035;
 constexpr double kEntryTime = 0.05;
 
 // Rims of flat faces.
+// Cosine of the outward normals of an edge in two rounds. Chosen.
+constexpr double kSameEdge = 0.9;
 // Of a firm touch's stiffness (1): rim springs are no softer, so that where they are all but free
 // the surface is still shown where the face has it. Rounding: of no weight in the force.
 constexpr double kSoftestRim = 1e-4;

@@ -119,7 +119,7 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);
   if (new_surface) touch_finder_.beginStep();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
-  const ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
+  ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
   left_inside_ = 0.0;
   for (const Contact& contact : contacts.contacts) {
     const double part = contact.rim.share > 0.0 ? touch_finder_.rims().partOfDepth(contact) : 0.0;
@@ -129,6 +129,7 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
   } else if (!new_surface) {
+    touch_finder_.wanderHalfWay(world_.pose, contacts);
     const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose, contacts),
                                                contacts, world_.pose, world_.tissue, held, shape);
     if (world_.tissue.goesThroughTime()) return false;

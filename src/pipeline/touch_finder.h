@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robot_tissue/core/curved_surface.h"
+#include "robot_tissue/core/triangle_point.h"
 #include "tool_rims.h"
 #include "world.h"
 
@@ -28,6 +29,8 @@ class TouchFinder {
                        double way = 0.0);
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose, const ContactSet& found);
+  // Takes those of them that wander back, half of the way to the touches that were there before.
+  void wanderHalfWay(const RobotPose& pose, ContactSet& found) const;
   // How deep each of these links is in the surface that it touches (m), as
   // ContactFinder::penetrations.
   std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose);
@@ -50,6 +53,10 @@ class TouchFinder {
   std::optional<Edge> edgeAt(const SurfacePoint& place) const;
   std::optional<Contact> goAlong(const RobotPose& pose, const ContactSet& found,
                                  const SlidingContacts::ContactConstraint& touch) const;
+  bool wanderTo(const SurfacePoint& place, const RobotPose& pose, Contact& contact) const;
+  std::optional<SurfacePoint> halfWayTo(const Contact& contact) const;
+  Corners cornersOf(int triangle) const;
+  bool areBeside(int one, int other) const;
   std::set<std::pair<int, int>> verticesComeIn() const;
   Vec3 inwardsAt(const Contact& contact) const;
   Vec3 inwardsBetween(const Contact& contact) const;

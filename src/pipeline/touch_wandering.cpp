@@ -1,6 +1,7 @@
 // Touches that wander: where a sharp edge or corner of a link is between the surface's vertices.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "touch_finder.h"
@@ -60,15 +61,14 @@ bool TouchFinder::wanders(const RobotPose& pose, const Contact& contact) const {
 std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const ContactSet& found,
                                             const SlidingContacts::ContactConstraint& touch) const {
   if (touch.spring.multiplier <= 0.0) return std::nullopt;
-  const auto edge = edgeAt(touch.contact.place);
+  const double near = tuning::kFoundNear * world_.tissue.lattice().spacing();
   const auto is_found = [&](const Contact& contact) {
     if (!contact.wanders || contact.link != touch.contact.link) return false;
-    const auto other = edgeAt(contact.place);
-    if (!edge || !other) return contact.place.triangle == touch.contact.place.triangle;
-    return other->vertices == edge->vertices;
+    const Vec3 on_link = contact.point + contact.depth_m * contact.normal;
+    return (on_link - touch.tool_point).squaredNorm() < near * near;
   };
   if (std::any_of(found.contacts.begin(), found.contacts.end(), is_found)) return std::nullopt;
-  const TissueSurface& surface = world_.tissue.surface();
+  const auto edge = edgeAt(touch.contact.place);
   const std::size_t link = at(touch.contact.link);
   const double reach = tuning::kReach * world_.tissue.lattice().spacing();
   Contact contact = touch.contact;
@@ -83,15 +83,79 @@ std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const Contact
     contact.place.barycentric[edge->corners[1]] = share;
   }
   if (contact.place.barycentric.maxCoeff() > tuning::kAtVertex) return std::nullopt;
-  contact.point.setZero();
-  for (int k = 0; k < 3; ++k) {
-    const int vertex = surface.triangles[at(contact.place.triangle)][at(k)];
-    contact.point += contact.place.barycentric[k] * vertices_[at(vertex)];
-  }
-  curve(contact);
-  if (!turn(pose, contact)) return std::nullopt;
-  contact.turn = curved_.hollowAt(contact.place);
+  if (!wanderTo(contact.place, pose, contact)) return std::nullopt;
   return contact;
+}
+
+// Puts a contact that wanders there on the surface. False: its link is out of reach.
+bool TouchFinder::wanderTo(const SurfacePoint& place, const RobotPose& pose,
+                           Contact& contact) const {
+  contact.place = place;
+  contact.point = pointOf(cornersOf(place.triangle), place.barycentric);
+  curve(contact);
+  if (!turn(pose, contact)) return false;
+  contact.turn = curved_.hollowAt(place);
+  return true;
+}
+
+Corners TouchFinder::cornersOf(int triangle) const {
+  const auto& [a, b, c] = world_.tissue.surface().triangles[at(triangle)];
+  return {vertices_[at(a)], vertices_[at(b)], vertices_[at(c)]};
+}
+
+// Where a touch wanders to hangs on the shape, and the shape on where it is: going all of the way in
+// each round, both would go to and fro for ever.
+void TouchFinder::wanderHalfWay(const RobotPose& pose, ContactSet& found) const {
+  for (Contact& contact : found.contacts) {
+    if (!contact.wanders) continue;
+    const auto middle = halfWayTo(contact);
+    if (!middle) continue;
+    Contact half_way = contact;
+    if (wanderTo(*middle, pose, half_way)) contact = half_way;
+  }
+}
+
+// The surface's point half way from the nearest touch of the contact's link to the contact. None
+// where no touch of this triangle or of one beside it is near.
+std::optional<SurfacePoint> TouchFinder::halfWayTo(const Contact& contact) const {
+  const auto placeOf = [&](const SurfacePoint& point) {
+    return pointOf(cornersOf(point.triangle), point.barycentric);
+  };
+  const Vec3 to = placeOf(contact.place);
+  double least = tuning::kFarthestBefore * world_.tissue.lattice().spacing();
+  std::optional<SurfacePoint> from;
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    const Contact& before = touch.contact;
+    if (!before.wanders || before.link != contact.link || touch.spring.multiplier <= 0.0) continue;
+    if (!areBeside(before.place.triangle, contact.place.triangle)) continue;
+    const double off = (placeOf(before.place) - to).norm();
+    if (off >= least) continue;
+    least = off;
+    from = before.place;
+  }
+  if (!from) return std::nullopt;
+  const Vec3 middle = 0.5 * (placeOf(*from) + to);
+  SurfacePoint nearest;
+  double nearest_off = std::numeric_limits<double>::infinity();
+  for (const int triangle : {from->triangle, contact.place.triangle}) {
+    const SurfacePoint point = {triangle, nearestInTriangle(middle, cornersOf(triangle))};
+    const double off = (placeOf(point) - middle).norm();
+    if (off >= nearest_off) continue;
+    nearest_off = off;
+    nearest = point;
+  }
+  if (nearest.barycentric.maxCoeff() > tuning::kAtVertex) return std::nullopt;
+  return nearest;
+}
+
+// Whether two triangles of the surface are one, or have an edge in common.
+bool TouchFinder::areBeside(int one, int other) const {
+  const auto& triangles = world_.tissue.surface().triangles;
+  const MeshTriangle &a = triangles[at(one)], &b = triangles[at(other)];
+  const auto common = std::count_if(a.begin(), a.end(), [&](int vertex) {
+    return std::find(b.begin(), b.end(), vertex) != b.end();
+  });
+  return common >= 2;
 }
 
 std::optional<TouchFinder::Edge> TouchFinder::edgeAt(const SurfacePoint& place) const {
