@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "robot_tissue/pipeline/pipeline.h"
 #include "tool_scenes.h"
@@ -62,6 +63,30 @@ TEST(ToolPhysics, FrictionHoldsADraggedSphereBack) {
   EXPECT_GT(rough.back().force.x(), -0.7 * rough.back().force.z());
   // Not zero: the surface is of flat triangles, under a radius of three spacings.
   for (const ToolRow& row : smooth) EXPECT_LT(std::abs(row.force.x()), 0.1 * row.force.z());
+}
+
+// What an edge touches hangs on the shape, and the shape on what it touches: both come to rest
+// together, also where more is asked of the balance than by default.
+TEST(ToolPhysics, AnEdgeIsFollowedAtTightTolerances) {
+  const double height = 0.04 + 0.01 * std::sqrt(2.0);  // m: its middle where it meets the block
+  const Vec3 above(0.03, 0.04, height + 0.0005), pressed(0.03, 0.04, height - 0.008);
+  for (const std::string tolerance : {"0.003", "0.001"}) {
+    const RunResult result =
+        run("tissue:\n"
+            "  shape: {type: box, min: [0, 0, 0], max: [0.08, 0.08, 0.04]}\n"
+            "  spacing: 0.005\n"
+            "  material: {young_modulus: 10000.0, poisson_ratio: 0.45}\n"
+            "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+            "solver: {tolerance: " +
+            tolerance +
+            "}\n"
+            "tools: [{name: edge, friction: 0.3, shapes: [{type: box, size: [0.02, 0.02, 0.02],"
+            " rpy: [0, 0.785398, 0]}]}]\n"
+            "steps:\n" +
+            placed("edge", above, pressed, 17) + moved("edge", pressed + Vec3(0.02, 0, 0), 40));
+    EXPECT_TRUE(result.allOk()) << tolerance;
+    EXPECT_EQ(result.remarks, std::vector<std::string>()) << tolerance;
+  }
 }
 
 // Two balls as jaws, at a wall 30 mm thick, 1 mm in on each side, then lifted by 4 mm.
