@@ -141,16 +141,16 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
 }
 
 // The depth or gap that counts as none (m): closing it would change the touch's force by less than
-// kSlackOfForce of what its tool presses with, within bounds. Where the touch gives way by c, beside
-// the tissue's stiffness K, closing a gap changes the force by so much less: by K gap / (1 + c K).
+// kSlackOfForce of what its tool presses with, within bounds. Where the touch gives way by c,
+// beside the tissue's stiffness K, closing a gap changes the force by so much less: by K gap / (1 +
+// c K).
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
   const double stiffness = touch.firm_stiffness / tuning::kContactStiffness;
   const double spacing = tissue.lattice().spacing();
   const double slack =
       stiffness > 0.0 ? tuning::kSlackOfForce * pressed_[at(touch.contact.tool)] / stiffness : 0.0;
-  const double of_firm =
-      std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
-               tuning::kMostSlack * spacing);
+  const double of_firm = std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
+                                  tuning::kMostSlack * spacing);
   return (1.0 + touch.compliance.normal * stiffness) * of_firm;
 }
 

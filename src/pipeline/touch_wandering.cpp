@@ -103,8 +103,8 @@ Corners TouchFinder::cornersOf(int triangle) const {
   return {vertices_[at(a)], vertices_[at(b)], vertices_[at(c)]};
 }
 
-// Where a touch wanders to hangs on the shape, and the shape on where it is: going all of the way in
-// each round, both would go to and fro for ever.
+// Where a touch wanders to hangs on the shape, and the shape on where it is: going all of the way
+// in each round, both would go to and fro for ever.
 void TouchFinder::wanderHalfWay(const RobotPose& pose, ContactSet& found) const {
   for (Contact& contact : found.contacts) {
     if (!contact.wanders) continue;

@@ -27,7 +27,8 @@ void throwOffRest(const DofConstraints& hold, double spacing, std::vector<Vec3>&
 }  // namespace
 
 // The length left is that of the displacement: what share of it do cycles see? Not at once: slow
-// motions, the last to go, are seen least.
+// motions, the last to go, are seen least. Where cycles that are not searched along go astray, as
+// of a bar two cells across, there is no telling.
 template <typename Real>
 double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
                         const ElasticModel& model, const LatticeState& state, int smoother_steps) {
@@ -44,14 +45,19 @@ double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
   levels.renewMembranes();
   levels.forgetMembranes();
   shape.finest().findForces();
+  const double thrown = shape.displacementNorm();
   double least = 1.0;
   const int in_whole =
       levels.grid().hasEnds() ? tuning::kTrialCyclesBetweenEnds : tuning::kTrialCycles;
   const int cycles = levels.isWhole() ? in_whole : tuning::kTrialCyclesInPart;
   for (int cycle = 0; cycle < cycles; ++cycle) {
     levels.correction().find();
-    const double seen = shape.correctionNorm();
-    if (cycle > 0 && seen > 0.0) least = std::max(least, shape.displacementNorm() / seen);
+    const double left = shape.displacementNorm(), seen = shape.correctionNorm();
+    if (!(left <= tuning::kAstray * thrown)) {
+      least = tuning::kMostAtRest;
+      break;
+    }
+    if (cycle > 0 && seen > 0.0) least = std::max(least, left / seen);
     shape.correctAndSmooth(1.0, smoother_steps);
   }
   shape.finest().right_hand_side = weight;

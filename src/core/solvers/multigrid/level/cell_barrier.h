@@ -16,6 +16,7 @@ struct CellBarrier {
 
   const L (&mode)[kCorners][3];  // m_s (cell_block.h)
   const L& shear;                // 0 where there is no cell
+  Real per_greatest;             // CellGrid::per_greatest
 
   // Minus the cell's edges along each axis: of a corner at the high ends along the two axes that
   // follow it in turn, b and c, the edge with index [high along b][high along c]. Along x it is
@@ -68,9 +69,9 @@ struct CellBarrier {
   }
 
   // Adds the barrier's gradient in the modes to `push` and, unless null, what it adds to the bound
-  // of the corners' stiffness; corner by corner where any cell is squeezed there, as few are
+  // of each corner's stiffness; corner by corner where any cell is squeezed there, as few are
   // anywhere.
-  ROBOT_TISSUE_INLINE void add(L (&push)[kCorners][3], L* stiffness) const {
+  ROBOT_TISSUE_INLINE void add(L (&push)[kCorners][3], L* corner_stiffness) const {
     constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
     Edges edges;
     findEdges(edges);
@@ -87,19 +88,29 @@ struct CellBarrier {
       if (!anyAbove0(determinant < kSqueezed ? shear : L{})) continue;
       cross(corner.z, corner.x, across[1]);
       cross(corner.x, corner.y, across[2]);
-      pushCorner(index, determinant, across, push, stiffness);
+      const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
+      pushCorner(index, depth, across, push);
+      if (corner_stiffness != nullptr) {
+        stiffenCorner(index, corner, depth, across, corner_stiffness);
+      }
     }
   }
 
-  ROBOT_TISSUE_INLINE void pushCorner(int corner, const L& determinant, const L (&across)[3][3],
-                                      L (&push)[kCorners][3], L* stiffness) const {
-    constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
-    const Real x = (corner & 1) != 0 ? Real(-1) : Real(1);
-    const Real y = (corner & 2) != 0 ? Real(-1) : Real(1);
-    const Real z = (corner & 4) != 0 ? Real(-1) : Real(1);
-    const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
-    const L height = shear * Real(elastic_law::kBarrier / kCorners);
-    const L slope = height * depth * depth * Real(-3.0 * 0.25 / kSqueezed);
+  // Of the barrier per corner, height depth^3.
+  ROBOT_TISSUE_INLINE L height() const { return shear * Real(elastic_law::kBarrier / kCorners); }
+
+  static ROBOT_TISSUE_INLINE L squared(const L (&x)[3]) {
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+  }
+
+  static constexpr Real side(int corner, int axis) {
+    return (corner >> axis & 1) != 0 ? Real(-1) : Real(1);
+  }
+
+  ROBOT_TISSUE_INLINE void pushCorner(int corner, const L& depth, const L (&across)[3][3],
+                                      L (&push)[kCorners][3]) const {
+    const Real x = side(corner, 0), y = side(corner, 1), z = side(corner, 2);
+    const L slope = height() * depth * depth * Real(-3.0 * 0.25 / elastic_law::kSqueezed);
     for (int axis = 0; axis < 3; ++axis) {
       const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
               along_z = slope * across[2][axis];
@@ -111,12 +122,31 @@ struct CellBarrier {
       push[6][axis] += z * along_y + y * along_z;
       push[7][axis] += y * z * along_x + x * z * along_y + x * y * along_z;
     }
-    if (stiffness == nullptr) return;
-    L widest = L{};
-    for (const auto& area : across) {
-      widest = greater(widest, area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+  }
+
+  // A corner's determinant J hangs on four nodes, itself and the other ends of its edges. With
+  // c_i = dJ/dx_i a motion u of these has the barrier's second derivative
+  //   E'' (sum c_i . u_i)^2 + E' sum of u_i . (d2J/dx_i dx_j) u_j,
+  // at most 4 E'' |c_i|^2 + |E'| (the row's sum of the lengths of edges, 2 (|e_b| + |e_c|)) of each
+  // node, with |e| <= (1 + |e|^2) / 2. The stiffness of a node is to bound that but for the factor
+  // by which motions are stiffer than their nodes alone.
+  ROBOT_TISSUE_INLINE void stiffenCorner(int index, const Corner& corner, const L& depth,
+                                         const L (&across)[3][3], L* corner_stiffness) const {
+    constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
+    const L curvature = height() * depth * (Real(4 * 6) * kPerDepth * kPerDepth * per_greatest);
+    const L slope = height() * depth * depth * (Real(3) * kPerDepth * per_greatest);
+    const L edges[3] = {squared(corner.x), squared(corner.y), squared(corner.z)};
+    const L all_edges = edges[0] + edges[1] + edges[2];
+    L own[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      own[axis] = side(index, 0) * across[0][axis] + side(index, 1) * across[1][axis] +
+                  side(index, 2) * across[2][axis];
     }
-    *stiffness += height * depth * widest * Real(3.0 * 6.0 / (kSqueezed * kSqueezed));
+    corner_stiffness[index] += curvature * squared(own) + slope * (Real(3) + all_edges);
+    for (int along = 0; along < 3; ++along) {
+      corner_stiffness[index ^ 1 << along] +=
+          curvature * squared(across[along]) + slope * (Real(2) + all_edges - edges[along]);
+    }
   }
 };
 

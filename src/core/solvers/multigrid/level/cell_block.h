@@ -24,8 +24,11 @@ struct Block {
   L invariant, volume;  // I1 - 3, J - 1
   L slight;             // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
   L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
-  L stiffness;
-  L parts{};  // bulk where the volumes of a cell's parts are held
+  L stiffness;          // of each corner, and what the barrier adds to it where one is squeezed
+  L corner_stiffness[kCorners];
+  bool is_squeezed = false;
+  Real per_greatest{};  // CellGrid::per_greatest
+  L parts{};            // bulk where the volumes of a cell's parts are held
   bool has_parts = false;
   // From corners to modes, M_s = sum over k of (-1)^(bits in k and s) x_k, by sums and differences
   // along one axis after another (Walsh-Hadamard). Twice gives eight times what was: it also goes
@@ -241,6 +244,10 @@ struct Block {
     return anyAbove0(squared > most ? L{} : shear);
   }
 
+  ROBOT_TISSUE_INLINE L stiffnessOf(int corner) const {
+    return is_squeezed ? stiffness + corner_stiffness[corner] : stiffness;
+  }
+
   // From the corners' displacements to the energy's gradients in them.
   template <bool kWithStiffness, bool kStiffens>
   ROBOT_TISSUE_INLINE void solve() {
@@ -252,12 +259,16 @@ struct Block {
     // below kSqueezed^(1/3); half of it, as |G - 1|^2 is at most twice the sum of the squares of
     // its two parts.
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
-    const bool squeezed = anyAbove0(slight > kSlight ? shear : L{}) && maySqueeze();
+    is_squeezed = anyAbove0(slight > kSlight ? shear : L{}) && maySqueeze();
     L push[kCorners][3];
-    const bool more = squeezed || has_parts;
+    const bool more = is_squeezed || has_parts;
     if (more) {
       for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
-      if (squeezed) CellBarrier<V>{mode, shear}.add(push, kWithStiffness ? &stiffness : nullptr);
+      if (is_squeezed) {
+        for (L& corner : corner_stiffness) corner = L{};
+        CellBarrier<V>{mode, shear, per_greatest}.add(push,
+                                                      kWithStiffness ? corner_stiffness : nullptr);
+      }
       if (has_parts) addParts(push);
     }
     scale();

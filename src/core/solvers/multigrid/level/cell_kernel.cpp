@@ -45,6 +45,7 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
     block.shear *= onesOf<V>(cells);
     block.bulk *= onesOf<V>(cells);
   }
+  block.per_greatest = grid.per_greatest;
   block.has_parts = standing != 0;
   if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
   block.template solve<kWithStiffness, kStiffens>();
@@ -56,7 +57,7 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
                       (low ? grid.lower[axis] : grid.upper[axis]) + sum);
     }
     if constexpr (kWithStiffness) {
-      subtractBoth<V>(-block.stiffness, -block.stiffness,
+      subtractBoth<V>(-block.stiffnessOf(corner), -block.stiffnessOf(corner + 1),
                       (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
     }
   }
@@ -102,6 +103,7 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
       }
     }
   }
+  block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
   if (grid.stiffening == nullptr) {
@@ -115,7 +117,9 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
       for (int axis = 0; axis < 3; ++axis) {
         grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
       }
-      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[sum] += block.stiffness[cell];
+      if (grid.lower_stiffness != nullptr) {
+        grid.lower_stiffness[sum] += block.stiffnessOf(corner)[cell];
+      }
     }
   }
 }
@@ -150,6 +154,7 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
     }
     fill.twisting[cell] = of.twisting;
   }
+  block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
   L stiffness[kCorners];

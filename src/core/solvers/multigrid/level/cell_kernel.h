@@ -40,6 +40,7 @@ struct CellGrid {
   int row;                 // from a node to the next along y
   int plane;               // and along z
   bool loose_stand;        // loose cells are coarse, as CellBlock::standing
+  Real per_greatest;       // 1 over the greatest stiffness of a motion, in its nodes' own, at rest
   // Where a plane of cells adds its forces, from node `origin` on: those on the cells' lower four
   // corners, and those on the upper ones, which are in the next plane of nodes.
   int origin;

@@ -197,6 +197,7 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   cells.row = grid_.row;
   cells.plane = grid_.plane;
   cells.loose_stand = !part_.covered.isEmpty();
+  cells.per_greatest = per_greatest;
   return cells;
 }
 

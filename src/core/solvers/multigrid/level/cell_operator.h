@@ -62,6 +62,8 @@ class CellOperator {
   void share(Workers& workers);
   Field<Real> whole;
   Numbers<Real> stiffness;
+  // 1 over the greatest stiffness of any motion at rest, in the nodes' own; 1 until that is known.
+  Real per_greatest = Real(1);
   // Of the nodes' inertia in a time step, against displacement (E0 h); empty: none.
   Numbers<Real> inertia;
 

@@ -109,10 +109,10 @@ struct FilledBlock : Block<V> {
     }
   }
 
-  // As `solve`, of cells that are filled in part. `corner_stiffness`: bounds of the stiffness of
+  // As `solve`, of cells that are filled in part. `of_corners`: bounds of the stiffness of
   // each corner; null: not asked for.
   template <bool kStiffens>
-  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L* corner_stiffness) {
+  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L* of_corners) {
     this->transform();
     for (int s = 1; s < kCorners; ++s) {
       for (L& component : mode[s]) component *= Real(0.25);
@@ -122,19 +122,15 @@ struct FilledBlock : Block<V> {
     if constexpr (kStiffens) this->template stiffenByStrain<true>();
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
     const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
-    if (corner_stiffness != nullptr) stiffenCorners(fill, corner_stiffness);
+    if (of_corners != nullptr) stiffenCorners(fill, of_corners);
     L push[kCorners][3];
     for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
     L over_fill[kCorners][3];
     if (squeezed) {
       std::memcpy(over_fill, mode, sizeof mode);
       shiftModes<-1>(fill);
-      stiffness = L{};
-      CellBarrier<V>{mode, shear}.add(push, &stiffness);
+      CellBarrier<V>{mode, shear, this->per_greatest}.add(push, of_corners);
       std::memcpy(mode, over_fill, sizeof mode);
-      for (int corner = 0; corner_stiffness != nullptr && corner < kCorners; ++corner) {
-        corner_stiffness[corner] += stiffness;
-      }
     }
     if (has_parts) {
       for (auto& corner : over_fill) corner[0] = corner[1] = corner[2] = L{};
@@ -152,7 +148,7 @@ struct FilledBlock : Block<V> {
   }
 
   // With `stiffness` of a full cell found: a / 3 + volume_part steepest / 16.
-  ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L* corner_stiffness) const {
+  ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L* of_corners) const {
     const L squares[3] = {this->square(0), this->square(1), this->square(2)};
     const L steepest = greater(greater(squares[0], squares[1]), squares[2]);
     const L of_volume = (stiffness - a * Real(1.0 / 3.0)) / steepest * Real(16);
@@ -169,7 +165,7 @@ struct FilledBlock : Block<V> {
         shape += strain * strain + fill.bending[a0] * bend * bend;
         widest = greater(widest, strain * strain * squares[a0]);
       }
-      corner_stiffness[corner] = a * shape + of_volume * widest;
+      of_corners[corner] = a * shape + of_volume * widest;
     }
   }
 };

@@ -32,6 +32,7 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
   } else {
     measureSteps();
   }
+  cells_.per_greatest = static_cast<Real>(step_);
 }
 
 // The power method at rest, u <- D^-1 K u, with the Rayleigh quotient (u, K u) / (u, D u); it
