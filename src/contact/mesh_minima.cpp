@@ -1,6 +1,7 @@
 #include "mesh_minima.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "tuning.h"
 
@@ -34,6 +35,43 @@ void keep(const TriangleMinimum& found, const Corners& corners,
   minima.push_back(found);
 }
 
+// Whether the nearest of the deepest places found before is in the same hollow: half way there the
+// distance is no greater than by a straight line. Else a search from here would lead elsewhere.
+bool isInHollowOf(const std::vector<TriangleMinimum>& minima, const TriangleMinimum& there,
+                  const CollisionShape& shape, const Corners& corners) {
+  const TriangleMinimum* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  const Vec3 point = pointOf(corners, there.weights);
+  for (const TriangleMinimum& known : minima) {
+    const double apart = (pointOf(corners, known.weights) - point).norm();
+    if (known.distance.value > there.distance.value || apart >= least) continue;
+    least = apart;
+    nearest = &known;
+  }
+  if (nearest == nullptr) return false;
+  const Vec3 middle = pointOf(corners, Vec3(0.5 * (there.weights + nearest->weights)));
+  const double bound = boundAfter(nearest->distance.value, 0.5 * least);
+  const double straight = 0.5 * (there.distance.value + nearest->distance.value);
+  return shape.distanceWithin(middle, bound).value <= straight;
+}
+
+// Nearer to a convex part that is not met there: from its nearest point back to the triangle, and
+// so on (alternating projections, Cheney and Goldstein 1959).
+TriangleMinimum approached(const CollisionShape& shape, const Corners& corners,
+                           TriangleMinimum there) {
+  for (int step = 0; step < tuning::kApproaches && there.distance.value > 0.0; ++step) {
+    const Vec3 point = pointOf(corners, there.weights);
+    const Vec3 weights =
+        nearestInTriangle(point - there.distance.value * there.distance.slope, corners);
+    const double way = (pointOf(corners, weights) - point).norm();
+    const SignedDistance distance =
+        shape.distanceWithin(pointOf(corners, weights), boundAfter(there.distance.value, way));
+    if (!(distance.value < there.distance.value)) break;
+    there = {weights, distance};
+  }
+  return there;
+}
+
 }  // namespace
 
 std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
@@ -54,12 +92,18 @@ std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& 
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);
   if (faces.empty() && at_center >= limit) return minima;
-  for (const Vec3& seed : seeds.on(corners, mesh, faces, reach)) {
+  const std::vector<Vec3>& all_seeds = seeds.on(corners, mesh, faces, reach);
+  for (const Vec3& seed : all_seeds) {
     const Vec3 start = pointOf(corners, seed);
+    const bool is_center = &seed == &all_seeds.back();
     const double bound = boundAfter(at_center, (start - center).norm());
-    const TriangleMinimum there{seed, shape.distanceWithin(start, bound)};
+    const TriangleMinimum there{seed,
+                                is_center ? *found_at_center : shape.distanceWithin(start, bound)};
     if (isKnown(start, there.distance.value, corners, minima)) continue;
-    const TriangleMinimum found = localMinimum(shape, corners, there, accuracy);
+    if (isInHollowOf(minima, there, shape, corners)) continue;
+    const bool is_alone = all_seeds.size() == 1;
+    const TriangleMinimum found = localMinimum(
+        shape, corners, is_alone ? approached(shape, corners, there) : there, accuracy);
     if (found.distance.value < limit) keep(found, corners, minima);
   }
   std::stable_sort(minima.begin(), minima.end(),

@@ -22,14 +22,18 @@ class MeshSeeds {
   // Weights of the corners. Of each connected part of the mesh's surface that cuts the triangle:
   // its middle and two ends. Of what does not cut it but is nearer than `reach` (m): where a vertex
   // is over the triangle, or an edge beside one of its edges, and every way leads apart. And the
-  // middle. In: corners of the triangle in the mesh's frame, with area; the faces near it. Until
-  // the next call.
+  // middle, last; alone where the faces near it are one part that folds outwards only: the distance
+  // to that is convex. In: corners of the triangle in the mesh's frame, with area; the faces near
+  // it. Until the next call.
   const std::vector<Vec3>& on(const Corners& corners, const ToolMesh& mesh,
                               const std::vector<int>& faces, double reach);
 
  private:
+  bool areConvex(const ToolMesh& mesh, const std::vector<int>& faces);
+
   SeenVertices seen_;
   Firsts vertices_, edges_;
+  std::vector<int> face_at_edge_;  // per edge: place of a face that has it; -1 between calls
   std::vector<Slit> slits_;
   std::vector<int> near_;  // faces
   std::vector<Vec3> seeds_;

@@ -49,6 +49,7 @@ ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::st
       bounds_(tree_.bounds()) {
   findEdges();
   findNormals();
+  findConcaveEdges();
   findSharpEdges();
   measureThickness();
 }
@@ -99,6 +100,22 @@ void ToolMesh::findNormals() {
   for (std::size_t triangle = 0; triangle < normals_.size(); ++triangle) {
     for (const int edge : edges_of_triangles_[triangle])
       edge_normals_[at(edge)] += normals_[triangle];
+  }
+}
+
+// Where the one triangle's vertex is above the other one's plane.
+void ToolMesh::findConcaveEdges() {
+  is_concave_.assign(edges_.size(), 0);
+  const double rounding = tuning::kFlatEdge * (bounds_.max() - bounds_.min()).norm();
+  for (std::size_t triangle = 0; triangle < normals_.size(); ++triangle) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int edge = edges_of_triangles_[triangle][k];
+      const Vec3& end = mesh_.vertices[at(edges_[at(edge)].ends[0])];
+      for (const int opposite : edges_[at(edge)].opposite) {
+        const double height = normals_[triangle].dot(mesh_.vertices[at(opposite)] - end);
+        if (height > rounding) is_concave_[at(edge)] = 1;
+      }
+    }
   }
 }
 

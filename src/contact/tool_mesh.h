@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ class ToolMesh {
   const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
   const std::vector<MeshTriangle>& triangles() const { return mesh_.triangles; }
   const std::vector<Edge>& edges() const { return edges_; }
+  // Whether the mesh folds inwards there.
+  bool isConcave(int edge) const { return is_concave_[at(edge)] != 0; }
   // Of each triangle, as numbers of edges(): the one from its corner k to the next is the k-th.
   const std::vector<std::array<int, 3>>& edgesOfTriangles() const { return edges_of_triangles_; }
   // Vertices joined by an edge with each vertex.
@@ -56,6 +59,7 @@ class ToolMesh {
  private:
   void findEdges();
   void findNormals();
+  void findConcaveEdges();
   void findSharpEdges();
   void measureThickness();
   SignedDistance signedBy(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
@@ -67,6 +71,7 @@ class ToolMesh {
   Box bounds_;
   std::vector<Edge> edges_;
   std::vector<std::array<int, 3>> edges_of_triangles_;
+  std::vector<std::uint8_t> is_concave_;  // per edge
   std::vector<SharpEdge> sharp_edges_;
   std::vector<std::vector<int>> neighbors_;
   std::vector<Vec3> normals_;  // of the triangles, unit; zero without area

@@ -26,6 +26,9 @@ constexpr std::size_t kMostPlanes = 32;
 // The same of a mesh, which is convex in parts only: a search from each seed.
 // Steps of one search at most. More: exact in more cases, slower where a shape is rough. Chosen.
 constexpr std::size_t kMostLocalSteps = 24;
+// Projections to and fro before a search beside a part that folds outwards only, at most. More: more
+// exact beside what is not met. Chosen.
+constexpr int kApproaches = 3;
 // Of the edge (1): how far the planes are believed at first. More: fewer steps on smooth shapes,
 // but a search may leave its own hollow; less: more steps. Chosen.
 constexpr double kFirstPart = 0.125;
@@ -38,6 +41,9 @@ constexpr double kSamePlace = 0.05;
 // Of the edge of two triangles (1): contacts on it that are nearer along it are one. More: fewer;
 // less: each triangle adds its own. Chosen.
 constexpr double kSameAlong = 0.02;
+// Of the mesh's diagonal (1): with less height of the one triangle over the other, an edge does not
+// fold inwards. Rounding of meshes in single precision.
+constexpr double kFlatEdge = 1e-6;
 // Of the edge (1): a segment of a mesh in the triangle that is shorter is a point. Rounding.
 constexpr double kAtOnePoint = 1e-9;
 // Cosine, and its square's shortage from 1: two directions are square, or not parallel. Rounding.
