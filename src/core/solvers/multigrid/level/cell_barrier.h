@@ -5,6 +5,7 @@
 #include "material/elastic_cell.h"
 #include "material/elastic_law.h"
 #include "simd/vector_clones.h"
+#include "solvers/multigrid/level/tuning.h"
 #include "solvers/multigrid/level/vectors.h"
 
 namespace robot_tissue::vectors {
@@ -129,12 +130,13 @@ struct CellBarrier {
   //   E'' (sum c_i . u_i)^2 + E' sum of u_i . (d2J/dx_i dx_j) u_j,
   // at most 4 E'' |c_i|^2 + |E'| (the row's sum of the lengths of edges, 2 (|e_b| + |e_c|)) of each
   // node, with |e| <= (1 + |e|^2) / 2. The stiffness of a node is to bound that but for the factor
-  // by which motions are stiffer than their nodes alone.
+  // by which motions are stiffer than their nodes alone; and what is squeezed on meanwhile.
   ROBOT_TISSUE_INLINE void stiffenCorner(int index, const Corner& corner, const L& depth,
                                          const L (&across)[3][3], L* corner_stiffness) const {
     constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
-    const L curvature = height() * depth * (Real(4 * 6) * kPerDepth * kPerDepth * per_greatest);
-    const L slope = height() * depth * depth * (Real(3) * kPerDepth * per_greatest);
+    const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
+    const L curvature = height() * depth * (Real(4 * 6) * kPerDepth * share);
+    const L slope = height() * depth * depth * (Real(3) * share);
     const L edges[3] = {squared(corner.x), squared(corner.y), squared(corner.z)};
     const L all_edges = edges[0] + edges[1] + edges[2];
     L own[3];
