@@ -63,7 +63,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     const std::vector<LoadingPatch>& before = world_.tissue.patches();
     const bool stands = round == 1 && !world_.tissue.isMoving();
     if (stands && !anyToolIn(patches, world_) && !anyToolIn(before, world_)) return true;
-    if (patches.empty() && touch_finder_.wouldTouchAtRest(pose)) patches = lastTouches();
+    if (patches.empty()) patches = touchesAtRest(pose);
     if (round == 1) {
       good.shape = world_.tissue.shape();
       beginTimeStep(durationOf(good.pose, pose),
@@ -109,7 +109,9 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
     if (is_last || !isUnsettled()) return true;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
-    follow(patchesOfTools(world_));
+    std::vector<LoadingPatch> patches = patchesOfTools(world_);
+    if (patches.empty()) patches = touchesAtRest(world_.pose);
+    follow(std::move(patches));
   }
 }
 
@@ -252,10 +254,11 @@ void LoadStepper::meet(const RobotPose& pose, double way) {
   world_.sliding.meet(touch_finder_.touchesAt(pose, held, way), pose, world_.tissue, held);
 }
 
-// Patches of all tools, also of those that touch nothing now: where they would touch the rest shape
-// the tissue comes back onto them.
-std::vector<LoadingPatch> LoadStepper::lastTouches() const {
+// Patches of all tools, also of those that touch nothing now, where they would touch the rest
+// shape: the tissue comes back onto them. Else none.
+std::vector<LoadingPatch> LoadStepper::touchesAtRest(const RobotPose& pose) {
   std::vector<LoadingPatch> patches;
+  if (!touch_finder_.wouldTouchAtRest(pose)) return patches;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     patches.push_back(world_.sticking.loadingPatch(static_cast<int>(tool)));
     patches.back().contacts = world_.sliding.springsOf(static_cast<int>(tool));

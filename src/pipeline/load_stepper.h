@@ -57,7 +57,7 @@ class LoadStepper {
   double wayOfKnownPlaces() const;
   void pushRigid(const RobotPose& pose);
   double deepestInRigid(const RobotPose& pose);
-  std::vector<LoadingPatch> lastTouches() const;
+  std::vector<LoadingPatch> touchesAtRest(const RobotPose& pose);
   void follow(std::vector<LoadingPatch> patches);
   bool takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);

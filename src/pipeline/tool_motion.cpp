@@ -263,6 +263,33 @@ void ToolMotion::leaveReleased(RobotPose& pose) {
   comeAnew(released, pose);
 }
 
+// Tools that no shape follows again and again are on ways that lead through what has no room, as
+// one that was thrown to the other side of the tissue. What a tool holds, and blades in their
+// wounds, stay.
+void ToolMotion::leaveJam(RobotPose& pose) {
+  lost_in_a_row_ = world_.report.lost ? lost_in_a_row_ + 1 : 0;
+  if (lost_in_a_row_ < tuning::kMostLostInARow || world_.tools.anyRigid()) return;
+  lost_in_a_row_ = 0;
+  std::vector<std::size_t> jammed;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (ways_.isAt(tool, *world_.last_pose, pose) || isAttached(tool)) continue;
+    jammed.push_back(tool);
+    addOnce(tool, world_.report.were_inside);
+  }
+  if (jammed.empty() || world_.tissue.patience().cutsOff()) return;
+  world_.report.lost = false;
+  comeAnew(jammed, pose);
+}
+
+// Whether it holds tissue, or is in a wound of its own.
+bool ToolMotion::isAttached(std::size_t tool) const {
+  if (!world_.sticking.nodes(static_cast<int>(tool)).empty()) return true;
+  for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
+    if (world_.isInWound(link)) return true;
+  }
+  return false;
+}
+
 // The tissue comes back without these tools, and what they still meet they meet from outside.
 void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose) {
   RobotPose without = *world_.last_pose;

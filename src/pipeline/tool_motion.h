@@ -27,6 +27,7 @@ class ToolMotion {
   void stayAt(const Checkpoint& last_good, const RobotPose& goal);
   void leaveStuck(RobotPose& pose);
   void leaveReleased(RobotPose& pose);
+  void leaveJam(RobotPose& pose);
   void unhook(RobotPose& pose);
 
   bool standsStill(const RobotPose& pose) const;
@@ -51,6 +52,7 @@ class ToolMotion {
   bool isHooked(std::size_t tool) const;
   void resolveOverlap(std::size_t tool, RobotPose& pose);
   void letGoOf(std::size_t tool);
+  bool isAttached(std::size_t tool) const;
   void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);
   bool waitsOutside(std::size_t tool, Others others, RobotPose& pose);
 
@@ -60,6 +62,7 @@ class ToolMotion {
   Grasping& grasping_;
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;
+  int lost_in_a_row_ = 0;      // updates that no shape followed
   bool begins_short_ = false;  // no shape followed the last load step, and time was over
 };
 
