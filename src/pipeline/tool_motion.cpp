@@ -268,7 +268,8 @@ void ToolMotion::leaveReleased(RobotPose& pose) {
 // wounds, stay.
 void ToolMotion::leaveJam(RobotPose& pose) {
   lost_in_a_row_ = world_.report.lost ? lost_in_a_row_ + 1 : 0;
-  if (lost_in_a_row_ < tuning::kMostLostInARow || world_.tools.anyRigid()) return;
+  if (lost_in_a_row_ < tuning::kMostLostInARow) return;
+  if (world_.tools.anyRigid() || world_.tissue.patience().isForScene()) return;
   lost_in_a_row_ = 0;
   std::vector<std::size_t> jammed;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -276,7 +277,7 @@ void ToolMotion::leaveJam(RobotPose& pose) {
     jammed.push_back(tool);
     addOnce(tool, world_.report.were_inside);
   }
-  if (jammed.empty() || world_.tissue.patience().cutsOff()) return;
+  if (jammed.empty()) return;
   world_.report.lost = false;
   comeAnew(jammed, pose);
 }

@@ -158,6 +158,26 @@ TEST(JammedTool, IsGivenUpWhereNoSolveConverges) {
   EXPECT_FALSE(pipeline.step(pressed(0.02)).changed);
 }
 
+// Thrown through the block to its lower edge, the box has no way to there that a shape follows;
+// from outside it has.
+TEST(JammedTool, ComesInAnewWhereItIsLostAgainAndAgain) {
+  const ToolShape box = boxOf(Vec3(0.02, 0.025, 0.015));
+  Pipeline pipeline(block("elastic", 0.01), {}, {withFriction(0.3, toolOf(box))});
+  walk(pipeline, {{kMiddle, kMiddle, kTop + 0.01}}, {{kMiddle, kMiddle, kTop}}, 0.004);
+  RobotPose pose = at({Vec3(0.054, 0.067, 0.0041)});
+  pose.links[0].rotate(Eigen::AngleAxisd(1.935, Vec3(0.583, -0.791, -0.185).normalized()));
+  EXPECT_TRUE(pipeline.step(pose).lost);
+  for (int update = 0; update < 4; ++update) {
+    pose.links[0].translation().z() += 0.0005;
+    pipeline.step(pose);
+  }
+  EXPECT_FALSE(pipeline.report().lost);
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+  pose.links[0].translation().z() += 0.2;
+  pipeline.step(pose);
+  for (const Vec3& moved : pipeline.tissue().state().displacement) EXPECT_EQ(moved, Vec3::Zero());
+}
+
 TEST(TwoTools, OnOppositeSidesOfASheetPressEachOther) {
   constexpr double kSmall = 0.006;
   Pipeline pipeline(sheet(), {}, {smallProbe("upper", kSmall), smallProbe("lower", kSmall)});

@@ -39,6 +39,7 @@ class Patience {
   // most; before, it is for one way of the tools, counts what did not converge alone, and
   // bounds no solve.
   void limit() { is_for_scene_ = true; }
+  bool isForScene() const { return is_for_scene_; }
   void forget() { spent_ = spent_by_trials_ = 0; }
   // A way begins, or went on by a whole load step.
   void forgetWay() {
