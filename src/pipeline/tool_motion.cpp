@@ -265,7 +265,7 @@ void ToolMotion::leaveReleased(RobotPose& pose) {
 
 // Tools that no shape follows again and again are on ways that lead through what has no room, as
 // one that was thrown to the other side of the tissue. What a tool holds, and blades in their
-// wounds, stay.
+// wounds, stay; so do all where work is bounded for a scene, of which this takes a good part.
 void ToolMotion::leaveJam(RobotPose& pose) {
   lost_in_a_row_ = world_.report.lost ? lost_in_a_row_ + 1 : 0;
   if (lost_in_a_row_ < tuning::kMostLostInARow) return;
