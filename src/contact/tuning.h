@@ -26,8 +26,8 @@ constexpr std::size_t kMostPlanes = 32;
 // The same of a mesh, which is convex in parts only: a search from each seed.
 // Steps of one search at most. More: exact in more cases, slower where a shape is rough. Chosen.
 constexpr std::size_t kMostLocalSteps = 24;
-// Projections to and fro before a search beside a part that folds outwards only, at most. More: more
-// exact beside what is not met. Chosen.
+// Projections to and fro before a search beside a part that folds outwards only, at most. More:
+// more exact beside what is not met. Chosen.
 constexpr int kApproaches = 3;
 // Of the edge (1): how far the planes are believed at first. More: fewer steps on smooth shapes,
 // but a search may leave its own hollow; less: more steps. Chosen.
