@@ -2,7 +2,7 @@
 
 A sphere of 10 mm and a box on its edge go 8 mm into a block of 100 x 100 x 50 mm and 20 mm along it, 0.5 mm an update,
 friction 0.3. Forces at the updates, and the last shape at nodes 10 mm apart, are held against those of a lattice of
-5/3 mm, for the edge of 2 mm (`layered` at 1e-2; finer, or at tighter tolerances, it finds no shape from some way on).
+5/3 mm, for the edge of 2 mm (`layered` at 1e-2).
 What takes more than half a second an update is left out. Out: doc/data/tool_accuracy.csv, doc/images/tool_accuracy.png.
 """
 
