@@ -320,6 +320,12 @@ std::optional<FlatFace> ContactFinder::flatFace(std::size_t link, const Pose& ti
   return flatFaceOf(impl_->links[link].placedAt(tissue_T_link), facing, point, reach);
 }
 
+bool ContactFinder::hasMesh(std::size_t link) const {
+  const std::vector<CollisionShape>& shapes = impl_->links[link].shapes;
+  return std::any_of(shapes.begin(), shapes.end(),
+                     [](const CollisionShape& shape) { return shape.isMesh(); });
+}
+
 double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {
   requireLinks(pose, impl_->links.size());
   const TouchingLink& a = impl_->links[link];

@@ -242,10 +242,12 @@ double LoadStepper::wayOfKnownPlaces() const {
   if (!anyToolIn(world_.tissue.patches(), world_)) return 0.0;
   if (world_.tissue.lastReport().status != SolveStatus::kOk) return 0.0;
   const double spacing = world_.tissue.lattice().spacing();
+  bool any_mesh = false;
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
     if (world_.finder.thickness(link) < tuning::kThickForPlaces * spacing) return 0.0;
+    any_mesh = any_mesh || world_.finder.hasMesh(link);
   }
-  return tuning::kKnownPlaces * spacing;
+  return (any_mesh ? tuning::kKnownPlacesOnMesh : tuning::kKnownPlaces) * spacing;
 }
 
 void LoadStepper::meet(const RobotPose& pose, double way) {

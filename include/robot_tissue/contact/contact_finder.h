@@ -88,6 +88,8 @@ class ContactFinder {
   // Whether the link has flat faces with sharp edges: boxes, cylinders' ends, and faces of meshes
   // that end where the mesh folds outwards by 40 degrees and more.
   bool hasFlatFaces(std::size_t link) const;
+  // Whether a shape of it is a mesh: its contacts are dear.
+  bool hasMesh(std::size_t link) const;
   // The face that looks along `facing` (unit, tissue frame), by 35 degrees at most, and has an edge
   // within `reach` (m) of the point along the face, over it or beyond it; of several the nearest.
   std::optional<FlatFace> flatFace(std::size_t link, const Pose& tissue_T_link, const Vec3& facing,
