@@ -200,13 +200,16 @@ void seedsBesideEdges(const std::vector<int>& faces, const ToolMesh& mesh, SeenV
 
 // Whether the faces hang together by their edges, none of which folds inwards.
 bool MeshSeeds::areConvex(const ToolMesh& mesh, const std::vector<int>& faces) {
+  for (const int face : faces) {
+    for (const int edge : mesh.edgesOfTriangles()[at(face)]) {
+      if (mesh.isConcave(edge)) return false;
+    }
+  }
   DisjointSets parts(faces.size());
   face_at_edge_.resize(std::max(face_at_edge_.size(), mesh.edges().size()), -1);
   std::size_t joins = 0;
-  bool any_is_concave = false;
   for (int i = 0; i < static_cast<int>(faces.size()); ++i) {
     for (const int edge : mesh.edgesOfTriangles()[at(faces[at(i)])]) {
-      any_is_concave = any_is_concave || mesh.isConcave(edge);
       const int other = std::exchange(face_at_edge_[at(edge)], i);
       if (other < 0 || parts.lowest(other) == parts.lowest(i)) continue;
       parts.join(other, i);
@@ -216,7 +219,7 @@ bool MeshSeeds::areConvex(const ToolMesh& mesh, const std::vector<int>& faces) {
   for (const int face : faces) {
     for (const int edge : mesh.edgesOfTriangles()[at(face)]) face_at_edge_[at(edge)] = -1;
   }
-  return !any_is_concave && joins + 1 == faces.size();
+  return joins + 1 == faces.size();
 }
 
 const std::vector<Vec3>& MeshSeeds::on(const Corners& corners, const ToolMesh& mesh,

@@ -284,7 +284,7 @@ void ToolMotion::leaveJam(RobotPose& pose) {
 
 // Whether it holds tissue, or is in a wound of its own.
 bool ToolMotion::isAttached(std::size_t tool) const {
-  if (!world_.sticking.nodes(static_cast<int>(tool)).empty()) return true;
+  if (world_.sticking.holds(static_cast<int>(tool))) return true;
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
     if (world_.isInWound(link)) return true;
   }

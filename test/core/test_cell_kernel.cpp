@@ -118,13 +118,15 @@ class CellKernel : public testing::Test {
         greatest = std::max(greatest, alone.gradient(c).norm());
       }
     }
+    // Of crushed cells the law's own stiffness is bounded less closely (CellKernelStiffness).
+    const double slack = far < 0.5 ? 1.001 : 1.1;
     for (const LevelCell& cell : given.all) {
       for (const int node : cell.nodes) {
         for (int axis = 0; axis < 3; ++axis) {
           EXPECT_NEAR(cells.whole[at(axis)][at(node)], forces[at(node)][axis],
                       tolerance * greatest + kOfTheOther);
         }
-        EXPECT_GT(1.1 * cells.stiffness[at(node)], blocks[at(node)].trace() / 3.0);
+        EXPECT_GT(slack * cells.stiffness[at(node)], blocks[at(node)].trace() / 3.0);
       }
     }
   }

@@ -265,7 +265,9 @@ struct Block {
     if (more) {
       for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
       if (is_squeezed) {
-        for (L& corner : corner_stiffness) corner = L{};
+        if constexpr (kWithStiffness) {
+          for (L& corner : corner_stiffness) corner = L{};
+        }
         CellBarrier<V>{mode, shear, per_greatest}.add(push,
                                                       kWithStiffness ? corner_stiffness : nullptr);
       }
