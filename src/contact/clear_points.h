@@ -1,4 +1,4 @@
-// Points of a mesh that are known to be outside of a surface from when it was last asked for them,
+// Points of a shape that are known to be outside of a surface from when it was last asked for them,
 // as neither has moved far since.
 #pragma once
 

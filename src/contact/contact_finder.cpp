@@ -255,13 +255,9 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
   for (std::size_t i = 0; i < here.size(); ++i) {
     const std::vector<Vec3>& points = links[link].surface_points[i];
     const TriangleBvh& tree = surface_tree.last();
-    if (here[i].shape->isMesh()) {
-      ClearPoints& clear = links[link].clear_points[i];
-      clear.beginLook(here[i], surface_tree.trees(), vertices, points.size());
-      deepest = deepestInside(here[i], points, tree, of_link, deepest, clear);
-    } else {
-      deepest = deepestInside(here[i], points, tree, of_link, deepest);
-    }
+    ClearPoints& clear = links[link].clear_points[i];
+    clear.beginLook(here[i], surface_tree.trees(), vertices, points.size());
+    deepest = deepestInside(here[i], points, tree, of_link, deepest, clear);
   }
   return deepest;
 }

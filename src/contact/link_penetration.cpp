@@ -71,12 +71,6 @@ std::vector<Vec3> meshPoints(const ToolMesh& mesh, double padding) {
   return points;
 }
 
-// The nearest point of the surface to one that is inside; nothing when it is outside.
-std::optional<TriangleBvh::Nearest> footOf(const Vec3& point, const TriangleBvh& surface) {
-  if (!surface.isInside(point)) return std::nullopt;
-  return surface.nearest(point, std::numeric_limits<double>::infinity());
-}
-
 // Of a point inside the triangles, in the surface that is off them by `bulge`.
 double depthOf(const Vec3& point, const TriangleBvh::Nearest& foot, const PointBulge& bulge) {
   if (foot.distance <= 0.0) return 0.0;
@@ -113,42 +107,50 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape) {
   return points;
 }
 
-double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, const PointBulge& bulge, double known) {
-  const Box box = surface.bounds();
-  double deepest = known;
-  TriangleBvh::Nearest foot;
+namespace {
+
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+
+// The deepest point so far, and the surface's point next to it.
+struct Deepest {
+  double depth = 0.0;
+  TriangleBvh::Nearest foot;  // none: no point is deeper than what was known before
   Vec3 place = Vec3::Zero();
-  const auto isDeeper = [&](const Vec3& point, double least) {
-    if (!box.contains(point) || surface.nearest(point, least, least)) return false;
-    const auto nearest = footOf(point, surface);
-    if (!nearest || nearest->distance <= least) return false;
-    const double depth = depthOf(point, *nearest, bulge);
-    if (depth <= least) return false;
-    deepest = depth;
-    foot = *nearest;
-    place = point;
-    return true;
-  };
-  for (const Vec3& point : points) isDeeper(placed.tissue_T_shape * point, deepest);
-  if (foot.triangle < 0) return deepest;
-  for (int move = 0; move < tuning::kMostMoves; ++move) {
-    const Vec3 inwards = (place - foot.point).normalized();
-    const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
-    if (!isDeeper(placed.tissue_T_shape * placed.shape->farthest(direction),
-                  deepest + tuning::kLeastGain)) {
-      break;
-    }
-  }
-  return deepest;
+};
+
+// Inside as the nearest triangle sees it: nearly always it is.
+bool isBehind(const Vec3& point, const TriangleBvh::Nearest& foot, const TriangleBvh& surface) {
+  const Corners& corners = surface.corners(foot.triangle);
+  const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  return (point - foot.point).dot(area) < 0.0;
 }
+
+// Looks on from it to where the convex shape reaches farthest from that foot.
+void goFarther(const PlacedShape& placed, const TriangleBvh& surface, const PointBulge& bulge,
+               Deepest& deepest) {
+  const Box box = surface.bounds();
+  for (int move = 0; move < tuning::kMostMoves; ++move) {
+    const Vec3 inwards = (deepest.place - deepest.foot.point).normalized();
+    const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
+    const Vec3 point = placed.tissue_T_shape * placed.shape->farthest(direction);
+    const double least = deepest.depth + tuning::kLeastGain;
+    if (!box.contains(point)) return;
+    const auto foot = surface.nearest(point, kAnywhere, least);
+    if (!foot || foot->distance <= least || depthOf(point, *foot, bulge) <= least) return;
+    if (!surface.isInside(point)) return;
+    deepest = {depthOf(point, *foot, bulge), *foot, point};
+  }
+}
+
+}  // namespace
 
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                      const TriangleBvh& surface, const PointBulge& bulge, double known,
                      ClearPoints& clear) {
   const Box box = surface.bounds();
   const double ahead = tuning::kLooksAhead * clear.lastWay();
-  double deepest = known;
+  Deepest deepest;
+  deepest.depth = known;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (clear.isClear(i)) continue;
     const Vec3 point = placed.tissue_T_shape * points[i];
@@ -156,20 +158,22 @@ double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
       clear.note(i, box.exteriorDistance(point));
       continue;
     }
-    if (surface.nearest(point, deepest, deepest)) continue;
-    const auto foot = surface.nearest(point, std::numeric_limits<double>::infinity());
-    if (!foot) continue;
+    const auto foot = surface.nearest(point, kAnywhere, deepest.depth);
+    if (!foot || foot->distance <= deepest.depth) continue;
     // Inside or outside is the dearest question: not where neither answer tells anything.
-    const bool is_far = foot->distance > clear.lastWay();
+    const bool may_clear = foot->distance > clear.lastWay();
     const double depth = depthOf(point, *foot, bulge);
-    if (!is_far && depth <= deepest) continue;
-    if (surface.isInside(point)) {
-      deepest = std::max(deepest, depth);
-    } else if (is_far) {
-      clear.note(i, std::min(foot->distance, ahead));
+    if (depth <= deepest.depth && (!may_clear || isBehind(point, *foot, surface))) continue;
+    if (!surface.isInside(point)) {
+      if (may_clear) clear.note(i, std::min(foot->distance, ahead));
+    } else if (depth > deepest.depth) {
+      deepest = {depth, *foot, point};
     }
   }
-  return deepest;
+  if (deepest.foot.triangle >= 0 && !placed.shape->isMesh()) {
+    goFarther(placed, surface, bulge, deepest);
+  }
+  return deepest.depth;
 }
 
 }  // namespace robot_tissue

@@ -18,13 +18,9 @@ std::vector<Vec3> surfacePoints(const CollisionShape& shape);
 // Of the points (shape's frame), the depth of the deepest inside the surface (m), or `known` when
 // none is deeper: the distance to the nearest triangle. For a convex shape the deepest one then
 // moves on to where the shape reaches farthest from that triangle, so that it is exact over a flat
-// surface. The surface is off its triangles by `bulge` (m).
+// surface. The surface is off its triangles by `bulge` (m). A look was begun of `clear`: points
+// that are still clear are left out.
 using PointBulge = std::function<Vec3(const SurfacePoint& point)>;
-double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
-                     const TriangleBvh& surface, const PointBulge& bulge, double known);
-
-// The same of a mesh, in a look that was begun of `clear`: its points that are still clear are left
-// out.
 double deepestInside(const PlacedShape& placed, const std::vector<Vec3>& points,
                      const TriangleBvh& surface, const PointBulge& bulge, double known,
                      ClearPoints& clear);

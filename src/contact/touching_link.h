@@ -37,7 +37,7 @@ class TouchingLink {
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
   std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
-  std::vector<ClearPoints> clear_points;          // as shapes; of meshes
+  std::vector<ClearPoints> clear_points;          // as shapes
 
  private:
   struct Asked {

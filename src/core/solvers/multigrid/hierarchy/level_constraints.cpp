@@ -197,14 +197,19 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
   std::vector<int>& fine_springs = from_fine_[index - 1].springs;
   coarse.constrained.springs.clear();
   fine_springs.clear();
-  SharesOfNodes known(grid_.level(index - 1).constrained.count());
+  FreeShares shares{std::vector<std::optional<NodeShares>>(
+                        grid_.level(index - 1).constrained.count()),
+                    std::vector<int>(at(coarse.count()), 0)};
+  coarse.constrained.springs.reserve(fine.size());
   for (std::size_t i = 0; i < fine.size(); ++i) {
-    LevelSpring spring = fine[i];
-    spring.contact = nullptr;
-    spring.arm /= GridTransfer<Real>::kTwice;
-    spring.carriers = freeCarriers(index, fine[i].carriers, known);
-    if (spring.carriers.empty() && spring.group < 0) continue;
-    coarse.constrained.springs.push_back(std::move(spring));
+    std::vector<LevelSpring::Carrier> carriers = freeCarriers(index, fine[i].carriers, shares);
+    if (carriers.empty() && fine[i].group < 0) continue;
+    coarse.constrained.springs.emplace_back();
+    LevelSpring& spring = coarse.constrained.springs.back();
+    spring.carriers = std::move(carriers);
+    spring.ends = fine[i].ends;
+    spring.group = fine[i].group;
+    spring.arm = fine[i].arm / GridTransfer<Real>::kTwice;
     fine_springs.push_back(static_cast<int>(i));
   }
   const std::vector<LevelSpring>& ties = from_fine_[index - 1].ties;
@@ -215,22 +220,22 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
 // The coarse nodes that carry a spring of the fine lattice, without those that do not move.
 template <typename Real>
 std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
-    std::size_t index, const std::vector<LevelSpring::Carrier>& fine, SharesOfNodes& known) const {
+    std::size_t index, const std::vector<LevelSpring::Carrier>& fine, FreeShares& known) const {
   std::vector<LevelSpring::Carrier> carriers;
+  carriers.reserve(kCorners);
   for (const LevelSpring::Carrier& carrier : fine) {
-    std::optional<NodeShares>& shares = known[at(carrier.constrained)];
+    std::optional<NodeShares>& shares = known.of_constrained[at(carrier.constrained)];
     if (!shares) shares = freeShares(index, carrier.node);
     for (const NodeShare& share : *shares) {
-      const LevelSpring::Carrier part{share.node, share.weight * carrier.weight};
-      const auto same = std::find_if(carriers.begin(), carriers.end(),
-                                     [&](const auto& other) { return other.node == part.node; });
-      if (same == carriers.end()) {
-        carriers.push_back(part);
-      } else {
-        same->weight += part.weight;
+      int& place = known.place_of[at(share.node)];
+      if (place == 0) {
+        carriers.push_back({share.node, 0.0});
+        place = static_cast<int>(carriers.size());
       }
+      carriers[at(place - 1)].weight += share.weight * carrier.weight;
     }
   }
+  for (const LevelSpring::Carrier& carrier : carriers) known.place_of[at(carrier.node)] = 0;
   return carriers;
 }
 

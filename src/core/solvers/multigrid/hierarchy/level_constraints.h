@@ -53,11 +53,14 @@ class LevelConstraints {
   void renewSprings(const ConstrainedState& shape, const DofConstraints& hold);
   void holdCoarse(std::size_t coarse);
   void addSpringsToCoarse(std::size_t coarse);
-  // Per node with springs of a level, what carries it on the next coarser one, as it is asked for.
-  using SharesOfNodes = std::vector<std::optional<NodeShares>>;
+  // What freeCarriers keeps from spring to spring.
+  struct FreeShares {
+    std::vector<std::optional<NodeShares>> of_constrained;  // per node with springs; asked for
+    std::vector<int> place_of;  // per coarse node: among a spring's carriers, from 1 on; 0: none
+  };
   std::vector<LevelSpring::Carrier> freeCarriers(std::size_t coarse,
                                                  const std::vector<LevelSpring::Carrier>& fine,
-                                                 SharesOfNodes& known) const;
+                                                 FreeShares& known) const;
   NodeShares freeShares(std::size_t coarse, int fine_node) const;
   void addTies(std::size_t coarse);
   void addTie(std::size_t coarse, int fine_node, unsigned axes, int group, const Vec3& arm);

@@ -15,6 +15,8 @@ namespace {
 // Sum of the sizes of a spring's weights: 1 on its nodes, and -1 on a group.
 constexpr double kBothEnds = 2.0;
 
+constexpr int kNone = -1;
+
 using Jacobian = Eigen::Matrix<double, 3, 6>;
 
 // The derivative of the motion of the group's point at that arm (spacings) by the group's motion.
@@ -57,57 +59,55 @@ void cut(Vector& vector, double longest) {
 }  // namespace
 
 template <typename Real>
-void ConstrainedNodes<Real>::setUnits(double spacing, double modulus) {
-  spacing_ = spacing;
-  modulus_ = modulus;
-}
-
-template <typename Real>
-int ConstrainedNodes<Real>::indexOf(int node) const {
-  const auto before = [](const ConstrainedNode& constrained, int other) {
-    return constrained.node < other;
-  };
-  const auto found = std::lower_bound(all_.begin(), all_.end(), node, before);
-  return static_cast<int>(found - all_.begin());
-}
-
-template <typename Real>
 std::vector<int> ConstrainedNodes<Real>::nodes() const {
   std::vector<int> nodes;
   for (const ConstrainedNode& constrained : all_) nodes.push_back(constrained.node);
   return nodes;
 }
 
+// Per node of the level its index among the constrained ones, kNone where it is none of these.
+template <typename Real>
+void ConstrainedNodes<Real>::findIndices(std::size_t level_nodes,
+                                         const std::vector<int>& partly_held) {
+  index_of_.assign(level_nodes, kNone);
+  std::vector<int> nodes;
+  const auto add = [&](int node) {
+    if (std::exchange(index_of_[at(node)], 0) == kNone) nodes.push_back(node);
+  };
+  for (const int node : partly_held) add(node);
+  for (const LevelSpring& spring : springs) {
+    for (const LevelSpring::Carrier& carrier : spring.carriers) add(carrier.node);
+  }
+  for (const LevelGroup& group : groups) {
+    for (const int node : group.nodes) add(node);
+  }
+  for (const OwnStiffness& own : own_stiffness) add(own.node);
+  std::sort(nodes.begin(), nodes.end());
+  all_.assign(nodes.size(), {});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    index_of_[at(nodes[i])] = static_cast<int>(i);
+    all_[i].node = nodes[i];
+  }
+}
+
 template <typename Real>
 void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
                                   const std::vector<int>& partly_held) {
-  std::vector<int> nodes = partly_held;
-  for (const LevelSpring& spring : springs) {
-    for (const LevelSpring::Carrier& carrier : spring.carriers) nodes.push_back(carrier.node);
-  }
-  for (const LevelGroup& group : groups) {
-    nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
-  }
-  for (const OwnStiffness& own : own_stiffness) nodes.push_back(own.node);
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  all_.assign(nodes.size(), {});
-  for (auto* vectors : {&places_, &forces_}) vectors->assign(nodes.size(), Vec3::Zero());
-  inverses_.assign(nodes.size(), Eigen::Matrix3d::Zero());
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    all_[i].node = nodes[i];
-    all_[i].held = held[at(nodes[i])];
-  }
+  findIndices(held.size(), partly_held);
+  for (ConstrainedNode& constrained : all_) constrained.held = held[at(constrained.node)];
+  for (auto* vectors : {&places_, &forces_}) vectors->assign(all_.size(), Vec3::Zero());
+  inverses_.assign(all_.size(), Eigen::Matrix3d::Zero());
   for (LevelSpring& spring : springs) {
-    for (LevelSpring::Carrier& carrier : spring.carriers)
-      carrier.constrained = indexOf(carrier.node);
+    for (LevelSpring::Carrier& carrier : spring.carriers) {
+      carrier.constrained = index_of_[at(carrier.node)];
+    }
   }
   acting_.resize(springs.size());
   std::iota(acting_.begin(), acting_.end(), 0);
-  for (OwnStiffness& own : own_stiffness) own.constrained = indexOf(own.node);
+  for (OwnStiffness& own : own_stiffness) own.constrained = index_of_[at(own.node)];
   for (std::size_t group = 0; group < groups.size(); ++group) {
     for (std::size_t i = 0; i < groups[group].nodes.size(); ++i) {
-      ConstrainedNode& constrained = all_[at(indexOf(groups[group].nodes[i]))];
+      ConstrainedNode& constrained = all_[at(index_of_[at(groups[group].nodes[i])])];
       constrained.group = static_cast<int>(group);
       constrained.held = kAllAxes;
       constrained.arm = groups[group].arms[i];
@@ -388,9 +388,8 @@ double ConstrainedNodes<Real>::squaredMotionOf(const std::vector<GroupVector>& o
 
 template <typename Real>
 const Vec3* ConstrainedNodes<Real>::wholeForce(int node) const {
-  const std::size_t constrained = at(indexOf(node));
-  return constrained < all_.size() && all_[constrained].node == node ? &forces_[constrained]
-                                                                     : nullptr;
+  const int constrained = index_of_[at(node)];
+  return constrained == kNone ? nullptr : &forces_[at(constrained)];
 }
 
 template class ConstrainedNodes<float>;

@@ -80,7 +80,10 @@ class ConstrainedNodes {
   // each alone. `greatest`: as GridLevel::greatestStiffness.
   void couple(std::shared_ptr<const LevelMembrane<Real>> membrane, double greatest);
   // Of the laws of contacts: the spacing (m) and E0 (Pa).
-  void setUnits(double spacing, double modulus);
+  void setUnits(double spacing, double modulus) {
+    spacing_ = spacing;
+    modulus_ = modulus;
+  }
   std::vector<int> nodes() const;  // ascending
   std::size_t count() const { return all_.size(); }
 
@@ -126,7 +129,7 @@ class ConstrainedNodes {
   };
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-  int indexOf(int node) const;
+  void findIndices(std::size_t level_nodes, const std::vector<int>& partly_held);
   void addSpring(LevelSpring& spring, Find what);
   void addStiffness(const LevelSpring& spring, const Eigen::Matrix3d& stiffness);
   bool isJoining(const LevelSpring& spring, const Vec3& point) const;
@@ -146,7 +149,8 @@ class ConstrainedNodes {
 
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
-  std::vector<ConstrainedNode> all_;
+  std::vector<ConstrainedNode> all_;             // by node, ascending
+  std::vector<int> index_of_;                    // per node of the level: in all_, or none
   std::vector<int> acting_;                      // of the springs
   std::vector<Vec3> places_;                     // displacement, per entry of all_
   std::vector<Vec3> forces_;                     // likewise
