@@ -4,7 +4,8 @@ robot_tissue_room(base
   PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h robot_pose.h types.h)
 robot_tissue_room(simd
   USES base
-  FILES field_kernel.cpp field_kernel.h lanes.h numbers.h vector_clones.h workers.cpp workers.h)
+  FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h
+    symmetric_kernel.cpp symmetric_kernel.h vector_clones.h workers.cpp workers.h)
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h

@@ -1,12 +1,15 @@
 // Forces of many cells at a time are those of each cell alone.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "elastic_fixtures.h"
 #include "material/elastic_cell.h"
 #include "solvers/multigrid/level/cell_kernel.h"
 #include "solvers/multigrid/level/cell_operator.h"
+#include "solvers/multigrid/level/constrained_nodes.h"
 
 namespace robot_tissue::test_cell_kernel {
 namespace {
@@ -58,8 +61,8 @@ struct Cells {
 // What goes in and out with the displacement: all nodes free, no load.
 template <typename Real>
 struct Around {
-  explicit Around(CellOperator<Real>& on)
-      : cells(on), free(at(on.count()), Real(0)), inverse(at(on.count()), Real(0)) {
+  explicit Around(CellOperator<Real>& on) : cells(on), free(at(on.count()), Real(0)) {
+    for (auto& values : inverse) values.assign(at(on.count()), Real(0));
     for (auto* field : {&load, &force}) {
       for (auto& values : *field) values.assign(at(on.count()), Real(0));
     }
@@ -73,7 +76,8 @@ struct Around {
 
   CellOperator<Real>& cells;
   Field<Real> load, force;
-  Numbers<Real> free, inverse;
+  SymmetricField<Real> inverse;
+  Numbers<Real> free;
 };
 
 // Every node somewhere within `far` spacings of its rest, along each axis.
@@ -86,6 +90,13 @@ Field<Real> shaken(const CellOperator<Real>& cells, double far) {
     for (int axis = 0; axis < 3; ++axis) field[at(axis)].push_back(static_cast<Real>(moved[axis]));
   }
   return field;
+}
+
+// Greatest Rayleigh quotient of a stiffness in another.
+double stiffest(const Eigen::Matrix3d& stiffness, const Eigen::Matrix3d& in) {
+  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d>(stiffness, in)
+      .eigenvalues()
+      .maxCoeff();
 }
 
 template <typename Real>
@@ -118,15 +129,15 @@ class CellKernel : public testing::Test {
         greatest = std::max(greatest, alone.gradient(c).norm());
       }
     }
-    // Of crushed cells the law's own stiffness is bounded less closely (CellKernelStiffness).
-    const double slack = far < 0.5 ? 1.001 : 1.1;
+    // Bounded but for one indefinite term, which is larger in crushed cells.
+    const double slack = far < 0.5 ? 1.03 : 1.25;
     for (const LevelCell& cell : given.all) {
       for (const int node : cell.nodes) {
         for (int axis = 0; axis < 3; ++axis) {
           EXPECT_NEAR(cells.whole[at(axis)][at(node)], forces[at(node)][axis],
                       tolerance * greatest + kOfTheOther);
         }
-        EXPECT_GT(slack * cells.stiffness[at(node)], blocks[at(node)].trace() / 3.0);
+        EXPECT_LT(stiffest(blocks[at(node)], matrixAt(cells.stiffness, node)), slack);
       }
     }
   }
@@ -138,7 +149,7 @@ double greatestStiffness(CellOperator<double>& cells, const Field<double>& shape
   constexpr double kStep = 1e-7;
   Around<double> around(cells);
   around.find(shape, Find::kForcesAndStiffness);
-  const Numbers<double> stiffness = cells.stiffness;
+  const SymmetricField<double> stiffness = cells.stiffness;
   const Field<double> before = cells.whole;
   Field<double> motion;
   Shaker shaker(3);
@@ -150,22 +161,22 @@ double greatestStiffness(CellOperator<double>& cells, const Field<double>& shape
   for (int probe = 0; probe < 60; ++probe) {
     Field<double> moved = shape;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t node = 0; node < stiffness.size(); ++node) {
+      for (std::size_t node = 0; node < moved[axis].size(); ++node) {
         moved[axis][node] += kStep * motion[axis][node];
       }
     }
     around.find(moved, Find::kForces);
     double product = 0.0, length = 0.0, next = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t node = 0; node < stiffness.size(); ++node) {
-        if (stiffness[node] == 0.0) continue;
-        double& along = motion[axis][node];
-        const double force = (before[axis][node] - cells.whole[axis][node]) / kStep;
-        product += along * force;
-        length += stiffness[node] * along * along;
-        along = force / stiffness[node];
-        next += along * along;
-      }
+    for (int node = 0; node < cells.count(); ++node) {
+      const Eigen::Matrix3d own = matrixAt(stiffness, node);
+      if (own.isZero(0.0)) continue;
+      const Vec3 along = vectorAt(motion, node);
+      const Vec3 force = (vectorAt(before, node) - vectorAt(cells.whole, node)) / kStep;
+      product += along.dot(force);
+      length += along.dot(own * along);
+      const Vec3 goes_on = own.inverse() * force;
+      next += goes_on.squaredNorm();
+      for (int axis = 0; axis < 3; ++axis) motion[at(axis)][at(node)] = goes_on[axis];
     }
     greatest = product / length;
     for (auto& values : motion) {

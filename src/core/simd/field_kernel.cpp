@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simd/sum_of_terms.h"
 #include "simd/vector_clones.h"
 
 namespace robot_tissue {
@@ -26,29 +27,12 @@ ROBOT_TISSUE_INLINE void takeFree(const Real* __restrict whole, const Real* __re
 }
 
 template <typename Real>
-ROBOT_TISSUE_INLINE void invertFree(const Real* __restrict stiffness, const Real* __restrict free,
-                                    Real* __restrict inverse, int count) {
-  for (int i = 0; i < count; ++i) inverse[i] = free[i] / (stiffness[i] + (Real(1) - free[i]));
-}
-
-template <typename Real>
 ROBOT_TISSUE_INLINE void holdAll(const Real* __restrict stiffness,
                                  const Real* __restrict displacement, const Real* __restrict free,
                                  Real* __restrict whole, Real* __restrict force, int count) {
   for (int i = 0; i < count; ++i) {
     whole[i] -= stiffness[i] * displacement[i];
     force[i] = free[i] * whole[i];
-  }
-}
-
-template <typename Real>
-ROBOT_TISSUE_INLINE void invertAll(const Real* __restrict below, const Real* __restrict lower,
-                                   const Real* __restrict free, Real* __restrict stiffness,
-                                   Real* __restrict inverse, int count) {
-  for (int i = 0; i < count; ++i) {
-    const Real sum = below[i] + lower[i];
-    stiffness[i] = sum;
-    inverse[i] = free[i] / (sum + (Real(1) - free[i]));
   }
 }
 
@@ -70,17 +54,6 @@ ROBOT_TISSUE_INLINE void loadAllInstead(const Real* __restrict wanted, const Rea
     const Real change = free[i] * (wanted[i] - known[i]);
     load[i] += change;
     force[i] += change;
-  }
-}
-
-template <typename Real>
-ROBOT_TISSUE_INLINE void stepAll(const Real* __restrict inverse, const Real* __restrict force,
-                                 Real keep, Real share, Real longest, Real* __restrict way,
-                                 Real* __restrict displacement, int count) {
-  for (int i = 0; i < count; ++i) {
-    const Real step = keep * way[i] + share * inverse[i] * force[i];
-    way[i] = std::min(std::max(step, -longest), longest);
-    displacement[i] += way[i];
   }
 }
 
@@ -131,34 +104,9 @@ ROBOT_TISSUE_INLINE void halveAll(const Real* __restrict fine, Real* __restrict 
   for (int i = 0; i < count; ++i) coarse[i] = Real(0.5) * fine[2 * i];
 }
 
-// Sum of term(i) over i < count, in runs of kRun terms: each run has kPartialSums partial sums, of
-// every kPartialSums-th term, that are added at its end in double precision. So the order, and with
-// it the bits, is the same for any length of the processor's vectors.
-template <typename Real, typename Term>
-ROBOT_TISSUE_INLINE double sumOfTerms(int count, Term term) {
-  constexpr int kRun = 2048, kPartialSums = 32;
-  double sum = 0.0;
-  for (int first = 0; first < count; first += kRun) {
-    const int end = std::min(count, first + kRun);
-    Real lanes[kPartialSums] = {};
-    int i = first;
-    for (; i + kPartialSums <= end; i += kPartialSums) {
-      for (int lane = 0; lane < kPartialSums; ++lane) lanes[lane] += term(i + lane);
-    }
-    for (const Real lane : lanes) sum += static_cast<double>(lane);
-    for (; i < end; ++i) sum += static_cast<double>(term(i));
-  }
-  return sum;
-}
-
 template <typename Real>
 ROBOT_TISSUE_INLINE double dotAll(const Real* a, const Real* b, int count) {
   return sumOfTerms<Real>(count, [=](int i) { return a[i] * b[i]; });
-}
-
-template <typename Real>
-ROBOT_TISSUE_INLINE double squareAll(const Real* a, const Real* b, int count) {
-  return sumOfTerms<Real>(count, [=](int i) { return a[i] * b[i] * (a[i] * b[i]); });
 }
 
 template <typename Real>
@@ -195,17 +143,6 @@ ROBOT_TISSUE_CLONES void sumForces(const double* below, const double* lower, con
   sumAll(below, lower, load, free, whole, force, count);
 }
 
-ROBOT_TISSUE_CLONES void invertStiffness(const float* below, const float* lower, const float* free,
-                                         float* stiffness, float* inverse, int count) {
-  invertAll(below, lower, free, stiffness, inverse, count);
-}
-
-ROBOT_TISSUE_CLONES void invertStiffness(const double* below, const double* lower,
-                                         const double* free, double* stiffness, double* inverse,
-                                         int count) {
-  invertAll(below, lower, free, stiffness, inverse, count);
-}
-
 ROBOT_TISSUE_CLONES void takeWhereFree(const float* whole, const float* free, float* force,
                                        int count) {
   takeFree(whole, free, force, count);
@@ -214,16 +151,6 @@ ROBOT_TISSUE_CLONES void takeWhereFree(const float* whole, const float* free, fl
 ROBOT_TISSUE_CLONES void takeWhereFree(const double* whole, const double* free, double* force,
                                        int count) {
   takeFree(whole, free, force, count);
-}
-
-ROBOT_TISSUE_CLONES void invertWhereFree(const float* stiffness, const float* free, float* inverse,
-                                         int count) {
-  invertFree(stiffness, free, inverse, count);
-}
-
-ROBOT_TISSUE_CLONES void invertWhereFree(const double* stiffness, const double* free,
-                                         double* inverse, int count) {
-  invertFree(stiffness, free, inverse, count);
 }
 
 ROBOT_TISSUE_CLONES void addHolds(const float* stiffness, const float* displacement,
@@ -256,18 +183,6 @@ ROBOT_TISSUE_CLONES void fasRightHandSideBeside(const double* wanted, const doub
                                                 const double* free, double* load, double* force,
                                                 int count) {
   loadAllInstead(wanted, known, free, load, force, count);
-}
-
-ROBOT_TISSUE_CLONES void stepAlong(const float* inverse, const float* force, float keep,
-                                   float share, float longest, float* way, float* displacement,
-                                   int count) {
-  stepAll(inverse, force, keep, share, longest, way, displacement, count);
-}
-
-ROBOT_TISSUE_CLONES void stepAlong(const double* inverse, const double* force, double keep,
-                                   double share, double longest, double* way, double* displacement,
-                                   int count) {
-  stepAll(inverse, force, keep, share, longest, way, displacement, count);
 }
 
 ROBOT_TISSUE_CLONES void addWhereFree(const float* motion, const float* free, float share,
@@ -336,14 +251,6 @@ ROBOT_TISSUE_CLONES double dotOf(const float* a, const float* b, int count) {
 
 ROBOT_TISSUE_CLONES double dotOf(const double* a, const double* b, int count) {
   return dotAll(a, b, count);
-}
-
-ROBOT_TISSUE_CLONES double squaredProduct(const float* a, const float* b, int count) {
-  return squareAll(a, b, count);
-}
-
-ROBOT_TISSUE_CLONES double squaredProduct(const double* a, const double* b, int count) {
-  return squareAll(a, b, count);
 }
 
 ROBOT_TISSUE_CLONES double squaredDistance(const float* a, const float* b, int count) {

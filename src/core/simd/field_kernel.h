@@ -11,18 +11,9 @@ void sumForces(const float* below, const float* lower, const float* load, const 
 void sumForces(const double* below, const double* lower, const double* load, const double* free,
                double* whole, double* force, int count);
 
-// stiffness = below + lower; inverse = free / stiffness, 0 where `free` is 0; the stiffness must be
-// positive where it is 1.
-void invertStiffness(const float* below, const float* lower, const float* free, float* stiffness,
-                     float* inverse, int count);
-void invertStiffness(const double* below, const double* lower, const double* free,
-                     double* stiffness, double* inverse, int count);
-
-// As these leave it where `whole` and `stiffness` are known and `free` alone has changed.
+// As it leaves the force where `whole` is known and `free` alone has changed.
 void takeWhereFree(const float* whole, const float* free, float* force, int count);
 void takeWhereFree(const double* whole, const double* free, double* force, int count);
-void invertWhereFree(const float* stiffness, const float* free, float* inverse, int count);
-void invertWhereFree(const double* stiffness, const double* free, double* inverse, int count);
 
 // Springs that hold the nodes at zero: whole -= stiffness * displacement, force = free * whole.
 void addHolds(const float* stiffness, const float* displacement, const float* free, float* whole,
@@ -42,12 +33,6 @@ void fasRightHandSideBeside(const float* wanted, const float* known, const float
                             float* force, int count);
 void fasRightHandSideBeside(const double* wanted, const double* known, const double* free,
                             double* load, double* force, int count);
-
-// way = keep * way + share * inverse * force, cut to `longest`; displacement += way.
-void stepAlong(const float* inverse, const float* force, float keep, float share, float longest,
-               float* way, float* displacement, int count);
-void stepAlong(const double* inverse, const double* force, double keep, double share,
-               double longest, double* way, double* displacement, int count);
 
 // to += share * motion where `free` is 1.
 void addWhereFree(const float* motion, const float* free, float share, float* to, int count);
@@ -80,10 +65,6 @@ void injectRow(const double* fine, double* coarse, int count);
 // Sum of the products.
 double dotOf(const float* a, const float* b, int count);
 double dotOf(const double* a, const double* b, int count);
-
-// Sum of the squares of the products.
-double squaredProduct(const float* a, const float* b, int count);
-double squaredProduct(const double* a, const double* b, int count);
 
 // Sum of the squares of the differences.
 double squaredDistance(const float* a, const float* b, int count);

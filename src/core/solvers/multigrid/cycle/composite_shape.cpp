@@ -91,14 +91,14 @@ void CompositeShape<Real>::placeAt(const Vector& places) {
 template <typename Real>
 void CompositeShape<Real>::restore(const Vector& places) {
   placeAt(places);
-  finest().findForces();
+  finest().findForces(Find::kForcesAndSprings);
 }
 
 template <typename Real>
 void CompositeShape<Real>::move(const Vector& step, double alpha) {
   finest().moveBy(step.nodes, step.groups, alpha);
   levels_->uncovered().moveBy(step.uncovered, alpha);
-  finest().findForces();
+  finest().findForces(Find::kForcesAndSprings);
 }
 
 template <typename Real>

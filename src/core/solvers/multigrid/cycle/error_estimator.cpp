@@ -58,7 +58,8 @@ void ErrorEstimator<Real>::update(const SolveContext& solve, const FasCgCycle<Re
 template <typename Real>
 void ErrorEstimator<Real>::learn(const SolveContext& solve, const FasCgCycle<Real>& last,
                                  double trend_before) {
-  const auto fell = [this](double from) { return trend_ < tuning::kMostLeft * from; };
+  const double most_left = solve.in_contact ? tuning::kMostLeftInContact : tuning::kMostLeft;
+  const auto fell = [&](double from) { return trend_ < most_left * from; };
   const int cycles = solve.cycles;
   double shown = 0.0;
   if (fell(trend_before)) shown = shape_.distanceFrom(last.start()) / (trend_before - trend_);

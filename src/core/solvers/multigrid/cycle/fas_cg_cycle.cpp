@@ -122,10 +122,14 @@ bool FasCgCycle<Real>::stepByLineSearch(double slope) {
 
 // Where a cycle led nowhere. Steps of the smoother alone may lead astray, too, as where a light
 // corner of a wall is about to snap through: they are gone as far as the forces work along them,
-// and one step, D^-1 f, goes along the forces in any case.
+// and one step, D^-1 f, goes along the forces in any case. Nodes that are about to touch do not
+// jump into what they touch.
 template <typename Real>
 void FasCgCycle<Real>::stepPlainly() {
   fresh_ = true;
+  double& soon_touches = shape_.finest().constrained.soon_touches;
+  soon_touches = tuning::kSoonTouches;
+  bool went = false;
   for (const int steps : {tuning::kPlainSteps, 1}) {
     shape_.restore(start_);
     shape_.keepForces(force_);
@@ -133,9 +137,11 @@ void FasCgCycle<Real>::stepPlainly() {
     shape_.keepPlaces(direction_);
     direction_.add(start_, -1.0);
     const double slope = workOf(force_, direction_);
-    if (slope > 0.0 && stepByLineSearch(slope)) return;
+    went = slope > 0.0 && stepByLineSearch(slope);
+    if (went) break;
   }
-  smoothFrom(start_);
+  soon_touches = 0.0;
+  if (!went) smoothFrom(start_);
 }
 
 template <typename Real>

@@ -28,7 +28,7 @@ void throwOffRest(const DofConstraints& hold, double spacing, std::vector<Vec3>&
 
 // The length left is that of the displacement: what share of it do cycles see? Not at once: slow
 // motions, the last to go, are seen least. Where cycles that are not searched along go astray, as
-// of a bar two cells across, there is no telling.
+// of a bar two cells across, or to and fro about rest, there is no telling.
 template <typename Real>
 double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
                         const ElasticModel& model, const LatticeState& state, int smoother_steps) {
@@ -53,7 +53,8 @@ double leastErrorFactor(CompositeShape<Real>& shape, const Lattice& lattice,
   for (int cycle = 0; cycle < cycles; ++cycle) {
     levels.correction().find();
     const double left = shape.displacementNorm(), seen = shape.correctionNorm();
-    if (!(left <= tuning::kAstray * thrown)) {
+    const bool goes_to_and_fro = cycle + 1 == cycles && seen > tuning::kToAndFro * left;
+    if (!(left <= tuning::kAstray * thrown) || goes_to_and_fro) {
       least = tuning::kMostAtRest;
       break;
     }

@@ -101,6 +101,10 @@ constexpr double kFalling = 0.5;
 // |x| after cycles over |x| before: above it, they teach nothing of the factor, as the difference
 // is too small to divide by (chosen). Up: more samples, and wilder ones.
 constexpr double kMostLeft = 0.9;
+// Likewise in contact, where |x| swings as springs begin and end: at 0.9 one swing may show a factor
+// of 20, which the next ten solves then reckon with. 0.5 takes a tenth less time, but ends with up
+// to 0.3 % more of a force missing. Up: likewise.
+constexpr double kMostLeftInContact = 0.7;
 // Greatest factor that the first kLong cycles of a solve may show, and later ones, in which what
 // hangs by little moves far (chosen). Up: a chance sample costs more cycles.
 constexpr double kMostSoon = 32.0;
@@ -136,6 +140,9 @@ constexpr double kMeasuredAgain = 0.01;
 // to 3.5 after 1 to 200 cuts at 4,851 nodes). Up: a solve with little time leaves that to a later
 // one more often; down: it ends later.
 constexpr double kMeasuringOverLevels = 3.0;
+// What the last cycle would move over what is left: beyond, cycles go to and fro (2: for ever, a
+// bar three cells across). Up: that is taken for convergence.
+constexpr double kToAndFro = 1.5;
 // Greatest factor that it may show: nu 0.49 has it. Up: more cycles there.
 constexpr double kMostAtRest = 8.0;
 

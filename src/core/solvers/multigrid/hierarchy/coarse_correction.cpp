@@ -68,7 +68,7 @@ void CoarseCorrection<Real>::solve(std::size_t index) {
   level.smooth(tuning::kStepsBefore);
   level.findForces(Find::kForces);
   correct(index);
-  level.findForces();
+  level.findForces(Find::kForces);  // stiffness: of the shape where it started
   level.smooth(tuning::kStepsAfter);
 }
 

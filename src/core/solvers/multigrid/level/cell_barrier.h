@@ -70,9 +70,9 @@ struct CellBarrier {
   }
 
   // Adds the barrier's gradient in the modes to `push` and, unless null, what it adds to the bound
-  // of each corner's stiffness; corner by corner where any cell is squeezed there, as few are
-  // anywhere.
-  ROBOT_TISSUE_INLINE void add(L (&push)[kCorners][3], L* corner_stiffness) const {
+  // of each corner's stiffness (SymmetricField); corner by corner where any cell is squeezed there,
+  // as few are anywhere.
+  ROBOT_TISSUE_INLINE void add(L (&push)[kCorners][3], L (*corner_stiffness)[6]) const {
     constexpr Real kSqueezed = Real(elastic_law::kSqueezed);
     Edges edges;
     findEdges(edges);
@@ -128,11 +128,11 @@ struct CellBarrier {
   // A corner's determinant J hangs on four nodes, itself and the other ends of its edges. With
   // c_i = dJ/dx_i a motion u of these has the barrier's second derivative
   //   E'' (sum c_i . u_i)^2 + E' sum of u_i . (d2J/dx_i dx_j) u_j,
-  // at most 4 E'' |c_i|^2 + |E'| (the row's sum of the lengths of edges, 2 (|e_b| + |e_c|)) of each
-  // node, with |e| <= (1 + |e|^2) / 2. The stiffness of a node is to bound that but for the factor
-  // by which motions are stiffer than their nodes alone; and what is squeezed on meanwhile.
+  // at most 4 E'' c_i c_i^T + |E'| (the row's sum of the lengths of edges, 2 (|e_b| + |e_c|)) of
+  // each node, with |e| <= (1 + |e|^2) / 2. The stiffness of a node is to bound that but for the
+  // factor by which motions are stiffer than their nodes alone; and what is squeezed on meanwhile.
   ROBOT_TISSUE_INLINE void stiffenCorner(int index, const Corner& corner, const L& depth,
-                                         const L (&across)[3][3], L* corner_stiffness) const {
+                                         const L (&across)[3][3], L (*corner_stiffness)[6]) const {
     constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
     const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
     const L curvature = height() * depth * (Real(4 * 6) * kPerDepth * share);
@@ -144,10 +144,19 @@ struct CellBarrier {
       own[axis] = side(index, 0) * across[0][axis] + side(index, 1) * across[1][axis] +
                   side(index, 2) * across[2][axis];
     }
-    corner_stiffness[index] += curvature * squared(own) + slope * (Real(3) + all_edges);
+    addSquare(curvature, own, slope * (Real(3) + all_edges), corner_stiffness[index]);
     for (int along = 0; along < 3; ++along) {
-      corner_stiffness[index ^ 1 << along] +=
-          curvature * squared(across[along]) + slope * (Real(2) + all_edges - edges[along]);
+      addSquare(curvature, across[along], slope * (Real(2) + all_edges - edges[along]),
+                corner_stiffness[index ^ 1 << along]);
+    }
+  }
+
+  // Adds curvature c c^T + diagonal 1.
+  static ROBOT_TISSUE_INLINE void addSquare(const L& curvature, const L (&c)[3], const L& diagonal,
+                                            L (&stiffness)[6]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      stiffness[axis] += curvature * c[axis] * c[axis] + diagonal;
+      stiffness[3 + axis] += curvature * c[(axis + 1) % 3] * c[(axis + 2) % 3];
     }
   }
 };

@@ -19,13 +19,13 @@ struct Block {
 
   L mode[kCorners][3];
   L shear, bulk;
-  L exponent;           // of the law `fung`, where it is solved for
-  L cofactor[3][3];     // of F, less 1, by axes
-  L invariant, volume;  // I1 - 3, J - 1
-  L slight;             // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
-  L a, pressure;        // a(J); a(J) and the energy's derivative by J, 0 at rest
-  L stiffness;          // of each corner, and what the barrier adds to it where one is squeezed
-  L corner_stiffness[kCorners];
+  L exponent;              // of the law `fung`, where it is solved for
+  L cofactor[3][3];        // of F, less 1, by axes
+  L invariant, volume;     // I1 - 3, J - 1
+  L slight;                // half a bound of |G - 1|^2 over the corners' edges G (see `solve`)
+  L a, pressure;           // a(J); a(J) and the energy's derivative by J, 0 at rest
+  L of_volume, of_strain;  // of the stiffness of a corner (see `stiffnessOf`)
+  L corner_stiffness[kCorners][6];  // what the barrier adds to it where one is squeezed
   bool is_squeezed = false;
   Real per_greatest{};  // CellGrid::per_greatest
   L parts{};            // bulk where the volumes of a cell's parts are held
@@ -99,9 +99,8 @@ struct Block {
     const L flat = a + Real(0.5) * (slope + beyond * curvature) * (invariant + Real(3.0));
     pressure = (beyond < Real(0.0) ? flat : near_rest) + bulk * volume;
     if constexpr (kWithStiffness) {
-      const L steepest = greater(greater(square(0), square(1)), square(2));
-      stiffness = a * Real(1.0 / 3.0) + (Real(0.5) * curvature * (invariant + Real(3.0)) + bulk) *
-                                            steepest * Real(1.0 / 16.0);
+      of_volume = Real(0.5) * curvature * (invariant + Real(3.0)) + bulk;
+      of_strain = L{};
     }
   }
 
@@ -132,10 +131,8 @@ struct Block {
     const L press = bulk * volume;
     if constexpr (kWithStiffness) {
       const L curved = x > Real(0.0) ? exponent * growth : L{};
-      const L steepest =
-          bulk * Real(1.0 / 16.0) * greater(greater(square(0), square(1)), square(2));
-      stiffness =
-          slope * (stiffness - steepest) + steepest +
+      of_volume = slope * (of_volume - bulk) + bulk;
+      of_strain =
           shear * curved * Real(1.0 / 8.0) * slopeSquared(w, lean_slope + beyond * curvature);
     }
     a *= slope;
@@ -244,8 +241,35 @@ struct Block {
     return anyAbove0(squared > most ? L{} : shear);
   }
 
-  ROBOT_TISSUE_INLINE L stiffnessOf(int corner) const {
-    return is_squeezed ? stiffness + corner_stiffness[corner] : stiffness;
+  // A corner's stiffness is at most, but for one indefinite term,
+  //   (a / 3 + of_strain) 1 + of_volume s s^T,   s = J's slope there, the sum of the +- c_a / 4,
+  // c_a = cof F e_a; opposite corners have opposite ones.
+  ROBOT_TISSUE_INLINE void findStiffness(L (&stiffness)[kCorners / 2][6]) const {
+    const L share = all<V>(Real(0.25));
+    for (int corner = 0; corner < kCorners / 2; ++corner) {
+      const L shares[3] = {share * CellBarrier<V>::side(corner, 0),
+                           share * CellBarrier<V>::side(corner, 1),
+                           share * CellBarrier<V>::side(corner, 2)};
+      findStiffness(a * Real(1.0 / 3.0) + of_strain, shares, stiffness[corner]);
+    }
+  }
+
+  // diagonal 1 + of_volume s s^T, s the sum of these shares of the c_a.
+  ROBOT_TISSUE_INLINE void findStiffness(const L& diagonal, const L (&shares)[3],
+                                         L (&stiffness)[6]) const {
+    L s[3];
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      s[axis] = shares[axis];
+#pragma GCC unroll 3
+      for (int along = 0; along < 3; ++along) s[axis] += shares[along] * cofactor[along][axis];
+    }
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+      stiffness[axis] = diagonal + of_volume * s[axis] * s[axis];
+      stiffness[3 + axis] = of_volume * s[b] * s[c];
+    }
   }
 
   // From the corners' displacements to the energy's gradients in them.
@@ -266,7 +290,9 @@ struct Block {
       for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
       if (is_squeezed) {
         if constexpr (kWithStiffness) {
-          for (L& corner : corner_stiffness) corner = L{};
+          for (auto& corner : corner_stiffness) {
+            for (L& number : corner) number = L{};
+          }
         }
         CellBarrier<V>{mode, shear, per_greatest}.add(push,
                                                       kWithStiffness ? corner_stiffness : nullptr);

@@ -23,6 +23,16 @@ ROBOT_TISSUE_INLINE typename V::Lanes onesOf(unsigned bits) {
   return __builtin_convertvector(lanes, typename V::Lanes);
 }
 
+// `stiffness`: of half of the corners, without what the barrier adds.
+template <typename V>
+ROBOT_TISSUE_INLINE typename V::Lanes stiffnessAt(
+    const Block<V>& block, const typename V::Lanes (&stiffness)[kCorners / 2][kSymmetric],
+    int corner, std::size_t part) {
+  const typename V::Lanes& here =
+      stiffness[corner < kCorners / 2 ? corner : kCorners - 1 - corner][part];
+  return block.is_squeezed ? here + block.corner_stiffness[corner][part] : here;
+}
+
 // A node's sum takes its cells in ascending order, however long the vectors are: corners go from
 // the highest down.
 template <typename V, bool kWithStiffness, bool kStiffens>
@@ -49,6 +59,8 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
   block.has_parts = standing != 0;
   if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
   block.template solve<kWithStiffness, kStiffens>();
+  typename V::Lanes stiffness[kCorners / 2][kSymmetric];
+  if constexpr (kWithStiffness) block.findStiffness(stiffness);
   for (int corner = kCorners - 2; corner >= 0; corner -= 2) {
     const int sum = first - grid.origin + (corner >> 1 & 1) * grid.row;
     const bool low = corner < kCorners / 2;
@@ -57,8 +69,11 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
                       (low ? grid.lower[axis] : grid.upper[axis]) + sum);
     }
     if constexpr (kWithStiffness) {
-      subtractBoth<V>(-block.stiffnessOf(corner), -block.stiffnessOf(corner + 1),
-                      (low ? grid.lower_stiffness : grid.upper_stiffness) + sum);
+      const auto& to = low ? grid.lower_stiffness : grid.upper_stiffness;
+      for (std::size_t part = 0; part < kSymmetric; ++part) {
+        subtractBoth<V>(-stiffnessAt<V>(block, stiffness, corner, part),
+                        -stiffnessAt<V>(block, stiffness, corner + 1, part), to[part] + sum);
+      }
     }
   }
 }
@@ -68,7 +83,7 @@ ROBOT_TISSUE_INLINE void addBlocksOf(const CellGrid<typename V::Real>& grid,
                                      const CellBlock* blocks, int count) {
   for (int block = 0; block < count; ++block) {
     for (int lane = 0; lane < kLanes; lane += V::kSize) {
-      if (grid.lower_stiffness != nullptr) {
+      if (grid.findsStiffness()) {
         addBlock<V, true, kStiffens>(grid, blocks[block], lane);
       } else {
         addBlock<V, false, kStiffens>(grid, blocks[block], lane);
@@ -111,14 +126,16 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   } else {
     block.template solve<true, true>();
   }
+  typename V::Lanes stiffness[kCorners / 2][kSymmetric];
+  block.findStiffness(stiffness);
   for (int cell = 0; cell < count; ++cell) {
     for (int corner = 0; corner < kCorners; ++corner) {
       const int sum = cells[cell].sums[at(corner)];
       for (int axis = 0; axis < 3; ++axis) {
         grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
       }
-      if (grid.lower_stiffness != nullptr) {
-        grid.lower_stiffness[sum] += block.stiffnessOf(corner)[cell];
+      for (std::size_t part = 0; part < kSymmetric && grid.findsStiffness(); ++part) {
+        grid.lower_stiffness[part][sum] += stiffnessAt<V>(block, stiffness, corner, part)[cell];
       }
     }
   }
@@ -157,8 +174,8 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
-  L stiffness[kCorners];
-  L* const asked = grid.lower_stiffness != nullptr ? stiffness : nullptr;
+  L stiffness[kCorners][kSymmetric];
+  L(*const asked)[kSymmetric] = grid.findsStiffness() ? stiffness : nullptr;
   if (grid.stiffening == nullptr) {
     block.template solveFill<false>(fill, asked);
   } else {
@@ -170,7 +187,9 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
       for (int axis = 0; axis < 3; ++axis) {
         grid.lower[at(axis)][sum] -= block.mode[corner][axis][cell];
       }
-      if (grid.lower_stiffness != nullptr) grid.lower_stiffness[sum] += stiffness[corner][cell];
+      for (std::size_t part = 0; part < kSymmetric && grid.findsStiffness(); ++part) {
+        grid.lower_stiffness[part][sum] += stiffness[corner][part][cell];
+      }
     }
   }
 }

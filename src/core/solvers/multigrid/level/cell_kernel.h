@@ -17,6 +17,7 @@
 
 #include "robot_tissue/core/cells.h"
 #include "simd/lanes.h"
+#include "simd/symmetric_kernel.h"
 
 namespace robot_tissue {
 
@@ -46,8 +47,8 @@ struct CellGrid {
   int origin;
   std::array<Real*, 3> lower, upper;
   // Bounds of the nodes' stiffness against moving alone (E0 h), likewise; may be null.
-  Real* lower_stiffness;
-  Real* upper_stiffness;
+  SymmetricPointers<Real> lower_stiffness, upper_stiffness;
+  bool findsStiffness() const { return lower_stiffness[0] != nullptr; }
 };
 
 // Adds the forces of the blocks' cells.

@@ -36,7 +36,8 @@ CellOperator<Real>::CellOperator(const LevelGrid& grid, int beside,
                                  const std::vector<LevelCell>& cells, const LevelPart& part)
     : grid_(grid), count_((grid.beside + beside + kLanes - 1) / kLanes * kLanes), part_(part) {
   for (auto& values : whole) values.assign(at(count_), Real(0));
-  for (auto* values : {&stiffness, &shear_, &bulk_}) values->assign(at(count_), Real(0));
+  for (auto& values : stiffness) values.assign(at(count_), Real(0));
+  for (auto* values : {&shear_, &bulk_}) values->assign(at(count_), Real(0));
   makeSums(1);
   beside_places_.assign(at(count_ - grid.beside), {});
   place(cells);
@@ -160,7 +161,8 @@ void CellOperator<Real>::takeFree(const Loads& loads) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     takeWhereFree(whole[axis].data(), loads.free.data(), loads.force[axis].data(), count_);
   }
-  invertWhereFree(stiffness.data(), loads.free.data(), loads.inverse.data(), count_);
+  invertWhereFree(pointersTo(std::as_const(stiffness)), loads.free.data(),
+                  pointersTo(loads.inverse), count_);
 }
 
 template <typename Real>
@@ -224,7 +226,7 @@ template <typename Real>
 void CellOperator<Real>::addPlane(const Loads& loads, Find what,
                                   const std::vector<CellBlock>& blocks, int plane,
                                   Sums& sums) const {
-  const std::size_t sums_asked = what == Find::kForcesAndStiffness ? 4 : 3;
+  const std::size_t sums_asked = what == Find::kForcesAndStiffness ? kAllSums : kForcesAlone;
   for (auto* both : {&sums.lower, &sums.upper}) {
     for (std::size_t i = 0; i < sums_asked; ++i) {
       std::fill((*both)[i].begin(), (*both)[i].end(), Real(0));
@@ -236,9 +238,9 @@ void CellOperator<Real>::addPlane(const Loads& loads, Find what,
     cells.lower[axis] = sums.lower[axis].data();
     cells.upper[axis] = sums.upper[axis].data();
   }
-  if (what == Find::kForcesAndStiffness) {
-    cells.lower_stiffness = sums.lower[3].data();
-    cells.upper_stiffness = sums.upper[3].data();
+  for (std::size_t part = kForcesAlone; part < sums_asked; ++part) {
+    cells.lower_stiffness[part - kForcesAlone] = sums.lower[part].data();
+    cells.upper_stiffness[part - kForcesAlone] = sums.upper[part].data();
   }
   addBlocks(cells, blocks.data(), static_cast<int>(blocks.size()));
 }
@@ -252,10 +254,16 @@ void CellOperator<Real>::finishPlane(const Loads& loads, Find what, int plane, c
               whole[axis].data() + first, loads.force[axis].data() + first, grid_.plane);
   }
   if (what == Find::kForcesAndStiffness) {
-    invertStiffness(sums.below[3].data(), sums.lower[3].data(), loads.free.data() + first,
-                    stiffness.data() + first, loads.inverse.data() + first, grid_.plane);
+    for (std::size_t part = 0; part < kSymmetric; ++part) {
+      sumBoth(sums.below[kForcesAlone + part].data(), sums.lower[kForcesAlone + part].data(),
+              stiffness[part].data() + first, grid_.plane);
+    }
   }
   if (!inertia.empty()) addInertia(loads, what, first, grid_.plane);
+  if (what == Find::kForcesAndStiffness) {
+    invertWhereFree(pointersTo(std::as_const(stiffness), first), loads.free.data() + first,
+                    pointersTo(loads.inverse, first), grid_.plane);
+  }
 }
 
 // To sums that are there.
@@ -266,11 +274,9 @@ void CellOperator<Real>::addInertia(const Loads& loads, Find what, int first, in
              loads.free.data() + first, whole[axis].data() + first,
              loads.force[axis].data() + first, count);
   }
-  if (what == Find::kForces) return;
-  addShare(inertia.data() + first, Real(1), stiffness.data() + first, count);
-  for (int node = first; node < first + count; ++node) {
-    const bool is_free = loads.free[at(node)] != Real(0);
-    loads.inverse[at(node)] = is_free ? Real(1) / stiffness[at(node)] : Real(0);
+  if (what != Find::kForcesAndStiffness) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addShare(inertia.data() + first, Real(1), stiffness[axis].data() + first, count);
   }
 }
 
@@ -281,7 +287,9 @@ void CellOperator<Real>::finishBeside(const Loads& loads, Find what) {
   for (auto& sums : loose_sums_) std::fill(sums.begin(), sums.end(), Real(0));
   CellGrid<Real> cells = gridOf(loads);
   for (std::size_t axis = 0; axis < 3; ++axis) cells.lower[axis] = loose_sums_[axis].data();
-  if (what == Find::kForcesAndStiffness) cells.lower_stiffness = loose_sums_[3].data();
+  for (std::size_t part = 0; part < kSymmetric && what == Find::kForcesAndStiffness; ++part) {
+    cells.lower_stiffness[part] = loose_sums_[kForcesAlone + part].data();
+  }
   addLoose(cells, loose_.data(), static_cast<int>(loose_.size()));
   addFilled(cells, filled_.data(), static_cast<int>(filled_.size()));
   for (std::size_t i = 0; i < loose_nodes_.size(); ++i) {
@@ -295,10 +303,15 @@ void CellOperator<Real>::finishBeside(const Loads& loads, Find what) {
       whole[axis][node] += loose_sums_[axis][i];
       loads.force[axis][node] = is_free ? whole[axis][node] : Real(0);
     }
-    if (what == Find::kForces) continue;
-    if (is_beside) stiffness[node] = inertia.empty() ? Real(0) : inertia[node];
-    stiffness[node] += loose_sums_[3][i];
-    loads.inverse[node] = is_free ? Real(1) / stiffness[node] : Real(0);
+    if (what != Find::kForcesAndStiffness) continue;
+    for (std::size_t part = 0; part < kSymmetric; ++part) {
+      Real& here = stiffness[part][node];
+      if (is_beside) here = part < 3 && !inertia.empty() ? inertia[node] : Real(0);
+      here += loose_sums_[kForcesAlone + part][i];
+    }
+    const int first = loose_nodes_[i];
+    invertWhereFree(pointersTo(std::as_const(stiffness), first), loads.free.data() + first,
+                    pointersTo(loads.inverse, first), 1);
   }
 }
 

@@ -19,9 +19,10 @@ namespace robot_tissue {
 template <typename Real>
 using Field = std::array<Numbers<Real>, 3>;
 
-// What is found at a shape: forces alone, or what the smoother needs for a step, too (bounds of the
-// nodes' stiffness, and their inverses where the nodes are free).
-enum class Find { kForces, kForcesAndStiffness };
+// What is found at a shape: forces alone; how stiff springs are there, too; or all that the
+// smoother needs for a step (bounds of the nodes' stiffness, and their inverses where the nodes are
+// free).
+enum class Find { kForces, kForcesAndSprings, kForcesAndStiffness };
 
 // Which part of a level is solved for (doc/architecture.md, "Words": composite grid).
 struct LevelPart {
@@ -45,13 +46,13 @@ class CellOperator {
   const LevelPart& part() const { return part_; }
 
   // On the nodes: `whole` = forces of cells + right_hand_side, `force` = free * whole (free: 0 or
-  // 1), `stiffness`, and `inverse` = free / stiffness.
+  // 1), `stiffness`, and `inverse` = that of the stiffness where nodes are free, else 0.
   struct Loads {
     const Field<Real>& displacement;
     const Field<Real>& right_hand_side;
     const Numbers<Real>& free;
     Field<Real>& force;
-    Numbers<Real>& inverse;
+    SymmetricField<Real>& inverse;
   };
   void findForces(const Loads& loads, Find what);
   // What findForces found, with stiffness, of other nodes that are free.
@@ -61,17 +62,20 @@ class CellOperator {
   // In these threads from now on, with the same results.
   void share(Workers& workers);
   Field<Real> whole;
-  Numbers<Real> stiffness;
+  SymmetricField<Real> stiffness;
   // 1 over the greatest stiffness of any motion at rest, in the nodes' own; 1 until that is known.
   Real per_greatest = Real(1);
   // Of the nodes' inertia in a time step, against displacement (E0 h); empty: none.
   Numbers<Real> inertia;
 
  private:
-  // Forces (0 to 2) and stiffness (3) on planes of nodes: of a plane of cells on its lower and
-  // upper nodes, and `below`, of the plane of cells before on the same lower ones.
+  // Forces (0 to 2) and stiffness (from 3 on), or forces alone, on planes of nodes: of a plane of
+  // cells on its lower and upper nodes, and `below`, of the plane of cells before on the same lower
+  // ones.
+  static constexpr std::size_t kForcesAlone = 3, kAllSums = kForcesAlone + kSymmetric;
+  using SumsOn = std::array<Numbers<Real>, kAllSums>;
   struct Sums {
-    std::array<Numbers<Real>, 4> below, lower, upper;
+    SumsOn below, lower, upper;
   };
 
   using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
@@ -96,8 +100,8 @@ class CellOperator {
   Numbers<Real> stiffening_;  // empty: 0 in all
   std::vector<LooseCell<Real>> loose_;
   std::vector<FilledCell<Real>> filled_;
-  std::vector<int> loose_nodes_;             // of loose cells and filled ones
-  std::array<Numbers<Real>, 4> loose_sums_;  // on them: forces, stiffness
+  std::vector<int> loose_nodes_;  // of loose cells and filled ones
+  SumsOn loose_sums_;             // on them
   std::vector<std::array<int, 3>> beside_places_;
   LevelPart part_;
   Blocks blocks_;

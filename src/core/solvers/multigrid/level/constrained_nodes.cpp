@@ -149,24 +149,25 @@ template <typename Real>
 void ConstrainedNodes<Real>::addSpring(LevelSpring& spring, Find what) {
   const Vec3 mean = meanOf(spring);
   Vec3 on_nodes = Vec3::Zero();
-  bool joins = false;
   if (spring.contact == nullptr) {
     on_nodes = spring.stiffness * (spring.anchor - mean);
   } else {
     const Vec3 point = spring.contact->rest + spacing_ * mean;
     on_nodes = forceAt(*spring.contact, point) / (modulus_ * spacing_ * spacing_);
     if (!spring.contact->is_thread) contact_force_ += on_nodes;
-    if (what == Find::kForcesAndStiffness) {
+    if (what != Find::kForces) {
       spring.stiffness = stiffnessAt(*spring.contact, point) / (modulus_ * spacing_);
-      joins = isJoining(spring, point);
+      spring.joins = isJoining(spring, point);
+    } else {
+      has_new_push_ = has_new_push_ || (!spring.joins && isJoining(spring, point));
     }
   }
   for (const LevelSpring::Carrier& carrier : spring.carriers) {
     forces_[at(carrier.constrained)] += carrier.weight * on_nodes;
   }
-  if (what == Find::kForcesAndStiffness) {
-    if (joins) join(spring, spring.contact->rest + spacing_ * mean);
-    addStiffness(spring, joins ? stiffnessAcross(spring) : spring.stiffness);
+  if (what != Find::kForces) {
+    if (spring.joins) join(spring, spring.contact->rest + spacing_ * mean);
+    addStiffness(spring, spring.joins ? stiffnessAcross(spring) : spring.stiffness);
   }
   if (spring.group < 0) return;
   const std::size_t group = at(spring.group);
@@ -245,12 +246,12 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
     ConstrainedNode& constrained = all_[i];
     forces_[i] = vectorAt(cells.whole, constrained.node);
     if (what == Find::kForces) continue;
-    const double stiffness = static_cast<double>(cells.stiffness[at(constrained.node)]);
-    constrained.stiffness = stiffness * Eigen::Matrix3d::Identity();
+    constrained.stiffness = matrixAt(cells.stiffness, constrained.node);
   }
   force = right_hand_side;
   contact_force_.setZero();
-  if (what == Find::kForcesAndStiffness) {
+  has_new_push_ = false;
+  if (what != Find::kForces) {
     for (const OwnStiffness& own : own_stiffness) {
       all_[at(own.constrained)].stiffness += own.stiffness;
     }
@@ -264,7 +265,7 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
       const std::size_t group = at(constrained.group);
       const Jacobian jacobian = jacobianAt(groups[group], constrained.arm);
       force[group] += jacobian.transpose() * forces_[i];
-      if (what == Find::kForcesAndStiffness)
+      if (what != Find::kForces)
         group_stiffness_[group] += jacobian.transpose() * constrained.stiffness * jacobian;
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -272,7 +273,7 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
       forces[at(axis)][at(constrained.node)] =
           is_held ? Real(0) : static_cast<Real>(forces_[i][axis]);
     }
-    if (what == Find::kForcesAndStiffness) invert(i);
+    if (what != Find::kForces) invert(i);
   }
   if (what == Find::kForces) return;
   invertGroups();

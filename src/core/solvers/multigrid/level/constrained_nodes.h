@@ -30,6 +30,7 @@ struct LevelSpring {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  // as it is now
   Vec3 anchor = Vec3::Zero();                           // mean displacement without a force
   const ContactSpring* contact = nullptr;               // whose law it has instead
+  bool joins = false;                                   // counts as pushing in the stiffness
 
   bool acts() const { return contact != nullptr || !stiffness.isZero(0.0); }
 };
@@ -53,6 +54,15 @@ template <typename Real>
 Vec3 vectorAt(const Field<Real>& field, int node) {
   return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
           static_cast<double>(field[2][at(node)])};
+}
+
+template <typename Real>
+Eigen::Matrix3d matrixAt(const SymmetricField<Real>& field, int node) {
+  const auto number = [&](std::size_t part) { return static_cast<double>(field[part][at(node)]); };
+  Eigen::Matrix3d matrix;
+  matrix << number(0), number(5), number(4), number(5), number(1), number(3), number(4), number(3),
+      number(2);
+  return matrix;
 }
 
 template <typename Real>
@@ -111,6 +121,8 @@ class ConstrainedNodes {
   bool isFree(int constrained, int axis) const {
     return (all_[at(constrained)].held >> axis & 1U) == 0;
   }
+  // A spring in contact pushes that did not when the stiffness was last found.
+  bool hasNewPush() const { return has_new_push_; }
   // Sum over the springs in contact, as last found.
   const Vec3& contactForce() const { return contact_force_; }
   // Where the nodes are from now on, until forces are found.
@@ -149,6 +161,7 @@ class ConstrainedNodes {
 
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
+  bool has_new_push_ = false;
   std::vector<ConstrainedNode> all_;             // by node, ascending
   std::vector<int> index_of_;                    // per node of the level: in all_, or none
   std::vector<int> acting_;                      // of the springs

@@ -26,7 +26,7 @@ struct FilledBlock : Block<V> {
   using Block<V>::pressure;
   using Block<V>::shear;
   using Block<V>::slight;
-  using Block<V>::stiffness;
+  using Block<V>::of_strain;
 
   static constexpr int pairMode(int left_out) { return 7 ^ 1 << left_out; }
 
@@ -110,9 +110,9 @@ struct FilledBlock : Block<V> {
   }
 
   // As `solve`, of cells that are filled in part. `of_corners`: bounds of the stiffness of
-  // each corner; null: not asked for.
+  // each corner (SymmetricField); null: not asked for.
   template <bool kStiffens>
-  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L* of_corners) {
+  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L (*of_corners)[6]) {
     this->transform();
     for (int s = 1; s < kCorners; ++s) {
       for (L& component : mode[s]) component *= Real(0.25);
@@ -147,13 +147,10 @@ struct FilledBlock : Block<V> {
     this->transform();
   }
 
-  // With `stiffness` of a full cell found: a / 3 + volume_part steepest / 16.
-  ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L* of_corners) const {
-    const L squares[3] = {this->square(0), this->square(1), this->square(2)};
-    const L steepest = greater(greater(squares[0], squares[1]), squares[2]);
-    const L of_volume = (stiffness - a * Real(1.0 / 3.0)) / steepest * Real(16);
+  // As `findStiffness`, where the shape functions' slopes are a quarter.
+  ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L (*of_corners)[6]) const {
     for (int corner = 0; corner < kCorners; ++corner) {
-      L shape = fill.twisting, widest{};
+      L shape = fill.twisting, widest{}, slopes[3];
       Real side[3];
       for (int axis = 0; axis < 3; ++axis) side[axis] = Real((corner >> axis & 1) != 0 ? 1 : -1);
       for (int a0 = 0; a0 < 3; ++a0) {
@@ -162,10 +159,11 @@ struct FilledBlock : Block<V> {
         const L strain =
             Real(0.5) * fill.places[a0] * beside + side[b] * side[c] * fill.pairs[a0] + Real(0.25);
         const L bend = side[a0] * fill.centroid[a0] + Real(0.5);
+        slopes[a0] = side[a0] * strain;
         shape += strain * strain + fill.bending[a0] * bend * bend;
-        widest = greater(widest, strain * strain * squares[a0]);
+        widest = greater(widest, strain * strain);
       }
-      of_corners[corner] = a * shape + of_volume * widest;
+      this->findStiffness(a * shape + Real(16) * of_strain * widest, slopes, of_corners[corner]);
     }
   }
 };

@@ -21,11 +21,14 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
   for (Field<Real>* field : {&displacement, &right_hand_side, &force, &last_step_}) {
     for (auto& values : *field) values.assign(at(count()), Real(0));
   }
-  for (auto* values : {&inverse_, &free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
+  for (auto& values : inverse_) values.assign(at(count()), Real(0));
+  for (auto* values : {&free_, &rest_stiffness_}) values->assign(at(count()), Real(0));
   held_.assign(at(count()), 0);
   cells_.findForces({displacement, right_hand_side, free_, force, inverse_},
                     Find::kForcesAndStiffness);
-  rest_stiffness_ = cells_.stiffness;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    addShare(cells_.stiffness[axis].data(), Real(1.0 / 3.0), rest_stiffness_.data(), count());
+  }
   bind();
   if (greatest_stiffness > 0.0) {
     step_ = 1.0 / greatest_stiffness;
@@ -61,12 +64,13 @@ void GridLevel<Real>::measureSteps() {
     }
     findForces(Find::kForces);
     double product = 0.0, length = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t node = 0; node < inverse_.size(); ++node) {
-        Real& moved = displacement[axis][node];
-        product -= static_cast<double>(moved * force[axis][node]);
-        length += static_cast<double>(rest_stiffness_[node] * moved * moved);
-        moved = -inverse_[node] * force[axis][node];
+    for (int node = 0; node < count(); ++node) {
+      const Vec3 moved = vectorAt(displacement, node), pulls = vectorAt(force, node);
+      product -= moved.dot(pulls);
+      length += moved.dot(matrixAt(cells_.stiffness, node) * moved);
+      const Vec3 next = -matrixAt(inverse_, node) * pulls;
+      for (int axis = 0; axis < 3; ++axis) {
+        displacement[at(axis)][at(node)] = static_cast<Real>(next[axis]);
       }
     }
     greatest = std::max(greatest, product / length);
@@ -172,6 +176,7 @@ void GridLevel<Real>::findForces(Find what) {
   cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, what);
   if (membrane_) membrane_->addForces(displacement, cells_.whole);
   constrained.findForces(cells_, displacement, what, force);
+  is_stiffness_known_ = what == Find::kForcesAndStiffness;
 }
 
 template <typename Real>
@@ -190,20 +195,25 @@ void GridLevel<Real>::smooth(int steps) {
   for (int k = 1; k <= steps; ++k) {
     const double keep = k == 1 ? 0.0 : (2.0 * k - 3.0) / (2.0 * k + 1.0);
     const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      stepAlong(inverse_.data(), force[axis].data(), static_cast<Real>(keep),
-                static_cast<Real>(share), static_cast<Real>(tuning::kLongestStep),
-                last_step_[axis].data(), displacement[axis].data(), count());
-    }
+    const StepAlong<Real> step = {static_cast<Real>(keep), static_cast<Real>(share),
+                                  static_cast<Real>(tuning::kLongestStep)};
+    stepAlong(pointersTo(std::as_const(inverse_)), pointersTo(std::as_const(force)), step,
+              pointersTo(last_step_), pointersTo(displacement), count());
     constrained.step(keep, share, tuning::kLongestStep, displacement);
-    if (k < steps) findForces(Find::kForces);
+    if (k == steps) break;
+    findForces(Find::kForces);
+    // The stiffest springs of all: without them in D the next step would throw it far off.
+    if (constrained.hasNewPush()) {
+      constrained.findForces(cells_, displacement, Find::kForcesAndSprings, force);
+    }
   }
 }
 
 template <typename Real>
 void GridLevel<Real>::smoothAndFindForces(int steps) {
+  if (!is_stiffness_known_) findForces();
   smooth(steps);
-  findForces();
+  findForces(Find::kForcesAndSprings);
 }
 
 template <typename Real>
@@ -295,39 +305,33 @@ void GridLevel<Real>::moveBy(const Field<Real>& motion, const std::vector<GroupV
   constrained.moveBy(motion, of_groups, alpha, displacement);
 }
 
-// By their weights, of the motion that motionOf(axis, node) is.
+// By their weights, of the motion that motionOf(node) is.
 template <typename Real>
 template <typename MotionOf>
 double GridLevel<Real>::weightedSquares(MotionOf motionOf) const {
   double squared = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t node = 0; node < weight_roots_.size(); ++node) {
-      const double motion = static_cast<double>(weight_roots_[node] * motionOf(axis, node));
-      squared += motion * motion;
-    }
+  for (std::size_t node = 0; node < weight_roots_.size(); ++node) {
+    const Vec3 motion = motionOf(static_cast<int>(node));
+    squared += (static_cast<double>(weight_roots_[node]) * motion).squaredNorm();
   }
   return squared;
 }
 
 template <typename Real>
 double GridLevel<Real>::squaredLocalMotion() const {
-  double squared = constrained.squaredLocalMotion(weight_roots_);
-  if (!weight_roots_.empty()) {
-    return squared + weightedSquares([this](std::size_t axis, std::size_t node) {
-             return inverse_[node] * force[axis][node];
-           });
+  const double squared = constrained.squaredLocalMotion(weight_roots_);
+  if (weight_roots_.empty()) {
+    return squared + squaredProduct(pointersTo(inverse_), pointersTo(force), count());
   }
-  for (const auto& values : force) {
-    squared += squaredProduct(inverse_.data(), values.data(), count());
-  }
-  return squared;
+  return squared + weightedSquares([this](int node) -> Vec3 {
+           return matrixAt(inverse_, node) * vectorAt(force, node);
+         });
 }
 
 template <typename Real>
 double GridLevel<Real>::squaredLength(const Field<Real>& motion) const {
   if (!weight_roots_.empty()) {
-    return weightedSquares(
-        [&motion](std::size_t axis, std::size_t node) { return motion[axis][node]; });
+    return weightedSquares([&motion](int node) { return vectorAt(motion, node); });
   }
   double squared = 0.0;
   for (const auto& values : motion) squared += dotOf(values.data(), values.data(), count());
@@ -337,8 +341,8 @@ double GridLevel<Real>::squaredLength(const Field<Real>& motion) const {
 template <typename Real>
 double GridLevel<Real>::squaredDistanceFrom(const Field<Real>& other) const {
   if (!weight_roots_.empty()) {
-    return weightedSquares([this, &other](std::size_t axis, std::size_t node) {
-      return displacement[axis][node] - other[axis][node];
+    return weightedSquares([this, &other](int node) -> Vec3 {
+      return vectorAt(displacement, node) - vectorAt(other, node);
     });
   }
   double squared = 0.0;

@@ -118,17 +118,18 @@ class GridLevel {
   CellOperator<Real> cells_;
   std::shared_ptr<LevelMembrane<Real>> membrane_;  // null: no membranes
   std::vector<std::uint8_t> held_;
-  Numbers<Real> rest_stiffness_;
+  Numbers<Real> rest_stiffness_;  // mean over the axes
   Numbers<Real> weight_roots_;
   double step_ = 0.5;       // one over greatestStiffness()
   Field<Real> last_step_;   // of the smoother
   Field<Real> of_covered_;  // forces; empty where the covered part is the whole
   std::vector<int> interface_;
   std::vector<int> partly_held_;
-  Numbers<Real> not_held_;     // 1 where a node may move, else 0
-  bool are_holds_new_ = true;  // interface_, partly_held_ and not_held_ are of others
-  Numbers<Real> free_;         // 1 where a node may move and is none of `constrained`, else 0
-  Numbers<Real> inverse_;      // of the stiffness of such nodes, else 0
+  Numbers<Real> not_held_;           // 1 where a node may move, else 0
+  bool are_holds_new_ = true;        // interface_, partly_held_ and not_held_ are of others
+  Numbers<Real> free_;               // 1 where a node may move and is none of `constrained`, else 0
+  bool is_stiffness_known_ = false;  // at this shape
+  SymmetricField<Real> inverse_;     // of the stiffness of such nodes, else 0
 };
 
 extern template class GridLevel<float>;
