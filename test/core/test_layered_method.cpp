@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "layered_fixtures.h"
+#include "mesh_fixtures.h"
 
 namespace robot_tissue::test_layered_method {
 namespace {
@@ -150,6 +151,26 @@ TEST(Layered, ReleasedAtOnceGoesBackToRest) {
   const SolveReport report = block.solve({});
   EXPECT_EQ(report.status, SolveStatus::kOk);
   for (const Vec3& moved : block.state.displacement) EXPECT_LT(moved.norm(), 1e-6 * 0.01);
+}
+
+// Nodes of cells that the ball only grazes are thrown over each other on the way down. Nothing that
+// is without material may keep them so.
+TEST(Layered, BallPressedByAThirdComesBack) {
+  TissueConfig config;
+  config.mesh = std::make_shared<const TriangleMesh>(sphereMesh(0.03, 4));
+  config.spacing = 0.005;
+  config.material.young_modulus = 1e4;
+  config.material.poisson_ratio = 0.45;
+  config.fixed = {{Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, -0.015)}};
+  LayeredBlock block(config);
+  LoadingPatch punch;
+  punch.nodes = block.lattice.nodesIn({Vec3(-0.012, -0.012, 0.024), Vec3(0.012, 0.012, 1.0)});
+  punch.displacement.assign(punch.nodes.size(), Vec3(0.0, 0.0, -0.02));
+  const SolveReport pressed = block.solve({punch});
+  EXPECT_EQ(pressed.status, SolveStatus::kOk);
+  ASSERT_GT(pressed.patches.at(0).force.norm(), 5.0);
+  EXPECT_EQ(block.solve({}).status, SolveStatus::kOk);
+  for (const Vec3& moved : block.state.displacement) EXPECT_LT(moved.norm(), 1e-6 * 0.005);
 }
 
 TEST(Layered, LateSolveIsCarriedOn) {

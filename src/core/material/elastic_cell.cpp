@@ -38,6 +38,20 @@ std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
   return weights;
 }
 
+// F is the derivative at a place (h from the cell's middle).
+std::array<Vec3, kCorners> weightsAt(const Vec3& place, double spacing) {
+  std::array<Vec3, kCorners> weights;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    Vec3 share;
+    for (int axis = 0; axis < 3; ++axis) share[axis] = 0.5 + signOf(corner, axis) * place[axis];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double beside = share[(axis + 1) % 3] * share[(axis + 2) % 3];
+      weights[at(corner)][axis] = signOf(corner, axis) * beside / spacing;
+    }
+  }
+  return weights;
+}
+
 }  // namespace
 
 ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
@@ -144,6 +158,7 @@ ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight,
 }
 
 void ElasticCell::findSqueezedCorners() {
+  if (fill_law_) return findSqueezedInFill();
   for (int corner = 0; corner < kCorners; ++corner) {
     Eigen::Matrix3d edges;
     for (int axis = 0; axis < 3; ++axis) {
@@ -153,6 +168,36 @@ void ElasticCell::findSqueezedCorners() {
     // Written so that a shape that is no number is not squeezed.
     if (!(edges.determinant() < elastic_law::kSqueezed)) continue;
     squeezed_[at(squeezed_count_++)] = determinantOf(cornerWeights(corner, spacing_));
+  }
+}
+
+// So near that no place of the cell is squeezed: derivatives there are means of the edges along
+// each axis, and with all columns of F - 1 below 0.33 / 3^(1/2) no singular value of F is below
+// kSqueezed^(1/3).
+bool ElasticCell::areEdgesNearRest() const {
+  constexpr double kNear = 0.33 * 0.33 / 3.0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1) != 0) continue;
+      Vec3 off = position_[at(corner | 1 << axis)] - position_[at(corner)];
+      off[axis] -= spacing_;
+      if (off.squaredNorm() > kNear * spacing_ * spacing_) return false;
+    }
+  }
+  return true;
+}
+
+// Where the material is: corners of the cell that hold none may go where they like. Were they held
+// apart, an edge that folded over could not find back, though next to nothing is bent by it.
+void ElasticCell::findSqueezedInFill() {
+  if (areEdgesNearRest()) return;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    Vec3 place;
+    for (int axis = 0; axis < 3; ++axis) {
+      place[axis] = (corner >> axis & 1) != 0 ? fill_law_->high[axis] : fill_law_->low[axis];
+    }
+    const Determinant there = determinantOf(weightsAt(place, spacing_));
+    if (there.value < elastic_law::kSqueezed) squeezed_[at(squeezed_count_++)] = there;
   }
 }
 

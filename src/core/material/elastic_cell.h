@@ -7,7 +7,8 @@
 //
 // I1 is the mean of tr F^T F over the trilinear cell, J the determinant of the mean deformation
 // gradient. The barrier rises where the edges at a corner span less than 0.3 of their rest volume.
-// Of a cell that is filled in part the means are those over the fill (material/fill_law.h).
+// Of a cell that is filled in part the means are those over the fill, and the barrier's corners
+// those of a box in it (material/fill_law.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -62,6 +63,8 @@ class ElasticCell {
   Determinant determinantOf(const Corners& weight) const;
   static Determinant determinantOf(const Corners& weight, const Eigen::Matrix3d& gradient);
   void findSqueezedCorners();
+  void findSqueezedInFill();
+  bool areEdgesNearRest() const;
   Curve neoHookean() const;
   void findLaw();
   Curve barrier(const Determinant& edges) const;  // Pa

@@ -15,6 +15,10 @@ FillLaw fillLaw(const CellFill& fill) {
   const double least = fill.spread[0], middle = fill.spread[1];
   law.bending = Vec3::Constant(std::max(2.0 * least, elastic_law::kLeastBending / 6.0));
   law.twisting = std::max(3.0 * least * middle, elastic_law::kLeastBending / 48.0);
+  // Of a box that reaches r to both sides the variance is r^2 / 3.
+  const Vec3 reach = (3.0 * fill.covariance().diagonal()).cwiseMax(0.0).cwiseSqrt();
+  law.low = (fill.centroid - reach).cwiseMax(-0.5);
+  law.high = (fill.centroid + reach).cwiseMin(0.5);
   return law;
 }
 

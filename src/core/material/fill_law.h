@@ -21,6 +21,9 @@ struct FillLaw {
   Vec3 places;            // where each F e_a is taken, CellFill::strain_places
   Vec3 bending;           // w_ab
   double twisting = 0.0;  // w_abc
+  // A box with the fill's centroid and variances, as far as it is in the cell (h): at its corners,
+  // so where the material is, the barrier rises. Of a full cell the cell.
+  Vec3 low, high;
 };
 
 // Of a full cell 1/6 and 1/48.

@@ -10,7 +10,25 @@
 
 namespace robot_tissue::vectors {
 
+// Where it rises: at the corners of the cell itself. Places are 1 at a cell's low end along an
+// axis, -1 at its high end.
 template <typename V>
+struct WholeBox {
+  using Real = typename V::Real;
+  static constexpr bool kIsWhole = true;
+  static constexpr Real side(int /*axis*/, int high) { return high != 0 ? Real(-1) : Real(1); }
+};
+
+// Of a cell that is filled in part: at those of a box in it (FillLaw::low, high).
+template <typename V>
+struct PartBox {
+  using L = typename V::Lanes;
+  static constexpr bool kIsWhole = false;
+  L sides[2][3];  // low, high
+  ROBOT_TISSUE_INLINE const L& side(int axis, int high) const { return sides[high][axis]; }
+};
+
+template <typename V, typename Box = WholeBox<V>>
 struct CellBarrier {
   using Real = typename V::Real;
   using L = typename V::Lanes;
@@ -18,10 +36,12 @@ struct CellBarrier {
   const L (&mode)[kCorners][3];  // m_s (cell_block.h)
   const L& shear;                // 0 where there is no cell
   Real per_greatest;             // CellGrid::per_greatest
+  Box box;
 
-  // Minus the cell's edges along each axis: of a corner at the high ends along the two axes that
-  // follow it in turn, b and c, the edge with index [high along b][high along c]. Along x it is
-  // m_x + y m_xy + z m_xz + y z m_xyz - e_x, with y and z -1 at the high end, else 1.
+  // Minus the derivatives of the place along each axis, which of a whole cell are its edges: of a
+  // corner at the high ends along the two axes that follow it in turn, b and c, the one with index
+  // [high along b][high along c]. Along x it is m_x + y m_xy + z m_xz + y z m_xyz - e_x, with y and
+  // z the corner's places.
   struct Edges {
     L along[3][2][2][3];
   };
@@ -29,17 +49,19 @@ struct CellBarrier {
   ROBOT_TISSUE_INLINE void findEdges(Edges& edges) const {
 #pragma GCC unroll 3
     for (int a0 = 0; a0 < 3; ++a0) {
-      const int b = 1 << (a0 + 1) % 3, c = 1 << (a0 + 2) % 3, own = 1 << a0;
+      const int along_b = (a0 + 1) % 3, along_c = (a0 + 2) % 3;
+      const int b = 1 << along_b, c = 1 << along_c, own = 1 << a0;
 #pragma GCC unroll 3
       for (int axis = 0; axis < 3; ++axis) {
         const L straight = mode[own][axis] - Real(axis == a0 ? 1.0 : 0.0);
-        const L low = straight + mode[own | b][axis], high = straight - mode[own | b][axis];
-        const L low_turn = mode[own | c][axis] + mode[7][axis];
-        const L high_turn = mode[own | c][axis] - mode[7][axis];
-        edges.along[a0][0][0][axis] = low + low_turn;
-        edges.along[a0][0][1][axis] = low - low_turn;
-        edges.along[a0][1][0][axis] = high + high_turn;
-        edges.along[a0][1][1][axis] = high - high_turn;
+#pragma GCC unroll 2
+        for (int high = 0; high < 2; ++high) {
+          const auto place = box.side(along_b, high);
+          const L bent = straight + place * mode[own | b][axis];
+          const L turn = mode[own | c][axis] + place * mode[7][axis];
+          edges.along[a0][high][0][axis] = bent + box.side(along_c, 0) * turn;
+          edges.along[a0][high][1][axis] = bent + box.side(along_c, 1) * turn;
+        }
       }
     }
   }
@@ -92,7 +114,11 @@ struct CellBarrier {
       const L depth = greater((kSqueezed - determinant) * (Real(1) / kSqueezed), L{});
       pushCorner(index, depth, across, push);
       if (corner_stiffness != nullptr) {
-        stiffenCorner(index, corner, depth, across, corner_stiffness);
+        if constexpr (Box::kIsWhole) {
+          stiffenCorner(index, corner, depth, across, corner_stiffness);
+        } else {
+          stiffenAll(index, corner, depth, across, corner_stiffness);
+        }
       }
     }
   }
@@ -104,13 +130,13 @@ struct CellBarrier {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
   }
 
-  static constexpr Real side(int corner, int axis) {
-    return (corner >> axis & 1) != 0 ? Real(-1) : Real(1);
+  ROBOT_TISSUE_INLINE auto side(int corner, int axis) const {
+    return box.side(axis, corner >> axis & 1);
   }
 
   ROBOT_TISSUE_INLINE void pushCorner(int corner, const L& depth, const L (&across)[3][3],
                                       L (&push)[kCorners][3]) const {
-    const Real x = side(corner, 0), y = side(corner, 1), z = side(corner, 2);
+    const auto x = side(corner, 0), y = side(corner, 1), z = side(corner, 2);
     const L slope = height() * depth * depth * Real(-3.0 * 0.25 / elastic_law::kSqueezed);
     for (int axis = 0; axis < 3; ++axis) {
       const L along_x = slope * across[0][axis], along_y = slope * across[1][axis],
@@ -157,6 +183,31 @@ struct CellBarrier {
     for (int axis = 0; axis < 3; ++axis) {
       stiffness[axis] += curvature * c[axis] * c[axis] + diagonal;
       stiffness[3 + axis] += curvature * c[(axis + 1) % 3] * c[(axis + 2) % 3];
+    }
+  }
+
+  // In a cell's inside the derivative along axis a hangs on all its nodes, on node i by w_ia, 2 in
+  // sum over the nodes: with A_a the determinant's slope by that derivative, and e_a the latter,
+  //   E'' 6 sum over a of w_ia |A_a|^2 + |E'| sum over a of w_ia (2 + |e_b|^2 + |e_c|^2)
+  // bounds what the second derivative has of node i, by Cauchy and Schwarz.
+  ROBOT_TISSUE_INLINE void stiffenAll(int index, const Corner& corner, const L& depth,
+                                      const L (&across)[3][3], L* corner_stiffness) const {
+    constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
+    const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
+    const L curvature = height() * depth * (Real(6 * 6) * kPerDepth * share);
+    const L slope = height() * depth * depth * (Real(3) * share);
+    const L edges[3] = {squared(corner.x), squared(corner.y), squared(corner.z)};
+    const L all_edges = edges[0] + edges[1] + edges[2];
+    for (int along = 0; along < 3; ++along) {
+      const int b = (along + 1) % 3, c = (along + 2) % 3;
+      const L whole =
+          curvature * squared(across[along]) + slope * (Real(2) + all_edges - edges[along]);
+      for (int node = 0; node < kCorners; ++node) {
+        const Real one = (node >> b & 1) != 0 ? Real(-0.5) : Real(0.5);
+        const Real other = (node >> c & 1) != 0 ? Real(-0.5) : Real(0.5);
+        const L weight = (Real(0.5) + one * side(index, b)) * (Real(0.5) + other * side(index, c));
+        corner_stiffness[node] += weight * whole;
+      }
     }
   }
 };

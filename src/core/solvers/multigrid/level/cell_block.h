@@ -294,8 +294,8 @@ struct Block {
             for (L& number : corner) number = L{};
           }
         }
-        CellBarrier<V>{mode, shear, per_greatest}.add(push,
-                                                      kWithStiffness ? corner_stiffness : nullptr);
+        CellBarrier<V>{mode, shear, per_greatest, {}}.add(
+            push, kWithStiffness ? corner_stiffness : nullptr);
       }
       if (has_parts) addParts(push);
     }

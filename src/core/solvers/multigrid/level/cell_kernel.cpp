@@ -144,13 +144,14 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
 template <typename V>
 ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
                                         const FilledCell<typename V::Real>* cells, int count) {
+  using Real = typename V::Real;
   using L = typename V::Lanes;
   FilledBlock<V> block;
   typename FilledBlock<V>::Fill fill;
   block.shear = block.bulk = block.exponent = L{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
-  for (auto* values :
-       {&fill.centroid, &fill.places, &fill.pairs, &fill.bending, &fill.between_parts}) {
+  for (auto* values : {&fill.centroid, &fill.places, &fill.pairs, &fill.bending,
+                       &fill.between_parts, &fill.box.sides[0], &fill.box.sides[1]}) {
     for (L& value : *values) value = L{};
   }
   fill.twisting = L{};
@@ -165,6 +166,8 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
       fill.pairs[axis][cell] = of.pairs[at(axis)];
       fill.bending[axis][cell] = of.bending[at(axis)];
       fill.between_parts[axis][cell] = of.between_parts[at(axis)];
+      fill.box.sides[0][axis][cell] = Real(-2) * of.low[at(axis)];
+      fill.box.sides[1][axis][cell] = Real(-2) * of.high[at(axis)];
       for (int corner = 0; corner < kCorners; ++corner) {
         block.mode[corner][axis][cell] = grid.displacement[at(axis)][of.nodes[at(corner)]];
       }

@@ -78,6 +78,7 @@ struct FilledCell : LooseCell<Real> {
   std::array<Real, 3> bending{};
   Real twisting = 0;
   std::array<Real, 3> between_parts{};  // of a coarse cell: variance of its parts' centroids
+  std::array<Real, 3> low{}, high{};    // the box at whose corners the barrier is
 };
 
 // Likewise.

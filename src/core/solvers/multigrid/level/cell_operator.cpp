@@ -26,6 +26,8 @@ FilledCell<Real> filledCell(const LooseCell<Real>& cell, const LevelFill& fill) 
   filled.bending = rounded<Real>(fill.law.bending);
   filled.twisting = static_cast<Real>(fill.law.twisting);
   filled.between_parts = rounded<Real>(fill.between_parts);
+  filled.low = rounded<Real>(fill.law.low);
+  filled.high = rounded<Real>(fill.law.high);
   return filled;
 }
 

@@ -16,6 +16,7 @@ struct FilledBlock : Block<V> {
   struct Fill {
     L centroid[3], places[3], pairs[3], bending[3], between_parts[3];
     L twisting;
+    PartBox<V> box;
   };
 
   using Block<V>::mode;
@@ -129,7 +130,7 @@ struct FilledBlock : Block<V> {
     if (squeezed) {
       std::memcpy(over_fill, mode, sizeof mode);
       shiftModes<-1>(fill);
-      CellBarrier<V>{mode, shear, this->per_greatest}.add(push, of_corners);
+      CellBarrier<V, PartBox<V>>{mode, shear, this->per_greatest, fill.box}.add(push, of_corners);
       std::memcpy(mode, over_fill, sizeof mode);
     }
     if (has_parts) {
