@@ -1,6 +1,8 @@
 #include "solvers/multigrid/cycle/force_balance.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "simd/field_kernel.h"
 #include "solvers/multigrid/cycle/tuning.h"
@@ -26,20 +28,44 @@ bool ForceBalance<Real>::isZero() const {
 
 template <typename Real>
 bool ForceBalance<Real>::isReached(const SolveContext& solve) const {
-  if (!solve.in_contact && !isCalm()) return false;
+  if (!solve.in_contact && !isCalm(solve)) return false;
   if (solve.cycles < tuning::kCyclesForBalance && !areContactsBalanced()) return false;
   return arePatchesBalanced();
 }
 
-// A tissue that hangs on little moves far: the error relative to its displacement is small while
-// forces are still unbalanced. So the greatest one on a node is compared with those that act.
+// Membranes may have a pressure inside.
 template <typename Real>
-bool ForceBalance<Real>::isCalm() const {
+bool ForceBalance<Real>::isLoaded(const SolveContext& solve) const {
+  const GridLevel<Real>& finest = shape_.finest();
+  const auto acts = [&finest](const auto& values) {
+    return greatestOf(values.data(), finest.count()) > 0.0;
+  };
+  const Field<Real>& weight = finest.right_hand_side;
+  return solve.in_time || !solve.shape.patches.empty() || finest.membrane() != nullptr ||
+         std::any_of(weight.begin(), weight.end(), acts);
+}
+
+// A tissue that hangs on little moves far: the error relative to its displacement is small while
+// forces are still unbalanced. So the greatest one on a node is compared with those that act. Where
+// none does, all that there are but rounding bring the tissue home.
+template <typename Real>
+bool ForceBalance<Real>::isCalm(const SolveContext& solve) const {
   double most = std::max(greatest_at_start_, greatest_held_);
   for (const GroupVector& load : shape_.finest().constrained.right_hand_side) {
     most = std::max(most, sizeOf(load));
   }
-  return shape_.greatestForce() <= tuning::kMostUnbalanced * most;
+  const double greatest = shape_.greatestForce();
+  if (isLoaded(solve)) return greatest <= tuning::kMostUnbalanced * most;
+  return greatest <= tuning::kMostUnloaded * most || isRounding(solve);
+}
+
+// Of displacements, as of a free piece that went far; or of rest.
+template <typename Real>
+bool ForceBalance<Real>::isRounding(const SolveContext& solve) const {
+  const double motion = std::sqrt(shape_.finest().squaredLocalMotion());
+  const double still = tolerance_ * tuning::kStill * std::sqrt(solve.hold.freeNodes() + 1.0);
+  const double digit = std::numeric_limits<Real>::epsilon() * shape_.displacementNorm();
+  return motion <= std::max(still, tuning::kRoundedDigits * digit);
 }
 
 template <typename Real>

@@ -32,7 +32,9 @@ class ForceBalance {
   double residual(const ConstrainedState& state) const;
 
  private:
-  bool isCalm() const;
+  bool isLoaded(const SolveContext& solve) const;
+  bool isCalm(const SolveContext& solve) const;
+  bool isRounding(const SolveContext& solve) const;
   bool areContactsBalanced() const;
   bool arePatchesBalanced() const;
   Vec3 heldForce(const std::vector<int>& loaded) const;

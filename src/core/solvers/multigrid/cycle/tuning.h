@@ -88,6 +88,14 @@ constexpr double kPatchBalance = 1e-5;
 // Share of the greatest force that may be unbalanced on a node, without contacts (chosen, for what
 // hangs by little and moves far). Up: that stops early.
 constexpr double kMostUnbalanced = 0.1;
+// Likewise of the greatest force that there was, where nothing acts any more (as little as single
+// precision is sure of, kRoundedForces; 0.1: a bar that hangs by part of a cell, let go, was left 4
+// h off rest with 0.02 unbalanced). Up: what hangs by little stays where it is; down: free pieces
+// take longer.
+constexpr double kMostUnloaded = 1e-3;
+// Last digits of the displacement (1): forces that move nodes by no more, each alone, are rounding
+// (chosen; a free piece let go again 0.2 to 20 h off rest). Up: likewise.
+constexpr double kRoundedDigits = 4.0;
 // Share of the contacts' force that may be unbalanced in all, and cycles of a solve that are spent
 // on it (both chosen). Up: worse forces in contact, quicker; slower where tissue slips.
 constexpr double kContactBalance = 0.05;
