@@ -78,7 +78,7 @@ robot_tissue_room(solvers/multigrid/hierarchy
     open_parts.cpp open_parts.h tuning.h uncovered_part.cpp uncovered_part.h)
 robot_tissue_room(solvers/multigrid/cycle
   USES simd lattice material loads solvers solvers/multigrid/level solvers/multigrid/hierarchy
-  FILES budget.h composite_shape.cpp composite_shape.h error_estimator.cpp error_estimator.h
+  FILES budget.h composite_shape.cpp composite_shape.h earlier_ways.cpp earlier_ways.h error_estimator.cpp error_estimator.h
     fas_cg_cycle.cpp fas_cg_cycle.h fas_cg_iteration.cpp fas_cg_iteration.h fas_cg_solver.cpp
     fas_cg_solver.h force_balance.cpp force_balance.h layered_method.cpp layered_method.h
     line_search.cpp line_search.h motion_left.h multigrid_solver.h open_part.cpp

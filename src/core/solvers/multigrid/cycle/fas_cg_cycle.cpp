@@ -56,7 +56,8 @@ void FasCgCycle<Real>::run(const SolveContext& solve, const MotionLeft& left) {
   direction_.add(start_, -1.0);
   const bool slow = left.isAbove(tuning::kSlow);
   const double own_slope = workOf(force_, direction_);
-  const double slope = fresh_ || !slow ? own_slope : joinLastDirection(own_slope);
+  noteWay(solve);
+  const double slope = fresh_ || !slow ? own_slope : joinEarlierWays(own_slope);
   conjugate_ = !fresh_ && slow;
   fresh_ = false;
   slope_before_ = own_slope;
@@ -97,6 +98,24 @@ bool FasCgCycle<Real>::isSteady(const SolveContext& solve, const MotionLeft& lef
   if (solve.cycles == 0) return !whole;
   if (slides && solve.cycles < tuning::kCyclesAlone) return left.isAtMost(tuning::kSlowInContact);
   return !whole && left.isAtMost(tuning::kSlow);
+}
+
+// From the last cycle's start to this one's. In contact, where springs begin and end, the stiffness
+// is another from cycle to cycle.
+template <typename Real>
+void FasCgCycle<Real>::noteWay(const SolveContext& solve) {
+  if (fresh_) ways_.clear();
+  if (!fresh_ && keeps_ways_) ways_.add({start_before_, force_before_}, {start_, force_});
+  keeps_ways_ = !solve.in_contact && solve.cycles >= tuning::kLongSolve;
+  if (keeps_ways_) start_before_ = start_;
+}
+
+template <typename Real>
+double FasCgCycle<Real>::joinEarlierWays(double own_slope) {
+  const double slope = ways_.join(force_, own_slope, direction_);
+  if (ways_.isEmpty()) return joinLastDirection(own_slope);
+  shape_.moveFrom(start_, direction_, 1.0);
+  return slope;
 }
 
 // Goes on along the last direction, too, if the forces work along it. The slope there.

@@ -3,7 +3,8 @@
 //
 //   s = cycle(x) - x                              the smooth motion, then the smoother
 //   beta = (f . s - f' . s) / (f' . s')           Polak and Ribiere; ' of the step before
-//   d = s + beta d'                               where cycles alone are slow
+//   d = s + beta d'                               where cycles alone are slow; d conjugate to more
+//                                                 ways in long solves (EarlierWays)
 //   x + a d,  f(x + a d) . d about 0              line search, from a = 1 on
 //
 // Where cycles get on, they stand alone; in contact each is gone on with by one secant,
@@ -12,6 +13,7 @@
 #pragma once
 
 #include "solvers/multigrid/cycle/composite_shape.h"
+#include "solvers/multigrid/cycle/earlier_ways.h"
 #include "solvers/multigrid/cycle/motion_left.h"
 #include "solvers/multigrid/cycle/solve_context.h"
 
@@ -46,6 +48,8 @@ class FasCgCycle {
 
   void goFurther(int steps);
   bool isSteady(const SolveContext& solve, const MotionLeft& left) const;
+  void noteWay(const SolveContext& solve);
+  double joinEarlierWays(double own_slope);
   double joinLastDirection(double own_slope);
   bool stepByLineSearch(double slope);
   void stepPlainly();
@@ -57,8 +61,11 @@ class FasCgCycle {
   Vector force_, force_before_;  // f, f'
   Vector direction_;             // s, then d
   Vector direction_before_;      // d'
-  double slope_before_ = 0.0;    // f' . s'
-  bool fresh_ = true;            // no direction yet
+  Vector start_before_;          // of a long solve's cycle, for `ways_`
+  EarlierWays<Real> ways_;
+  bool keeps_ways_ = false;    // start_before_ is there
+  double slope_before_ = 0.0;  // f' . s'
+  bool fresh_ = true;          // no direction yet
   bool conjugate_ = false;
 };
 

@@ -6,6 +6,8 @@
 // (CompositeShape::correctionNorm). Tolerance: LayeredOptions::tolerance, of the relative error.
 #pragma once
 
+#include <cstddef>
+
 namespace robot_tissue::cycle_tuning {
 
 // --- Precision, rest
@@ -50,6 +52,17 @@ constexpr int kCyclesAlone = 20;
 constexpr double kFlatEnough = 0.3;
 // beta, share of the last direction: below, it is left out (chosen). Up: more begin anew.
 constexpr double kWorthKeeping = 0.05;
+// Cycles of a solve without contacts beyond which it is a long one, and many ways are kept
+// (EarlierWays). 16 in place of 30: press_40 99 cycles in place of 96, sliver_hangs 848 and 758.
+// Up: later; down: short solves pay for what they do not need.
+constexpr int kLongSolve = 30;
+// Ways that are kept. 2, 4, 8, 16 from the first cycle on: sliver_pulled 639, 502, 821, 632 cycles,
+// one alone 1,663; ratio_10000 4,050, 1,866, 350, 141. Up: fewer cycles; two fields each.
+constexpr std::size_t kMostWays = 16;
+// Share of a cycle's own slope that is left, at least, once it is conjugate to a way: below, this
+// one and older ones do not fit any more. 0.1: sliver_pulled took up to 1,973 cycles, mesh_ball_20
+// up to 338. Up: ways are forgotten sooner.
+constexpr double kLeastOfSlope = 0.5;
 // Places that a line search tries (chosen), and how many of them further and further, where the
 // slope stays positive (chosen). Up: longer searches; longer steps.
 constexpr int kTrials = 8;
