@@ -188,10 +188,10 @@ struct CellBarrier {
 
   // In a cell's inside the derivative along axis a hangs on all its nodes, on node i by w_ia, 2 in
   // sum over the nodes: with A_a the determinant's slope by that derivative, and e_a the latter,
-  //   E'' 6 sum over a of w_ia |A_a|^2 + |E'| sum over a of w_ia (2 + |e_b|^2 + |e_c|^2)
+  //   E'' 6 sum over a of w_ia A_a A_a^T + |E'| sum over a of w_ia (2 + |e_b|^2 + |e_c|^2)
   // bounds what the second derivative has of node i, by Cauchy and Schwarz.
   ROBOT_TISSUE_INLINE void stiffenAll(int index, const Corner& corner, const L& depth,
-                                      const L (&across)[3][3], L* corner_stiffness) const {
+                                      const L (&across)[3][3], L (*corner_stiffness)[6]) const {
     constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
     const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
     const L curvature = height() * depth * (Real(6 * 6) * kPerDepth * share);
@@ -200,13 +200,12 @@ struct CellBarrier {
     const L all_edges = edges[0] + edges[1] + edges[2];
     for (int along = 0; along < 3; ++along) {
       const int b = (along + 1) % 3, c = (along + 2) % 3;
-      const L whole =
-          curvature * squared(across[along]) + slope * (Real(2) + all_edges - edges[along]);
+      const L turns = slope * (Real(2) + all_edges - edges[along]);
       for (int node = 0; node < kCorners; ++node) {
         const Real one = (node >> b & 1) != 0 ? Real(-0.5) : Real(0.5);
         const Real other = (node >> c & 1) != 0 ? Real(-0.5) : Real(0.5);
         const L weight = (Real(0.5) + one * side(index, b)) * (Real(0.5) + other * side(index, c));
-        corner_stiffness[node] += weight * whole;
+        addSquare(weight * curvature, across[along], weight * turns, corner_stiffness[node]);
       }
     }
   }

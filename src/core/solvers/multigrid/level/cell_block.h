@@ -247,9 +247,9 @@ struct Block {
   ROBOT_TISSUE_INLINE void findStiffness(L (&stiffness)[kCorners / 2][6]) const {
     const L share = all<V>(Real(0.25));
     for (int corner = 0; corner < kCorners / 2; ++corner) {
-      const L shares[3] = {share * CellBarrier<V>::side(corner, 0),
-                           share * CellBarrier<V>::side(corner, 1),
-                           share * CellBarrier<V>::side(corner, 2)};
+      const L shares[3] = {share * WholeBox<V>::side(0, corner & 1),
+                           share * WholeBox<V>::side(1, corner >> 1 & 1),
+                           share * WholeBox<V>::side(2, corner >> 2 & 1)};
       findStiffness(a * Real(1.0 / 3.0) + of_strain, shares, stiffness[corner]);
     }
   }
