@@ -57,7 +57,7 @@ void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) co
 }
 
 void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
-                           const Held& held) {
+                           const Held& held, const Tracked& wandering) {
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
     if (!tissue.goesInTime()) touch.entry = 0.0;
@@ -69,7 +69,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
     if (!friction_[at(contact.tool)] || contact.wanders) continue;
     if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
   }
-  wander(contacts, {}, pose, tissue, held);
+  wander(contacts, wandering, pose, tissue, held);
   forgetLost(held);
   stickFirst(tissue);
 }
@@ -93,9 +93,8 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
   }
 }
 
-bool SlidingContacts::update(const std::vector<std::optional<Contact>>& tracked,
-                             const ContactSet& found, const RobotPose& pose, const Tissue& tissue,
-                             const Held& held, ContactUpdate::Shape shape) {
+bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, const RobotPose& pose,
+                             const Tissue& tissue, const Held& held, ContactUpdate::Shape shape) {
   const bool whole = shape == ContactUpdate::Shape::kSolved;
   cut_rounds_ = whole ? 0 : cut_rounds_ + 1;
   const bool wavers = cut_rounds_ > tuning::kMostTurningRounds;

@@ -21,9 +21,8 @@ Vec3 placeOnTool(const Contact& contact) {
 // What was found is taken by the touches that were nearest, each one; they keep their force. Those
 // that find none go on where they were followed, or leave their force to the nearest touch there
 // is. False: the update is not settled.
-bool SlidingContacts::wander(const ContactSet& found,
-                             const std::vector<std::optional<Contact>>& tracked,
-                             const RobotPose& pose, const Tissue& tissue, const Held& held) {
+bool SlidingContacts::wander(const ContactSet& found, const Tracked& tracked, const RobotPose& pose,
+                             const Tissue& tissue, const Held& held) {
   std::vector<const Contact*> places;
   for (const Contact& contact : found.contacts) {
     if (contact.wanders && friction_[at(contact.tool)]) places.push_back(&contact);
@@ -84,16 +83,20 @@ bool SlidingContacts::moveTo(const Contact& contact, const RobotPose& pose, cons
          isAtRest(touch, tissue);
 }
 
+// To the nearest touch, of those that touch where any is: what pushes from afar would lose it.
 // True: what it pushed with was little.
 bool SlidingContacts::handOn(const ContactConstraint& lost, double reach, const Tissue& tissue) {
   const ContactSpring& from = lost.spring;
   if (from.multiplier <= 0.0) return true;
   ContactConstraint* nearest = nullptr;
-  double least = reach;
+  double least = 2.0 * reach;
   for (ContactConstraint& touch : touches_) {
     if (!touch.found || touch.contact.link != lost.contact.link) continue;
     if (touch.spring.normal.dot(from.normal) < tuning::kSameSideOfTool) continue;
-    const double off = (touch.tool_point - lost.tool_point).norm();
+    double off = (touch.tool_point - lost.tool_point).norm();
+    if (off >= reach) continue;
+    const double gap = gapOf(touch.spring, tissue.state().displacement);
+    if (gap > slackOf(touch, tissue)) off += reach;  // after all that touch
     if (off >= least) continue;
     least = off;
     nearest = &touch;

@@ -253,7 +253,9 @@ double LoadStepper::wayOfKnownPlaces() const {
 void LoadStepper::meet(const RobotPose& pose, double way) {
   touch_finder_.beginStep();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
-  world_.sliding.meet(touch_finder_.touchesAt(pose, held, way), pose, world_.tissue, held);
+  const ContactSet contacts = touch_finder_.touchesAt(pose, held, way);
+  world_.sliding.meet(contacts, pose, world_.tissue, held,
+                      touch_finder_.trackWandering(pose, contacts));
 }
 
 // Patches of all tools, also of those that touch nothing now, where they would touch the rest

@@ -40,6 +40,7 @@ double leastDepth(const FlatFace& face) {
 void ToolRims::beginStep() {
   shares_.clear();
   last_shares_.clear();
+  firm_.clear();
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (touch.contact.rim.edges.empty()) continue;
     last_shares_[{touch.contact.link, touch.vertex}] = touch.contact.rim.share;
@@ -152,15 +153,20 @@ std::optional<FlatFace> ToolRims::faceUnder(const Contact& contact, const Link& 
   return face;
 }
 
-// Vertices that are on the face, and farther from its edges than any shift.
-void ToolRims::findFirm(const ContactSet& contacts, Link& link) const {
+// Vertices that are on the face, and farther from its edges than any shift. In the rounds of a load
+// step they stay so up to the edge: where others stand is told by them, and what comes and goes
+// moves these by up to half a spacing, to and fro for ever.
+void ToolRims::findFirm(const ContactSet& contacts, Link& link) {
   const double spacing = world_.tissue.lattice().spacing();
   for (const Contact& contact : contacts.contacts) {
     const auto face = faceUnder(contact, link, link.facing);
-    if (face && leastDepth(*face) >= tuning::kFirmDepth * spacing) {
-      link.firm.insert(vertexAt(world_.tissue.surface(), contact.place));
-    }
+    if (!face) continue;
+    const int vertex = vertexAt(world_.tissue.surface(), contact.place);
+    const bool was_firm = firm_.count({link.number, vertex}) != 0;
+    const double least = was_firm ? 0.0 : tuning::kFirmDepth * spacing;
+    if (leastDepth(*face) >= least) link.firm.insert(vertex);
   }
+  for (const int vertex : link.firm) firm_.emplace(link.number, vertex);
 }
 
 // Rotation that takes them from rest to where they are (Kabsch 1976). False: they are on a line.

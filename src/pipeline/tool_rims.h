@@ -65,7 +65,7 @@ class ToolRims {
   Vec3 inwardsAround(const Link& link, const std::vector<Vec3>& vertices) const;
   std::optional<FlatFace> faceUnder(const Contact& contact, const Link& link,
                                     const Vec3& facing) const;
-  void findFirm(const ContactSet& contacts, Link& link) const;
+  void findFirm(const ContactSet& contacts, Link& link);
   bool findTurn(const std::vector<Vec3>& vertices, Link& link) const;
   void lookAround(const std::vector<Vec3>& vertices, const Link& link);
   Vec3 placeOf(int vertex, const Vec3& guess, const std::vector<Vec3>& vertices,
@@ -81,6 +81,7 @@ class ToolRims {
   std::map<std::pair<int, int>, AtRim> at_rims_;       // of link and vertex
   std::map<std::pair<int, int>, double> shares_;       // likewise, of the load step
   std::map<std::pair<int, int>, double> last_shares_;  // of the touches when it began
+  std::set<std::pair<int, int>> firm_;                 // likewise: stood firmly in the load step
   // Of the surface with that number.
   std::uint64_t revision_ = 0;
   std::vector<std::vector<int>> neighbors_;  // of vertices, along edges

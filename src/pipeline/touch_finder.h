@@ -29,6 +29,9 @@ class TouchFinder {
                        double way = 0.0);
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose, const ContactSet& found);
+  // Likewise, of those that wander alone; none of the others.
+  std::vector<std::optional<Contact>> trackWandering(const RobotPose& pose,
+                                                     const ContactSet& found) const;
   // Takes those of them that wander back, half of the way to the touches that were there before.
   void wanderHalfWay(const RobotPose& pose, ContactSet& found) const;
   // How deep each of these links is in the surface that it touches (m), as
@@ -54,7 +57,9 @@ class TouchFinder {
   std::optional<Contact> goAlong(const RobotPose& pose, const ContactSet& found,
                                  const SlidingContacts::ContactConstraint& touch) const;
   bool wanderTo(const SurfacePoint& place, const RobotPose& pose, Contact& contact) const;
-  std::optional<SurfacePoint> halfWayTo(const Contact& contact) const;
+  std::vector<std::pair<std::size_t, SurfacePoint>> placesBefore(const ContactSet& found) const;
+  std::optional<SurfacePoint> halfWay(const SurfacePoint& from, const SurfacePoint& to) const;
+  Vec3 placeOf(const SurfacePoint& point) const;
   Corners cornersOf(int triangle) const;
   bool areBeside(int one, int other) const;
   std::set<std::pair<int, int>> verticesComeIn() const;

@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <tuple>
 #include <utility>
 
+#include "stopwatch.h"
 #include "touch_finder.h"
 #include "tuning.h"
 
@@ -87,11 +90,21 @@ std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const Contact
   return contact;
 }
 
+std::vector<std::optional<Contact>> TouchFinder::trackWandering(const RobotPose& pose,
+                                                                const ContactSet& found) const {
+  const Stopwatch watch(world_.report.contact_ms);
+  std::vector<std::optional<Contact>> tracked;
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    tracked.push_back(touch.contact.wanders ? goAlong(pose, found, touch) : std::nullopt);
+  }
+  return tracked;
+}
+
 // Puts a contact that wanders there on the surface. False: its link is out of reach.
 bool TouchFinder::wanderTo(const SurfacePoint& place, const RobotPose& pose,
                            Contact& contact) const {
   contact.place = place;
-  contact.point = pointOf(cornersOf(place.triangle), place.barycentric);
+  contact.point = placeOf(place);
   curve(contact);
   if (!turn(pose, contact)) return false;
   contact.turn = curved_.hollowAt(place);
@@ -106,38 +119,55 @@ Corners TouchFinder::cornersOf(int triangle) const {
 // Where a touch wanders to hangs on the shape, and the shape on where it is: going all of the way
 // in each round, both would go to and fro for ever.
 void TouchFinder::wanderHalfWay(const RobotPose& pose, ContactSet& found) const {
-  for (Contact& contact : found.contacts) {
-    if (!contact.wanders) continue;
-    const auto middle = halfWayTo(contact);
+  for (const auto& [number, from] : placesBefore(found)) {
+    Contact& contact = found.contacts[number];
+    const auto middle = halfWay(from, contact.place);
     if (!middle) continue;
     Contact half_way = contact;
     if (wanderTo(*middle, pose, half_way)) contact = half_way;
   }
 }
 
-// The surface's point half way from the nearest touch of the contact's link to the contact. None
-// where no touch of this triangle or of one beside it is near.
-std::optional<SurfacePoint> TouchFinder::halfWayTo(const Contact& contact) const {
-  const auto placeOf = [&](const SurfacePoint& point) {
-    return pointOf(cornersOf(point.triangle), point.barycentric);
-  };
-  const Vec3 to = placeOf(contact.place);
-  double least = tuning::kFarthestBefore * world_.tissue.lattice().spacing();
-  std::optional<SurfacePoint> from;
-  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    const Contact& before = touch.contact;
-    if (!before.wanders || before.link != contact.link || touch.spring.multiplier <= 0.0) continue;
-    if (!areBeside(before.place.triangle, contact.place.triangle)) continue;
-    const double off = (placeOf(before.place) - to).norm();
-    if (off >= least) continue;
-    least = off;
-    from = before.place;
+// Contacts that wander, by their numbers, and where each was: the place of the nearest touch on
+// this triangle or on one beside it. A touch is what one of them was, the nearest first: the others
+// have only come.
+std::vector<std::pair<std::size_t, SurfacePoint>> TouchFinder::placesBefore(
+    const ContactSet& found) const {
+  const auto& touches = world_.sliding.touches();
+  const double farthest = tuning::kFarthestBefore * world_.tissue.lattice().spacing();
+  std::vector<std::tuple<double, std::size_t, std::size_t>> near;  // m, contact, touch
+  for (std::size_t i = 0; i < found.contacts.size(); ++i) {
+    const Contact& contact = found.contacts[i];
+    if (!contact.wanders) continue;
+    for (std::size_t j = 0; j < touches.size(); ++j) {
+      const Contact& before = touches[j].contact;
+      if (!before.wanders || before.link != contact.link) continue;
+      if (touches[j].spring.multiplier <= 0.0) continue;
+      if (!areBeside(before.place.triangle, contact.place.triangle)) continue;
+      const double off = (placeOf(before.place) - placeOf(contact.place)).norm();
+      if (off < farthest) near.emplace_back(off, i, j);
+    }
   }
-  if (!from) return std::nullopt;
-  const Vec3 middle = 0.5 * (placeOf(*from) + to);
+  std::sort(near.begin(), near.end());
+  std::vector<std::pair<std::size_t, SurfacePoint>> places;
+  std::set<std::size_t> contacts_taken, touches_taken;
+  for (const auto& [off, contact, touch] : near) {
+    if (contacts_taken.count(contact) != 0 || touches_taken.count(touch) != 0) continue;
+    contacts_taken.insert(contact);
+    touches_taken.insert(touch);
+    places.emplace_back(contact, touches[touch].contact.place);
+  }
+  return places;
+}
+
+// The surface's point half way between two on triangles that are one, or beside each other. None
+// where that is a vertex.
+std::optional<SurfacePoint> TouchFinder::halfWay(const SurfacePoint& from,
+                                                 const SurfacePoint& to) const {
+  const Vec3 middle = 0.5 * (placeOf(from) + placeOf(to));
   SurfacePoint nearest;
   double nearest_off = std::numeric_limits<double>::infinity();
-  for (const int triangle : {from->triangle, contact.place.triangle}) {
+  for (const int triangle : {from.triangle, to.triangle}) {
     const SurfacePoint point = {triangle, nearestInTriangle(middle, cornersOf(triangle))};
     const double off = (placeOf(point) - middle).norm();
     if (off >= nearest_off) continue;
@@ -146,6 +176,10 @@ std::optional<SurfacePoint> TouchFinder::halfWayTo(const Contact& contact) const
   }
   if (nearest.barycentric.maxCoeff() > tuning::kAtVertex) return std::nullopt;
   return nearest;
+}
+
+Vec3 TouchFinder::placeOf(const SurfacePoint& point) const {
+  return pointOf(cornersOf(point.triangle), point.barycentric);
 }
 
 // Whether two triangles of the surface are one, or have an edge in common.

@@ -45,6 +45,7 @@ struct TouchCompliance {
 class SlidingContacts {
  public:
   static constexpr std::uint8_t kGrasped = 2;
+  using Tracked = std::vector<std::optional<Contact>>;  // of each touch, in the order of touches()
 
   // What is kept of a contact from round to round, and from load step to load step.
   struct ContactConstraint {
@@ -87,13 +88,15 @@ class SlidingContacts {
 
   // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
   // kGrasped: a tool has it, and what hangs on such a node is not pushed.
+  // `wandering`: of touches that wander, as `tracked` in update(); those that have none and are not
+  // found hand on their force.
   void meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,
-            const std::vector<std::uint8_t>& held);
+            const std::vector<std::uint8_t>& held, const Tracked& wandering = {});
 
   // `tracked`: the contact of each touch in the present shape, in the order of touches(); none when
   // the link is out of reach. `found`: what else is near. False: something changed, solve again.
-  bool update(const std::vector<std::optional<Contact>>& tracked, const ContactSet& found,
-              const RobotPose& pose, const Tissue& tissue, const std::vector<std::uint8_t>& held,
+  bool update(const Tracked& tracked, const ContactSet& found, const RobotPose& pose,
+              const Tissue& tissue, const std::vector<std::uint8_t>& held,
               ContactUpdate::Shape shape = ContactUpdate::Shape::kSolved);
 
   // From here on tissue and links stick, or slip anew. Forgets touches that the tools have left.
@@ -134,8 +137,8 @@ class SlidingContacts {
   bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
              ContactConstraint& touch);
   bool isAtRest(const ContactConstraint& touch, const Tissue& tissue) const;
-  bool wander(const ContactSet& found, const std::vector<std::optional<Contact>>& tracked,
-              const RobotPose& pose, const Tissue& tissue, const Held& held);
+  bool wander(const ContactSet& found, const Tracked& tracked, const RobotPose& pose,
+              const Tissue& tissue, const Held& held);
   using Wander = std::tuple<double, std::size_t, std::size_t>;  // m, touch, place
   std::vector<Wander> nearestFirst(const std::vector<const Contact*>& places, double reach);
   bool moveTo(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
