@@ -122,9 +122,9 @@ constexpr double kFalling = 0.5;
 // |x| after cycles over |x| before: above it, they teach nothing of the factor, as the difference
 // is too small to divide by (chosen). Up: more samples, and wilder ones.
 constexpr double kMostLeft = 0.9;
-// Likewise in contact, where |x| swings as springs begin and end: at 0.9 one swing may show a factor
-// of 20, which the next ten solves then reckon with. 0.5 takes a tenth less time, but ends with up
-// to 0.3 % more of a force missing. Up: likewise.
+// Likewise in contact, where |x| swings as springs begin and end: at 0.9 one swing may show a
+// factor of 20, which the next ten solves then reckon with. 0.5 takes a tenth less time, but ends
+// with up to 0.3 % more of a force missing. Up: likewise.
 constexpr double kMostLeftInContact = 0.7;
 // Greatest factor that the first kLong cycles of a solve may show, and later ones, in which what
 // hangs by little moves far (chosen). Up: a chance sample costs more cycles.
