@@ -195,7 +195,7 @@ TEST(CellKernelStiffness, BoundsThatOfAllMotions) {
     const double at_rest = greatestStiffness(cells, shaken(cells, 0.0));
     cells.per_greatest = 1.0 / at_rest;
     for (const double far : {0.1, 0.2, 0.3, 0.4, 0.6}) {
-      EXPECT_LT(greatestStiffness(cells, shaken(cells, far)), 1.4 * at_rest) << far;
+      EXPECT_LT(greatestStiffness(cells, shaken(cells, far)), 1.5 * at_rest) << far;
     }
   }
 }

@@ -68,8 +68,17 @@ void CoarseCorrection<Real>::solve(std::size_t index) {
   level.smooth(tuning::kStepsBefore);
   level.findForces(Find::kForces);
   correct(index);
-  level.findForces(Find::kForces);  // stiffness: of the shape where it started
+  level.findForces(isTurned(index) ? Find::kForcesAndStiffness : Find::kForces);
   level.smooth(tuning::kStepsAfter);
+}
+
+// Whether it went so far from where its stiffness was found that this may look another way.
+template <typename Real>
+bool CoarseCorrection<Real>::isTurned(std::size_t index) const {
+  const int count = grid_.level(index).count();
+  return std::any_of(motions_[index].begin(), motions_[index].end(), [count](const auto& values) {
+    return greatestOf(values.data(), count) > tuning::kSameStiffness;
+  });
 }
 
 // Moves a level by what the next coarser one says.

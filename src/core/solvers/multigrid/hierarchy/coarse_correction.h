@@ -35,6 +35,7 @@ class CoarseCorrection {
  private:
   void solve(std::size_t level);
   void correct(std::size_t fine);
+  bool isTurned(std::size_t level) const;
   std::vector<GroupVector> prolongedGroupMotion(std::size_t coarse) const;
   void takeUncoveredMotion();
   bool isFinite() const;

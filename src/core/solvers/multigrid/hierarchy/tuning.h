@@ -13,6 +13,10 @@ namespace robot_tissue::hierarchy_tuning {
 constexpr int kStepsBefore = 3;
 constexpr int kStepsAfter = 3;
 constexpr int kStepsCoarsest = 12;
+// Spacings of a level: where what corrects it moves a node farther, the stiffness of nodes is found
+// again, as it may look another way now (0.1: chosen). Up: cheaper, and bars that swing take
+// longer.
+constexpr double kSameStiffness = 0.1;
 // Grid points along the longest side of the coarsest level, at most (model.md). Up: fewer levels,
 // of which the coarsest is balanced less.
 constexpr int kFewestPoints = 3;

@@ -148,7 +148,8 @@ struct FilledBlock : Block<V> {
     this->transform();
   }
 
-  // As `findStiffness`, where the shape functions' slopes are a quarter.
+  // As `findStiffness`, where the shape functions' slopes are a quarter; and a part of it in all
+  // directions.
   ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L (*of_corners)[6]) const {
     for (int corner = 0; corner < kCorners; ++corner) {
       L shape = fill.twisting, widest{}, slopes[3];
@@ -165,6 +166,9 @@ struct FilledBlock : Block<V> {
         widest = greater(widest, strain * strain);
       }
       this->findStiffness(a * shape + Real(16) * of_strain * widest, slopes, of_corners[corner]);
+      L(&here)[6] = of_corners[corner];
+      const L around = (here[0] + here[1] + here[2]) * Real(level_tuning::kAround);
+      for (int axis = 0; axis < 3; ++axis) here[axis] += around;
     }
   }
 };

@@ -25,6 +25,11 @@ constexpr double kLongestStep = 0.25;
 // found for, corners are squeezed on. 1: the twist by 180 degrees in four increments came to rest
 // in another shape, 6 % off; 8: tools pressed and dragged take a tenth longer. Up: slower, surer.
 constexpr double kSqueezedOn = 2.0;
+// Of the trace of a corner's stiffness in a cell that is filled in part: in all directions besides,
+// as what hangs by little turns far in a cycle. 0: meshes take half to all of the cycles, but a bar
+// that hangs by part of a cell did not come to rest in 2,000 (sliver_hangs); 0.25 likewise, 1: 974
+// for 2,118. Up: slower, surer.
+constexpr double kAround = 0.5;
 // Of a patch's greatest stiffness: directions in which it has less count as this stiff (chosen;
 // far above rounding). Up: loose patches are moved in shorter steps. Likewise of E0 h: a thread's
 // stiffness across itself that is less is none.
