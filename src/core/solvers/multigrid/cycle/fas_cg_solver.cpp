@@ -205,7 +205,7 @@ void FasCgSolver<Real>::prepare(const SolveContext& solve) {
   if (knows_cells_ && holds == Holds::kAsBefore && !moved) {
     shape_.finest().findForcesOfConstrained();
   } else {
-    shape_.finest().findForces(Find::kForcesAndSprings);
+    shape_.finest().findForces();
   }
   knows_cells_ = model_.inertia() == nullptr && !model_.hasMembranes();
   forces_.begin();

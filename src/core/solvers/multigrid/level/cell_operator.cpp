@@ -163,13 +163,8 @@ void CellOperator<Real>::takeFree(const Loads& loads) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     takeWhereFree(whole[axis].data(), loads.free.data(), loads.force[axis].data(), count_);
   }
-  invertStiffness(loads.free, loads.inverse);
-}
-
-template <typename Real>
-void CellOperator<Real>::invertStiffness(const Numbers<Real>& free,
-                                         SymmetricField<Real>& inverse) const {
-  invertWhereFree(pointersTo(stiffness), free.data(), pointersTo(inverse), count_);
+  invertWhereFree(pointersTo(std::as_const(stiffness)), loads.free.data(),
+                  pointersTo(loads.inverse), count_);
 }
 
 template <typename Real>

@@ -57,8 +57,6 @@ class CellOperator {
   void findForces(const Loads& loads, Find what);
   // What findForces found, with stiffness, of other nodes that are free.
   void takeFree(const Loads& loads) const;
-  // The inverses alone.
-  void invertStiffness(const Numbers<Real>& free, SymmetricField<Real>& inverse) const;
   // Of covered cells alone, and of the right-hand side.
   void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.

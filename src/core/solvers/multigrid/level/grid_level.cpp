@@ -127,7 +127,6 @@ void GridLevel<Real>::bind() {
   constrained.bind(held_, partly_held_);
   free_ = not_held_;
   for (const int node : constrained.nodes()) free_[at(node)] = Real(0);
-  cells_.invertStiffness(free_, inverse_);
 }
 
 template <typename Real>
