@@ -149,7 +149,6 @@ TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
   ToolGeometry above = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "above");
   ToolGeometry below = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "below");
   TissueConfig tissue = block("elastic", 2.0 * kSpacing);
-  tissue.fixed.clear();
   tissue.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)});
   Pipeline pipeline(tissue, methodOf("elastic"), {above, below});
   const auto squeezed = [](double gap) {
