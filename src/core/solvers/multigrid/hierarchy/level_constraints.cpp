@@ -197,9 +197,9 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
   std::vector<int>& fine_springs = from_fine_[index - 1].springs;
   coarse.constrained.springs.clear();
   fine_springs.clear();
-  FreeShares shares{std::vector<std::optional<NodeShares>>(
-                        grid_.level(index - 1).constrained.count()),
-                    std::vector<int>(at(coarse.count()), 0)};
+  FreeShares shares{
+      std::vector<std::optional<NodeShares>>(grid_.level(index - 1).constrained.count()),
+      std::vector<int>(at(coarse.count()), 0)};
   coarse.constrained.springs.reserve(fine.size());
   for (std::size_t i = 0; i < fine.size(); ++i) {
     std::vector<LevelSpring::Carrier> carriers = freeCarriers(index, fine[i].carriers, shares);
