@@ -136,9 +136,10 @@ void goFarther(const PlacedShape& placed, const TriangleBvh& surface, const Poin
     const double least = deepest.depth + tuning::kLeastGain;
     if (!box.contains(point)) return;
     const auto foot = surface.nearest(point, kAnywhere, least);
-    if (!foot || foot->distance <= least || depthOf(point, *foot, bulge) <= least) return;
-    if (!surface.isInside(point)) return;
-    deepest = {depthOf(point, *foot, bulge), *foot, point};
+    if (!foot || foot->distance <= least) return;
+    const double depth = depthOf(point, *foot, bulge);
+    if (depth <= least || !surface.isInside(point)) return;
+    deepest = {depth, *foot, point};
   }
 }
 

@@ -132,11 +132,7 @@ double CompositeShape<Real>::workOfForcesInPart(const Vector& step) const {
 
 template <typename Real>
 double CompositeShape<Real>::greatestForce() const {
-  double greatest = 0.0;
-  for (const auto& values : finest().force) {
-    greatest = std::max(greatest, greatestOf(values.data(), finest().count()));
-  }
-  return greatest;
+  return greatestIn(finest().force, finest().count());
 }
 
 template <typename Real>
@@ -170,11 +166,7 @@ double CompositeShape<Real>::correctionNorm() const {
 
 template <typename Real>
 double CompositeShape<Real>::longestSmoothMotion() const {
-  double longest = 0.0;
-  for (const auto& values : levels_->correction().motion()) {
-    longest = std::max(longest, greatestOf(values.data(), finest().count()));
-  }
-  return longest;
+  return greatestIn(levels_->correction().motion(), finest().count());
 }
 
 template <typename Real>

@@ -37,12 +37,8 @@ bool ForceBalance<Real>::isReached(const SolveContext& solve) const {
 template <typename Real>
 bool ForceBalance<Real>::isLoaded(const SolveContext& solve) const {
   const GridLevel<Real>& finest = shape_.finest();
-  const auto acts = [&finest](const auto& values) {
-    return greatestOf(values.data(), finest.count()) > 0.0;
-  };
-  const Field<Real>& weight = finest.right_hand_side;
   return solve.in_time || !solve.shape.patches.empty() || finest.membrane() != nullptr ||
-         std::any_of(weight.begin(), weight.end(), acts);
+         greatestIn(finest.right_hand_side, finest.count()) > 0.0;
 }
 
 // A tissue that hangs on little moves far: the error relative to its displacement is small while

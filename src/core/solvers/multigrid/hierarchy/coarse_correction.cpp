@@ -75,10 +75,7 @@ void CoarseCorrection<Real>::solve(std::size_t index) {
 // Whether it went so far from where its stiffness was found that this may look another way.
 template <typename Real>
 bool CoarseCorrection<Real>::isTurned(std::size_t index) const {
-  const int count = grid_.level(index).count();
-  return std::any_of(motions_[index].begin(), motions_[index].end(), [count](const auto& values) {
-    return greatestOf(values.data(), count) > tuning::kSameStiffness;
-  });
+  return greatestIn(motions_[index], grid_.level(index).count()) > tuning::kSameStiffness;
 }
 
 // Moves a level by what the next coarser one says.

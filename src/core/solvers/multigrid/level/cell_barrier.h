@@ -151,6 +151,24 @@ struct CellBarrier {
     }
   }
 
+  // What the barrier's second derivative at a corner is made of, with what is squeezed on
+  // meanwhile: E'' times so many as `terms`, |E'|, and the squares of the edges.
+  struct Bend {
+    ROBOT_TISSUE_INLINE Bend(const CellBarrier& of, const Corner& corner, const L& depth,
+                             Real terms) {
+      constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
+      const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * of.per_greatest;
+      curvature = of.height() * depth * (terms * Real(6) * kPerDepth * share);
+      slope = of.height() * depth * depth * (Real(3) * share);
+      edges[0] = squared(corner.x);
+      edges[1] = squared(corner.y);
+      edges[2] = squared(corner.z);
+      all_edges = edges[0] + edges[1] + edges[2];
+    }
+
+    L curvature, slope, edges[3], all_edges;
+  };
+
   // A corner's determinant J hangs on four nodes, itself and the other ends of its edges. With
   // c_i = dJ/dx_i a motion u of these has the barrier's second derivative
   //   E'' (sum c_i . u_i)^2 + E' sum of u_i . (d2J/dx_i dx_j) u_j,
@@ -159,20 +177,17 @@ struct CellBarrier {
   // factor by which motions are stiffer than their nodes alone; and what is squeezed on meanwhile.
   ROBOT_TISSUE_INLINE void stiffenCorner(int index, const Corner& corner, const L& depth,
                                          const L (&across)[3][3], L (*corner_stiffness)[6]) const {
-    constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
-    const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
-    const L curvature = height() * depth * (Real(4 * 6) * kPerDepth * share);
-    const L slope = height() * depth * depth * (Real(3) * share);
-    const L edges[3] = {squared(corner.x), squared(corner.y), squared(corner.z)};
-    const L all_edges = edges[0] + edges[1] + edges[2];
+    const Bend bend(*this, corner, depth, Real(4));
     L own[3];
     for (int axis = 0; axis < 3; ++axis) {
       own[axis] = side(index, 0) * across[0][axis] + side(index, 1) * across[1][axis] +
                   side(index, 2) * across[2][axis];
     }
-    addSquare(curvature, own, slope * (Real(3) + all_edges), corner_stiffness[index]);
+    addSquare(bend.curvature, own, bend.slope * (Real(3) + bend.all_edges),
+              corner_stiffness[index]);
     for (int along = 0; along < 3; ++along) {
-      addSquare(curvature, across[along], slope * (Real(2) + all_edges - edges[along]),
+      addSquare(bend.curvature, across[along],
+                bend.slope * (Real(2) + bend.all_edges - bend.edges[along]),
                 corner_stiffness[index ^ 1 << along]);
     }
   }
@@ -192,20 +207,15 @@ struct CellBarrier {
   // bounds what the second derivative has of node i, by Cauchy and Schwarz.
   ROBOT_TISSUE_INLINE void stiffenAll(int index, const Corner& corner, const L& depth,
                                       const L (&across)[3][3], L (*corner_stiffness)[6]) const {
-    constexpr Real kPerDepth = Real(1.0 / elastic_law::kSqueezed);
-    const Real share = Real(level_tuning::kSqueezedOn) * kPerDepth * per_greatest;
-    const L curvature = height() * depth * (Real(6 * 6) * kPerDepth * share);
-    const L slope = height() * depth * depth * (Real(3) * share);
-    const L edges[3] = {squared(corner.x), squared(corner.y), squared(corner.z)};
-    const L all_edges = edges[0] + edges[1] + edges[2];
+    const Bend bend(*this, corner, depth, Real(6));
     for (int along = 0; along < 3; ++along) {
       const int b = (along + 1) % 3, c = (along + 2) % 3;
-      const L turns = slope * (Real(2) + all_edges - edges[along]);
+      const L turns = bend.slope * (Real(2) + bend.all_edges - bend.edges[along]);
       for (int node = 0; node < kCorners; ++node) {
         const Real one = (node >> b & 1) != 0 ? Real(-0.5) : Real(0.5);
         const Real other = (node >> c & 1) != 0 ? Real(-0.5) : Real(0.5);
         const L weight = (Real(0.5) + one * side(index, b)) * (Real(0.5) + other * side(index, c));
-        addSquare(weight * curvature, across[along], weight * turns, corner_stiffness[node]);
+        addSquare(weight * bend.curvature, across[along], weight * turns, corner_stiffness[node]);
       }
     }
   }

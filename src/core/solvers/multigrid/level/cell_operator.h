@@ -4,10 +4,12 @@
 // Lengths are in the level's own spacing h, moduli in E0, forces in E0 h^2, stiffness in E0 h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "simd/field_kernel.h"
 #include "simd/numbers.h"
 #include "simd/workers.h"
 #include "solvers/multigrid/level/cell_kernel.h"
@@ -18,6 +20,14 @@ namespace robot_tissue {
 // One value a node along x, y and z.
 template <typename Real>
 using Field = std::array<Numbers<Real>, 3>;
+
+// Greatest absolute value of any component of the first `count` nodes.
+template <typename Real>
+double greatestIn(const Field<Real>& field, int count) {
+  double greatest = 0.0;
+  for (const auto& values : field) greatest = std::max(greatest, greatestOf(values.data(), count));
+  return greatest;
+}
 
 // What is found at a shape: forces alone; how stiff springs are there, too; or all that the
 // smoother needs for a step (bounds of the nodes' stiffness, and their inverses where the nodes are
