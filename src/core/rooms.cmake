@@ -20,8 +20,8 @@ robot_tissue_room(config
 robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h composition.h filled_grid.h lattice.h lattice_state.h
-  FILES cells.cpp changed_cells.cpp changed_cells.h composition.cpp connectivity.cpp
-    connectivity.h filled_grid.cpp lattice.cpp oblique_walls.cpp oblique_walls.h piece_numbers.cpp
+  FILES cell_reach.h cells.cpp changed_cells.cpp changed_cells.h composition.cpp connectivity.cpp
+    connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
     piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
   USES base geometry config lattice

@@ -55,6 +55,21 @@ inline void shake(LatticeState& state, double size, unsigned seed = 1) {
   for (Vec3& displacement : state.displacement) displacement += shaker.displacement(size);
 }
 
+// Second derivative of the energy: rows and columns 3 * node + axis.
+inline Eigen::MatrixXd hessianOf(const ElasticBlock& block) {
+  const auto count = static_cast<Eigen::Index>(3 * block.state.displacement.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+  block.model.visitHessians(block.state, [&](const auto& nodes, const CellHessian& hessian) {
+    for (int i = 0; i < static_cast<int>(hessian.rows()) / 3; ++i) {
+      for (int j = 0; j < static_cast<int>(hessian.rows()) / 3; ++j) {
+        if (nodes[at(i)] < 0 || nodes[at(j)] < 0) continue;
+        matrix.block<3, 3>(3 * nodes[at(i)], 3 * nodes[at(j)]) += hessian.block<3, 3>(3 * i, 3 * j);
+      }
+    }
+  });
+  return matrix;
+}
+
 // Moves every node to where the deformation gradient takes it.
 inline void deformBy(const Lattice& lattice, const Eigen::Matrix3d& gradient, LatticeState& state) {
   for (int node = 0; node < lattice.nodeCount(); ++node) {

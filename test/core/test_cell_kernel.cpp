@@ -26,7 +26,7 @@ struct Cells {
       for (int j = 0; j + 1 < kPoints[1]; ++j) {
         for (int i = 0; i + 1 < kPoints[0]; ++i) {
           if (i == 3 && j == 2 && k < 2) continue;
-          LevelCell cell{{i, j, k}, {}, kShear, kBulk, stiffening, {}};
+          LevelCell cell{{i, j, k}, {}, kShear, kBulk, stiffening, {}, {}};
           fills.emplace_back();
           if (some_in_part && all.size() % 3 == 0) fill(cell);
           for (int corner = 0; corner < kCorners; ++corner) {
@@ -40,17 +40,17 @@ struct Cells {
     for (int corner = 4; corner < kCorners; ++corner) {
       all.back().nodes[at(corner)] = grid.beside + corner - 4;
     }
+    findReaches(all);
   }
 
   // With octants that differ from cell to cell.
   void fill(LevelCell& cell) {
     const auto corners = static_cast<std::uint8_t>(1 + all.size() * 37 % 254);
     CellFill found = fillOf(octantIntegrals(corners));
-    if (all.size() % 2 == 0) found.strain_places = {0.5, 0.8, 1.0};
     fills.back() = std::make_shared<const CellFill>(found);
     cell.shear *= fills.back()->share;
     cell.bulk *= fills.back()->share;
-    cell.fill = levelFill(*fills.back(), kShear);
+    cell.fill = levelFill(*fills.back(), kShear, kBulk);
   }
 
   LevelGrid grid;
@@ -114,18 +114,20 @@ class CellKernel : public testing::Test {
     double greatest = 0.0;
     for (std::size_t index = 0; index < given.all.size(); ++index) {
       const LevelCell& cell = given.all[index];
-      ElasticCell::Corners corners;
-      for (std::size_t c = 0; c < corners.size(); ++c) {
-        const std::size_t node = at(cell.nodes[c]);
-        for (int axis = 0; axis < 3; ++axis) {
-          corners[c][axis] = static_cast<double>(moved[at(axis)][node]);
+      const std::array<int, kMostReached> nodes = reachedNodes(cell);
+      ElasticCell::Reached displacement;
+      displacement.fill(Vec3::Zero());
+      for (std::size_t c = 0; c < nodes.size(); ++c) {
+        for (int axis = 0; axis < 3 && nodes[c] >= 0; ++axis) {
+          displacement[c][axis] = static_cast<double>(moved[at(axis)][at(nodes[c])]);
         }
       }
-      const ElasticCell alone({cell.shear, cell.bulk, stiffening}, 1.0, corners,
-                              given.fills[index].get());
-      for (int c = 0; c < kCorners; ++c) {
-        forces[at(cell.nodes[at(c)])] -= alone.gradient(c);
-        blocks[at(cell.nodes[at(c)])] += alone.block(c);
+      const ElasticCell alone({cell.shear, cell.bulk, stiffening}, 1.0, displacement,
+                              given.fills[index].get(), cell.reach.get());
+      for (int c = 0; c < alone.nodeCount(); ++c) {
+        if (nodes[at(c)] < 0) continue;
+        forces[at(nodes[at(c)])] -= alone.gradient(c);
+        blocks[at(nodes[at(c)])] += alone.block(c);
         greatest = std::max(greatest, alone.gradient(c).norm());
       }
     }

@@ -14,7 +14,7 @@ std::vector<LevelCell> blockOf(const LevelGrid& grid) {
   for (int k = 0; k + 1 < grid.size[2]; ++k) {
     for (int j = 0; j + 1 < grid.size[1]; ++j) {
       for (int i = 0; i + 1 < grid.size[0]; ++i) {
-        LevelCell cell{{i, j, k}, {}, 1.0, 2.0, 0.0, {}};
+        LevelCell cell{{i, j, k}, {}, 1.0, 2.0, 0.0, {}, {}};
         for (int corner = 0; corner < kCorners; ++corner) {
           cell.nodes[at(corner)] =
               grid.index(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1));
@@ -62,7 +62,7 @@ TEST(Coarsening, CoarseCellIsFilledWhereItsCellsAre) {
   const LevelGrid grid({3, 3, 3});
   std::vector<LevelCell> cells = blockOf(grid);
   cells.pop_back();
-  cells.front().fill = levelFill(CellFill(), 1.0);
+  cells.front().fill = levelFill(CellFill(), 1.0, 2.0);
   const Coarsening coarse = coarsened(grid, cells, grid.beside);
   ASSERT_EQ(coarse.cells.size(), 1U);
   ASSERT_NE(coarse.cells.front().fill, nullptr);

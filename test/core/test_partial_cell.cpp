@@ -13,6 +13,7 @@ constexpr double kSpacing = 0.01;
 const Moduli kModuli = {3448.0, 33333.0};  // Pa: 10 kPa, Poisson's ratio 0.45
 
 using Corners = ElasticCell::Corners;
+using Reached = ElasticCell::Reached;
 
 Vec3 restOf(int corner) { return kSpacing * Vec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1); }
 
@@ -44,9 +45,7 @@ CellFill fillNumber(int number) {
   }
   if (number == 3) return fillOf(octantIntegrals(0x0f));
   if (number == 4) return fillOf(octantIntegrals(0x20));
-  CellFill found = fillOf(number == 5 ? octantIntegrals(0x13) : fill);
-  if (number == 5) found.strain_places = {0.5, 0.8, 1.0};
-  return found;
+  return fillOf(number == 5 ? octantIntegrals(0x13) : fill);
 }
 constexpr int kFills = 6;
 
@@ -56,26 +55,48 @@ class PartialCell : public testing::TestWithParam<std::tuple<int, double>> {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
     gradient(2, 2) = std::get<1>(GetParam());
     gradient(0, 2) = 0.2;
-    shape_ = shaken(deformedBy(gradient), 0.1 * kSpacing, 7);
+    reach_.side = {1, -1, 0};
+    const Corners corners = shaken(deformedBy(gradient), 0.1 * kSpacing, 7);
+    Shaker shaker(8);
+    for (int node = 0; node < kMostReached; ++node) {
+      if (node < kCorners) {
+        shape_[at(node)] = corners[at(node)];
+      } else {
+        shape_[at(node)] = (gradient - Eigen::Matrix3d::Identity()) * placeOf(node) +
+                           shaker.displacement(0.1 * kSpacing);
+      }
+    }
   }
-  ElasticCell cellAt(const Corners& shape) const { return {kModuli, kSpacing, shape, &fill_}; }
+  ElasticCell cellAt(const Reached& shape) const {
+    return {kModuli, kSpacing, shape, &fill_, &reach_};
+  }
+  bool isThere(int node) const {
+    return node < kCorners || reach_.side[at((node - kCorners) / kFaceNodes)] != 0;
+  }
+  // At rest.
+  Vec3 placeOf(int node) const {
+    if (node < kCorners) return restOf(node);
+    const int axis = (node - kCorners) / kFaceNodes, side = reach_.side[at(axis)];
+    return restOf(faceCorner(axis, side, node % kFaceNodes)) + side * kSpacing * Vec3::Unit(axis);
+  }
 
   CellFill fill_;
-  Corners shape_;
+  CellReach reach_;  // up along x, down along y, of no cell along z
+  Reached shape_;
 };
 
 TEST_P(PartialCell, GradientIsTheEnergysSlope) {
   const ElasticCell cell = cellAt(shape_);
   constexpr double kStep = 1e-5 * kSpacing;
-  for (int corner = 0; corner < kCorners; ++corner) {
+  for (int corner = 0; corner < kMostReached; ++corner) {
     Vec3 slope;
     for (int axis = 0; axis < 3; ++axis) {
-      Corners ahead = shape_, behind = shape_;
+      Reached ahead = shape_, behind = shape_;
       ahead[at(corner)][axis] += kStep;
       behind[at(corner)][axis] -= kStep;
       slope[axis] = (cellAt(ahead).energy() - cellAt(behind).energy()) / (2.0 * kStep);
     }
-    ASSERT_GT(slope.norm(), 1e-4 * kModuli.shear * kSpacing * kSpacing);
+    EXPECT_EQ(slope.norm() > 1e-5 * kModuli.shear * kSpacing * kSpacing, isThere(corner));
     EXPECT_LT((cell.gradient(corner) - slope).norm(),
               1e-6 * slope.norm() + 1e-9 * kModuli.bulk * kSpacing * kSpacing)
         << corner;
@@ -85,20 +106,20 @@ TEST_P(PartialCell, GradientIsTheEnergysSlope) {
 TEST_P(PartialCell, HessianIsTheGradientsSlope) {
   const CellHessian hessian = cellAt(shape_).hessian();
   constexpr double kStep = 1e-6 * kSpacing;
-  for (int column = 0; column < 3 * kCorners; ++column) {
-    Corners ahead = shape_, behind = shape_;
+  for (int column = 0; column < 3 * kMostReached; ++column) {
+    Reached ahead = shape_, behind = shape_;
     ahead[at(column / 3)][column % 3] += kStep;
     behind[at(column / 3)][column % 3] -= kStep;
     const ElasticCell after = cellAt(ahead), before = cellAt(behind);
-    Eigen::Matrix<double, 3 * kCorners, 1> slope;
-    for (int c = 0; c < kCorners; ++c) {
+    Eigen::Matrix<double, 3 * kMostReached, 1> slope;
+    for (int c = 0; c < kMostReached; ++c) {
       slope.segment<3>(3 * c) = (after.gradient(c) - before.gradient(c)) / (2.0 * kStep);
     }
-    ASSERT_GT(slope.norm(), 1e-3 * kModuli.shear * kSpacing);
+    EXPECT_EQ(slope.norm() > 1e-4 * kModuli.shear * kSpacing, isThere(column / 3));
     EXPECT_LT((hessian.col(column) - slope).norm(), 1e-6 * hessian.norm() / 5.0) << column;
   }
   EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-13 * hessian.norm());
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kMostReached; ++c) {
     const Eigen::Matrix3d block = hessian.block<3, 3>(3 * c, 3 * c);
     EXPECT_LT((cellAt(shape_).block(c) - block).norm(), 1e-12 * hessian.norm());
   }
@@ -106,9 +127,9 @@ TEST_P(PartialCell, HessianIsTheGradientsSlope) {
 
 TEST_P(PartialCell, TurningChangesNothing) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).matrix();
-  Corners turned;
-  for (int c = 0; c < kCorners; ++c) {
-    turned[at(c)] = turn * (restOf(c) + shape_[at(c)]) - restOf(c);
+  Reached turned;
+  for (int c = 0; c < kMostReached; ++c) {
+    turned[at(c)] = turn * (placeOf(c) + shape_[at(c)]) - placeOf(c);
   }
   const double energy = cellAt(shape_).energy();
   ASSERT_GT(energy, 0.0);
@@ -144,22 +165,10 @@ TEST(PartialCells, OneThatIsFullIsAFullCell) {
   }
 }
 
-// With what oblique walls change (core/lattice/oblique_walls.h) taken back.
-std::shared_ptr<const CellSet> asFilled(const Lattice& lattice) {
-  std::vector<Cell> cells = lattice.cells();
-  for (Cell& cell : cells) {
-    cell.moduli_factor = 1.0;
-    if (cell.fill == nullptr) continue;
-    CellFill fill = *cell.fill;
-    fill.strain_places = Vec3::Ones();
-    cell.fill = std::make_shared<const CellFill>(fill);
-  }
-  return std::make_shared<const CellSet>(std::move(cells), lattice.nodeCount());
-}
-
 // A bar along no axis, stretched along itself and thinner by Poisson's ratio: its sides bear no
 // stress, so that no node away from its ends feels a force, however the bar fills the cells there.
-// Moduli that are moved for oblique walls leave forces of a tenth of the stress.
+// Of stress that is taken where the fill is, forces of a tenth of it go to other nodes than they
+// would, in sum none.
 TEST(PartialCells, StretchedBarAlongNoAxisIsInBalance) {
   constexpr double kStrain = 1e-6;
   Random random;
@@ -173,30 +182,27 @@ TEST(PartialCells, StretchedBarAlongNoAxisIsInBalance) {
     config.material.poisson_ratio = 0.3;
     const Lattice lattice(config);
     const ElasticModel model(lattice, config);
-    LatticeState state = lattice.restState(), filled = state;
-    filled.cells = asFilled(lattice);
+    LatticeState state = lattice.restState();
     const Vec3 stretch = kStrain * Vec3(1.0, -0.3, -0.3);
     for (int node = 0; node < lattice.nodeCount(); ++node) {
       const Vec3 in_bar = pose.inverse() * lattice.restPosition(node);
       state.displacement[at(node)] = pose.linear() * stretch.cwiseProduct(in_bar);
     }
-    filled.displacement = state.displacement;
     const double stress = 1e4 * kStrain;
     int beside = 0;
     Vec3 across = Vec3::Zero();
     for (int node = 0; node < lattice.nodeCount(); ++node) {
       const Vec3 in_bar = pose.inverse() * lattice.restPosition(node);
-      const Vec3 force = model.nodeForce(filled, node);
+      const Vec3 force = model.nodeForce(state, node);
       if (in_bar.x() > 0.0) across += force;
       if (std::abs(in_bar.x()) > half.x() - 2.0 * kSpacing) continue;
       ++beside;
-      // Cells that the surface only grazes hold a thousandth, spread over them.
-      EXPECT_LT(force.norm(), 1e-3 * stress * kSpacing * kSpacing);
-      EXPECT_LT(model.nodeForce(state, node).norm(), 0.1 * stress * kSpacing * kSpacing);
+      EXPECT_LT(force.norm(), 0.12 * stress * kSpacing * kSpacing);
     }
     EXPECT_GT(beside, 50);
     const double force = stress * 4.0 * half.y() * half.z();
-    EXPECT_LT((across + force * pose.linear().col(0)).norm(), 1e-3 * force);
+    // Stress in the middle is partly on nodes beyond it.
+    EXPECT_LT((across + force * pose.linear().col(0)).norm(), 0.02 * force);
   }
 }
 

@@ -80,17 +80,8 @@ void throwApart(ElasticBlock& block) {
 
 // Motions of the shape that no force resists.
 int countFreeMotions(const ElasticBlock& block) {
-  const auto count = static_cast<Eigen::Index>(3 * block.state.displacement.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-  block.model.visitHessians(block.state, [&](const auto& corners, const CellHessian& hessian) {
-    for (int i = 0; i < kCorners; ++i) {
-      for (int j = 0; j < kCorners; ++j) {
-        matrix.block<3, 3>(3 * corners[at(i)], 3 * corners[at(j)]) +=
-            hessian.block<3, 3>(3 * i, 3 * j);
-      }
-    }
-  });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(hessianOf(block),
+                                                              Eigen::EigenvaluesOnly);
   const Eigen::VectorXd& values = solver.eigenvalues();
   return static_cast<int>((values.array() < 1e-9 * values.maxCoeff()).count());
 }

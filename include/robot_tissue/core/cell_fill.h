@@ -19,9 +19,8 @@ struct CellFill {
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity() / 12.0;  // p_ab = mean of x_a x_b
   double triple = 0.0;                                            // mean of x_0 x_1 x_2
   Vec3 spread = Vec3::Constant(1.0 / 12.0);  // eigenvalues of the covariance, ascending
-  // Where the strain along each axis is taken, from the cell's middle (0) to the centroid (1)
-  // (core/lattice/oblique_walls.h).
-  Vec3 strain_places = Vec3::Ones();
+  double lent = 0.0;  // least of what it counts as spread across itself (core/lattice/slivers.h)
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // its eigenvectors, in columns
 
   Eigen::Matrix3d covariance() const;
   // Mean of the corner's trilinear shape function over the fill, which is its part of the cell's

@@ -8,6 +8,7 @@
 // without springs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -24,14 +25,31 @@ struct LatticeState;
 
 constexpr int kCorners = 8;
 
+// Beyond the faces of a cell that is filled in part: the nodes opposite the face that it has in
+// common with a cell beside it, one neighbor an axis. What they and the cell's own corners tell of
+// d2x/dx_a^2 (material/fill_law.h) is the cell's, too.
+constexpr int kFaceNodes = 4;
+constexpr int kBeyond = 3 * kFaceNodes;           // four an axis
+constexpr int kMostReached = kCorners + kBeyond;  // corners first
+
+struct CellReach {
+  std::array<int, 3> side{};  // per axis: up (1) or down (-1) it; 0: there is no neighbor
+  // Node kFaceNodes a + r is the one beyond corner faceCorner(a, side, r) along axis a; -1: none.
+  std::array<int, kBeyond> nodes{};
+};
+
+// The corner with the bits of r along the axes after `axis`, on that side of the cell.
+constexpr int faceCorner(int axis, int side, int r) {
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  return (side > 0 ? 1 : 0) << axis | (r & 1) << next | (r >> 1 & 1) << last;
+}
+
 struct Cell {
   std::array<int, kCorners> nodes{};
   int place = 0;            // which of the lattice's cells it is, or is a part of
   std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
-  std::shared_ptr<const CellFill> fill;  // what of that cell's volume h^3 it holds; null: all
-
-  // What its share of the moduli is multiplied by (core/lattice/oblique_walls.h).
-  double moduli_factor = 1.0;
+  std::shared_ptr<const CellFill> fill;    // what of that cell's volume h^3 it holds; null: all
+  std::shared_ptr<const CellReach> reach;  // of one that is filled in part; null: no neighbor
 
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
@@ -54,14 +72,15 @@ struct Ghost {
 // Cells, and who meets at a node. Constant after construction: a cut makes a new set.
 class CellSet {
  public:
-  // Where a node is met: cell (index into all()) and corner of it.
+  // Where a node is met: cell (index into all()) and corner of it, or, from kCorners on, which of
+  // the nodes that it reaches.
   struct Meeting {
     Meeting(int of_cell = 0, int of_corner = 0)
-        : cell(static_cast<std::uint32_t>(of_cell) & 0x1fffffffU),
-          corner(static_cast<std::uint32_t>(of_corner) & 7U) {}
+        : cell(static_cast<std::uint32_t>(of_cell) & 0x7ffffffU),
+          corner(static_cast<std::uint32_t>(of_corner) & 31U) {}
 
-    std::uint32_t cell : 29;
-    std::uint32_t corner : 3;
+    std::uint32_t cell : 27;
+    std::uint32_t corner : 5;
   };
 
   CellSet() = default;
@@ -83,13 +102,65 @@ class CellSet {
   // The cells that have the node as a corner, first .. last - 1; at most 8 that own it.
   const Meeting* first(int node) const { return meetings_.data() + first_[at(node)]; }
   const Meeting* last(int node) const { return meetings_.data() + first_[at(node) + 1]; }
+  // Those that reach it beyond a face, likewise.
+  const Meeting* firstReaching(int node) const {
+    return reaching_.data() + (reaching_.empty() ? 0 : first_reaching_[at(node)]);
+  }
+  const Meeting* lastReaching(int node) const {
+    return reaching_.data() + (reaching_.empty() ? 0 : first_reaching_[at(node) + 1]);
+  }
+  // Calls visit(meeting) for all cells that have the node or reach it, in ascending order.
+  template <typename Visit>
+  void visitAround(int node, Visit visit) const;
 
  private:
+  void findReaches();
+  void listReaching();
+
   std::vector<Cell> cells_;
   std::vector<Ghost> ghosts_;
   std::vector<int> first_ = {0};  // per node, index into meetings_
   std::vector<Meeting> meetings_;
+  std::vector<int> first_reaching_;  // per node, index into reaching_; empty as that is
+  std::vector<Meeting> reaching_;
 };
+
+template <typename Visit>
+void CellSet::visitAround(int node, Visit visit) const {
+  const Meeting *met = first(node), *const end = last(node);
+  for (const Meeting* beyond = firstReaching(node); beyond != lastReaching(node); ++beyond) {
+    for (; met != end && met->cell < beyond->cell; ++met) visit(*met);
+    visit(*beyond);
+  }
+  for (; met != end; ++met) visit(*met);
+}
+
+// The corners of a cell with `nodes` and `reach`, then the nodes that it reaches; -1: none.
+template <typename AnyCell>
+std::array<int, kMostReached> reachedNodes(const AnyCell& cell) {
+  std::array<int, kMostReached> nodes;
+  nodes.fill(-1);
+  std::copy(cell.nodes.begin(), cell.nodes.end(), nodes.begin());
+  if (cell.reach != nullptr) {
+    std::copy(cell.reach->nodes.begin(), cell.reach->nodes.end(), nodes.begin() + kCorners);
+  }
+  return nodes;
+}
+
+// Of a cell that is filled in part, `reach` null where it reaches no nodes: what each of
+// reachedNodes adds to dx/dx_a, averaged over the fill, and to d2x/dx_a^2 (1/h, 1/h^2). The second
+// is the difference between the neighbor's dx/dx_a and its own; the first is taken as far towards
+// the neighbor as the fill's centroid is.
+struct ReachedSlopes {
+  std::array<Vec3, kMostReached> strain;
+  std::array<Vec3, kMostReached> squares;
+
+  ReachedSlopes() {
+    strain.fill(Vec3::Zero());
+    squares.fill(Vec3::Zero());
+  }
+};
+ReachedSlopes reachedSlopes(const CellFill& fill, const CellReach* reach);
 
 // Of any node, also of a ghost.
 Vec3 restPosition(const Lattice& lattice, const CellSet& cells, int node);  // m

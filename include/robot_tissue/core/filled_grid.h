@@ -17,9 +17,6 @@ struct FilledGrid {
   std::vector<double> filled;
   // Of the cells that are filled in part, in ascending order: where.
   std::vector<std::pair<int, CellFill>> partial;
-  // Of the same cells: n_y^2 n_z^2, n_z^2 n_x^2, n_x^2 n_y^2 of the surface's normal n, in the mean
-  // over the surface in the cell.
-  std::vector<Vec3> facing;
 };
 
 // Throws InputError when a box's extent is no multiple of the spacing. The grid around a mesh must

@@ -223,9 +223,7 @@ void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split
     for (int corner = part; corner < kCorners; ++corner) {
       if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
     }
-    CellFill fill = fillOf(fills[at(part)]);
-    if (cell.fill) fill.strain_places = cell.fill->strain_places;
-    parted.fill = std::make_shared<const CellFill>(fill);
+    parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
     left.push_back(parted);
   }
 }

@@ -44,8 +44,9 @@ CellFill fillOf(const FillIntegrals& integrals) {
   const double inverse = 1.0 / integrals.volume;
   CellFill fill = {integrals.volume, inverse * integrals.first, inverse * integrals.second,
                    inverse * integrals.triple};
-  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
-  fill.spread = Solver(fill.covariance(), Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(fill.covariance());
+  fill.spread = solver.eigenvalues();
+  fill.axes = solver.eigenvectors();
   return fill;
 }
 

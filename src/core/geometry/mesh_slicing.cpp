@@ -123,13 +123,11 @@ class Slicer {
   }
 
  private:
-  // What the surface does in one cell: the prisms under its pieces, their shadow on what is below,
-  // and where they face.
+  // What the surface does in one cell: the prisms under its pieces, and their shadow on what is
+  // below.
   struct SurfaceCell {
     FillIntegrals under;
     Shadow shadow;
-    double area = 0.0;
-    Vec3 facing = Vec3::Zero();  // of MeshCells, times the area
   };
 
   // From the highest layer down, with the shadow of all that is above.
@@ -146,13 +144,10 @@ class Slicer {
         sum += surface.under;
         sum.volume = filled;
         result_.partial.emplace_back(static_cast<int>(cell), sum);
-        result_.facing.push_back(surface.area > 0.0 ? Vec3(surface.facing / surface.area)
-                                                    : Vec3(Vec3::Zero()));
       }
       shadow += surface.shadow;
     }
     std::reverse(result_.partial.begin(), result_.partial.end());
-    std::reverse(result_.facing.begin(), result_.facing.end());
   }
 
   void cutAlong(int axis, Polygon rest) {
@@ -202,20 +197,10 @@ class Slicer {
       result_.filled[cell] += area * height;
       shadow_[cell] += area;
       addPrism(surface, from, b, c, area);
-      addFacing(surface, 0.5 * b.cross(c));
     }
     const bool reaches_in = (max.array() > lowest.array() + tuning::kCellSlack).all() &&
                             (min.array() < lowest.array() + 1.0 - tuning::kCellSlack).all();
     if (reaches_in) result_.occupied[cell] = 1;
-  }
-
-  static void addFacing(SurfaceCell& surface, const Vec3& area_vector) {
-    const double area = area_vector.norm();
-    if (!(area > 0.0)) return;
-    const Vec3 squares = (area_vector / area).cwiseAbs2();
-    surface.area += area;
-    surface.facing += area * Vec3(squares.y() * squares.z(), squares.z() * squares.x(),
-                                  squares.x() * squares.y());
   }
 
   // Under the triangle of the corner `from` and the edges b and c there, down to the cell's floor.

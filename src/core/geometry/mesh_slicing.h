@@ -26,9 +26,6 @@ struct MeshCells {
   std::vector<double> filled;
   // Of the cells that are filled in part, in ascending order: where the mesh is in them.
   std::vector<std::pair<int, FillIntegrals>> partial;
-  // Of the same cells: n_y^2 n_z^2, n_z^2 n_x^2, n_x^2 n_y^2, with n the surface's normal, in the
-  // mean over the surface in the cell. Zero where all of it lies along planes of nodes.
-  std::vector<Vec3> facing;
   // 1 = the surface reaches into the cell by more than a thousandth of the spacing, or more than
   // that share of the cell is filled. Every point of the mesh lies in such a cell, or nearer to one
   // than that slack along each axis; only what is itself thinner than twice the slack and lies

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lattice/cell_reach.h"
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 
@@ -25,6 +26,74 @@ CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> 
       meetings_[at(next[at(node)]++)] = {static_cast<int>(cell), corner};
     }
   }
+  findReaches();
+}
+
+void CellSet::findReaches() {
+  const auto visit_cells = [this](int node, const auto& visit) {
+    const Meeting* met = first(node);
+    while (met != last(node) && !visit(cells_[met->cell].nodes)) ++met;
+  };
+  bool any = false;
+  for (Cell& cell : cells_) {
+    if (cell.fill == nullptr) {
+      cell.reach.reset();
+      continue;
+    }
+    std::shared_ptr<const CellReach> reach =
+        reachAmong(cell.nodes, cell.fill->centroid, visit_cells);
+    any = any || reach != nullptr;
+    const bool same = reach != nullptr && cell.reach != nullptr &&
+                      reach->side == cell.reach->side && reach->nodes == cell.reach->nodes;
+    if (!same) cell.reach = std::move(reach);
+  }
+  if (any) listReaching();
+}
+
+void CellSet::listReaching() {
+  first_reaching_.assign(first_.size(), 0);
+  const auto visit = [this](auto met) {
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+      if (cells_[cell].reach == nullptr) continue;
+      for (int place = 0; place < kBeyond; ++place) {
+        const int node = cells_[cell].reach->nodes[at(place)];
+        if (node >= 0) met(node, Meeting(static_cast<int>(cell), kCorners + place));
+      }
+    }
+  };
+  visit([this](int node, const Meeting&) { ++first_reaching_[at(node) + 1]; });
+  for (std::size_t node = 1; node < first_.size(); ++node) {
+    first_reaching_[node] += first_reaching_[node - 1];
+  }
+  reaching_.resize(at(first_reaching_.back()));
+  std::vector<int> next(first_reaching_.begin(), first_reaching_.end() - 1);
+  visit([&](int node, const Meeting& met) { reaching_[at(next[at(node)]++)] = met; });
+}
+
+// A corner's shape function is the product over the axes of (1/2 + s_a x_a), s_a = 1 at the high
+// end, else -1.
+ReachedSlopes reachedSlopes(const CellFill& fill, const CellReach* reach) {
+  ReachedSlopes slopes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    const int side = reach == nullptr ? 0 : reach->side[at(axis)];
+    for (int r = 0; r < kFaceNodes; ++r) {
+      const double s_b = (r & 1) != 0 ? 1.0 : -1.0, s_c = (r & 2) != 0 ? 1.0 : -1.0;
+      const double share = 0.25 + 0.5 * (s_b * fill.centroid[b] + s_c * fill.centroid[c]) +
+                           s_b * s_c * fill.products(b, c);
+      for (const int end : {-1, 1}) {
+        const std::size_t corner = at(faceCorner(axis, end, r));
+        if (side != 0) slopes.squares[corner][axis] = end == side ? -2.0 * share : share;
+        slopes.strain[corner][axis] =
+            end * share + fill.centroid[axis] * slopes.squares[corner][axis];
+      }
+      if (side == 0) continue;
+      const std::size_t beyond = at(kCorners + kFaceNodes * axis + r);
+      slopes.squares[beyond][axis] = share;
+      slopes.strain[beyond][axis] = fill.centroid[axis] * share;
+    }
+  }
+  return slopes;
 }
 
 const Cell* CellSet::owner(int place, int corner) const {
@@ -47,25 +116,14 @@ bool isFixed(const Lattice& lattice, const CellSet& cells, int node) {
 
 namespace {
 
-// Mean over the fill of the gradient of the corner's shape function, the product over the axes of
-// (1/2 + s_a x_a) with s_a = 1 at the high end, else -1 (1/h).
-Vec3 meanSlope(const CellFill& fill, int corner) {
-  Vec3 side, slope;
-  for (int axis = 0; axis < 3; ++axis) side[axis] = (corner >> axis & 1) != 0 ? 1.0 : -1.0;
-  for (int a = 0; a < 3; ++a) {
-    const int b = (a + 1) % 3, c = (a + 2) % 3;
-    slope[a] = side[a] * (0.25 + 0.5 * (side[b] * fill.centroid[b] + side[c] * fill.centroid[c]) +
-                          side[b] * side[c] * fill.products(b, c));
-  }
-  return slope;
-}
-
 // Where the material is.
 bool isInvertedInPart(const Cell& cell, const LatticeState& state, double spacing) {
   Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
-  for (int corner = 0; corner < kCorners; ++corner) {
-    gradient += state.displacement[at(cell.nodes[at(corner)])] *
-                meanSlope(*cell.fill, corner).transpose() / spacing;
+  const ReachedSlopes slopes = reachedSlopes(*cell.fill, cell.reach.get());
+  const std::array<int, kMostReached> nodes = reachedNodes(cell);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i] < 0) continue;
+    gradient += state.displacement[at(nodes[i])] * slopes.strain[i].transpose() / spacing;
   }
   return gradient.determinant() <= 0.0;
 }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "geometry/mesh_slicing.h"
-#include "lattice/oblique_walls.h"
 
 namespace robot_tissue {
 namespace {
@@ -30,18 +29,15 @@ Grid gridOf(const Box& shape, double spacing) {
 FilledGrid filledGrid(const TissueConfig& config) {
   if (config.mesh == nullptr) {
     const Grid grid = gridOf(config.shape, config.spacing);
-    return {grid, std::vector<double>(at(grid.cellCount()), 1.0), {}, {}};
+    return {grid, std::vector<double>(at(grid.cellCount()), 1.0), {}};
   }
   const Grid whole = gridAround(*config.mesh, config.spacing);
   MeshCells cells = sliced(*config.mesh, whole);
   std::vector<std::pair<int, CellFill>> partial;
-  std::vector<Vec3> facing;
   auto known = cells.partial.begin();
   for (std::size_t cell = 0; cell < cells.filled.size(); ++cell) {
     FillIntegrals fill = integralsOf(CellFill()).scaledBy(cells.filled[cell]);
-    Vec3 faces = Vec3::Zero();
     if (known != cells.partial.end() && known->first == static_cast<int>(cell)) {
-      faces = cells.facing[at(static_cast<int>(known - cells.partial.begin()))];
       fill = (known++)->second;
     }
     double& filled = cells.filled[cell];
@@ -50,11 +46,8 @@ FilledGrid filledGrid(const TissueConfig& config) {
     if (filled < kLeastShare) fill += integralsOf(CellFill()).scaledBy(kLeastShare - filled);
     filled = fill.volume = std::max(filled, kLeastShare);
     partial.emplace_back(static_cast<int>(cell), fillOf(fill));
-    partial.back().second.strain_places = strainPlaces(faces);
-    facing.push_back(faces);
   }
-  return {Grid(whole, std::move(cells.occupied)), std::move(cells.filled), std::move(partial),
-          std::move(facing)};
+  return {Grid(whole, std::move(cells.occupied)), std::move(cells.filled), std::move(partial)};
 }
 
 }  // namespace robot_tissue

@@ -5,7 +5,6 @@
 
 #include "geometry/mesh_slicing.h"
 #include "lattice/connectivity.h"
-#include "lattice/oblique_walls.h"
 #include "lattice/slivers.h"
 
 namespace robot_tissue {
@@ -120,14 +119,12 @@ void Lattice::placeNodes(const std::vector<double>& filled) {
 }
 
 void Lattice::placeCells(const FilledGrid& tissue) {
-  const std::vector<double> factors = moduliFactors(tissue, compositions_);
   std::vector<Cell> cells;
   auto partial = tissue.partial.begin();
   for (int number = 0; number < grid_.cellCount(); ++number) {
     if (tissue.filled[at(number)] <= 0.0) continue;
     Cell cell;
     cell.place = static_cast<int>(cells.size());
-    if (!factors.empty()) cell.moduli_factor = factors[cells.size()];
     if (partial != tissue.partial.end() && partial->first == number) {
       cell.fill = std::make_shared<const CellFill>((partial++)->second);
     }

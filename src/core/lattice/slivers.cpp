@@ -1,15 +1,10 @@
 #include "lattice/slivers.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 
 namespace robot_tissue {
 namespace {
-
-double leastSpread(const Cell& cell) {
-  return cell.fill != nullptr ? cell.fill->spread[0] : CellFill().spread[0];
-}
 
 bool isInPart(const Cell& cell) { return cell.fill != nullptr; }
 
@@ -47,34 +42,23 @@ class CellsAtNodes {
 void stiffenSlivers(std::vector<Cell>& cells, int node_count) {
   if (std::none_of(cells.begin(), cells.end(), isInPart)) return;
   const CellsAtNodes beside(cells, node_count);
-  std::vector<double> spreads;
-  for (const Cell& cell : cells) {
-    double spread = leastSpread(cell);
-    for (std::size_t corner = 0; isInPart(cell) && corner < kCorners; ++corner) {
-      const int node = cell.nodes[corner];
-      for (const int* other = beside.begin(node); other != beside.end(node); ++other) {
-        const Cell& lender = cells[at(*other)];
-        const double lent = std::min(1.0, lender.share() / cell.share());
-        const double least = leastSpread(lender);
-        spread = std::max(spread, lent * least * least / CellFill().spread[0]);
-      }
-    }
-    spreads.push_back(spread);
-  }
-  for (std::size_t index = 0; index < cells.size(); ++index) {
-    if (spreads[index] == leastSpread(cells[index])) continue;
-    CellFill raised = *cells[index].fill;
-    raised.spread = raised.spread.cwiseMax(spreads[index]);
-    cells[index].fill = std::make_shared<const CellFill>(raised);
+  for (Cell& cell : cells) {
+    if (!isInPart(cell)) continue;
+    const bool is_beside_full = std::any_of(cell.nodes.begin(), cell.nodes.end(), [&](int node) {
+      return std::any_of(beside.begin(node), beside.end(node),
+                         [&](int other) { return !isInPart(cells[at(other)]); });
+    });
+    if (!is_beside_full) continue;
+    CellFill raised = *cell.fill;
+    raised.lent = CellFill().spread[0];
+    cell.fill = std::make_shared<const CellFill>(raised);
   }
 }
 
 std::shared_ptr<const CellFill> unraised(const std::shared_ptr<const CellFill>& fill) {
-  using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
-  const Vec3 spread = Solver(fill->covariance(), Eigen::EigenvaluesOnly).eigenvalues();
-  if (spread == fill->spread) return fill;
+  if (fill->lent == 0.0) return fill;
   CellFill before = *fill;
-  before.spread = spread;
+  before.lent = 0.0;
   return std::make_shared<const CellFill>(before);
 }
 

@@ -17,8 +17,8 @@ std::array<int, 4> acrossDiagonals(int corner) {
 double signOf(int corner, int axis) { return (corner >> axis & 1) != 0 ? 1.0 : -1.0; }
 
 // F is the mean of the four edges a direction, over h.
-std::array<Vec3, kCorners> meanWeights(double spacing) {
-  std::array<Vec3, kCorners> weights;
+ElasticCell::Reached meanWeights(double spacing) {
+  ElasticCell::Reached weights;
   for (int corner = 0; corner < kCorners; ++corner) {
     weights[at(corner)] = Vec3(signOf(corner, 0), signOf(corner, 1), signOf(corner, 2)) / 4.0;
     weights[at(corner)] /= spacing;
@@ -27,8 +27,8 @@ std::array<Vec3, kCorners> meanWeights(double spacing) {
 }
 
 // F is made of the three edges at one corner, over h.
-std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
-  std::array<Vec3, kCorners> weights;
+ElasticCell::Reached cornerWeights(int corner, double spacing) {
+  ElasticCell::Reached weights;
   weights.fill(Vec3::Zero());
   for (int axis = 0; axis < 3; ++axis) {
     const double share = signOf(corner, axis) / spacing;
@@ -39,8 +39,9 @@ std::array<Vec3, kCorners> cornerWeights(int corner, double spacing) {
 }
 
 // F is the derivative at a place (h from the cell's middle).
-std::array<Vec3, kCorners> weightsAt(const Vec3& place, double spacing) {
-  std::array<Vec3, kCorners> weights;
+ElasticCell::Reached weightsAt(const Vec3& place, double spacing) {
+  ElasticCell::Reached weights;
+  weights.fill(Vec3::Zero());
   for (int corner = 0; corner < kCorners; ++corner) {
     Vec3 share;
     for (int axis = 0; axis < 3; ++axis) share[axis] = 0.5 + signOf(corner, axis) * place[axis];
@@ -52,19 +53,44 @@ std::array<Vec3, kCorners> weightsAt(const Vec3& place, double spacing) {
   return weights;
 }
 
+// At rest, from the lowest corner (h).
+Vec3 restPlace(int corner) { return Vec3(corner & 1, corner >> 1 & 1, corner >> 2 & 1); }
+
+ElasticCell::Reached withoutReached(const ElasticCell::Corners& corners) {
+  ElasticCell::Reached all;
+  all.fill(Vec3::Zero());
+  std::copy(corners.begin(), corners.end(), all.begin());
+  return all;
+}
+
 }  // namespace
 
 ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
                          const CellFill* fill)
-    : moduli_(moduli), spacing_(spacing), volume_(spacing * spacing * spacing) {
+    : ElasticCell(moduli, spacing, withoutReached(displacement), fill, nullptr) {}
+
+ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Reached& displacement,
+                         const CellFill* fill, const CellReach* reach)
+    : moduli_(moduli),
+      spacing_(spacing),
+      volume_(spacing * spacing * spacing),
+      count_(reach == nullptr ? kCorners : kMostReached),
+      fill_(fill),
+      reach_(reach) {
   for (int corner = 0; corner < kCorners; ++corner) {
-    const Vec3 rest(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-    position_[at(corner)] = spacing * rest + displacement[at(corner)];
+    position_[at(corner)] = spacing * restPlace(corner) + displacement[at(corner)];
+  }
+  for (int beyond = 0; beyond < count_ - kCorners; ++beyond) {
+    const int axis = beyond / kFaceNodes, side = reach->side[at(axis)];
+    const Vec3 rest =
+        restPlace(faceCorner(axis, side, beyond % kFaceNodes)) + side * Vec3::Unit(axis);
+    const std::size_t node = at(kCorners + beyond);
+    position_[node] = spacing * rest + displacement[node];
   }
   if (fill == nullptr) {
     measureFull();
   } else {
-    measureFill(*fill);
+    measureFill();
   }
   findLaw();
   findSqueezedCorners();
@@ -88,35 +114,35 @@ void ElasticCell::measureFull() {
 
 // By the means F e_a, q_ab, q_abc of fill_law.h, times h. What the corners add to each sums up to
 // zero: places relative to one of them keep digits.
-void ElasticCell::measureFill(const CellFill& fill) {
-  const FillLaw& law = fill_law_.emplace(fillLaw(fill));
-  const std::array<CornerSlopes, kCorners> slopes = cornerSlopes(law);
-  Corners weights;
-  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero(), bending = Eigen::Matrix3d::Zero();
+void ElasticCell::measureFill() {
+  const FillLaw& law = fill_law_.emplace(fillLaw(*fill_, moduli_.bulk / moduli_.shear));
+  const std::array<CornerSlopes, kMostReached> slopes = cornerSlopes(*fill_, reach_);
+  Reached weights;
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, kSecond> bending = Eigen::Matrix<double, 3, kSecond>::Zero();
   Vec3 twisting = Vec3::Zero();
-  for (std::size_t corner = 0; corner < kCorners; ++corner) {
-    const Vec3 place = position_[corner] - position_[0];
-    weights[corner] = slopes[corner].strain / spacing_;
-    strain += place * slopes[corner].strain.transpose();
-    bending += place * slopes[corner].bending.transpose();
-    twisting += slopes[corner].twisting * place;
+  for (std::size_t node = 0; node < at(count_); ++node) {
+    const Vec3 place = position_[node] - position_[0];
+    weights[node] = slopes[node].strain / spacing_;
+    strain += place * slopes[node].strain.transpose();
+    bending += place * slopes[node].bending.transpose();
+    twisting += law.twisting * slopes[node].twisting * place;
   }
   mean_ = determinantOf(weights, strain / spacing_);
-  bending *= law.bending.asDiagonal();
-  twisting *= law.twisting;
+  bending *= law.bending;
   invariant_ = 0.0;
-  for (std::size_t corner = 0; corner < kCorners; ++corner) {
-    Vec3& slope = invariant_slope_[corner];
-    slope = strain * slopes[corner].strain + bending * slopes[corner].bending +
-            slopes[corner].twisting * twisting;
+  for (std::size_t node = 0; node < at(count_); ++node) {
+    Vec3& slope = invariant_slope_[node];
+    slope = strain * slopes[node].strain + bending * slopes[node].bending +
+            slopes[node].twisting * twisting;
     slope /= spacing_ * spacing_;
-    invariant_ += slope.dot(position_[corner] - position_[0]);
-    invariant_own_[corner] = 12.0 * invariantBetween(law, slopes[corner], slopes[corner]);
+    invariant_ += slope.dot(position_[node] - position_[0]);
+    invariant_own_[node] = 12.0 * invariantBetween(law, slopes[node], slopes[node]);
   }
 }
 
 ElasticCell::Pairs ElasticCell::invariantPairs() const {
-  Pairs pairs = Pairs::Zero();
+  Pairs pairs = Pairs::Zero(count_, count_);
   if (!fill_law_) {
     for (int corner = 0; corner < kCorners; ++corner) {
       for (const int other : acrossDiagonals(corner)) pairs(corner, other) = -1.0;
@@ -124,16 +150,16 @@ ElasticCell::Pairs ElasticCell::invariantPairs() const {
     }
     return pairs;
   }
-  const std::array<CornerSlopes, kCorners> slopes = cornerSlopes(*fill_law_);
-  for (int one = 0; one < kCorners; ++one) {
-    for (int other = 0; other < kCorners; ++other) {
+  const std::array<CornerSlopes, kMostReached> slopes = cornerSlopes(*fill_, reach_);
+  for (int one = 0; one < count_; ++one) {
+    for (int other = 0; other < count_; ++other) {
       pairs(one, other) = 12.0 * invariantBetween(*fill_law_, slopes[at(one)], slopes[at(other)]);
     }
   }
   return pairs;
 }
 
-ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight) const {
+ElasticCell::Determinant ElasticCell::determinantOf(const Reached& weight) const {
   Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
   for (int corner = 0; corner < kCorners; ++corner) {
     gradient += position_[at(corner)] * weight[at(corner)].transpose();
@@ -141,8 +167,8 @@ ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight) const
   return determinantOf(weight, gradient);
 }
 
-ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight,
-                                                    const Eigen::Matrix3d& gradient) {
+ElasticCell::Determinant ElasticCell::determinantOf(const Reached& weight,
+                                                    const Eigen::Matrix3d& gradient) const {
   Determinant determinant;
   determinant.weight = weight;
   determinant.gradient = gradient;
@@ -151,8 +177,8 @@ ElasticCell::Determinant ElasticCell::determinantOf(const Corners& weight,
   cofactors.col(1) = gradient.col(2).cross(gradient.col(0));
   cofactors.col(2) = gradient.col(0).cross(gradient.col(1));
   determinant.value = gradient.col(0).dot(cofactors.col(0));
-  for (int corner = 0; corner < kCorners; ++corner) {
-    determinant.slope[at(corner)] = cofactors * weight[at(corner)];
+  for (std::size_t node = 0; node < at(count_); ++node) {
+    determinant.slope[node] = cofactors * weight[node];
   }
   return determinant;
 }
@@ -280,20 +306,22 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
   return volume_ * density;
 }
 
-double shapeStrain(double spacing, const ElasticCell::Corners& displacement, const CellFill* fill) {
+double shapeStrain(double spacing, const ElasticCell::Reached& displacement, const CellFill* fill,
+                   const CellReach* reach) {
   const Moduli unit{1.0, 0.0, 0.0};
-  return 2.0 * ElasticCell(unit, spacing, displacement, fill).shapeEnergyDensity();
+  return 2.0 * ElasticCell(unit, spacing, displacement, fill, reach).shapeEnergyDensity();
 }
 
 CellHessian ElasticCell::hessian() const {
-  using Column = Eigen::Matrix<double, 3 * kCorners, 1>;
-  CellHessian density = CellHessian::Zero();
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1>;
+  const int rows = 3 * count_;
+  CellHessian density = CellHessian::Zero(rows, rows);
   // A determinant D of F = sum of x_i w_i^T: d2D/dx_i dx_j = -[F (w_i x w_j)]x.
-  const auto add = [&density](const Curve& curve, const Determinant& determinant) {
-    const Eigen::Map<const Column> slope(determinant.slope.front().data());
+  const auto add = [&](const Curve& curve, const Determinant& determinant) {
+    const Eigen::Map<const Column> slope(determinant.slope.front().data(), rows);
     density += curve.curvature * slope * slope.transpose();
-    for (int i = 0; i < kCorners; ++i) {
-      for (int j = 0; j < kCorners; ++j) {
+    for (int i = 0; i < count_; ++i) {
+      for (int j = 0; j < count_; ++j) {
         const Vec3 normal = determinant.weight[at(i)].cross(determinant.weight[at(j)]);
         density.block<3, 3>(3 * i, 3 * j) -=
             curve.slope * crossMatrix(determinant.gradient * normal);
@@ -301,14 +329,14 @@ CellHessian ElasticCell::hessian() const {
     }
   };
   add(volume_term_, mean_);
-  const Eigen::Map<const Column> l(invariant_slope_.front().data());
-  const Eigen::Map<const Column> j(mean_.slope.front().data());
+  const Eigen::Map<const Column> l(invariant_slope_.front().data(), rows);
+  const Eigen::Map<const Column> j(mean_.slope.front().data(), rows);
   density += cross_slope_ * (l * j.transpose() + j * l.transpose());
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
   const double share = a_ / (12.0 * spacing_ * spacing_);
   const Pairs pairs = invariantPairs();
-  for (int one = 0; one < kCorners; ++one) {
-    for (int other = 0; other < kCorners; ++other) {
+  for (int one = 0; one < count_; ++one) {
+    for (int other = 0; other < count_; ++other) {
       density.block<3, 3>(3 * one, 3 * other).diagonal().array() += share * pairs(one, other);
     }
   }

@@ -27,14 +27,19 @@ class ElasticCell {
  public:
   // One vector a corner, in the order of cellCorners.
   using Corners = std::array<Vec3, kCorners>;
+  // Of a cell that is filled in part also of the nodes that it reaches, as reachedNodes.
+  using Reached = std::array<Vec3, kMostReached>;
 
-  // Displacements of the corners from rest (m). The moduli count for all of h^3; `fill`, null for a
-  // full cell, tells where the material is.
+  // Displacements from rest (m). The moduli count for all of h^3; `fill`, null for a full cell,
+  // tells where the material is; `reach`: null where no cell is beside it.
+  ElasticCell(const Moduli& moduli, double spacing, const Reached& displacement,
+              const CellFill* fill, const CellReach* reach);
   ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
               const CellFill* fill = nullptr);
 
   double energy() const;                                            // J, zero at rest
   double shapeEnergyDensity() const { return volume_term_.value; }  // Pa, without the barrier
+  int nodeCount() const { return count_; }                          // corners, and nodes reached
   Vec3 gradient(int corner) const;                                  // of the energy (N)
   Eigen::Matrix3d block(int corner) const;  // second derivative in one corner alone (N/m)
   CellHessian hessian() const;
@@ -43,8 +48,8 @@ class ElasticCell {
   // Determinant of a deformation gradient F = sum of position * weight^T over the corners.
   struct Determinant {
     Eigen::Matrix3d gradient;  // F
-    Corners weight;            // 1/m
-    Corners slope;             // derivative of the determinant in each corner (1/m)
+    Reached weight;            // 1/m
+    Reached slope;             // derivative of the determinant in each corner (1/m)
     double value = 1.0;
   };
   // A function of one variable, and its derivatives.
@@ -55,13 +60,14 @@ class ElasticCell {
   };
 
   // (1/2) d2I1/dx_i dx_j, times the unit matrix (1/12h^2).
-  using Pairs = Eigen::Matrix<double, kCorners, kCorners>;
+  using Pairs =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostReached, kMostReached>;
 
   void measureFull();
-  void measureFill(const CellFill& fill);
+  void measureFill();
   Pairs invariantPairs() const;
-  Determinant determinantOf(const Corners& weight) const;
-  static Determinant determinantOf(const Corners& weight, const Eigen::Matrix3d& gradient);
+  Determinant determinantOf(const Reached& weight) const;
+  Determinant determinantOf(const Reached& weight, const Eigen::Matrix3d& gradient) const;
   void findSqueezedCorners();
   void findSqueezedInFill();
   bool areEdgesNearRest() const;
@@ -71,15 +77,18 @@ class ElasticCell {
 
   Moduli moduli_;
   double spacing_;
-  double volume_;     // at rest (m^3)
-  Corners position_;  // from the lowest corner's rest place (m)
+  double volume_;         // at rest (m^3)
+  int count_ = kCorners;  // of nodes
+  const CellFill* fill_ = nullptr;
+  const CellReach* reach_ = nullptr;
+  Reached position_;  // from the lowest corner's rest place (m)
   Determinant mean_;
   std::array<Determinant, kCorners> squeezed_;  // where the barrier rises, the first of them
   int squeezed_count_ = 0;
-  std::optional<FillLaw> fill_law_;             // none: the cell is full
-  double invariant_ = 3.0;                      // I1
-  Corners invariant_slope_;                     // (1/2) dI1/dx (1/m)
-  std::array<double, kCorners> invariant_own_;  // of invariantPairs, each corner with itself
+  std::optional<FillLaw> fill_law_;                 // none: the cell is full
+  double invariant_ = 3.0;                          // I1
+  Reached invariant_slope_;                         // (1/2) dI1/dx (1/m)
+  std::array<double, kMostReached> invariant_own_;  // of invariantPairs, each with itself
   // E / h^3 without the barrier is a function of J and I1, all Pa: a is twice its derivative by I1,
   // cross_slope_ that of a by J, steepness_ four times the second derivative by I1.
   double a_ = 0.0;
@@ -89,7 +98,7 @@ class ElasticCell {
 };
 
 // x of elastic_law.h, J^(-2/3) I1 - 3, of a cell.
-double shapeStrain(double spacing, const ElasticCell::Corners& displacement,
-                   const CellFill* fill = nullptr);
+double shapeStrain(double spacing, const ElasticCell::Reached& displacement, const CellFill* fill,
+                   const CellReach* reach);
 
 }  // namespace robot_tissue

@@ -12,12 +12,23 @@
 namespace robot_tissue {
 namespace {
 
-ElasticCell::Corners cornersOf(const LatticeState& state, const Cell& cell) {
-  ElasticCell::Corners displacement;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    displacement[at(corner)] = state.displacement[at(cell.nodes[at(corner)])];
+ElasticCell::Reached reachedOf(const LatticeState& state, const Cell& cell) {
+  ElasticCell::Reached displacement;
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    displacement[corner] = state.displacement[at(cell.nodes[corner])];
+  }
+  for (std::size_t beyond = 0; cell.reach != nullptr && beyond < kBeyond; ++beyond) {
+    const int node = cell.reach->nodes[beyond];
+    displacement[kCorners + beyond] = node < 0 ? Vec3(Vec3::Zero()) : state.displacement[at(node)];
   }
   return displacement;
+}
+
+void addGradients(const ElasticCell& shape, const Cell& cell, std::vector<Vec3>& forces) {
+  const std::array<int, kMostReached> reached = reachedNodes(cell);
+  for (int corner = 0; corner < shape.nodeCount(); ++corner) {
+    if (reached[at(corner)] >= 0) forces[at(reached[at(corner)])] -= shape.gradient(corner);
+  }
 }
 
 }  // namespace
@@ -40,8 +51,7 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
 // A cell that is filled in part answers in part.
 Moduli ElasticModel::cellModuli(const Cell& cell) const {
   const Moduli& full = substanceOf(cell).moduli;
-  const double part = cell.share() * cell.moduli_factor;
-  return {part * full.shear, part * full.bulk, full.stiffening};
+  return {cell.share() * full.shear, cell.share() * full.bulk, full.stiffening};
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell, int corner) const {
@@ -69,7 +79,8 @@ int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
   if (!stiffens) return 0;
   const auto is_beyond = [&](const Cell& cell) {
     const double b = substanceOf(cell).moduli.stiffening;
-    return b > 0.0 && b * shapeStrain(lattice_.spacing(), cornersOf(state, cell), cell.fill.get()) >
+    return b > 0.0 && b * shapeStrain(lattice_.spacing(), reachedOf(state, cell), cell.fill.get(),
+                                      cell.reach.get()) >
                           elastic_law::kMostExponent;
   };
   const std::vector<Cell>& cells = state.cells->all();
@@ -84,7 +95,8 @@ Moduli ElasticModel::stepModuli(const Cell& cell) const {
 }
 
 double ElasticModel::cornerInertia(const Cell& cell, int corner) const {
-  return inertia_ == nullptr ? 0.0 : inertia_->per_mass * cornerMass(cell, corner);
+  return inertia_ == nullptr || corner >= kCorners ? 0.0
+                                                   : inertia_->per_mass * cornerMass(cell, corner);
 }
 
 void ElasticModel::addInertia(const Cell& cell, CellHessian& hessian) const {
@@ -111,18 +123,26 @@ Vec3 ElasticModel::inertialForce(int node) const {
 }
 
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
-  return {stepModuli(cell), lattice_.spacing(), cornersOf(state, cell), cell.fill.get()};
+  return {stepModuli(cell), lattice_.spacing(), reachedOf(state, cell), cell.fill.get(),
+          cell.reach.get()};
+}
+
+// On one of the cell's nodes (reachedNodes), at this displacement.
+Vec3 ElasticModel::forceOf(const Cell& cell, const ElasticCell& shape, int corner,
+                           const Vec3& displacement) const {
+  if (corner >= kCorners) return -shape.gradient(corner);
+  return cornerWeight(cell, corner) - shape.gradient(corner) -
+         cornerInertia(cell, corner) * displacement;
 }
 
 Vec3 ElasticModel::nodeForce(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   Vec3 force = inertialForce(node);
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Cell& cell = cells.all()[at(met->cell)];
-    const int corner = static_cast<int>(met->corner);
-    force += cornerWeight(cell, corner) - shaped(state, cell).gradient(corner) -
-             cornerInertia(cell, corner) * state.displacement[at(node)];
-  }
+  cells.visitAround(node, [&](const CellSet::Meeting& met) {
+    const Cell& cell = cells.all()[met.cell];
+    const int corner = static_cast<int>(met.corner);
+    force += forceOf(cell, shaped(state, cell), corner, state.displacement[at(node)]);
+  });
   if (membrane_) force += membrane_->force(state.displacement, node);
   return force;
 }
@@ -137,19 +157,20 @@ std::vector<Vec3> ElasticModel::forcesOn(const LatticeState& state,
   for (const int node : nodes) {
     place_of[at(node)] = static_cast<int>(forces.size());
     forces.push_back(inertialForce(node));
-    for (auto met = cells.first(node); met != cells.last(node); ++met)
-      around.push_back(static_cast<int>(met->cell));
+    cells.visitAround(node, [&around](const CellSet::Meeting& met) {
+      around.push_back(static_cast<int>(met.cell));
+    });
   }
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const int number : around) {
     const Cell& cell = cells.all()[at(number)];
     const ElasticCell shape = shaped(state, cell);
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const int node = cell.nodes[at(corner)];
-      if (place_of[at(node)] < 0) continue;
-      forces[at(place_of[at(node)])] += cornerWeight(cell, corner) - shape.gradient(corner) -
-                                        cornerInertia(cell, corner) * state.displacement[at(node)];
+    const std::array<int, kMostReached> reached = reachedNodes(cell);
+    for (int corner = 0; corner < shape.nodeCount(); ++corner) {
+      const int node = reached[at(corner)];
+      if (node < 0 || place_of[at(node)] < 0) continue;
+      forces[at(place_of[at(node)])] += forceOf(cell, shape, corner, state.displacement[at(node)]);
     }
   }
   for (std::size_t i = 0; membrane_ && i < nodes.size(); ++i) {
@@ -170,18 +191,19 @@ Vec3 ElasticModel::weight(const LatticeState& state) const {
 // cell filled in part the greatest of the three.
 double ElasticModel::stiffnessAtRest(const CellSet& cells, int node) const {
   double stiffness = 0.0;
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Moduli moduli = cellModuli(cells.all()[at(met->cell)]);
+  cells.visitAround(node, [&](const CellSet::Meeting& met) {
+    const Cell& cell = cells.all()[met.cell];
+    const Moduli moduli = cellModuli(cell);
     const double third = moduli.shear / 3.0;
     double invariant = 1.0 / 3.0, widest = 1.0 / 16.0;
-    if (cells.all()[at(met->cell)].fill != nullptr) {
-      const FillLaw law = fillLaw(*cells.all()[at(met->cell)].fill);
-      const CornerSlopes slopes = cornerSlopes(law)[met->corner];
+    if (cell.fill != nullptr) {
+      const FillLaw law = fillLaw(*cell.fill, moduli.bulk / moduli.shear);
+      const CornerSlopes slopes = cornerSlopes(*cell.fill, cell.reach.get())[met.corner];
       invariant = invariantBetween(law, slopes, slopes);
       widest = slopes.strain.cwiseAbs2().maxCoeff();
     }
     stiffness += lattice_.spacing() * (moduli.shear * invariant + (moduli.bulk + third) * widest);
-  }
+  });
   if (membrane_) stiffness += membrane_->restStiffness(node);
   return stiffness;
 }
@@ -212,11 +234,11 @@ Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
 Eigen::Matrix3d ElasticModel::nodeBlock(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Cell& cell = cells.all()[at(met->cell)];
-    block += shaped(state, cell).block(met->corner);
-    block.diagonal().array() += cornerInertia(cell, static_cast<int>(met->corner));
-  }
+  cells.visitAround(node, [&](const CellSet::Meeting& met) {
+    const Cell& cell = cells.all()[met.cell];
+    block += shaped(state, cell).block(static_cast<int>(met.corner));
+    block.diagonal().array() += cornerInertia(cell, static_cast<int>(met.corner));
+  });
   return block;
 }
 
@@ -243,10 +265,11 @@ std::vector<Vec3> ElasticModel::nodeForces(const LatticeState& state) const {
   if (inertia_ != nullptr) forces = inertia_->force;
   for (const Cell& cell : state.cells->all()) {
     const ElasticCell shape = shaped(state, cell);
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const std::size_t node = at(cell.nodes[at(corner)]);
-      forces[node] += cornerWeight(cell, corner) - shape.gradient(corner) -
-                      cornerInertia(cell, corner) * state.displacement[node];
+    const std::array<int, kMostReached> reached = reachedNodes(cell);
+    for (int corner = 0; corner < shape.nodeCount(); ++corner) {
+      if (reached[at(corner)] < 0) continue;
+      const std::size_t node = at(reached[at(corner)]);
+      forces[node] += forceOf(cell, shape, corner, state.displacement[node]);
     }
   }
   if (!membrane_) return forces;
@@ -284,14 +307,21 @@ NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const
     balance.force -= modes.gradient();
     balance.block += modes.block();
     for (auto met = first; met != end; ++met) {
-      if (modes.suffices(static_cast<int>(met - first))) continue;
-      const ElasticCell squeezed = shaped(state, cells.all()[at(met->cell)]);
-      balance.force -= squeezed.gradient(met->corner);
-      balance.block += squeezed.block(met->corner);
+      if (!modes.suffices(static_cast<int>(met - first))) addShaped(state, *met, balance);
     }
     first = end;
   }
+  for (auto met = cells.firstReaching(node); met != cells.lastReaching(node); ++met) {
+    addShaped(state, *met, balance);
+  }
   return balance;
+}
+
+void ElasticModel::addShaped(const LatticeState& state, const CellSet::Meeting& met,
+                             NodeBalance& balance) const {
+  const ElasticCell shape = shaped(state, state.cells->all()[met.cell]);
+  balance.force -= shape.gradient(static_cast<int>(met.corner));
+  balance.block += shape.block(static_cast<int>(met.corner));
 }
 
 void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& cells,
@@ -313,11 +343,7 @@ void ElasticModel::addForces(const LatticeState& state, const std::vector<int>& 
         forces[node] += cornerWeight(cell, corner) - modes.gradient(lane, corner) -
                         cornerInertia(cell, corner) * state.displacement[node];
       }
-      if (modes.suffices(lane)) continue;
-      const ElasticCell squeezed = shaped(state, cell);
-      for (int corner = 0; corner < kCorners; ++corner) {
-        forces[at(cell.nodes[at(corner)])] -= squeezed.gradient(corner);
-      }
+      if (!modes.suffices(lane)) addGradients(shaped(state, cell), cell, forces);
     }
   }
 }
@@ -326,11 +352,9 @@ void ElasticModel::addElasticForces(const LatticeState& state, const std::vector
                                     std::vector<Vec3>& forces) const {
   for (const int index : cells) {
     const Cell& cell = state.cells->all()[at(index)];
-    const ElasticCell shape(cellModuli(cell), lattice_.spacing(), cornersOf(state, cell),
-                            cell.fill.get());
-    for (int corner = 0; corner < kCorners; ++corner) {
-      forces[at(cell.nodes[at(corner)])] -= shape.gradient(corner);
-    }
+    addGradients(ElasticCell(cellModuli(cell), lattice_.spacing(), reachedOf(state, cell),
+                             cell.fill.get(), cell.reach.get()),
+                 cell, forces);
   }
 }
 
@@ -345,7 +369,7 @@ void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& 
   for (const Cell& cell : state.cells->all()) {
     CellHessian hessian = shaped(state, cell).hessian();
     addInertia(cell, hessian);
-    visit(cell.nodes, hessian);
+    visit(reachedNodes(cell), hessian);
   }
 }
 

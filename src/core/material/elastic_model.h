@@ -79,6 +79,10 @@ class ElasticModel : public EnergyModel {
   double cornerInertia(const Cell& cell, int corner) const;  // N/m; zero without a time step
   void addInertia(const Cell& cell, CellHessian& hessian) const;
   Vec3 inertialForce(int node) const;  // that does not hang on the shape (N)
+  Vec3 forceOf(const Cell& cell, const ElasticCell& shape, int corner,
+               const Vec3& displacement) const;  // N
+  void addShaped(const LatticeState& state, const CellSet::Meeting& met,
+                 NodeBalance& balance) const;
   double stiffnessAtRest(const CellSet& cells, int node) const;  // N/m
 
   const Lattice& lattice_;

@@ -12,8 +12,10 @@
 
 namespace robot_tissue {
 
-// Second derivative of a cell's energy (N/m): rows and columns 3 * corner + axis.
-using CellHessian = Eigen::Matrix<double, 3 * kCorners, 3 * kCorners>;
+// Second derivative of a cell's energy (N/m): rows and columns 3 * i + axis, i a corner, then the
+// nodes that the cell reaches (reachedNodes), if any.
+using CellHessian =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMostReached, 3 * kMostReached>;
 
 // What a node feels that moves while all others stand.
 struct NodeBalance {
@@ -45,10 +47,10 @@ class EnergyModel : public TissueModel {
   // Second derivative of one cell (index into state.cells->all()).
   virtual CellHessian cellHessian(const LatticeState& state, int cell) const = 0;
 
-  // Calls `visit` with the corners and the second derivative of every cell that has energy, in a
-  // fixed order. Their sum is the energy's second derivative, but for the membrane's.
+  // Calls `visit` with the nodes (-1: none there) and the second derivative of every cell that has
+  // energy, in a fixed order. Their sum is the energy's second derivative, but for the membrane's.
   using VisitHessian =
-      std::function<void(const std::array<int, kCorners>& corners, const CellHessian& hessian)>;
+      std::function<void(const std::array<int, kMostReached>& nodes, const CellHessian& hessian)>;
   virtual void visitHessians(const LatticeState& state, const VisitHessian& visit) const = 0;
 };
 

@@ -1,20 +1,74 @@
 #include "material/fill_law.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "material/elastic_law.h"
 
 namespace robot_tissue {
 
-FillLaw fillLaw(const CellFill& fill) {
+namespace {
+
+// What q_ij is of the second derivatives by the grid's axes.
+SecondSlopes alongOwnAxes(const Eigen::Matrix3d& axes, int i, int j) {
+  SecondSlopes of;
+  for (int a = 0; a < 3; ++a) {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    of[a] = axes(a, i) * axes(a, j);
+    of[3 + a] = axes(b, i) * axes(c, j) + axes(c, i) * axes(b, j);
+  }
+  return of;
+}
+
+// nu = (3 K - 2 mu) / (6 K + 2 mu).
+double poissonRatioOf(double bulk_by_shear) {
+  return (3.0 * bulk_by_shear - 2.0) / (6.0 * bulk_by_shear + 2.0);
+}
+
+// Half way to what lends, in ratio.
+double raised(double spread, double lent) { return std::max(spread, std::sqrt(spread * lent)); }
+
+// W_ij. Across a slice, axis 0, and along it the strain's change counts that is a bending of the
+// slice, with E / 2 = mu (1 + nu); what is left to hold the other second derivatives is taken from
+// that, as bending has those, too. Of a full cell all are 1/12.
+Eigen::Matrix3d ownWeights(const CellFill& fill, double bulk_by_shear) {
+  constexpr double kLeast = elastic_law::kLeastBending / 12.0;
+  const double spread = raised(fill.spread[0], fill.lent);
+  const double firm = 1.0 + poissonRatioOf(bulk_by_shear);
+  const Vec3 thin = (fill.spread[0] * fill.spread.cwiseInverse()).cwiseAbs2();
+  Eigen::Matrix3d weights;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double both = thin[i] * thin[j], sum = thin[i] + thin[j];
+      const double bending = spread * (firm * (sum - 2.0 * both) + thin[1] * thin[2] * both) -
+                             (i == j ? 0.0 : 0.5 * kLeast * std::abs(thin[i] - thin[j]));
+      weights(i, j) = std::max(bending, kLeast);
+    }
+  }
+  return weights;
+}
+
+}  // namespace
+
+FillLaw fillLaw(const CellFill& fill, double bulk_by_shear) {
   FillLaw law;
   law.centroid = fill.centroid;
-  law.places = fill.strain_places;
   law.pairs = {fill.products(1, 2), fill.products(0, 2), fill.products(0, 1)};
-  law.pairs = law.pairs.cwiseProduct(law.places);
-  const double least = fill.spread[0], middle = fill.spread[1];
-  law.bending = Vec3::Constant(std::max(2.0 * least, elastic_law::kLeastBending / 6.0));
-  law.twisting = std::max(3.0 * least * middle, elastic_law::kLeastBending / 48.0);
+  const Eigen::Matrix3d weights = ownWeights(fill, bulk_by_shear);
+  law.bending.setZero();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      const SecondSlopes of = alongOwnAxes(fill.axes, i, j);
+      law.bending += (i == j ? 1.0 : 2.0) * weights(i, j) * of * of.transpose();
+    }
+  }
+  if (fill.lent > 0.0) {
+    const double held = raised(raised(fill.spread[0], fill.lent), fill.lent);
+    auto pairs = law.bending.diagonal().tail<3>();
+    pairs = pairs.cwiseMax(2.0 * held);
+  }
+  const Vec3 spread = fill.spread.cwiseMax(fill.lent);
+  law.twisting = std::max(3.0 * spread[0] * spread[1], elastic_law::kLeastBending / 48.0);
   // Of a box that reaches r to both sides the variance is r^2 / 3.
   const Vec3 reach = (3.0 * fill.covariance().diagonal()).cwiseMax(0.0).cwiseSqrt();
   law.low = (fill.centroid - reach).cwiseMax(-0.5);
@@ -22,20 +76,20 @@ FillLaw fillLaw(const CellFill& fill) {
   return law;
 }
 
-// The shape function is the product over the axes of (1/2 + s_a x_a), s_a = 1 at the high end, else
-// -1.
-std::array<CornerSlopes, kCorners> cornerSlopes(const FillLaw& law) {
-  std::array<CornerSlopes, kCorners> slopes;
+std::array<CornerSlopes, kMostReached> cornerSlopes(const CellFill& fill, const CellReach* reach) {
+  std::array<CornerSlopes, kMostReached> slopes;
+  const ReachedSlopes reached = reachedSlopes(fill, reach);
+  for (std::size_t node = 0; node < kMostReached; ++node) {
+    slopes[node].strain = reached.strain[node];
+    slopes[node].bending.head<3>() = reached.squares[node];
+  }
   for (int corner = 0; corner < kCorners; ++corner) {
     Vec3 side;
     for (int axis = 0; axis < 3; ++axis) side[axis] = (corner >> axis & 1) != 0 ? 1.0 : -1.0;
     CornerSlopes& of = slopes[at(corner)];
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
-      const double beside = side[b] * law.centroid[b] + side[c] * law.centroid[c];
-      of.strain[a] =
-          side[a] * (0.25 + 0.5 * law.places[a] * beside + side[b] * side[c] * law.pairs[a]);
-      of.bending[a] = side[b] * side[c] * (0.5 + side[a] * law.centroid[a]);
+      of.bending[3 + a] = side[b] * side[c] * (0.5 + side[a] * fill.centroid[a]);
     }
     of.twisting = side.prod();
   }
@@ -43,7 +97,7 @@ std::array<CornerSlopes, kCorners> cornerSlopes(const FillLaw& law) {
 }
 
 double invariantBetween(const FillLaw& law, const CornerSlopes& a, const CornerSlopes& b) {
-  return a.strain.dot(b.strain) + law.bending.dot(a.bending.cwiseProduct(b.bending)) +
+  return a.strain.dot(b.strain) + a.bending.dot(law.bending * b.bending) +
          law.twisting * a.twisting * b.twisting;
 }
 

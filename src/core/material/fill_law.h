@@ -3,11 +3,16 @@
 // averaged over the fill:
 //
 //   F e_a = mean of dx/dx_a,   q_ab = d2x/dx_a dx_b at the centroid,   q_abc = d3x/dx_a dx_b dx_c
-//   I1 = sum |F e_a|^2 + sum over pairs w_ab |q_ab|^2 + w_abc |q_abc|^2
+//   I1 = sum |F e_a|^2 + sum over i, j of W_ij |q_ij|^2 + w_abc |q_abc|^2
 //
-// A pair of axes has the number of the axis that it leaves out.
+// i and j are the fill's own axes, the eigenvectors of its covariance.
+//
+// A trilinear cell has no q_aa: those are of the cell and one neighbor along the axis (CellReach),
+// and F e_a is taken as far towards it as the fill's centroid is. A pair of axes has the number of
+// the axis that it leaves out.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 
 #include "robot_tissue/core/cells.h"
@@ -15,27 +20,33 @@
 
 namespace robot_tissue {
 
+// q_00, q_11, q_22, q_12, q_02, q_01, of vectors.
+constexpr int kSecond = 6;
+using SecondSlopes = Eigen::Matrix<double, kSecond, 1>;
+using SecondWeights = Eigen::Matrix<double, kSecond, kSecond>;
+
 struct FillLaw {
   Vec3 centroid;          // h
-  Vec3 pairs;             // mean products p_ab (h^2), times `places`
-  Vec3 places;            // where each F e_a is taken, CellFill::strain_places
-  Vec3 bending;           // w_ab
+  Vec3 pairs;             // mean products p_ab (h^2)
+  SecondWeights bending;  // W_ij by the grid's axes
   double twisting = 0.0;  // w_abc
   // A box with the fill's centroid and variances, as far as it is in the cell (h): at its corners,
   // so where the material is, the barrier rises. Of a full cell the cell.
   Vec3 low, high;
 };
 
-// Of a full cell 1/6 and 1/48.
-FillLaw fillLaw(const CellFill& fill);
+// Of a full cell W_ij = 1/12, w_abc = 1/48, and there are no q_aa. `bulk_by_shear`: the material's
+// moduli.
+FillLaw fillLaw(const CellFill& fill, double bulk_by_shear);
 
-// What a corner's displacement adds to F e_a, q_ab and q_abc (1).
+// What the displacement of a corner, or of a node that the cell reaches (reachedNodes), adds to
+// F e_a, q_aa, q_ab and q_abc (1).
 struct CornerSlopes {
-  Vec3 strain;
-  Vec3 bending;
+  Vec3 strain = Vec3::Zero();
+  SecondSlopes bending = SecondSlopes::Zero();
   double twisting = 0.0;
 };
-std::array<CornerSlopes, kCorners> cornerSlopes(const FillLaw& law);
+std::array<CornerSlopes, kMostReached> cornerSlopes(const CellFill& fill, const CellReach* reach);
 // Half the second derivative of I1 in the displacements of two corners, times h^2.
 double invariantBetween(const FillLaw& law, const CornerSlopes& a, const CornerSlopes& b);
 

@@ -236,7 +236,9 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
     for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell, 0);
   }
   for (const int index : odd_cells_) {
-    for (const int node : cells_->all()[at(index)].nodes) odd[at(node)] = 1;
+    for (const int node : reachedNodes(cells_->all()[at(index)])) {
+      if (node >= 0) odd[at(node)] = 1;
+    }
   }
   for (const int node : patch_hold.touched()) odd[at(node)] = 1;
   odd_nodes_.clear();
@@ -281,16 +283,17 @@ std::vector<int> SoaField::blocksWith(const std::vector<std::uint8_t>& slots, in
 
 void SoaField::watch(const ConstrainedState& shape, const DofConstraints& patch_hold) {
   std::vector<std::uint8_t> watched(slots_.size(), 0);
-  const auto look_around = [&](int node) {
-    watched[at(node)] = 1;
-    for (auto met = cells_->first(node); met != cells_->last(node); ++met) {
-      for (const int other : cells_->all()[at(met->cell)].nodes) watched[at(other)] = 1;
+  const auto watch_cell = [&](std::size_t cell) {
+    for (const int node : reachedNodes(cells_->all()[cell])) {
+      if (node >= 0) watched[at(node)] = 1;
     }
   };
+  const auto look_around = [&](int node) {
+    watched[at(node)] = 1;
+    cells_->visitAround(node, [&](const CellSet::Meeting& met) { watch_cell(met.cell); });
+  };
   for (const int node : odd_nodes_) look_around(node);
-  for (const int index : odd_cells_) {
-    for (const int node : cells_->all()[at(index)].nodes) watched[at(node)] = 1;
-  }
+  for (const int index : odd_cells_) watch_cell(at(index));
   for (std::size_t patch = 0; patch < shape.patches.size(); ++patch) {
     for (const ContactSpring& spring : shape.patches[patch].contacts) {
       for (const NodeWeight& carrier : spring.carriers) watched[at(carrier.node)] = 1;

@@ -97,14 +97,18 @@ void XpbdMethod::pushPatches() {
 void XpbdMethod::projectOddCells() {
   for (const int index : field_->oddCells()) {
     const Cell& cell = shape_.state.cells->all()[at(index)];
-    for (const int node : cell.nodes) field_->giveAll(node, shape_.state);
+    const std::array<int, kMostReached> nodes = reachedNodes(cell);
+    for (const int node : nodes) {
+      if (node >= 0) field_->giveAll(node, shape_.state);
+    }
     const ElasticCell shaped = model_.shaped(shape_.state, cell);
     const double energy = shaped.energy();
     if (!(energy > 0.0)) continue;
-    std::array<Vec3, kCorners> forces, answers;
+    std::array<Vec3, kMostReached> forces, answers;
     double answer = 0.0, rate = 0.0;
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const int node = cell.nodes[at(corner)];
+    for (int corner = 0; corner < shaped.nodeCount(); ++corner) {
+      const int node = nodes[at(corner)];
+      if (node < 0) continue;
       forces[at(corner)] = -shaped.gradient(corner);
       answers[at(corner)] = mobilityOf(node).cwiseProduct(forces[at(corner)]);
       answer += answers[at(corner)].dot(forces[at(corner)]);
@@ -112,8 +116,8 @@ void XpbdMethod::projectOddCells() {
     }
     answer *= 1.0 + damping_;
     const double share = (1.0 - rate / (2.0 * energy)) / (1.0 + answer / (2.0 * energy));
-    for (int corner = 0; corner < kCorners; ++corner) {
-      move(cell.nodes[at(corner)], share * answers[at(corner)]);
+    for (int corner = 0; corner < shaped.nodeCount(); ++corner) {
+      if (nodes[at(corner)] >= 0) move(nodes[at(corner)], share * answers[at(corner)]);
     }
   }
 }

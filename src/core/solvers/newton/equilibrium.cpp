@@ -68,22 +68,24 @@ class Assembly {
   }
 
   void addCells(const std::vector<Vec3>& moved, bool convex, Eigen::VectorXd& carried) {
-    model_.visitHessians(shape_.state, [&](const auto& corners, const CellHessian& exact) {
+    model_.visitHessians(shape_.state, [&](const auto& nodes, const CellHessian& exact) {
       const CellHessian hessian = convex ? positivePart(exact) : exact;
-      std::array<std::array<Shares, 3>, kCorners> shares;
-      Eigen::Matrix<double, 3 * kCorners, 1> motion;
-      for (int corner = 0; corner < kCorners; ++corner) {
-        shares[at(corner)] = sharesOf(corners[at(corner)]);
-        motion.segment<3>(3 * corner) = moved[at(corners[at(corner)])];
+      const int count = static_cast<int>(hessian.rows()) / 3;
+      std::array<std::array<Shares, 3>, kMostReached> shares;
+      Eigen::VectorXd motion = Eigen::VectorXd::Zero(hessian.rows());
+      for (int i = 0; i < count; ++i) {
+        if (nodes[at(i)] < 0) continue;
+        shares[at(i)] = sharesOf(nodes[at(i)]);
+        motion.segment<3>(3 * i) = moved[at(nodes[at(i)])];
       }
-      const Eigen::Matrix<double, 3 * kCorners, 1> force = hessian * motion;
-      for (int i = 0; i < kCorners; ++i) {
+      const Eigen::VectorXd force = hessian * motion;
+      for (int i = 0; i < count; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
           for (const Share& row : shares[at(i)][at(axis)]) {
             carried[row.unknown] += row.weight * force[3 * i + axis];
           }
         }
-        for (int j = 0; j < kCorners; ++j) {
+        for (int j = 0; j < count; ++j) {
           add(shares[at(i)], shares[at(j)], hessian.block<3, 3>(3 * i, 3 * j));
         }
       }

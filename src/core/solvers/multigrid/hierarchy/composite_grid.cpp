@@ -268,6 +268,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
     if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());
     level_cells = std::move(to.cells);
+    findReaches(level_cells);
     beside = to.nodes_beside;
     const LevelGrid coarse = to.grid;
     transfers_.push_back({grid, std::move(to)});

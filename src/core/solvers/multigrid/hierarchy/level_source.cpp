@@ -190,6 +190,7 @@ void listCoarse(LevelSource& fine, LevelSource& coarse) {
   to.box = evenAround(covered, kBesideCut, coarse.whole());
   const auto is_beside = [&](const std::array<int, 3>& place) { return !hasCell(covered, place); };
   addUncut(coarse, to.box, coarse.whole().low, to.grid, is_beside, to.cells);
+  findReaches(to.cells);
 }
 
 }  // namespace

@@ -32,6 +32,20 @@ inline bool hasCell(const GridBox& points, const std::array<int, 3>& place) {
   return true;
 }
 
+// The same by other numbers of the nodes, without neighbors of which a node has none (-1).
+template <typename EntryOf>
+std::shared_ptr<const CellReach> reachAt(const std::shared_ptr<const CellReach>& reach,
+                                         EntryOf entry_of) {
+  if (reach == nullptr) return nullptr;
+  auto renumbered = std::make_shared<CellReach>(*reach);
+  for (std::size_t i = 0; i < kBeyond; ++i) {
+    int& node = renumbered->nodes[i];
+    if (node >= 0) node = entry_of(node);
+    if (node < 0) renumbered->side[i / kFaceNodes] = 0;
+  }
+  return renumbered;
+}
+
 // A cell of the finest level; `entry_of` a node: its entry there. Moduli in `modulus` (Pa).
 template <typename EntryOf>
 LevelCell levelCellOf(const ElasticModel& model, const Cell& cell, double modulus,
@@ -43,11 +57,13 @@ LevelCell levelCellOf(const ElasticModel& model, const Cell& cell, double modulu
   level_cell.bulk = moduli.bulk / modulus;
   level_cell.stiffening = moduli.stiffening;
   if (cell.fill != nullptr) {
-    level_cell.fill = levelFill(*cell.fill, level_cell.shear / cell.share());
+    level_cell.fill =
+        levelFill(*cell.fill, level_cell.shear / cell.share(), level_cell.bulk / cell.share());
   }
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     level_cell.nodes[corner] = entry_of(cell.nodes[corner]);
   }
+  level_cell.reach = reachAt(cell.reach, entry_of);
   return level_cell;
 }
 
@@ -69,6 +85,7 @@ class PartEntries {
   LevelCell operator()(LevelCell cell) const {
     for (std::size_t axis = 0; axis < 3; ++axis) cell.place[axis] -= low_[axis];
     for (int& node : cell.nodes) node = (*this)(node);
+    cell.reach = reachAt(cell.reach, [this](int node) { return has(node) ? (*this)(node) : -1; });
     return cell;
   }
   NodeShares operator()(NodeShares shares) const {
@@ -77,6 +94,16 @@ class PartEntries {
   }
 
  private:
+  bool has(int entry) const {
+    if (entry >= whole_.beside) return true;
+    const std::array<int, 3> place = whole_.placeOf(entry);
+    bool in_part = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      in_part = in_part && place[axis] >= low_[axis] && place[axis] - low_[axis] < part_.size[axis];
+    }
+    return in_part;
+  }
+
   const LevelGrid& whole_;
   std::array<int, 3> low_;
   const LevelGrid& part_;

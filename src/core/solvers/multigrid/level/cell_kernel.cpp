@@ -1,6 +1,7 @@
 #include "solvers/multigrid/level/cell_kernel.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "solvers/multigrid/level/cell_block.h"
 #include "solvers/multigrid/level/filled_block.h"
@@ -141,6 +142,17 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   }
 }
 
+// Calls visit(axis, r, the corner before it, node) for the nodes that the cell reaches.
+template <typename Real, typename Visit>
+ROBOT_TISSUE_INLINE void forReached(const FilledCell<Real>& cell, const Visit& visit) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int side = cell.reach.side[at(axis)];
+    for (int r = 0; side != 0 && r < kFaceNodes; ++r) {
+      visit(axis, r, faceCorner(axis, side, r), cell.reach.nodes[at(kFaceNodes * axis + r)]);
+    }
+  }
+}
+
 template <typename V>
 ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
                                         const FilledCell<typename V::Real>* cells, int count) {
@@ -150,11 +162,13 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   typename FilledBlock<V>::Fill fill;
   block.shear = block.bulk = block.exponent = L{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
-  for (auto* values : {&fill.centroid, &fill.places, &fill.pairs, &fill.bending,
-                       &fill.between_parts, &fill.box.sides[0], &fill.box.sides[1]}) {
+  for (auto* values : {&fill.centroid, &fill.pairs, &fill.between_parts, &fill.side,
+                       &fill.box.sides[0], &fill.box.sides[1]}) {
     for (L& value : *values) value = L{};
   }
+  for (L& value : fill.bending) value = L{};
   fill.twisting = L{};
+  std::memset(block.beyond, 0, sizeof block.beyond);
   for (int cell = 0; cell < count; ++cell) {
     const auto& of = cells[cell];
     block.shear[cell] = of.shear;
@@ -162,9 +176,8 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
     block.exponent[cell] = of.stiffening;
     for (int axis = 0; axis < 3; ++axis) {
       fill.centroid[axis][cell] = of.centroid[at(axis)];
-      fill.places[axis][cell] = of.places[at(axis)];
       fill.pairs[axis][cell] = of.pairs[at(axis)];
-      fill.bending[axis][cell] = of.bending[at(axis)];
+      fill.side[axis][cell] = Real(of.reach.side[at(axis)]);
       fill.between_parts[axis][cell] = of.between_parts[at(axis)];
       fill.box.sides[0][axis][cell] = Real(-2) * of.low[at(axis)];
       fill.box.sides[1][axis][cell] = Real(-2) * of.high[at(axis)];
@@ -172,12 +185,21 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
         block.mode[corner][axis][cell] = grid.displacement[at(axis)][of.nodes[at(corner)]];
       }
     }
+    for (std::size_t part = 0; part < of.bending.size(); ++part) {
+      fill.bending[part][cell] = of.bending[part];
+    }
     fill.twisting[cell] = of.twisting;
+    forReached(of, [&](int a0, int r, int before, int node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Real* moved = grid.displacement[at(axis)];
+        block.beyond[a0][r][axis][cell] = moved[node] - moved[of.nodes[at(before)]];
+      }
+    });
   }
   block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
-  L stiffness[kCorners][kSymmetric];
+  L stiffness[kMostReached][kSymmetric];
   L(*const asked)[kSymmetric] = grid.findsStiffness() ? stiffness : nullptr;
   if (grid.stiffening == nullptr) {
     block.template solveFill<false>(fill, asked);
@@ -194,6 +216,18 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
         grid.lower_stiffness[part][sum] += stiffness[corner][part][cell];
       }
     }
+    forReached(cells[cell], [&](int a0, int r, int before, int) {
+      const int place = kFaceNodes * a0 + r;
+      const int sum = cells[cell].sums_beyond[at(place)];
+      const int sum_before = cells[cell].sums[at(before)];
+      for (int axis = 0; axis < 3; ++axis) {
+        grid.lower[at(axis)][sum] -= block.beyond[a0][r][axis][cell];
+        grid.lower[at(axis)][sum_before] += block.beyond[a0][r][axis][cell];
+      }
+      for (std::size_t part = 0; part < kSymmetric && grid.findsStiffness(); ++part) {
+        grid.lower_stiffness[part][sum] += stiffness[kCorners + place][part][cell];
+      }
+    });
   }
 }
 

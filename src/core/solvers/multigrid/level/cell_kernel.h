@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 
+#include "material/fill_law.h"
 #include "robot_tissue/core/cells.h"
 #include "simd/lanes.h"
 #include "simd/symmetric_kernel.h"
@@ -72,10 +73,11 @@ void addLoose(const CellGrid<double>& grid, const LooseCell<double>* cells, int 
 // One that is filled in part (core/material/fill_law.h; pairs by the axis that they leave out).
 template <typename Real>
 struct FilledCell : LooseCell<Real> {
+  CellReach reach;                         // by entries
+  std::array<int, kBeyond> sums_beyond{};  // where the sums on what it reaches are; < 0: none
   std::array<Real, 3> centroid{};
-  std::array<Real, 3> places{};
   std::array<Real, 3> pairs{};
-  std::array<Real, 3> bending{};
+  std::array<Real, kSecond*(kSecond + 1) / 2> bending{};  // lower triangle by rows
   Real twisting = 0;
   std::array<Real, 3> between_parts{};  // of a coarse cell: variance of its parts' centroids
   std::array<Real, 3> low{}, high{};    // the box at whose corners the barrier is

@@ -17,13 +17,19 @@ std::array<Real, 3> rounded(const Vec3& values) {
 }
 
 template <typename Real>
-FilledCell<Real> filledCell(const LooseCell<Real>& cell, const LevelFill& fill) {
+FilledCell<Real> filledCell(const LooseCell<Real>& cell, const LevelFill& fill,
+                            const CellReach* reach) {
   FilledCell<Real> filled;
   static_cast<LooseCell<Real>&>(filled) = cell;
   filled.centroid = rounded<Real>(fill.law.centroid);
-  filled.places = rounded<Real>(fill.law.places);
   filled.pairs = rounded<Real>(fill.law.pairs);
-  filled.bending = rounded<Real>(fill.law.bending);
+  auto next = filled.bending.begin();
+  for (int row = 0; row < kSecond; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      *next++ = static_cast<Real>(fill.law.bending(row, column));
+    }
+  }
+  if (reach != nullptr) filled.reach = *reach;
   filled.twisting = static_cast<Real>(fill.law.twisting);
   filled.between_parts = rounded<Real>(fill.between_parts);
   filled.low = rounded<Real>(fill.law.low);
@@ -80,9 +86,12 @@ void CellOperator<Real>::place(const std::vector<LevelCell>& cells) {
     if (cell.fill == nullptr) {
       loose_.push_back(loose);
     } else {
-      filled_.push_back(filledCell(loose, *cell.fill));
+      filled_.push_back(filledCell(loose, *cell.fill, cell.reach.get()));
     }
     for (const int node : cell.nodes) sum_of[at(node)] = 0;
+    for (int i = 0; cell.reach != nullptr && i < kBeyond; ++i) {
+      if (cell.reach->nodes[at(i)] >= 0) sum_of[at(cell.reach->nodes[at(i)])] = 0;
+    }
   }
   if (!loose_.empty() || !filled_.empty()) placeSums(std::move(sum_of));
 }
@@ -103,6 +112,12 @@ void CellOperator<Real>::placeSums(std::vector<int> sum_of) {
   };
   std::for_each(loose_.begin(), loose_.end(), place);
   std::for_each(filled_.begin(), filled_.end(), place);
+  for (FilledCell<Real>& cell : filled_) {
+    for (std::size_t i = 0; i < kBeyond; ++i) {
+      const int node = cell.reach.nodes[i];
+      cell.sums_beyond[i] = node < 0 ? kNoSum : sum_of[at(node)];
+    }
+  }
 }
 
 template <typename Real>

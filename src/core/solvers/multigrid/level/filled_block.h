@@ -14,10 +14,18 @@ struct FilledBlock : Block<V> {
 
   // As FilledCell.
   struct Fill {
-    L centroid[3], places[3], pairs[3], bending[3], between_parts[3];
+    L centroid[3], pairs[3], between_parts[3];
+    L bending[kSecond * (kSecond + 1) / 2];  // FillLaw::bending, the lower triangle by rows
     L twisting;
+    L side[3];  // of CellReach
     PartBox<V> box;
   };
+
+  // Per axis a: of the nodes beyond its face their displacements less those of the corners before
+  // them; then, as `mode`, the energy's gradients in them.
+  L beyond[3][kFaceNodes][3];
+  L squares[3][3];      // q_aa
+  L bends[kSecond][3];  // half the derivative of I1 by q_ab, in the order of SecondSlopes
 
   using Block<V>::mode;
   using Block<V>::a;
@@ -33,7 +41,6 @@ struct FilledBlock : Block<V> {
 
   // From modes about the cell's middle to those whose means are over the fill:
   //   m_a - 2 (m_ab c_b + m_ac c_c) + 4 m_abc p_bc,   m_ab - 2 m_abc c_c,   m_abc
-  // with c and p in m_a times the fill's `places`
   // (sign 1), or back (sign -1).
   template <int kSign>
   ROBOT_TISSUE_INLINE void shiftModes(const Fill& fill) {
@@ -45,8 +52,7 @@ struct FilledBlock : Block<V> {
         const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
         const L bent =
             mode[pairMode(c)][axis] * fill.centroid[b] + mode[pairMode(b)][axis] * fill.centroid[c];
-        mode[1 << a0][axis] -=
-            kTwo * fill.places[a0] * bent - Real(2) * kTwo * fill.pairs[a0] * twist;
+        mode[1 << a0][axis] -= kTwo * bent - Real(2) * kTwo * fill.pairs[a0] * twist;
       }
       if (kSign > 0) shiftPairs(fill, kTwo, axis);
     }
@@ -67,12 +73,84 @@ struct FilledBlock : Block<V> {
         const int a0 = (c + 1) % 3, b = (c + 2) % 3;
         twist += Real(4) * fill.pairs[c] * mode[1 << c][axis] -
                  Real(2) * fill.centroid[c] * mode[pairMode(c)][axis];
-        mode[pairMode(c)][axis] -=
-            Real(2) * (fill.centroid[b] * fill.places[a0] * mode[1 << a0][axis] +
-                       fill.centroid[a0] * fill.places[b] * mode[1 << b][axis]);
+        mode[pairMode(c)][axis] -= Real(2) * (fill.centroid[b] * mode[1 << a0][axis] +
+                                              fill.centroid[a0] * mode[1 << b][axis]);
       }
       mode[7][axis] = twist;
     }
+  }
+
+  // Mean over the fill of the shape functions of a face's corners, that face across the axis.
+  ROBOT_TISSUE_INLINE static void findShares(const Fill& fill, int a0, L (&share)[kFaceNodes]) {
+    const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
+    for (int r = 0; r < kFaceNodes; ++r) {
+      const Real s_b = Real((r & 1) != 0 ? 1 : -1), s_c = Real((r & 2) != 0 ? 1 : -1);
+      share[r] = Real(0.5) * (s_b * fill.centroid[b] + s_c * fill.centroid[c]) +
+                 s_b * s_c * fill.pairs[a0] + Real(0.25);
+    }
+  }
+
+  // From m_a over the fill to where its centroid is along a, F e_a + c_a q_aa, with
+  //   q_aa = sum of the differences beyond the face times their shares, + side m_a
+  ROBOT_TISSUE_INLINE void reachOut(const Fill& fill) {
+    for (int a0 = 0; a0 < 3; ++a0) {
+      L share[kFaceNodes];
+      findShares(fill, a0, share);
+      for (int axis = 0; axis < 3; ++axis) {
+        L& q = squares[a0][axis];
+        q = fill.side[a0] * mode[1 << a0][axis];
+        for (int r = 0; r < kFaceNodes; ++r) q += share[r] * beyond[a0][r][axis];
+        mode[1 << a0][axis] -= fill.centroid[a0] * q;
+      }
+    }
+  }
+
+  ROBOT_TISSUE_INLINE void reachBack(const Fill& fill) {
+    for (int a0 = 0; a0 < 3; ++a0) {
+      for (int axis = 0; axis < 3; ++axis) {
+        mode[1 << a0][axis] += fill.centroid[a0] * squares[a0][axis];
+      }
+    }
+  }
+
+  // The transpose of reachOut, for a quarter of the gradients in m_a; those in the nodes beyond.
+  ROBOT_TISSUE_INLINE void spreadGradients(const Fill& fill) {
+    for (int a0 = 0; a0 < 3; ++a0) {
+      L share[kFaceNodes];
+      findShares(fill, a0, share);
+      for (int axis = 0; axis < 3; ++axis) {
+        const L push = Real(0.25) * a * bends[a0][axis] - fill.centroid[a0] * mode[1 << a0][axis];
+        mode[1 << a0][axis] += fill.side[a0] * push;
+        for (int r = 0; r < kFaceNodes; ++r) beyond[a0][r][axis] = Real(4) * share[r] * push;
+      }
+    }
+  }
+
+  // Of FillLaw::bending in the lower triangle.
+  static constexpr int place(int row, int column) {
+    return row < column ? place(column, row) : row * (row + 1) / 2 + column;
+  }
+
+  ROBOT_TISSUE_INLINE static L weighed(const Fill& fill, const L (&second)[kSecond], int row) {
+    L sum = fill.bending[place(row, 0)] * second[0];
+    for (int column = 1; column < kSecond; ++column) {
+      sum += fill.bending[place(row, column)] * second[column];
+    }
+    return sum;
+  }
+
+  // Of one component of the places: finds `bends`, returns its part of I1.
+  ROBOT_TISSUE_INLINE L bend(const Fill& fill, int axis) {
+    L q[kSecond], sum{};
+    for (int a0 = 0; a0 < 3; ++a0) {
+      q[a0] = squares[a0][axis];
+      q[3 + a0] = Real(2) * mode[pairMode(a0)][axis];
+    }
+    for (int row = 0; row < kSecond; ++row) {
+      bends[row][axis] = weighed(fill, q, row);
+      sum += bends[row][axis] * q[row];
+    }
+    return sum;
   }
 
   ROBOT_TISSUE_INLINE void measureFill(const Fill& fill) {
@@ -86,11 +164,12 @@ struct FilledBlock : Block<V> {
       slight += strained + Real(6.0) * bent + Real(9.0) * mode[7][axis] * mode[7][axis];
     }
     shiftModes<1>(fill);
+    reachOut(fill);
     for (int axis = 0; axis < 3; ++axis) {
       for (int a0 = 0; a0 < 3; ++a0) {
-        const L &along = mode[1 << a0][axis], &pair = mode[pairMode(a0)][axis];
-        invariant += along * along + Real(4) * fill.bending[a0] * pair * pair;
+        invariant += mode[1 << a0][axis] * mode[1 << a0][axis];
       }
+      invariant += bend(fill, axis);
       invariant += Real(16) * fill.twisting * mode[7][axis] * mode[7][axis];
     }
     this->measureMeans();
@@ -103,15 +182,15 @@ struct FilledBlock : Block<V> {
       mode[0][axis] = L{};
       for (int a0 = 0; a0 < 3; ++a0) {
         mode[1 << a0][axis] = one * mode[1 << a0][axis] + pull * cofactor[a0][axis];
-        mode[pairMode(a0)][axis] *= a * fill.bending[a0];
+        mode[pairMode(a0)][axis] = Real(0.5) * a * bends[3 + a0][axis];
       }
       mode[1 << axis][axis] -= push;
       mode[7][axis] *= Real(4) * a * fill.twisting;
     }
   }
 
-  // As `solve`, of cells that are filled in part. `of_corners`: bounds of the stiffness of
-  // each corner (SymmetricField); null: not asked for.
+  // As `solve`, of cells that are filled in part. `stiffness`: bounds of that of each corner and
+  // node reached (SymmetricField); null: not asked for.
   template <bool kStiffens>
   ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L (*of_corners)[6]) {
     this->transform();
@@ -123,12 +202,16 @@ struct FilledBlock : Block<V> {
     if constexpr (kStiffens) this->template stiffenByStrain<true>();
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
     const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
-    if (of_corners != nullptr) stiffenCorners(fill, of_corners);
+    if (of_corners != nullptr) {
+      stiffenCorners(fill, of_corners);
+      stiffenReached(fill, of_corners);
+    }
     L push[kCorners][3];
     for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
     L over_fill[kCorners][3];
     if (squeezed) {
       std::memcpy(over_fill, mode, sizeof mode);
+      reachBack(fill);
       shiftModes<-1>(fill);
       CellBarrier<V, PartBox<V>>{mode, shear, this->per_greatest, fill.box}.add(push, of_corners);
       std::memcpy(mode, over_fill, sizeof mode);
@@ -141,6 +224,7 @@ struct FilledBlock : Block<V> {
     for (int s = 1; has_parts && s < kCorners; ++s) {
       for (int axis = 0; axis < 3; ++axis) mode[s][axis] += over_fill[s][axis];
     }
+    spreadGradients(fill);
     shiftGradients(fill);
     for (int s = 1; squeezed && s < kCorners; ++s) {
       for (int axis = 0; axis < 3; ++axis) mode[s][axis] += push[s][axis];
@@ -152,24 +236,46 @@ struct FilledBlock : Block<V> {
   // directions.
   ROBOT_TISSUE_INLINE void stiffenCorners(const Fill& fill, L (*of_corners)[6]) const {
     for (int corner = 0; corner < kCorners; ++corner) {
-      L shape = fill.twisting, widest{}, slopes[3];
+      L shape = fill.twisting, widest{}, slopes[3], second[kSecond];
       Real side[3];
       for (int axis = 0; axis < 3; ++axis) side[axis] = Real((corner >> axis & 1) != 0 ? 1 : -1);
       for (int a0 = 0; a0 < 3; ++a0) {
         const int b = (a0 + 1) % 3, c = (a0 + 2) % 3;
         const L beside = side[b] * fill.centroid[b] + side[c] * fill.centroid[c];
-        const L strain =
-            Real(0.5) * fill.places[a0] * beside + side[b] * side[c] * fill.pairs[a0] + Real(0.25);
-        const L bend = side[a0] * fill.centroid[a0] + Real(0.5);
-        slopes[a0] = side[a0] * strain;
-        shape += strain * strain + fill.bending[a0] * bend * bend;
-        widest = greater(widest, strain * strain);
+        const L share = Real(0.5) * beside + side[b] * side[c] * fill.pairs[a0] + Real(0.25);
+        second[3 + a0] = side[b] * side[c] * (side[a0] * fill.centroid[a0] + Real(0.5));
+        // 1 on the far side of the cell, -2 on the neighbor's.
+        const L square = -share * (Real(0.5) * fill.side[a0] * fill.side[a0] +
+                                   Real(1.5) * side[a0] * fill.side[a0]);
+        slopes[a0] = side[a0] * share + fill.centroid[a0] * square;
+        second[a0] = square;
+        shape += slopes[a0] * slopes[a0];
+        widest = greater(widest, slopes[a0] * slopes[a0]);
       }
-      this->findStiffness(a * shape + Real(16) * of_strain * widest, slopes, of_corners[corner]);
-      L(&here)[6] = of_corners[corner];
-      const L around = (here[0] + here[1] + here[2]) * Real(level_tuning::kAround);
-      for (int axis = 0; axis < 3; ++axis) here[axis] += around;
+      for (int row = 0; row < kSecond; ++row) shape += weighed(fill, second, row) * second[row];
+      stiffenNode(shape, widest, slopes, of_corners[corner]);
     }
+  }
+
+  ROBOT_TISSUE_INLINE void stiffenReached(const Fill& fill, L (*of_nodes)[6]) const {
+    for (int a0 = 0; a0 < 3; ++a0) {
+      L share[kFaceNodes];
+      findShares(fill, a0, share);
+      for (int r = 0; r < kFaceNodes; ++r) {
+        L slopes[3] = {L{}, L{}, L{}};
+        slopes[a0] = fill.centroid[a0] * share[r];
+        const L widest = slopes[a0] * slopes[a0];
+        stiffenNode(widest + fill.bending[place(a0, a0)] * share[r] * share[r], widest, slopes,
+                    of_nodes[kCorners + kFaceNodes * a0 + r]);
+      }
+    }
+  }
+
+  ROBOT_TISSUE_INLINE void stiffenNode(const L& shape, const L& widest, const L (&slopes)[3],
+                                       L (&here)[6]) const {
+    this->findStiffness(a * shape + Real(16) * of_strain * widest, slopes, here);
+    const L around = (here[0] + here[1] + here[2]) * Real(level_tuning::kAround);
+    for (int axis = 0; axis < 3; ++axis) here[axis] += around;
   }
 };
 

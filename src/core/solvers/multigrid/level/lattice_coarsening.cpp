@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "lattice/cell_reach.h"
 #include "robot_tissue/core/disjoint_sets.h"
 #include "solvers/multigrid/level/cell_kernel.h"
 
@@ -48,11 +49,11 @@ class FillSum {
   }
 
   // Null: eight full parts that are alike.
-  std::shared_ptr<const LevelFill> fill() const {
+  std::shared_ptr<const LevelFill> fill(double bulk_by_shear) const {
     if (is_full_ && count_ == kCorners) return nullptr;
     auto fill = std::make_shared<LevelFill>();
     fill->integrals = sum_;
-    fill->law = fillLaw(fillOf(sum_));
+    fill->law = fillLaw(fillOf(sum_), bulk_by_shear);
     const Vec3& centroid = fill->law.centroid;
     fill->between_parts = (squares_ / sum_.volume - centroid.cwiseAbs2()).cwiseMax(0.0);
     return fill;
@@ -138,7 +139,7 @@ class Coarsener {
       if (root == static_cast<int>(i)) {
         piece = static_cast<int>(result_.cells.size());
         const Place& place = cells_[at(first[i])].place;
-        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0, 0, 0, {}});
+        result_.cells.push_back({{place[0] / 2, place[1] / 2, place[2] / 2}, {}, 0, 0, 0, {}, {}});
         fills_.emplace_back();
       } else {
         piece = piece_of_[at(first[root])];
@@ -153,7 +154,7 @@ class Coarsener {
     for (std::size_t piece = first_piece; piece < result_.cells.size(); ++piece) {
       LevelCell& coarse = result_.cells[piece];
       if (coarse.stiffening > 0.0) coarse.stiffening /= coarse.shear;  // the mean by stiffness
-      if (has_fills_) coarse.fill = fills_[piece - first_piece].fill();
+      if (has_fills_) coarse.fill = fills_[piece - first_piece].fill(coarse.bulk / coarse.shear);
     }
     fills_.clear();
     is_alone_.resize(result_.cells.size(), result_.cells.size() - first_piece == 1 ? 1 : 0);
@@ -351,11 +352,36 @@ class Coarsener {
 
 }  // namespace
 
-std::shared_ptr<const LevelFill> levelFill(const CellFill& fill, double shear_where_full) {
+std::shared_ptr<const LevelFill> levelFill(const CellFill& fill, double shear_where_full,
+                                           double bulk_where_full) {
   auto level = std::make_shared<LevelFill>();
   level->integrals = integralsOf(fill).scaledBy(shear_where_full);
-  level->law = fillLaw(fill);
+  level->law = fillLaw(fill, bulk_where_full / shear_where_full);
   return level;
+}
+
+void findReaches(std::vector<LevelCell>& cells) {
+  std::unordered_map<int, std::vector<const LevelCell*>> cells_at;
+  for (const LevelCell& cell : cells) {
+    if (cell.fill == nullptr) continue;
+    for (const int node : cell.nodes) cells_at[node];
+  }
+  if (cells_at.empty()) return;
+  for (const LevelCell& cell : cells) {
+    for (const int node : cell.nodes) {
+      const auto asked = cells_at.find(node);
+      if (asked != cells_at.end()) asked->second.push_back(&cell);
+    }
+  }
+  const auto visit_cells = [&cells_at](int node, const auto& visit) {
+    const auto& here = cells_at[node];
+    std::find_if(here.begin(), here.end(),
+                 [&visit](const LevelCell* cell) { return visit(cell->nodes); });
+  };
+  for (LevelCell& cell : cells) {
+    if (cell.fill == nullptr) continue;
+    cell.reach = reachAmong(cell.nodes, cell.fill->law.centroid, visit_cells);
+  }
 }
 
 LevelGrid::LevelGrid(const std::array<int, 3>& points)

@@ -21,8 +21,9 @@ struct LevelFill {
   Vec3 between_parts = Vec3::Zero();  // of a coarse cell: variance of its parts' centroids (h^2)
 };
 
-// Of a cell of this shear modulus (E0), filled so where it is full.
-std::shared_ptr<const LevelFill> levelFill(const CellFill& fill, double shear_where_full);
+// Of a cell of these moduli (E0), filled so where it is full.
+std::shared_ptr<const LevelFill> levelFill(const CellFill& fill, double shear_where_full,
+                                           double bulk_where_full);
 
 // A cell of a level: its lowest grid point, its corners' entries in the level's fields, moduli.
 struct LevelCell {
@@ -32,6 +33,8 @@ struct LevelCell {
   double bulk = 0.0;
   double stiffening = 0.0;                // of the law `fung` (material/elastic_law.h)
   std::shared_ptr<const LevelFill> fill;  // null: full
+  // Of one that is filled in part, as Cell::reach, by entries; null: no neighbor.
+  std::shared_ptr<const CellReach> reach;
 };
 
 // Entries of a level's fields: the grid's points, x fastest; planes are padded, so that the lanes
@@ -79,6 +82,9 @@ struct Coarsening {
 };
 
 Coarsening coarsened(const LevelGrid& fine, const std::vector<LevelCell>& cells, int entries);
+
+// Gives the cells that are filled in part what they reach of each other, and of all others.
+void findReaches(std::vector<LevelCell>& cells);
 
 // The coarse grid points around a fine place, with their weights.
 NodeShares sharesAround(const LevelGrid& coarse, const std::array<int, 3>& fine_place);
