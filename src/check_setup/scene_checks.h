@@ -14,8 +14,7 @@ namespace robot_tissue {
 // Says nothing of what the scene's own checks refuse.
 Findings checkUnits(const YAML::Node& scene, const std::string& folder);
 
-// Walls against the lattice's spacing: what one cell spans, and what is oblique to the grid, does
-// not bend as it should.
+// Walls against the lattice's spacing: what one cell spans does not bend as it should.
 Findings checkWalls(const TissueConfig& tissue);
 
 // What the node asks for that the runner does not.

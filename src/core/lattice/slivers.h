@@ -9,11 +9,10 @@
 
 namespace robot_tissue {
 
-// Raises the spread of cells that are filled in part. One beside a full cell, with a node in
-// common, bends no more easily than that; a thinner cell of spread l lends 12 l^2, and what holds
-// less than the sliver as much less. The nodes of a sliver that no other cell has would otherwise
-// be all but loose against bending, and relaxation takes ten times the cycles. A wall by itself
-// stays nearly as thin as it is. Nodes are below `node_count`.
+// A full cell lends its spread to cells beside it that are filled in part, those with a node in
+// common (CellFill::lent). It is itself too soft against bending, and they make up for that
+// (material/fill_law.h); the nodes of a sliver that no other cell has would also be all but loose
+// otherwise. A wall without full cells stays as thin as it is. Nodes are below `node_count`.
 void stiffenSlivers(std::vector<Cell>& cells, int node_count);
 
 // A fill as it was before that.
