@@ -16,6 +16,7 @@ namespace robot_tissue {
 // nodes that the cell reaches (reachedNodes), if any.
 using CellHessian =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMostReached, 3 * kMostReached>;
+using CellVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMostReached, 1>;  // likewise
 
 // What a node feels that moves while all others stand.
 struct NodeBalance {

@@ -72,13 +72,13 @@ class Assembly {
       const CellHessian hessian = convex ? positivePart(exact) : exact;
       const int count = static_cast<int>(hessian.rows()) / 3;
       std::array<std::array<Shares, 3>, kMostReached> shares;
-      Eigen::VectorXd motion = Eigen::VectorXd::Zero(hessian.rows());
+      CellVector motion = CellVector::Zero(hessian.rows());
       for (int i = 0; i < count; ++i) {
         if (nodes[at(i)] < 0) continue;
         shares[at(i)] = sharesOf(nodes[at(i)]);
         motion.segment<3>(3 * i) = moved[at(nodes[at(i)])];
       }
-      const Eigen::VectorXd force = hessian * motion;
+      const CellVector force = hessian * motion;
       for (int i = 0; i < count; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
           for (const Share& row : shares[at(i)][at(axis)]) {

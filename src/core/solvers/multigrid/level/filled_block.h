@@ -189,10 +189,10 @@ struct FilledBlock : Block<V> {
     }
   }
 
-  // As `solve`, of cells that are filled in part. `stiffness`: bounds of that of each corner and
-  // node reached (SymmetricField); null: not asked for.
+  // As `solve`, of cells that are filled in part. `of_nodes`: bounds of the stiffness of each
+  // corner and node reached (SymmetricField); null: not asked for.
   template <bool kStiffens>
-  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L (*of_corners)[6]) {
+  ROBOT_TISSUE_INLINE void solveFill(const Fill& fill, L (*of_nodes)[6]) {
     this->transform();
     for (int s = 1; s < kCorners; ++s) {
       for (L& component : mode[s]) component *= Real(0.25);
@@ -202,9 +202,9 @@ struct FilledBlock : Block<V> {
     if constexpr (kStiffens) this->template stiffenByStrain<true>();
     constexpr Real kSlight = Real(0.5 * 0.33 * 0.33);
     const bool squeezed = anyAbove0(slight > kSlight ? shear : L{});
-    if (of_corners != nullptr) {
-      stiffenCorners(fill, of_corners);
-      stiffenReached(fill, of_corners);
+    if (of_nodes != nullptr) {
+      stiffenCorners(fill, of_nodes);
+      stiffenReached(fill, of_nodes);
     }
     L push[kCorners][3];
     for (auto& corner : push) corner[0] = corner[1] = corner[2] = L{};
@@ -213,7 +213,7 @@ struct FilledBlock : Block<V> {
       std::memcpy(over_fill, mode, sizeof mode);
       reachBack(fill);
       shiftModes<-1>(fill);
-      CellBarrier<V, PartBox<V>>{mode, shear, this->per_greatest, fill.box}.add(push, of_corners);
+      CellBarrier<V, PartBox<V>>{mode, shear, this->per_greatest, fill.box}.add(push, of_nodes);
       std::memcpy(mode, over_fill, sizeof mode);
     }
     if (has_parts) {

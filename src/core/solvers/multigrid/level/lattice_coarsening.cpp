@@ -374,9 +374,9 @@ void findReaches(std::vector<LevelCell>& cells) {
     }
   }
   const auto visit_cells = [&cells_at](int node, const auto& visit) {
-    const auto& here = cells_at[node];
-    std::find_if(here.begin(), here.end(),
-                 [&visit](const LevelCell* cell) { return visit(cell->nodes); });
+    for (const LevelCell* cell : cells_at.at(node)) {
+      if (visit(cell->nodes)) return;
+    }
   };
   for (LevelCell& cell : cells) {
     if (cell.fill == nullptr) continue;
