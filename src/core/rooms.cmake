@@ -32,6 +32,7 @@ robot_tissue_room(surface
   PUBLIC curved_surface.h surface.h
   FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h
     held_surface.cpp held_surface.h hinges.cpp hinges.h mesh_surface.cpp mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h
+    smooth_carriers.cpp smooth_carriers.h
     surface.cpp)
 robot_tissue_room(membrane
   USES base geometry config surface

@@ -241,9 +241,12 @@ std::vector<std::uint8_t> StickingContacts::heldNodes(const Tissue& tissue) cons
 std::vector<StickingContacts::Carrier> StickingContacts::supportOf(
     const Contact& contact, const TissueSurface& surface) const {
   std::vector<Carrier> support;
+  double above_zero = 1.0;  // sum of the weights that are; those below are beside the piece
   for (const auto& [node, weight] : carriersAt(surface, contact.place)) {
-    if (taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
+    if (weight < 0.0) above_zero -= weight;
+    if (weight > 0.0 && taken_[at(node)] == 0) support.push_back({node, weight, 1.0});
   }
+  for (Carrier& carrier : support) carrier.weight /= above_zero;
   return support;
 }
 

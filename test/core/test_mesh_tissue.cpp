@@ -86,7 +86,8 @@ TEST_P(BothModels, BoxAsAMeshIsTheSameTissue) {
     const Vec3 difference = mesh.state().displacement[node] - box.state().displacement[node];
     EXPECT_NEAR(difference.norm(), 0.0, 1e-12 * 0.005);
   }
-  EXPECT_NEAR(mesh.lastReport().volume_ratio, box.lastReport().volume_ratio, 0.002);
+  // The mesh's surface is round where the box's is straight from node to node.
+  EXPECT_NEAR(mesh.lastReport().volume_ratio, box.lastReport().volume_ratio, 0.006);
 }
 
 TEST(MeshTissue, SurfaceFollowsALinearDeformationExactly) {
@@ -105,6 +106,25 @@ TEST(MeshTissue, SurfaceFollowsALinearDeformationExactly) {
   deform(surface, displacement, vertices);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     EXPECT_NEAR((vertices[i] - gradient * mesh.vertices[i]).norm(), 0.0, 1e-15);
+  }
+}
+
+// Between nodes, too: a dent is quadratic, and points that lag behind it are dented too far.
+TEST(MeshTissue, SurfaceFollowsAQuadraticDeformationExactly) {
+  const TriangleMesh block = boxMesh(Vec3(0.003, -0.021, 0.0), Vec3(0.051, 0.022, 0.037));
+  const TissueConfig config = tissueOf(block);
+  const Lattice lattice(config);
+  const TriangleMesh mesh = refined(block, kSpacing);
+  const TissueSurface surface = meshSurface(lattice, lattice.restState(), mesh);
+  const auto moved = [](const Vec3& x) -> Vec3 {
+    return {3.0 * x.x() * x.x() + x.y() * x.z(), 2.0 * x.z() * x.z() - x.x() * x.y(),
+            x.x() * x.x() - 4.0 * x.y() * x.y()};
+  };
+  std::vector<Vec3> displacement, vertices;
+  for (const int node : nodesOf(lattice)) displacement.push_back(moved(lattice.restPosition(node)));
+  deform(surface, displacement, vertices);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    EXPECT_NEAR((vertices[i] - surface.rest[i] - moved(surface.rest[i])).norm(), 0.0, 1e-15);
   }
 }
 

@@ -1,7 +1,9 @@
 // A probe against tissue whose shape is a mesh: a ball, of which no node is on the surface.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "../core/mesh_fixtures.h"
 #include "pipeline_fixtures.h"
@@ -78,6 +80,39 @@ TEST_F(PressedBall, CutUnderLoadStaysClosedAndTheToolStaysOut) {
   EXPECT_LT(tool().max_penetration, 0.05 * kBallCell);
   go(0.005, -0.001);
   EXPECT_EQ(greatestDisplacement(pipeline_.tissue()), 0.0);
+}
+
+// The force of a ball of two spacings, pressed by four tenths of one into a block whose face stands
+// `off` spacings over a plane of nodes; what is far off shifts the grid.
+double pressedBlock(double off, double spacing) {
+  const Vec3 half(0.05, 0.05, 0.0);
+  const Vec3 far(0.2, 0.0, 0.0), size = Vec3::Constant(spacing) + off * spacing * Vec3(0.3, 0.7, 1);
+  TissueConfig tissue;
+  tissue.mesh = std::make_shared<const TriangleMesh>(
+      joined(boxMesh(Vec3(0, 0, -0.1) - half, half), boxMesh(far, far + size)));
+  tissue.spacing = spacing;
+  tissue.material.young_modulus = 1e4;
+  tissue.material.poisson_ratio = 0.45;
+  tissue.fixed.push_back({Vec3(-1, -1, -1), Vec3(1, 1, -0.05)});
+  tissue.fixed.push_back({Vec3(0.1, -1, -1), Vec3(1, 1, 1)});
+  SolverConfig solver;
+  solver.tolerance = 1e-3;
+  Pipeline pipeline(tissue, solver, {probe()});
+  walk(pipeline, {Vec3(0, 0, kRadius + 0.0001)}, {Vec3(0, 0, kRadius - 0.002)});
+  return pipeline.report().tools.front().force_on_tool.z();
+}
+
+// A dent of less than two spacings: with points that are carried trilinearly a quarter too much.
+TEST(PressedMesh, BlockFeelsTheSameWhereverItsFaceStands) {
+  const double fine = pressedBlock(0.3, 0.0025);
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  for (const double off : {-0.5, -0.25, 0.0, 0.25, 0.5, 1.0}) {
+    const double force = pressedBlock(off, 0.005);
+    EXPECT_NEAR(force, fine, 0.12 * fine) << off;
+    least = std::min(least, force);
+    greatest = std::max(greatest, force);
+  }
+  EXPECT_LT(greatest, 1.08 * least);
 }
 
 }  // namespace

@@ -99,6 +99,8 @@ class CellSet {
   }
   // The cell at the place that owns the corner; null where a cut left none.
   const Cell* owner(int place, int corner) const;
+  // The one that has that side of the cell in common with it, node by node; null: none.
+  const Cell* across(const Cell& cell, int axis, int side) const;
   // The cells that have the node as a corner, first .. last - 1; at most 8 that own it.
   const Meeting* first(int node) const { return meetings_.data() + first_[at(node)]; }
   const Meeting* last(int node) const { return meetings_.data() + first_[at(node) + 1]; }

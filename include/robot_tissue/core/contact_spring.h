@@ -32,7 +32,7 @@
 namespace robot_tissue {
 
 struct ContactSpring {
-  std::vector<NodeWeight> carriers;    // weights sum to 1, of a thread to 0
+  std::vector<NodeWeight> carriers;    // weights, also below zero, sum to 1, of a thread to 0
   Vec3 rest = Vec3::Zero();            // of the point (m)
   Vec3 normal = Vec3::Zero();          // unit, from the tool into the tissue
   Vec3 plane_point = Vec3::Zero();     // a point of the tool's surface (m)
@@ -86,7 +86,8 @@ Vec3 turningForceOf(const ContactSpring& spring, const std::vector<Vec3>& displa
 
 double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacement);  // T (N)
 
-// Of a spring that counts with the sizes of its weights, |w|: their sum; 1 of a point in contact.
+// Of a spring that counts with the sizes of its weights, |w|: their sum; 1 where none is below
+// zero.
 double endsOf(const ContactSpring& spring);
 
 // On the tissue (N): of the shape, or of the point where it would be.

@@ -36,7 +36,7 @@ TissueSurface extractSurface(const Lattice& lattice, const LatticeState& state);
 Box deform(const TissueSurface& surface, const std::vector<Vec3>& displacement,
            std::vector<Vec3>& vertices);
 
-// What carries the point: nodes ascending, weights > 0.
+// What carries the point: nodes ascending, weights not zero.
 std::vector<NodeWeight> carriersAt(const TissueSurface& surface, const SurfacePoint& point);
 
 // The vertex that the point is; -1 when it is none.

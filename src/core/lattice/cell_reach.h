@@ -8,6 +8,17 @@
 
 namespace robot_tissue {
 
+// Whether the side of `corners` is that of `other` opposite to it.
+inline bool haveInCommon(const std::array<int, kCorners>& corners, int axis, int side,
+                         const std::array<int, kCorners>& other) {
+  for (int r = 0; r < kFaceNodes; ++r) {
+    if (other[at(faceCorner(axis, -side, r))] != corners[at(faceCorner(axis, side, r))]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // The nodes opposite a face, of a cell with this one in common; false: there is none.
 // `visit_cells(node, visit)` calls visit(corners) for all cells that have the node, until it
 // returns true.
@@ -16,10 +27,8 @@ bool findBeyond(const std::array<int, kCorners>& corners, int axis, int side,
                 const VisitCells& visit_cells, int* beyond) {
   bool found = false;
   visit_cells(corners[at(faceCorner(axis, side, 0))], [&](const std::array<int, kCorners>& other) {
-    found = true;
-    for (int r = 0; r < kFaceNodes; ++r) {
-      found =
-          found && other[at(faceCorner(axis, -side, r))] == corners[at(faceCorner(axis, side, r))];
+    found = haveInCommon(corners, axis, side, other);
+    for (int r = 0; found && r < kFaceNodes; ++r) {
       beyond[r] = other[at(faceCorner(axis, side, r))];
     }
     return found;

@@ -105,6 +105,15 @@ const Cell* CellSet::owner(int place, int corner) const {
   return nullptr;
 }
 
+const Cell* CellSet::across(const Cell& cell, int axis, int side) const {
+  const int node = cell.nodes[at(faceCorner(axis, side, 0))];
+  for (const Meeting* met = first(node); met != last(node); ++met) {
+    const Cell& other = cells_[met->cell];
+    if (haveInCommon(cell.nodes, axis, side, other.nodes)) return &other;
+  }
+  return nullptr;
+}
+
 Vec3 restPosition(const Lattice& lattice, const CellSet& cells, int node) {
   return lattice.restPosition(cells.original(node));
 }

@@ -72,10 +72,13 @@ double tensionOf(const ContactSpring& thread, const std::vector<Vec3>& displacem
 }
 
 double endsOf(const ContactSpring& spring) {
-  if (!spring.is_thread) return 1.0;
+  bool all_above_zero = true;
   double sum = 0.0;
-  for (const NodeWeight& carrier : spring.carriers) sum += std::abs(carrier.weight);
-  return sum;
+  for (const NodeWeight& carrier : spring.carriers) {
+    all_above_zero = all_above_zero && carrier.weight > 0.0;
+    sum += std::abs(carrier.weight);
+  }
+  return all_above_zero ? 1.0 : sum;  // without the sum's rounding
 }
 
 Vec3 forceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kCarrierBytes = 4 + 8;
 constexpr std::size_t kLeastThreadBytes = 4 + 1 + 2 * (2 * 3 * 8 + 4 + kCarrierBytes) + 3 * 8 + 1;
+constexpr double kMostWeight = 2.0;  // no point has a greater one, or one below minus that
 constexpr double kOffOne = 1e-9;  // of the sum of weights; rounding is far less
 
 void putEnd(const SutureThread::End& end, ByteWriter& out) {
@@ -34,7 +35,9 @@ SutureThread::End takeEnd(int node_count, ByteReader& in) {
     carrier.node = takeNode(node_count, in);
     carrier.weight = takeNumber(in);
     if (carrier.node <= last) failAsDamaged("the nodes of a suture are out of order");
-    if (!(carrier.weight > 0.0)) failAsDamaged("a weight of a suture is not above zero");
+    if (carrier.weight == 0.0 || !(std::abs(carrier.weight) <= kMostWeight)) {
+      failAsDamaged("a weight of a suture is none");
+    }
     sum += carrier.weight;
     last = carrier.node;
   }

@@ -21,10 +21,10 @@ void CellParts::findFirst(std::size_t places) {
   std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
 }
 
-void CellParts::addCarriers(const Hold& hold, CarrierLists& to) const {
-  if (stand_ins_.empty()) return to.push_back(CarrierRange(hold.begin(), hold.end()));
+void CellParts::addCarriers(const CarrierRange& carriers, CarrierLists& to) const {
+  if (stand_ins_.empty()) return to.push_back(carriers);
   std::map<int, double> weights;
-  for (const NodeWeight& carrier : hold) {
+  for (const NodeWeight& carrier : carriers) {
     if (!cells_->isGhost(carrier.node)) {
       weights[carrier.node] += carrier.weight;
       continue;

@@ -48,7 +48,8 @@ class CellParts {
   std::size_t count() const { return cells_->all().size(); }
 
   // Without ghosts where the model has none.
-  void addCarriers(const Hold& hold, CarrierLists& to) const;
+  void addCarriers(const CarrierRange& carriers, CarrierLists& to) const;
+  const CellSet& cells() const { return *cells_; }
 
  private:
   bool hasAll(const Lattice& lattice, const LatticeState& state) const;

@@ -10,7 +10,9 @@
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
 #include "surface/hinges.h"
+#include "surface/mesh_surface.h"
 #include "surface/octant_grid.h"
+#include "surface/smooth_carriers.h"
 
 namespace robot_tissue {
 namespace {
@@ -268,14 +270,23 @@ class CutMeshBuilder {
     return parts_.owner(cell, cornerOf(cell, a)) == parts_.owner(cell, cornerOf(cell, b));
   }
 
-  // What carries a point, as the material in the octant has it.
-  Hold holdOf(int point, const HalfIndex& octant) {
+  // The cell, or part of one, that a point is in, as the material in the octant has it.
+  const Cell& partAround(int point, const HalfIndex& octant) {
     int cell = cellOf(octant);
     if (cell < 0 || !parts_.isOpen(cell)) {
       const int around = cellAroundPoint(point);  // whichever octant asks
       if (cell < 0 || !parts_.isOpen(around)) cell = around;
     }
-    return carriersIn(lattice_, *parts_.owner(cell, cornerOf(cell, octant)), pieces_.vertex(point));
+    return *parts_.owner(cell, cornerOf(cell, octant));
+  }
+
+  Vec3 placeIn(const Cell& part, int point) const {
+    return robot_tissue::placeIn(lattice_, part, pieces_.vertex(point));
+  }
+
+  Hold holdOf(int point, const HalfIndex& octant) {
+    const Cell& part = partAround(point, octant);
+    return trilinearCarriers(part, placeIn(part, point));
   }
 
   using Nodes = std::array<int, kCorners>;  // ascending, the first ones -1 where there are fewer
@@ -290,9 +301,10 @@ class CutMeshBuilder {
 
   // The surface's vertex for a point. Where it hangs on the same nodes it is the same.
   int vertex(int point, const HalfIndex& octant) {
-    const Hold hold = holdOf(point, octant);
+    const Cell& part = partAround(point, octant);
+    const Vec3 place = placeIn(part, point);
     std::array<int, 1 + kCorners> key{point};
-    const Nodes nodes = nodesOf(hold);
+    const Nodes nodes = nodesOf(trilinearCarriers(part, place));
     std::copy(nodes.begin(), nodes.end(), key.begin() + 1);
     const auto [known, is_new] = vertices_.try_emplace(key, 0);
     if (is_new) {
@@ -301,7 +313,8 @@ class CutMeshBuilder {
                                   ? mesh_.vertices[at(point)]
                                   : placed(pieces_.vertex(point)));
       places_.push_back(2.0 * pieces_.vertex(point));
-      parts_.addCarriers(hold, surface_.carriers);
+      const std::vector<NodeWeight> carriers = smoothCarriers(parts_.cells(), part, place);
+      parts_.addCarriers({carriers.data(), carriers.data() + carriers.size()}, surface_.carriers);
       surface_.node.push_back(-1);
     }
     return known->second;

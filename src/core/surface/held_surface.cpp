@@ -63,7 +63,7 @@ class Holding {
     if (!(whole_ > 0.0)) return held;
     held.middle = center_ + moment_ / whole_;
     for (const auto& [node, weight] : weights_) {
-      if (weight > 0.0) held.carriers.push_back({node, weight / whole_});
+      if (weight != 0.0) held.carriers.push_back({node, weight / whole_});
     }
     return held;
   }

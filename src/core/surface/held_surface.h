@@ -8,7 +8,7 @@
 namespace robot_tissue {
 
 struct HeldSurface {
-  std::vector<NodeWeight> carriers;  // nodes ascending; weights above 0, 1 in all; empty: nothing
+  std::vector<NodeWeight> carriers;  // nodes ascending; weights not 0, 1 in all; empty: nothing
   Vec3 middle = Vec3::Zero();        // of what is held, at rest (m)
 };
 

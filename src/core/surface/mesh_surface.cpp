@@ -5,13 +5,13 @@
 #include <limits>
 
 #include "surface/cut_mesh_surface.h"
+#include "surface/smooth_carriers.h"
 
 namespace robot_tissue {
 namespace {
 
-// A node's weight (1) that is none, and spacings between two cells that are equally near. More:
-// points beside a cell's side are carried by that side alone. Rounding.
-constexpr double kNoWeight = 1e-9;
+// Spacings between two cells that are equally near. Rounding.
+constexpr double kAsNear = 1e-9;
 
 Vec3 inCell(const Lattice& lattice, const Cell& cell, const Vec3& point) {
   const auto& lowest = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes.front());
@@ -37,7 +37,7 @@ int nearestCell(const Lattice& lattice, const Vec3& point) {
         const Cell& cell = lattice.cells()[at(index)];
         const Vec3 place = inCell(lattice, cell, point);
         const double distance = (place - clamped(place)).norm();
-        const bool as_near = nearest >= 0 && std::abs(distance - shortest) <= kNoWeight;
+        const bool as_near = nearest >= 0 && std::abs(distance - shortest) <= kAsNear;
         if (as_near ? cell.share() > lattice.cells()[at(nearest)].share() : distance < shortest) {
           nearest = index;
           shortest = distance;
@@ -56,21 +56,8 @@ int cellAround(const Lattice& lattice, const Vec3& point) {
   return nearest;
 }
 
-Hold carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point) {
-  const Vec3 place = clamped(inCell(lattice, cell, point));
-  Hold hold;
-  double sum = 0.0;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    double weight = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      weight *= (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
-    }
-    if (weight <= kNoWeight) continue;
-    hold.add(cell.nodes[at(corner)], weight);
-    sum += weight;
-  }
-  for (int i = 0; i < hold.count; ++i) hold.carriers[at(i)].weight /= sum;
-  return hold;
+Vec3 placeIn(const Lattice& lattice, const Cell& cell, const Vec3& point) {
+  return clamped(inCell(lattice, cell, point));
 }
 
 TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
@@ -83,9 +70,8 @@ TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
   surface.opened.assign(mesh.triangles.size(), 0);
   for (const Vec3& vertex : mesh.vertices) {
     const Vec3 point = (vertex - lattice.bounds().min()) / lattice.spacing();
-    const Cell& cell = lattice.cells()[at(cellAround(lattice, point))];
-    const Hold hold = carriersIn(lattice, cell, point);
-    surface.carriers.push_back(CarrierRange(hold.begin(), hold.end()));
+    const Cell& cell = *state.cells->owner(cellAround(lattice, point), 0);
+    surface.carriers.push_back(smoothCarriers(*state.cells, cell, placeIn(lattice, cell, point)));
   }
   return surface;
 }

@@ -1,8 +1,8 @@
 // The displayed surface of a tissue that a mesh gives (own): the mesh itself, which the cells
 // carry.
 //
-// A vertex hangs on the corners of the cell it is in, with trilinear weights, so it moves as the
-// material around it. On a common face both cells give the same weights.
+// A vertex moves as the material around it (smoothCarriers), by the corners of the cell it is in
+// and of the cells beside that.
 #pragma once
 
 #include "robot_tissue/core/lattice.h"
@@ -18,8 +18,8 @@ int cellAround(const Lattice& lattice, const Vec3& point);
 // The same, -1 where there is none next to it.
 int nearestCell(const Lattice& lattice, const Vec3& point);
 
-// Of a cell's or part's corners, for a point as above; a corner without weight is left out.
-Hold carriersIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
+// Where a point as above is in the cell, or nearest to it there: 0 to 1 along each axis.
+Vec3 placeIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
 
 // `mesh`: closed, of which the lattice was made, with edges of a spacing at most.
 //

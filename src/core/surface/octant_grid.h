@@ -58,7 +58,9 @@ class OctantGrid {
   // What holds the point, which is of the octant. Nodes ascending, ghosts for nodes that are lost.
   Hold holdOf(const Octant& octant, const HalfPoint& point) const;
   // Without ghosts where the model has none.
-  void addCarriers(const Hold& hold, CarrierLists& to) const { parts_.addCarriers(hold, to); }
+  void addCarriers(const Hold& hold, CarrierLists& to) const {
+    parts_.addCarriers({hold.begin(), hold.end()}, to);
+  }
   // Material is on both sides of the side, and the same nodes hold it there.
   bool isJoined(const Octant& octant, int side) const;
   Vec3 placeOf(const Octant& octant, const HalfPoint& point) const;  // at rest (m)

@@ -246,7 +246,7 @@ std::vector<NodeWeight> carriersAt(const TissueSurface& surface, const SurfacePo
   }
   std::vector<NodeWeight> carriers;
   for (const auto& [node, weight] : weights) {
-    if (weight > 0.0) carriers.push_back({node, weight});
+    if (weight != 0.0) carriers.push_back({node, weight});
   }
   return carriers;
 }
