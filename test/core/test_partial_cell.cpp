@@ -55,7 +55,9 @@ class PartialCell : public testing::TestWithParam<std::tuple<int, double>> {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
     gradient(2, 2) = std::get<1>(GetParam());
     gradient(0, 2) = 0.2;
-    reach_.side = {1, -1, 0};
+    reach_.weigh(0, 0.7, 0.0, 0.5);
+    reach_.weigh(1, 0.2, 0.3, 0.0);
+    reach_.weigh(2, 0.4, 0.2, 0.7);
     const Corners corners = shaken(deformedBy(gradient), 0.1 * kSpacing, 7);
     Shaker shaker(8);
     for (int node = 0; node < kMostReached; ++node) {
@@ -71,17 +73,18 @@ class PartialCell : public testing::TestWithParam<std::tuple<int, double>> {
     return {kModuli, kSpacing, shape, &fill_, &reach_};
   }
   bool isThere(int node) const {
-    return node < kCorners || reach_.side[at((node - kCorners) / kFaceNodes)] != 0;
+    return node < kCorners || reach_.has((node - kCorners) / kFaceNodes);
   }
   // At rest.
   Vec3 placeOf(int node) const {
     if (node < kCorners) return restOf(node);
-    const int axis = (node - kCorners) / kFaceNodes, side = reach_.side[at(axis)];
-    return restOf(faceCorner(axis, side, node % kFaceNodes)) + side * kSpacing * Vec3::Unit(axis);
+    const int side = (node - kCorners) / kFaceNodes;
+    return restOf(faceCorner(side, node % kFaceNodes)) +
+           (side % 2 == 0 ? -kSpacing : kSpacing) * Vec3::Unit(side / 2);
   }
 
   CellFill fill_;
-  CellReach reach_;  // up along x, down along y, of no cell along z
+  CellReach reach_;  // up along x, down along y, both ways along z
   Reached shape_;
 };
 

@@ -25,23 +25,39 @@ struct LatticeState;
 
 constexpr int kCorners = 8;
 
-// Beyond the faces of a cell that is filled in part: the nodes opposite the face that it has in
-// common with a cell beside it, one neighbor an axis. What they and the cell's own corners tell of
-// d2x/dx_a^2 (material/fill_law.h) is the cell's, too.
+// Beyond the faces of a cell that is filled in part: the nodes opposite the faces that it has in
+// common with cells beside it, two neighbors an axis at most. What they and the cell's own corners
+// tell of d2x/dx_a^2 (material/fill_law.h) is the cell's, too.
 constexpr int kFaceNodes = 4;
-constexpr int kBeyond = 3 * kFaceNodes;           // four an axis
+constexpr int kSides = 6;                         // number 2 a is down axis a, 2 a + 1 up
+constexpr int kBeyond = kSides * kFaceNodes;      // four a side
 constexpr int kMostReached = kCorners + kBeyond;  // corners first
 
 struct CellReach {
-  std::array<int, 3> side{};  // per axis: up (1) or down (-1) it; 0: there is no neighbor
-  // Node kFaceNodes a + r is the one beyond corner faceCorner(a, side, r) along axis a; -1: none.
+  // Node kFaceNodes side + r is the one beyond corner faceCorner(side, r); -1: none.
   std::array<int, kBeyond> nodes{};
+  // Per side: how much of the d2x/dx_a^2 that the strain takes is by that neighbor; 0: none.
+  std::array<double, kSides> share{};
+
+  bool has(int side) const { return share[at(side)] > 0.0; }
+  // Of the mean of both neighbors' d2x/dx_a^2, and of half their difference: what this side adds.
+  double inMean(int side) const { return !has(side) ? 0.0 : has(side ^ 1) ? 0.5 : 1.0; }
+  double inUneven(int side) const {
+    return !has(side) || !has(side ^ 1) ? 0.0 : side % 2 == 0 ? -0.5 : 0.5;
+  }
+  // Of cells with these shares of h^3 on both sides of one with `own`, 0: of none. A sliver tells
+  // little of its neighbor, and its nodes are held by next to nothing.
+  void weigh(int axis, double own, double below, double above) {
+    const double filled = std::max(own, below + above);
+    share[at(2 * axis)] = below / filled;
+    share[at(2 * axis + 1)] = above / filled;
+  }
 };
 
-// The corner with the bits of r along the axes after `axis`, on that side of the cell.
-constexpr int faceCorner(int axis, int side, int r) {
-  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-  return (side > 0 ? 1 : 0) << axis | (r & 1) << next | (r >> 1 & 1) << last;
+// The corner with the bits of r along the axes after the side's own, on that side of the cell.
+constexpr int faceCorner(int side, int r) {
+  const int axis = side / 2, next = (axis + 1) % 3, last = (axis + 2) % 3;
+  return (side & 1) << axis | (r & 1) << next | (r >> 1 & 1) << last;
 }
 
 struct Cell {
@@ -99,8 +115,8 @@ class CellSet {
   }
   // The cell at the place that owns the corner; null where a cut left none.
   const Cell* owner(int place, int corner) const;
-  // The one that has that side of the cell in common with it, node by node; null: none.
-  const Cell* across(const Cell& cell, int axis, int side) const;
+  // The one that has that side (CellReach) of the cell in common with it; null: none.
+  const Cell* across(const Cell& cell, int side) const;
   // The cells that have the node as a corner, first .. last - 1; at most 8 that own it.
   const Meeting* first(int node) const { return meetings_.data() + first_[at(node)]; }
   const Meeting* last(int node) const { return meetings_.data() + first_[at(node) + 1]; }
@@ -150,16 +166,18 @@ std::array<int, kMostReached> reachedNodes(const AnyCell& cell) {
 }
 
 // Of a cell that is filled in part, `reach` null where it reaches no nodes: what each of
-// reachedNodes adds to dx/dx_a, averaged over the fill, and to d2x/dx_a^2 (1/h, 1/h^2). The second
-// is the difference between the neighbor's dx/dx_a and its own; the first is taken as far towards
-// the neighbor as the fill's centroid is.
+// reachedNodes adds to dx/dx_a, averaged over the fill, and to d2x/dx_a^2 (1/h, 1/h^2). That is
+// the difference between a neighbor's dx/dx_a and its own, of both sides the mean and, as uneven,
+// half the difference; the first is taken where the fill's centroid is, by the neighbors' shares.
 struct ReachedSlopes {
   std::array<Vec3, kMostReached> strain;
   std::array<Vec3, kMostReached> squares;
+  std::array<Vec3, kMostReached> uneven;
 
   ReachedSlopes() {
     strain.fill(Vec3::Zero());
     squares.fill(Vec3::Zero());
+    uneven.fill(Vec3::Zero());
   }
 };
 ReachedSlopes reachedSlopes(const CellFill& fill, const CellReach* reach);

@@ -3,58 +3,41 @@
 
 #include <array>
 #include <memory>
+#include <utility>
 
 #include "robot_tissue/core/cells.h"
 
 namespace robot_tissue {
 
 // Whether the side of `corners` is that of `other` opposite to it.
-inline bool haveInCommon(const std::array<int, kCorners>& corners, int axis, int side,
+inline bool haveInCommon(const std::array<int, kCorners>& corners, int side,
                          const std::array<int, kCorners>& other) {
   for (int r = 0; r < kFaceNodes; ++r) {
-    if (other[at(faceCorner(axis, -side, r))] != corners[at(faceCorner(axis, side, r))]) {
-      return false;
-    }
+    if (other[at(faceCorner(side ^ 1, r))] != corners[at(faceCorner(side, r))]) return false;
   }
   return true;
 }
 
-// The nodes opposite a face, of a cell with this one in common; false: there is none.
-// `visit_cells(node, visit)` calls visit(corners) for all cells that have the node, until it
-// returns true.
-template <typename VisitCells>
-bool findBeyond(const std::array<int, kCorners>& corners, int axis, int side,
-                const VisitCells& visit_cells, int* beyond) {
-  bool found = false;
-  visit_cells(corners[at(faceCorner(axis, side, 0))], [&](const std::array<int, kCorners>& other) {
-    found = haveInCommon(corners, axis, side, other);
-    for (int r = 0; found && r < kFaceNodes; ++r) {
-      beyond[r] = other[at(faceCorner(axis, side, r))];
-    }
-    return found;
-  });
-  return found;
-}
-
-// Along each axis of the neighbor that the fill's centroid is towards, where there is one; else of
-// the one opposite. Null: of none.
-template <typename VisitCells>
-std::shared_ptr<const CellReach> reachAmong(const std::array<int, kCorners>& corners,
-                                            const Vec3& centroid, const VisitCells& visit_cells) {
-  constexpr double kRounding = 1e-6;  // of the spacing
+// Null: of no neighbor. `share`: of h^3, the cell's own. `across(side)`: the neighbor there as a
+// pair of its corners and its share; null corners: there is none.
+template <typename Across>
+std::shared_ptr<const CellReach> reachOf(double share, const Across& across) {
   CellReach reach;
   reach.nodes.fill(-1);
   bool any = false;
   for (int axis = 0; axis < 3; ++axis) {
-    const int towards = centroid[axis] < -kRounding ? -1 : 1;
-    for (const int side : {towards, -towards}) {
-      std::array<int, kFaceNodes> beyond{};
-      if (!findBeyond(corners, axis, side, visit_cells, beyond.data())) continue;
-      reach.side[at(axis)] = side;
-      std::copy(beyond.begin(), beyond.end(), reach.nodes.begin() + kFaceNodes * axis);
+    std::array<double, 2> shares{};
+    for (const int up : {0, 1}) {
+      const int side = 2 * axis + up;
+      const auto& [corners, filled] = across(side);
+      if (corners == nullptr) continue;
       any = true;
-      break;
+      shares[at(up)] = filled;
+      for (int r = 0; r < kFaceNodes; ++r) {
+        reach.nodes[at(kFaceNodes * side + r)] = (*corners)[at(faceCorner(side, r))];
+      }
     }
+    reach.weigh(axis, share, shares[0], shares[1]);
   }
   return any ? std::make_shared<const CellReach>(reach) : nullptr;
 }

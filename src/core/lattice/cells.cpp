@@ -30,21 +30,21 @@ CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> 
 }
 
 void CellSet::findReaches() {
-  const auto visit_cells = [this](int node, const auto& visit) {
-    const Meeting* met = first(node);
-    while (met != last(node) && !visit(cells_[met->cell].nodes)) ++met;
-  };
   bool any = false;
   for (Cell& cell : cells_) {
     if (cell.fill == nullptr) {
       cell.reach.reset();
       continue;
     }
-    std::shared_ptr<const CellReach> reach =
-        reachAmong(cell.nodes, cell.fill->centroid, visit_cells);
+    std::shared_ptr<const CellReach> reach = reachOf(cell.share(), [&](int side) {
+      const Cell* neighbor = across(cell, side);
+      return neighbor == nullptr
+                 ? std::make_pair(static_cast<const std::array<int, kCorners>*>(nullptr), 0.0)
+                 : std::make_pair(&neighbor->nodes, neighbor->share());
+    });
     any = any || reach != nullptr;
     const bool same = reach != nullptr && cell.reach != nullptr &&
-                      reach->side == cell.reach->side && reach->nodes == cell.reach->nodes;
+                      reach->share == cell.reach->share && reach->nodes == cell.reach->nodes;
     if (!same) cell.reach = std::move(reach);
   }
   if (any) listReaching();
@@ -74,23 +74,23 @@ void CellSet::listReaching() {
 // end, else -1.
 ReachedSlopes reachedSlopes(const CellFill& fill, const CellReach* reach) {
   ReachedSlopes slopes;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    const int side = reach == nullptr ? 0 : reach->side[at(axis)];
+  const auto add = [&](int node, int side, double weight) {
+    const int axis = side / 2;
+    slopes.squares[at(node)][axis] += reach->inMean(side) * weight;
+    slopes.uneven[at(node)][axis] += reach->inUneven(side) * weight;
+    slopes.strain[at(node)][axis] += fill.centroid[axis] * reach->share[at(side)] * weight;
+  };
+  for (int side = 0; side < kSides; ++side) {
+    const int axis = side / 2, b = (axis + 1) % 3, c = (axis + 2) % 3;
     for (int r = 0; r < kFaceNodes; ++r) {
       const double s_b = (r & 1) != 0 ? 1.0 : -1.0, s_c = (r & 2) != 0 ? 1.0 : -1.0;
       const double share = 0.25 + 0.5 * (s_b * fill.centroid[b] + s_c * fill.centroid[c]) +
                            s_b * s_c * fill.products(b, c);
-      for (const int end : {-1, 1}) {
-        const std::size_t corner = at(faceCorner(axis, end, r));
-        if (side != 0) slopes.squares[corner][axis] = end == side ? -2.0 * share : share;
-        slopes.strain[corner][axis] =
-            end * share + fill.centroid[axis] * slopes.squares[corner][axis];
-      }
-      if (side == 0) continue;
-      const std::size_t beyond = at(kCorners + kFaceNodes * axis + r);
-      slopes.squares[beyond][axis] = share;
-      slopes.strain[beyond][axis] = fill.centroid[axis] * share;
+      slopes.strain[at(faceCorner(side, r))][axis] += side % 2 == 0 ? -share : share;
+      if (reach == nullptr || !reach->has(side)) continue;
+      add(faceCorner(side, r), side, -2.0 * share);
+      add(faceCorner(side ^ 1, r), side, share);
+      add(kCorners + kFaceNodes * side + r, side, share);
     }
   }
   return slopes;
@@ -105,11 +105,11 @@ const Cell* CellSet::owner(int place, int corner) const {
   return nullptr;
 }
 
-const Cell* CellSet::across(const Cell& cell, int axis, int side) const {
-  const int node = cell.nodes[at(faceCorner(axis, side, 0))];
+const Cell* CellSet::across(const Cell& cell, int side) const {
+  const int node = cell.nodes[at(faceCorner(side, 0))];
   for (const Meeting* met = first(node); met != last(node); ++met) {
     const Cell& other = cells_[met->cell];
-    if (haveInCommon(cell.nodes, axis, side, other.nodes)) return &other;
+    if (haveInCommon(cell.nodes, side, other.nodes)) return &other;
   }
   return nullptr;
 }

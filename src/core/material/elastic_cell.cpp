@@ -81,9 +81,8 @@ ElasticCell::ElasticCell(const Moduli& moduli, double spacing, const Reached& di
     position_[at(corner)] = spacing * restPlace(corner) + displacement[at(corner)];
   }
   for (int beyond = 0; beyond < count_ - kCorners; ++beyond) {
-    const int axis = beyond / kFaceNodes, side = reach->side[at(axis)];
-    const Vec3 rest =
-        restPlace(faceCorner(axis, side, beyond % kFaceNodes)) + side * Vec3::Unit(axis);
+    const int side = beyond / kFaceNodes, way = side % 2 == 0 ? -1 : 1;
+    const Vec3 rest = restPlace(faceCorner(side, beyond % kFaceNodes)) + way * Vec3::Unit(side / 2);
     const std::size_t node = at(kCorners + beyond);
     position_[node] = spacing * rest + displacement[node];
   }
@@ -120,21 +119,24 @@ void ElasticCell::measureFill() {
   Reached weights;
   Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, 3, kSecond> bending = Eigen::Matrix<double, 3, kSecond>::Zero();
+  Eigen::Matrix3d uneven = Eigen::Matrix3d::Zero();
   Vec3 twisting = Vec3::Zero();
   for (std::size_t node = 0; node < at(count_); ++node) {
     const Vec3 place = position_[node] - position_[0];
     weights[node] = slopes[node].strain / spacing_;
     strain += place * slopes[node].strain.transpose();
     bending += place * slopes[node].bending.transpose();
+    uneven += place * slopes[node].uneven.transpose();
     twisting += law.twisting * slopes[node].twisting * place;
   }
   mean_ = determinantOf(weights, strain / spacing_);
   bending *= law.bending;
+  uneven *= law.bending.diagonal().head<3>().asDiagonal();
   invariant_ = 0.0;
   for (std::size_t node = 0; node < at(count_); ++node) {
     Vec3& slope = invariant_slope_[node];
     slope = strain * slopes[node].strain + bending * slopes[node].bending +
-            slopes[node].twisting * twisting;
+            uneven * slopes[node].uneven + slopes[node].twisting * twisting;
     slope /= spacing_ * spacing_;
     invariant_ += slope.dot(position_[node] - position_[0]);
     invariant_own_[node] = 12.0 * invariantBetween(law, slopes[node], slopes[node]);

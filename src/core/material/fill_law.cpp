@@ -82,6 +82,7 @@ std::array<CornerSlopes, kMostReached> cornerSlopes(const CellFill& fill, const 
   for (std::size_t node = 0; node < kMostReached; ++node) {
     slopes[node].strain = reached.strain[node];
     slopes[node].bending.head<3>() = reached.squares[node];
+    slopes[node].uneven = reached.uneven[node];
   }
   for (int corner = 0; corner < kCorners; ++corner) {
     Vec3 side;
@@ -97,8 +98,9 @@ std::array<CornerSlopes, kMostReached> cornerSlopes(const CellFill& fill, const 
 }
 
 double invariantBetween(const FillLaw& law, const CornerSlopes& a, const CornerSlopes& b) {
+  const Vec3 along = law.bending.diagonal().head<3>();
   return a.strain.dot(b.strain) + a.bending.dot(law.bending * b.bending) +
-         law.twisting * a.twisting * b.twisting;
+         a.uneven.dot(along.cwiseProduct(b.uneven)) + law.twisting * a.twisting * b.twisting;
 }
 
 }  // namespace robot_tissue

@@ -3,13 +3,13 @@
 // averaged over the fill:
 //
 //   F e_a = mean of dx/dx_a,   q_ab = d2x/dx_a dx_b at the centroid,   q_abc = d3x/dx_a dx_b dx_c
-//   I1 = sum |F e_a|^2 + sum over i, j of W_ij |q_ij|^2 + w_abc |q_abc|^2
+//   I1 = sum |F e_a|^2 + sum over i, j of W_ij |q_ij|^2 + sum of W_aa |d_a|^2 + w_abc |q_abc|^2
 //
 // i and j are the fill's own axes, the eigenvectors of its covariance.
 //
-// A trilinear cell has no q_aa: those are of the cell and one neighbor along the axis (CellReach),
-// and F e_a is taken as far towards it as the fill's centroid is. A pair of axes has the number of
-// the axis that it leaves out.
+// A trilinear cell has no q_aa: those are of the cell and its two neighbors along the axis
+// (CellReach), q_aa their mean and d_a half their difference, and F e_a is taken where the fill's
+// centroid is. A pair of axes has the number of the axis that it leaves out.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,10 +40,11 @@ struct FillLaw {
 FillLaw fillLaw(const CellFill& fill, double bulk_by_shear);
 
 // What the displacement of a corner, or of a node that the cell reaches (reachedNodes), adds to
-// F e_a, q_aa, q_ab and q_abc (1).
+// F e_a, q_aa, q_ab, d_a and q_abc (1).
 struct CornerSlopes {
   Vec3 strain = Vec3::Zero();
   SecondSlopes bending = SecondSlopes::Zero();
+  Vec3 uneven = Vec3::Zero();
   double twisting = 0.0;
 };
 std::array<CornerSlopes, kMostReached> cornerSlopes(const CellFill& fill, const CellReach* reach);

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kCarrierBytes = 4 + 8;
 constexpr std::size_t kLeastThreadBytes = 4 + 1 + 2 * (2 * 3 * 8 + 4 + kCarrierBytes) + 3 * 8 + 1;
 constexpr double kMostWeight = 2.0;  // no point has a greater one, or one below minus that
-constexpr double kOffOne = 1e-9;  // of the sum of weights; rounding is far less
+constexpr double kOffOne = 1e-9;     // of the sum of weights; rounding is far less
 
 void putEnd(const SutureThread::End& end, ByteWriter& out) {
   out.vec3(end.rest);

@@ -15,11 +15,12 @@ double cornerWeight(int corner, int axis, const Vec3& place) {
   return (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
 }
 
-// u = ... + bend * q along the axis.
-void addBend(const Cell& cell, const Cell& neighbor, int axis, int side, const Vec3& place,
-             double bend, std::vector<NodeWeight>& to) {
+// u = ... + bend * q of that neighbor.
+void addBend(const Cell& cell, const Cell& neighbor, int side, const Vec3& place, double bend,
+             std::vector<NodeWeight>& to) {
+  const int axis = side / 2;
   for (int r = 0; r < kFaceNodes; ++r) {
-    const int near = faceCorner(axis, side, r), far = faceCorner(axis, -side, r);
+    const int near = faceCorner(side, r), far = faceCorner(side ^ 1, r);
     const double weight = bend * cornerWeight(near, (axis + 1) % 3, place) *
                           cornerWeight(near, (axis + 2) % 3, place);
     to.push_back({cell.nodes[at(near)], -2.0 * weight});
@@ -67,15 +68,15 @@ std::vector<NodeWeight> smoothCarriers(const CellSet& cells, const Cell& cell, c
   for (int axis = 0; axis < 3; ++axis) {
     const double bend = 0.5 * place[axis] * (place[axis] - 1.0);
     if (std::abs(bend) <= kNoWeight) continue;
-    const std::array<const Cell*, 2> neighbors = {cells.across(cell, axis, -1),
-                                                  cells.across(cell, axis, 1)};
-    double filled = 0.0;
-    for (const Cell* neighbor : neighbors) filled += neighbor == nullptr ? 0.0 : neighbor->share();
-    filled = std::max(filled, cell.share());
-    for (const int side : {-1, 1}) {
-      const Cell* neighbor = neighbors[side < 0 ? 0 : 1];
-      if (neighbor == nullptr) continue;
-      addBend(cell, *neighbor, axis, side, place, neighbor->share() / filled * bend, all);
+    const Cell* const below = cells.across(cell, 2 * axis);
+    const Cell* const above = cells.across(cell, 2 * axis + 1);
+    CellReach reach;
+    reach.weigh(axis, cell.share(), below == nullptr ? 0.0 : below->share(),
+                above == nullptr ? 0.0 : above->share());
+    for (const int side : {2 * axis, 2 * axis + 1}) {
+      if (!reach.has(side)) continue;
+      const Cell& neighbor = side % 2 == 0 ? *below : *above;
+      addBend(cell, neighbor, side, place, reach.share[at(side)] * bend, all);
     }
   }
   return summed(std::move(all));

@@ -41,7 +41,7 @@ std::shared_ptr<const CellReach> reachAt(const std::shared_ptr<const CellReach>&
   for (std::size_t i = 0; i < kBeyond; ++i) {
     int& node = renumbered->nodes[i];
     if (node >= 0) node = entry_of(node);
-    if (node < 0) renumbered->side[i / kFaceNodes] = 0;
+    if (node < 0) renumbered->share[i / kFaceNodes] = 0.0;
   }
   return renumbered;
 }

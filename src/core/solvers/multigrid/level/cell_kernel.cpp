@@ -142,13 +142,12 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   }
 }
 
-// Calls visit(axis, r, the corner before it, node) for the nodes that the cell reaches.
+// Calls visit(side, r, the corner before it, node) for the nodes that the cell reaches.
 template <typename Real, typename Visit>
 ROBOT_TISSUE_INLINE void forReached(const FilledCell<Real>& cell, const Visit& visit) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const int side = cell.reach.side[at(axis)];
-    for (int r = 0; side != 0 && r < kFaceNodes; ++r) {
-      visit(axis, r, faceCorner(axis, side, r), cell.reach.nodes[at(kFaceNodes * axis + r)]);
+  for (int side = 0; side < kSides; ++side) {
+    for (int r = 0; cell.reach.has(side) && r < kFaceNodes; ++r) {
+      visit(side, r, faceCorner(side, r), cell.reach.nodes[at(kFaceNodes * side + r)]);
     }
   }
 }
@@ -162,8 +161,11 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   typename FilledBlock<V>::Fill fill;
   block.shear = block.bulk = block.exponent = L{};
   for (auto& corner : block.mode) corner[0] = corner[1] = corner[2] = L{};
-  for (auto* values : {&fill.centroid, &fill.pairs, &fill.between_parts, &fill.side,
-                       &fill.box.sides[0], &fill.box.sides[1]}) {
+  for (auto* values :
+       {&fill.centroid, &fill.pairs, &fill.between_parts, &fill.box.sides[0], &fill.box.sides[1]}) {
+    for (L& value : *values) value = L{};
+  }
+  for (auto* values : {&fill.in_strain, &fill.in_mean, &fill.in_uneven}) {
     for (L& value : *values) value = L{};
   }
   for (L& value : fill.bending) value = L{};
@@ -177,7 +179,6 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
     for (int axis = 0; axis < 3; ++axis) {
       fill.centroid[axis][cell] = of.centroid[at(axis)];
       fill.pairs[axis][cell] = of.pairs[at(axis)];
-      fill.side[axis][cell] = Real(of.reach.side[at(axis)]);
       fill.between_parts[axis][cell] = of.between_parts[at(axis)];
       fill.box.sides[0][axis][cell] = Real(-2) * of.low[at(axis)];
       fill.box.sides[1][axis][cell] = Real(-2) * of.high[at(axis)];
@@ -189,10 +190,15 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
       fill.bending[part][cell] = of.bending[part];
     }
     fill.twisting[cell] = of.twisting;
-    forReached(of, [&](int a0, int r, int before, int node) {
+    for (int side = 0; side < kSides; ++side) {
+      fill.in_strain[side][cell] = static_cast<Real>(of.reach.share[at(side)]);
+      fill.in_mean[side][cell] = static_cast<Real>(of.reach.inMean(side));
+      fill.in_uneven[side][cell] = static_cast<Real>(of.reach.inUneven(side));
+    }
+    forReached(of, [&](int side, int r, int before, int node) {
       for (int axis = 0; axis < 3; ++axis) {
         const Real* moved = grid.displacement[at(axis)];
-        block.beyond[a0][r][axis][cell] = moved[node] - moved[of.nodes[at(before)]];
+        block.beyond[side][r][axis][cell] = moved[node] - moved[of.nodes[at(before)]];
       }
     });
   }
@@ -216,13 +222,13 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
         grid.lower_stiffness[part][sum] += stiffness[corner][part][cell];
       }
     }
-    forReached(cells[cell], [&](int a0, int r, int before, int) {
-      const int place = kFaceNodes * a0 + r;
+    forReached(cells[cell], [&](int side, int r, int before, int) {
+      const int place = kFaceNodes * side + r;
       const int sum = cells[cell].sums_beyond[at(place)];
       const int sum_before = cells[cell].sums[at(before)];
       for (int axis = 0; axis < 3; ++axis) {
-        grid.lower[at(axis)][sum] -= block.beyond[a0][r][axis][cell];
-        grid.lower[at(axis)][sum_before] += block.beyond[a0][r][axis][cell];
+        grid.lower[at(axis)][sum] -= block.beyond[side][r][axis][cell];
+        grid.lower[at(axis)][sum_before] += block.beyond[side][r][axis][cell];
       }
       for (std::size_t part = 0; part < kSymmetric && grid.findsStiffness(); ++part) {
         grid.lower_stiffness[part][sum] += stiffness[kCorners + place][part][cell];

@@ -17,14 +17,17 @@ struct FilledBlock : Block<V> {
     L centroid[3], pairs[3], between_parts[3];
     L bending[kSecond * (kSecond + 1) / 2];  // FillLaw::bending, the lower triangle by rows
     L twisting;
-    L side[3];  // of CellReach
+    // Per side of CellReach, 0 of none: what it adds to where F is taken, to q_aa, to d_a.
+    L in_strain[kSides], in_mean[kSides], in_uneven[kSides];
     PartBox<V> box;
   };
 
-  // Per axis a: of the nodes beyond its face their displacements less those of the corners before
-  // them; then, as `mode`, the energy's gradients in them.
-  L beyond[3][kFaceNodes][3];
+  // Per side: of the nodes beyond it their displacements less those of the corners before them;
+  // then, as `mode`, the energy's gradients in them.
+  L beyond[kSides][kFaceNodes][3];
+  L shifts[3][3];       // of dx/dx_a from the middle to the centroid, over c_a
   L squares[3][3];      // q_aa
+  L uneven[3][3];       // d_a; then, as `bends`, half the derivative of I1 by it
   L bends[kSecond][3];  // half the derivative of I1 by q_ab, in the order of SecondSlopes
 
   using Block<V>::mode;
@@ -90,17 +93,27 @@ struct FilledBlock : Block<V> {
     }
   }
 
-  // From m_a over the fill to where its centroid is along a, F e_a + c_a q_aa, with
-  //   q_aa = sum of the differences beyond the face times their shares, + side m_a
+  static constexpr int way(int side) { return side % 2 == 0 ? -1 : 1; }
+
+  // From m_a over the fill to where its centroid is along a, F e_a + c_a q_aa, with a neighbor's
+  //   q_aa = sum of the differences beyond the face times their shares, + way m_a
   ROBOT_TISSUE_INLINE void reachOut(const Fill& fill) {
     for (int a0 = 0; a0 < 3; ++a0) {
       L share[kFaceNodes];
       findShares(fill, a0, share);
       for (int axis = 0; axis < 3; ++axis) {
-        L& q = squares[a0][axis];
-        q = fill.side[a0] * mode[1 << a0][axis];
-        for (int r = 0; r < kFaceNodes; ++r) q += share[r] * beyond[a0][r][axis];
-        mode[1 << a0][axis] -= fill.centroid[a0] * q;
+        L mean{}, half{}, shift{};
+        for (const int side : {2 * a0, 2 * a0 + 1}) {
+          L q = Real(way(side)) * mode[1 << a0][axis];
+          for (int r = 0; r < kFaceNodes; ++r) q += share[r] * beyond[side][r][axis];
+          mean += fill.in_mean[side] * q;
+          half += fill.in_uneven[side] * q;
+          shift += fill.in_strain[side] * q;
+        }
+        squares[a0][axis] = mean;
+        uneven[a0][axis] = half;
+        shifts[a0][axis] = shift;
+        mode[1 << a0][axis] -= fill.centroid[a0] * shift;
       }
     }
   }
@@ -108,7 +121,7 @@ struct FilledBlock : Block<V> {
   ROBOT_TISSUE_INLINE void reachBack(const Fill& fill) {
     for (int a0 = 0; a0 < 3; ++a0) {
       for (int axis = 0; axis < 3; ++axis) {
-        mode[1 << a0][axis] += fill.centroid[a0] * squares[a0][axis];
+        mode[1 << a0][axis] += fill.centroid[a0] * shifts[a0][axis];
       }
     }
   }
@@ -119,9 +132,17 @@ struct FilledBlock : Block<V> {
       L share[kFaceNodes];
       findShares(fill, a0, share);
       for (int axis = 0; axis < 3; ++axis) {
-        const L push = Real(0.25) * a * bends[a0][axis] - fill.centroid[a0] * mode[1 << a0][axis];
-        mode[1 << a0][axis] += fill.side[a0] * push;
-        for (int r = 0; r < kFaceNodes; ++r) beyond[a0][r][axis] = Real(4) * share[r] * push;
+        const L in_mean = Real(0.25) * a * bends[a0][axis];
+        const L in_uneven = Real(0.25) * a * uneven[a0][axis];
+        const L in_shift = fill.centroid[a0] * mode[1 << a0][axis];
+        for (const int side : {2 * a0, 2 * a0 + 1}) {
+          const L push = fill.in_mean[side] * in_mean + fill.in_uneven[side] * in_uneven -
+                         fill.in_strain[side] * in_shift;
+          mode[1 << a0][axis] += Real(way(side)) * push;
+          for (int r = 0; r < kFaceNodes; ++r) {
+            beyond[side][r][axis] = Real(4) * share[r] * push;
+          }
+        }
       }
     }
   }
@@ -139,7 +160,8 @@ struct FilledBlock : Block<V> {
     return sum;
   }
 
-  // Of one component of the places: finds `bends`, returns its part of I1.
+  // Of one component of the places: finds `bends` and what `uneven` becomes, returns its part of
+  // I1.
   ROBOT_TISSUE_INLINE L bend(const Fill& fill, int axis) {
     L q[kSecond], sum{};
     for (int a0 = 0; a0 < 3; ++a0) {
@@ -149,6 +171,11 @@ struct FilledBlock : Block<V> {
     for (int row = 0; row < kSecond; ++row) {
       bends[row][axis] = weighed(fill, q, row);
       sum += bends[row][axis] * q[row];
+    }
+    for (int a0 = 0; a0 < 3; ++a0) {
+      const L half = uneven[a0][axis];
+      uneven[a0][axis] = fill.bending[place(a0, a0)] * half;
+      sum += uneven[a0][axis] * half;
     }
     return sum;
   }
@@ -244,12 +271,17 @@ struct FilledBlock : Block<V> {
         const L beside = side[b] * fill.centroid[b] + side[c] * fill.centroid[c];
         const L share = Real(0.5) * beside + side[b] * side[c] * fill.pairs[a0] + Real(0.25);
         second[3 + a0] = side[b] * side[c] * (side[a0] * fill.centroid[a0] + Real(0.5));
-        // 1 on the far side of the cell, -2 on the neighbor's.
-        const L square = -share * (Real(0.5) * fill.side[a0] * fill.side[a0] +
-                                   Real(1.5) * side[a0] * fill.side[a0]);
-        slopes[a0] = side[a0] * share + fill.centroid[a0] * square;
-        second[a0] = square;
-        shape += slopes[a0] * slopes[a0];
+        L strained{}, bent{}, half{};
+        for (const int end : {2 * a0, 2 * a0 + 1}) {
+          // 1 on the far side of the cell, -2 on the neighbor's.
+          const L square = share * (Real(-0.5) - Real(1.5) * side[a0] * Real(way(end)));
+          strained += fill.in_strain[end] * square;
+          bent += fill.in_mean[end] * square;
+          half += fill.in_uneven[end] * square;
+        }
+        slopes[a0] = side[a0] * share + fill.centroid[a0] * strained;
+        second[a0] = bent;
+        shape += slopes[a0] * slopes[a0] + fill.bending[place(a0, a0)] * half * half;
         widest = greater(widest, slopes[a0] * slopes[a0]);
       }
       for (int row = 0; row < kSecond; ++row) shape += weighed(fill, second, row) * second[row];
@@ -258,15 +290,18 @@ struct FilledBlock : Block<V> {
   }
 
   ROBOT_TISSUE_INLINE void stiffenReached(const Fill& fill, L (*of_nodes)[6]) const {
-    for (int a0 = 0; a0 < 3; ++a0) {
+    for (int side = 0; side < kSides; ++side) {
+      const int a0 = side / 2;
       L share[kFaceNodes];
       findShares(fill, a0, share);
+      const L bent = fill.bending[place(a0, a0)] * (fill.in_mean[side] * fill.in_mean[side] +
+                                                    fill.in_uneven[side] * fill.in_uneven[side]);
       for (int r = 0; r < kFaceNodes; ++r) {
         L slopes[3] = {L{}, L{}, L{}};
-        slopes[a0] = fill.centroid[a0] * share[r];
+        slopes[a0] = fill.centroid[a0] * fill.in_strain[side] * share[r];
         const L widest = slopes[a0] * slopes[a0];
-        stiffenNode(widest + fill.bending[place(a0, a0)] * share[r] * share[r], widest, slopes,
-                    of_nodes[kCorners + kFaceNodes * a0 + r]);
+        stiffenNode(widest + bent * share[r] * share[r], widest, slopes,
+                    of_nodes[kCorners + kFaceNodes * side + r]);
       }
     }
   }

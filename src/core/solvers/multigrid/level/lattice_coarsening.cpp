@@ -373,14 +373,16 @@ void findReaches(std::vector<LevelCell>& cells) {
       if (asked != cells_at.end()) asked->second.push_back(&cell);
     }
   }
-  const auto visit_cells = [&cells_at](int node, const auto& visit) {
-    for (const LevelCell* cell : cells_at.at(node)) {
-      if (visit(cell->nodes)) return;
-    }
-  };
   for (LevelCell& cell : cells) {
     if (cell.fill == nullptr) continue;
-    cell.reach = reachAmong(cell.nodes, cell.fill->law.centroid, visit_cells);
+    cell.reach = reachOf(cell.shear, [&](int side) {
+      for (const LevelCell* other : cells_at.at(cell.nodes[at(faceCorner(side, 0))])) {
+        if (haveInCommon(cell.nodes, side, other->nodes)) {
+          return std::make_pair(&std::as_const(other->nodes), other->shear);
+        }
+      }
+      return std::make_pair(static_cast<const std::array<int, kCorners>*>(nullptr), 0.0);
+    });
   }
 }
 
