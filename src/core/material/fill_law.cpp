@@ -30,17 +30,21 @@ double raised(double spread, double lent) { return std::max(spread, std::sqrt(sp
 
 // W_ij. Across a slice, axis 0, and along it the strain's change counts that is a bending of the
 // slice, with E / 2 = mu (1 + nu); what is left to hold the other second derivatives is taken from
-// that, as bending has those, too. Of a full cell all are 1/12.
+// that, as bending has those, too. Of a full cell all are 1/12. From a slice to that, bending goes
+// evenly: what the other terms lack there is `between`, none of a rod, whose two normals are alike.
 Eigen::Matrix3d ownWeights(const CellFill& fill, double bulk_by_shear) {
   constexpr double kLeast = elastic_law::kLeastBending / 12.0;
   const double spread = raised(fill.spread[0], fill.lent);
   const double firm = 1.0 + poissonRatioOf(bulk_by_shear);
   const Vec3 thin = (fill.spread[0] * fill.spread.cwiseInverse()).cwiseAbs2();
+  const double both_long = thin[1] * thin[2];
+  const double flat = thin[2] < 1.0 ? (1.0 - thin[1]) / (1.0 - thin[2]) : 0.0;
   Eigen::Matrix3d weights;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const double both = thin[i] * thin[j], sum = thin[i] + thin[j];
-      const double bending = spread * (firm * (sum - 2.0 * both) + thin[1] * thin[2] * both) -
+      const double between = (i == 0) == (j == 0) ? 0.0 : (1.0 - both_long) * flat * both;
+      const double bending = spread * (firm * (sum - 2.0 * both) + both_long * both + between) -
                              (i == j ? 0.0 : 0.5 * kLeast * std::abs(thin[i] - thin[j]));
       weights(i, j) = std::max(bending, kLeast);
     }
