@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "robot_tissue/core/mesh_walls.h"
@@ -11,15 +12,18 @@
 namespace robot_tissue {
 namespace {
 
+constexpr double kRounding = 1e-9;  // of the spacing
 constexpr double kNone = std::numeric_limits<double>::infinity();
-// How much too far a wall bends (1): one that is thinner than a spacing by kThin of the spacing
-// over its thickness, the most over angles and places of the grid; a lone layer of whole cells by
-// Poisson's ratio. Of thin_walls (doc/accuracy.md), whose 22 degrees are the worst.
-constexpr double kThin = 0.25;
-constexpr double kThinnest = 1.0 / 3.0;  // spacings: below that the law's floor makes them firmer
-constexpr double kThinShare = 0.05;      // of the surface: less is not told. Chosen
+// How far walls bend over how far they should, at least and at most over angles and places of the
+// grid: `thin_walls` (doc/data/thin_walls.csv), which measured these thicknesses (spacings).
+struct Bends {
+  double thickness, least, most;
+};
+constexpr Bends kBends[] = {
+    {0.3, 0.49, 0.82}, {0.5, 0.71, 1.28}, {0.7, 0.83, 1.35}, {1.0, 0.97, 1.21}};
+constexpr double kThinShare = 0.05;  // of the surface: less is not told. Chosen
 
-std::string percentText(double share) { return numberText(std::round(100.0 * share)) + " %"; }
+std::string percentText(double share) { return numberText(std::round(100.0 * share)); }
 std::string mmText(double length) { return numberText(std::round(1e4 * length) / 10.0) + " mm"; }
 
 struct Walls {
@@ -28,7 +32,7 @@ struct Walls {
 };
 
 void lookAt(const WallSample& wall, double spacing, Walls& walls) {
-  if (wall.thickness < spacing * (1.0 + 1e-9)) {
+  if (wall.thickness < spacing * (1.0 + kRounding)) {
     walls.thin_share += wall.area;
     walls.thinnest = std::min(walls.thinnest, wall.thickness);
   }
@@ -48,12 +52,32 @@ Walls wallsOf(const TissueConfig& tissue) {
   return walls;
 }
 
+// Between those measured; below them the law's floor makes walls firmer, with the thickness
+// squared.
+Bends bendsOf(double thickness) {
+  const Bends* above = std::begin(kBends);
+  if (thickness <= above->thickness) {
+    const double share = std::pow(thickness / above->thickness, 2);
+    return {thickness, share * above->least, share * above->most};
+  }
+  while (above + 1 != std::end(kBends) && above->thickness < thickness) ++above;
+  const Bends& below = *(above - 1);
+  const double share =
+      std::min(1.0, (thickness - below.thickness) / (above->thickness - below.thickness));
+  const auto between = [share](double low, double high) { return low + share * (high - low); };
+  return {thickness, between(below.least, above->least), between(below.most, above->most)};
+}
+
 WallRemark thinWalls(const Walls& walls, const TissueConfig& tissue) {
-  const double by_thickness = kThin / std::max(walls.thinnest / tissue.spacing, kThinnest);
-  const double too_far = std::max(tissue.material.poisson_ratio, by_thickness);
+  Bends bends = bendsOf(walls.thinnest / tissue.spacing);
+  // A lone layer of whole cells bends by the shear modulus alone (doc/model.md).
+  if (bends.thickness > 1.0 - kRounding) {
+    bends.most = std::max(bends.most, 1.0 + tissue.material.poisson_ratio);
+  }
   return {percentText(walls.thin_share) +
-              " of the walls are no thicker than a spacing, the thinnest " +
-              mmText(walls.thinnest) + ": they may bend up to " + percentText(too_far) + " too far",
+              " % of the walls are no thicker than a spacing, the thinnest " +
+              mmText(walls.thinnest) + ": they bend " + percentText(bends.least) + " to " +
+              percentText(bends.most) + " % as far as they should",
           "tissue.spacing: " + numberText(0.5 * walls.thinnest) + " or less"};
 }
 

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       "thickness_h,degrees,rolled,method,least,median,greatest,cycles_median,cycles_most,not_ok\n");
   const std::pair<double, double> turns[] = {{0, 0}, {22, 0}, {45, 0}, {0, 22}, {0, 45}, {45, 35}};
   for (const auto& [degrees, rolled] : turns) {
-    for (const double thickness : {0.5, 1.0, 1.5, 2.5, 4.0}) {
+    for (const double thickness : {0.3, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0}) {
       const Strip strip = {thickness, std::max(24.0, 10.0 * thickness), degrees, rolled};
       Random random;
       std::vector<double> ratios;

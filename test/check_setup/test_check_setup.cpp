@@ -122,7 +122,7 @@ TEST_F(CheckSetup, ThinObliqueWallsAreMeasured) {
                         "\n  material: {young_modulus: 10000.0}\n"
                         "  fixed: [{min: [-1, -1, -1], max: [1, 1, -0.03]}]\n";
   EXPECT_EQ(check(kHead + shape + "\n  spacing: 0.005" + rest), kHasWarnings) << err_;
-  EXPECT_TRUE(says("up to 50 % too far")) << out_;
+  EXPECT_TRUE(says("bend 71 to 128 % as far")) << out_;
   EXPECT_TRUE(says("tissue.spacing: 0.00125")) << out_;
   EXPECT_NE(check(kHead + shape + "\n  spacing: 0.002" + rest), kCannotRun) << out_ << err_;
   EXPECT_FALSE(says("walls")) << out_;

@@ -60,10 +60,13 @@ TEST(WallRemarks, TellThinWallsWithTheirNumber) {
   const auto thin = wallRemarks(tissueOf(sheet(0.005, 0.0), 0.005));
   ASSERT_EQ(thin.size(), 1U);
   EXPECT_NE(thin[0].text.find("the thinnest 5 mm"), std::string::npos) << thin[0].text;
-  EXPECT_NE(thin[0].text.find("up to 30 % too far"), std::string::npos) << thin[0].text;
+  EXPECT_NE(thin[0].text.find("bend 97 to 130 % as far"), std::string::npos) << thin[0].text;
   const auto thinner = wallRemarks(tissueOf(sheet(0.0025, 45.0), 0.005));
   ASSERT_EQ(thinner.size(), 1U);
-  EXPECT_NE(thinner[0].text.find("up to 50 % too far"), std::string::npos) << thinner[0].text;
+  EXPECT_NE(thinner[0].text.find("bend 71 to 128 % as far"), std::string::npos) << thinner[0].text;
+  const auto sheer = wallRemarks(tissueOf(sheet(0.0005, 45.0), 0.005));
+  ASSERT_EQ(sheer.size(), 1U);
+  EXPECT_NE(sheer[0].text.find("bend 5 to 9 % as far"), std::string::npos) << sheer[0].text;
 }
 
 TEST(WallRemarks, OfABlockAreOfItsThinnestSide) {
@@ -92,7 +95,8 @@ TEST(WallRemarks, StandInTheScenesRemarks) {
     ASSERT_EQ(scene.remarks.size(), 1U);
     EXPECT_EQ(scene.remarks[0].rfind("sheet.yaml:3: tissue.spacing = 0.005: ", 0), 0U)
         << scene.remarks[0];
-    EXPECT_NE(scene.remarks[0].find("up to 45 % too far; remedy: tissue.spacing: 0.0025 or less"),
+    EXPECT_NE(scene.remarks[0].find(
+                  "97 to 145 % as far as they should; remedy: tissue.spacing: 0.0025 or less"),
               std::string::npos)
         << scene.remarks[0];
   }
