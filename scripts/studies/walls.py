@@ -1,7 +1,7 @@
 """Measures walls that are thin against the spacing, and organs wherever they stand in the grid.
 
-A hollow dome under a sphere, at spacings of more than its wall and of a third of it; liver and kidney under a
-sphere at random places of the grid. What moves the grid is a small box far off, which is fixed.
+A hollow dome under a sphere, at spacings of more than its wall and of a third of it; a block by a mesh, liver and
+kidney under a sphere at random places of the grid. What moves the grid is a small box far off, which is fixed.
 Out: doc/data/walls.csv. With --plot the table is only printed. What strips do is in `thin_walls`.
 """
 
@@ -130,6 +130,15 @@ def measure(simulate):
             offset = [2.0 * draw.random() - 1.0 for _ in range(3)]
             add("dome", spacing, place, triangles=dome, offset=offset, fixed=below, touch=(0.0, 0.0, 0.03),
                 depth=0.003, radius=0.01, poisson_ratio=0.3)
+    block = box([-0.05, -0.05, -0.1], [0.05, 0.05, 0.0])
+    deep = {"min": [-9, -9, -9], "max": [9, 9, -0.05]}
+    for depth in (0.002, 0.005):
+        for spacing in (0.005, 0.00167):  # the second one tells what is true
+            draw = random.Random(3)
+            for place in range(PLACES if spacing == 0.005 else 1):
+                offset = [2.0 * draw.random() - 1.0 for _ in range(3)]
+                add(f"block_{1e3 * depth:g}mm", spacing, place, triangles=block, offset=offset, fixed=deep,
+                    touch=(0.0, 0.0, 0.0), depth=depth, radius=0.01, poisson_ratio=0.45)
     # The grid stands still along the axis that the fixed nodes end on: they would hold more or less. The kidney
     # is touched at its highest point: on a slope (kidney_slope, 25 degrees) the sphere, without friction, slides
     # from facet to facet of the mesh and bends the end aside, and small differences grow.
