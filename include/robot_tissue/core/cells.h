@@ -91,6 +91,7 @@ class CellSet {
   // Where a node is met: cell (index into all()) and corner of it, or, from kCorners on, which of
   // the nodes that it reaches.
   struct Meeting {
+    static_assert(kMostReached <= 32, "corner has five bits");
     Meeting(int of_cell = 0, int of_corner = 0)
         : cell(static_cast<std::uint32_t>(of_cell) & 0x7ffffffU),
           corner(static_cast<std::uint32_t>(of_corner) & 31U) {}
