@@ -3,7 +3,6 @@
 
 #include <array>
 #include <memory>
-#include <utility>
 
 #include "robot_tissue/core/cells.h"
 
@@ -18,8 +17,13 @@ inline bool haveInCommon(const std::array<int, kCorners>& corners, int side,
   return true;
 }
 
-// Null: of no neighbor. `share`: of h^3, the cell's own. `across(side)`: the neighbor there as a
-// pair of its corners and its share; null corners: there is none.
+// `share`: of h^3; null nodes: there is none.
+struct NeighborCell {
+  const std::array<int, kCorners>* nodes = nullptr;
+  double share = 0.0;
+};
+
+// Null: of no neighbor. `share`: of h^3, the cell's own. across(side): the NeighborCell there.
 template <typename Across>
 std::shared_ptr<const CellReach> reachOf(double share, const Across& across) {
   CellReach reach;
@@ -29,12 +33,12 @@ std::shared_ptr<const CellReach> reachOf(double share, const Across& across) {
     std::array<double, 2> shares{};
     for (const int up : {0, 1}) {
       const int side = 2 * axis + up;
-      const auto& [corners, filled] = across(side);
-      if (corners == nullptr) continue;
+      const NeighborCell neighbor = across(side);
+      if (neighbor.nodes == nullptr) continue;
       any = true;
-      shares[at(up)] = filled;
+      shares[at(up)] = neighbor.share;
       for (int r = 0; r < kFaceNodes; ++r) {
-        reach.nodes[at(kFaceNodes * side + r)] = (*corners)[at(faceCorner(side, r))];
+        reach.nodes[at(kFaceNodes * side + r)] = (*neighbor.nodes)[at(faceCorner(side, r))];
       }
     }
     reach.weigh(axis, share, shares[0], shares[1]);

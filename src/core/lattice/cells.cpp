@@ -36,11 +36,10 @@ void CellSet::findReaches() {
       cell.reach.reset();
       continue;
     }
-    std::shared_ptr<const CellReach> reach = reachOf(cell.share(), [&](int side) {
+    std::shared_ptr<const CellReach> reach = reachOf(cell.share(), [&](int side) -> NeighborCell {
       const Cell* neighbor = across(cell, side);
-      return neighbor == nullptr
-                 ? std::make_pair(static_cast<const std::array<int, kCorners>*>(nullptr), 0.0)
-                 : std::make_pair(&neighbor->nodes, neighbor->share());
+      if (neighbor == nullptr) return {};
+      return {&neighbor->nodes, neighbor->share()};
     });
     any = any || reach != nullptr;
     const bool same = reach != nullptr && cell.reach != nullptr &&

@@ -1,7 +1,6 @@
 #include "solvers/multigrid/level/level_cell.h"
 
 #include <unordered_map>
-#include <utility>
 
 #include "lattice/cell_reach.h"
 
@@ -30,13 +29,13 @@ void findReaches(std::vector<LevelCell>& cells) {
   }
   for (LevelCell& cell : cells) {
     if (cell.fill == nullptr) continue;
-    cell.reach = reachOf(cell.shear, [&](int side) {
+    cell.reach = reachOf(cell.shear, [&](int side) -> NeighborCell {
       for (const LevelCell* other : cells_at.at(cell.nodes[at(faceCorner(side, 0))])) {
         if (haveInCommon(cell.nodes, side, other->nodes)) {
-          return std::make_pair(&std::as_const(other->nodes), other->shear);
+          return {&other->nodes, other->shear};
         }
       }
-      return std::make_pair(static_cast<const std::array<int, kCorners>*>(nullptr), 0.0);
+      return {};
     });
   }
 }
