@@ -266,6 +266,18 @@ std::array<Tetrahedron, 6> CellDivision::aroundCorner(int corner) const {
   return around;
 }
 
+// Also cells that are whole may have springs that are parted.
+CellDivisions::CellDivisions(const Lattice& lattice, const LatticeState& state) {
+  if (state.springs_cut == 0) return;
+  division_of_.assign(lattice.cells().size(), -1);
+  const std::vector<char> has_severed = cellsWithSevered(lattice, state);
+  for (const Cell& cell : lattice.cells()) {
+    if (has_severed[at(cell.place)] == 0 || !hasPartedSprings(lattice, state, cell)) continue;
+    division_of_[at(cell.place)] = static_cast<int>(divisions_.size());
+    divisions_.emplace_back(lattice, state, cell);
+  }
+}
+
 std::array<FillIntegrals, kCorners> cornerFills(const Lattice& lattice, const LatticeState& state,
                                                 const Cell& cell) {
   std::array<FillIntegrals, kCorners> fills;

@@ -80,6 +80,27 @@ class CellDivision {
   std::array<bool, 27> parted_{};  // edges
 };
 
+// Of the cells that a blade parted springs of.
+class CellDivisions {
+ public:
+  CellDivisions(const Lattice& lattice, const LatticeState& state);
+
+  // Null: nothing parts the cell at the place. Valid while this is.
+  const CellDivision* find(int place) const {
+    const int division = number(place);
+    return division < 0 ? nullptr : &divisions_[robot_tissue::at(division)];
+  }
+  // Of the divisions there are, -1: none.
+  int number(int place) const {
+    return division_of_.empty() ? -1 : division_of_[robot_tissue::at(place)];
+  }
+  std::size_t count() const { return divisions_.size(); }
+
+ private:
+  std::vector<int> division_of_;  // per cell; empty: no blade parted any
+  std::vector<CellDivision> divisions_;
+};
+
 // The material that each corner of the lattice's cell has; together all of the cell's. Where a mesh
 // fills a cell in part, that is taken as a box along the axes of its covariance, of the same
 // volume, centroid and second moments, and clipped: exact where the fill is a box, else near it.

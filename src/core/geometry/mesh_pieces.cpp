@@ -3,11 +3,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/polygon_triangles.h"
+
 namespace robot_tissue {
 namespace {
 
+// Spacings (1): so near a plane a vertex is on it. More: what is thinner vanishes; less: edges of no
+// length, which have no direction. Chosen.
+constexpr double kOnPlane = 1e-9;
+// Spacings (1) that the search for a point on a bent plane may be off it, and its steps. Rounding.
+constexpr double kFound = 1e-13;
+constexpr int kMostSteps = 60;
+// Barycentric (1): a bend is so far inside a triangle at least. Less: slivers. Chosen.
+constexpr double kInside = 1e-6;
+
+// Half spacings along the two next axes, from the middle of a bent plane to where it bends.
+constexpr std::array<std::pair<int, int>, 8> kAround = {
+    {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
+
 int next(int axis) { return (axis + 1) % 3; }
 int afterNext(int axis) { return (axis + 2) % 3; }
+
+int lowOfCell(int octant) { return octant - octant % 2; }
+
+Vec3 ontoPlanes(Vec3 point) {
+  for (double& along : point) {
+    const double nearest = 0.5 * std::round(2.0 * along);
+    if (std::abs(along - nearest) < kOnPlane) along = nearest;
+  }
+  return point;
+}
 
 std::array<int, 4> seamOf(const HalfIndex& octant, int axis) {
   return {octant[0], octant[1], octant[2], axis};
@@ -15,24 +40,33 @@ std::array<int, 4> seamOf(const HalfIndex& octant, int axis) {
 
 }  // namespace
 
-MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells)
-    : vertices_(std::move(vertices)) {
+MeshPieces::MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells,
+                       const BentGrid& grid)
+    : grid_(grid), places_(std::move(vertices)) {
+  vertices_.reserve(places_.size());
+  for (const Vec3& place : places_) vertices_.push_back(ontoPlanes(grid_.straightened(place)));
   for (std::size_t axis = 0; axis < 3; ++axis) octants_[axis] = 2 * cells[axis];
 }
 
-void MeshPieces::add(const MeshTriangle& triangle, bool keep_pieces) {
-  cutAlong(0, {{triangle[0], -1}, {triangle[1], -1}, {triangle[2], -1}}, keep_pieces);
+void MeshPieces::add(const MeshTriangle& triangle, int number, bool keep_pieces) {
+  triangle_ = number;
+  cutAtNodes(0, {{triangle[0], -1}, {triangle[1], -1}, {triangle[2], -1}}, keep_pieces);
 }
 
-int MeshPieces::addVertex(const Vec3& place) {
-  vertices_.push_back(place);
+int MeshPieces::addVertex(const Vec3& straight, const Vec3& place) {
+  vertices_.push_back(straight);
+  places_.push_back(place);
   return static_cast<int>(vertices_.size()) - 1;
 }
 
 int MeshPieces::addMiddle(const std::vector<int>& points) {
-  Vec3 sum = Vec3::Zero();
-  for (const int point : points) sum += vertices_[at(point)];
-  return addVertex(sum / static_cast<double>(points.size()));
+  Vec3 straight = Vec3::Zero(), place = Vec3::Zero();
+  for (const int point : points) {
+    straight += vertices_[at(point)];
+    place += places_[at(point)];
+  }
+  const auto count = static_cast<double>(points.size());
+  return addVertex(straight / count, place / count);
 }
 
 // The border planes of the grid cut nothing: what stands out there belongs to the octants inside.
@@ -50,47 +84,88 @@ bool MeshPieces::isAbove(int vertex, int axis, int plane) const {
   return vertices_[at(vertex)][axis] >= 0.5 * plane;
 }
 
-// Along the axes before this one the edge has been cut already: the point is in its octant there.
+// How far along the edge it meets the plane, of its length (1). Planes of nodes are straight; a
+// bent plane is found by false position (Illinois: Dowell and Jarratt 1971).
+double MeshPieces::alongEdge(int from, int to, int axis, int plane) const {
+  const double height = 0.5 * plane;
+  const Vec3 &a = places_[at(from)], &b = places_[at(to)];
+  if (plane % 2 == 0) return (height - a[axis]) / (b[axis] - a[axis]);
+  double low = 0.0, high = 1.0;
+  double at_low = vertices_[at(from)][axis] - height, at_high = vertices_[at(to)][axis] - height;
+  double along = at_low / (at_low - at_high);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double above = grid_.straightened(a + along * (b - a))[axis] - height;
+    if (std::abs(above) < kFound) break;
+    const bool is_low = (above < 0.0) == (at_low < 0.0);
+    (is_low ? low : high) = along;
+    (is_low ? at_low : at_high) = above;
+    (is_low ? at_high : at_low) *= 0.5;
+    along = low + at_low / (at_low - at_high) * (high - low);
+  }
+  return along;
+}
+
+// An end that is on the plane is the point. Else it is in the cell that the edge is in, and along
+// the axes that it has been cut along already in the same octant.
 int MeshPieces::crossing(int from, int to, int axis, int plane) {
+  for (const int end : {from, to}) {
+    if (vertices_[at(end)][axis] == 0.5 * plane) return end;
+  }
   const auto [low, high] = std::minmax(from, to);
   const auto [known, is_new] =
       crossings_.try_emplace(std::array<int, 4>{low, high, axis, plane}, 0);
-  if (is_new) {
-    const Vec3 a = vertices_[at(low)], b = vertices_[at(high)];
-    Vec3 place = a + (0.5 * plane - a[axis]) / (b[axis] - a[axis]) * (b - a);
-    place = place.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
-    for (int other = 0; other < axis; ++other) {
-      if (a[other] == b[other]) continue;                                    // in a plane
-      const double octant = std::floor(2.0 * std::min(a[other], b[other]));  // that the edge is in
-      const double end = 0.5 * (octant + 1.0);
-      place[other] = std::clamp(place[other], 0.5 * octant, std::nextafter(end, 0.0));
+  if (!is_new) return known->second;
+  const Vec3 a = places_[at(low)], b = places_[at(high)];
+  Vec3 place = a + alongEdge(low, high, axis, plane) * (b - a);
+  place = place.cwiseMax(a.cwiseMin(b)).cwiseMin(a.cwiseMax(b));
+  const bool at_nodes = plane % 2 == 0;
+  if (at_nodes) place[axis] = 0.5 * plane;
+  Vec3 straight = ontoPlanes(grid_.straightened(place));
+  for (int other = 0; other < 3; ++other) {
+    const double at_low = vertices_[at(low)][other], at_high = vertices_[at(high)][other];
+    const double start = std::min(at_low, at_high);
+    if (at_low == at_high) {
+      straight[other] = start;  // in a plane
+    } else if (other < axis || !at_nodes) {
+      const double step = at_nodes || other > axis ? 1.0 : 0.5;
+      const double first = step * std::floor(start / step);
+      straight[other] = std::clamp(straight[other], first, std::nextafter(first + step, 0.0));
     }
-    place[axis] = 0.5 * plane;
-    known->second = addVertex(place);
   }
+  straight[axis] = 0.5 * plane;
+  known->second = addVertex(straight, place);
   return known->second;
 }
 
-// From below to above along each axis, as cutAlong does, so that the points are the same.
+// In order. From below to above, as the pieces are cut, so that the points are the same.
+std::vector<int> MeshPieces::crossingsBetween(int from, int to, int axis, bool at_nodes) {
+  const int start = octantOf(vertices_[at(from)])[at(axis)];
+  const int end = octantOf(vertices_[at(to)])[at(axis)];
+  int lower = start < end ? from : to;
+  const int upper = start < end ? to : from;
+  std::vector<int> between;
+  for (int plane = std::min(start, end) + 1; plane <= std::max(start, end); ++plane) {
+    if ((plane % 2 == 0) != at_nodes) continue;
+    const int point = crossing(lower, upper, axis, plane);
+    if (point == upper || point == lower) continue;
+    between.push_back(lower = point);
+  }
+  if (start > end) std::reverse(between.begin(), between.end());
+  return between;
+}
+
 std::vector<int> MeshPieces::subdivided(int from, int to) {
   std::vector<int> points = {from, to};
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<int> finer = {points.front()};
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-      const int start = octantOf(vertices_[at(points[i])])[at(axis)];
-      const int end = octantOf(vertices_[at(points[i + 1])])[at(axis)];
-      const int upper = start < end ? points[i + 1] : points[i];
-      int lower = start < end ? points[i] : points[i + 1];
-      std::vector<int> between;
-      for (int plane = std::min(start, end) + 1; plane <= std::max(start, end); ++plane) {
-        lower = crossing(lower, upper, axis, plane);
-        between.push_back(lower);
+  for (const bool at_nodes : {true, false}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<int> finer = {points.front()};
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const auto between = crossingsBetween(points[i], points[i + 1], axis, at_nodes);
+        finer.insert(finer.end(), between.begin(), between.end());
+        finer.push_back(points[i + 1]);
       }
-      if (start > end) std::reverse(between.begin(), between.end());
-      finer.insert(finer.end(), between.begin(), between.end());
-      finer.push_back(points[i + 1]);
+      points.swap(finer);
     }
-    points.swap(finer);
   }
   return points;
 }
@@ -122,25 +197,124 @@ void MeshPieces::noteCrossing(const Corner& from, int axis, int plane, int verte
   HalfIndex planes{};
   planes[at(axis)] = plane;
   planes[at(across)] = static_cast<int>(std::lround(2.0 * vertices_[at(vertex)][across]));
+  const double place = vertices_[at(vertex)][along];
+  const int octant = std::clamp(octantOf(vertices_[at(vertex)])[at(along)], first_[at(along)],
+                                last_[at(along)]);  // the edge's
   lines_[{along, planes[at(next(along))], planes[at(afterNext(along))]}].push_back(
-      {vertices_[at(vertex)][along], vertex, turn * rise});
+      {place, vertex, octant, turn * rise});
 }
 
-std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon) {
+// Where the lines along which the facets of the bent plane meet pass through the triangle, in the
+// order from one vertex to the other.
+std::vector<int> MeshPieces::bendsBetween(int from, int to, const Polygon& triangle, int axis) {
+  const HalfIndex middle = {lowOfCell(first_[0]) + 1, lowOfCell(first_[1]) + 1,
+                            lowOfCell(first_[2]) + 1};
+  const Vec3 &a = places_[at(triangle[0].vertex)], &b = places_[at(triangle[1].vertex)],
+             &c = places_[at(triangle[2].vertex)];
+  const Vec3 area = (b - a).cross(c - a);
+  const Vec3 start = grid_.placeOf(middle);
+  const Vec3 along = places_[at(to)] - places_[at(from)];
+  std::vector<std::pair<double, int>> bends;
+  for (const auto& [u, v] : kAround) {
+    HalfIndex point = middle;
+    point[at(next(axis))] += u;
+    point[at(afterNext(axis))] += v;
+    const Vec3 end = grid_.placeOf(point);
+    const double above_start = area.dot(start - a), above_end = area.dot(end - a);
+    if (above_start * above_end >= 0.0) continue;
+    const double share = above_start / (above_start - above_end);
+    const Vec3 place = start + share * (end - start);
+    const double least = std::min({area.dot((b - a).cross(place - a)),
+                                   area.dot((c - b).cross(place - b)),
+                                   area.dot((a - c).cross(place - c))});
+    const Vec3 from_start = place - places_[at(from)];
+    const bool is_straight = along.cross(from_start).norm() < kOnPlane * along.norm();
+    if (is_straight || !(least > kInside * area.squaredNorm())) continue;
+    Vec3 straight = 0.5 * Vec3(middle[0], middle[1], middle[2]);
+    straight[next(axis)] += 0.5 * share * u;
+    straight[afterNext(axis)] += 0.5 * share * v;
+    bends.emplace_back(along.dot(place), addVertex(straight, place));
+  }
+  std::sort(bends.begin(), bends.end());
+  std::vector<int> vertices;
+  for (const auto& [way, vertex] : bends) vertices.push_back(vertex);
+  return vertices;
+}
+
+// Both parts of a triangle that a plane has cut from edge to edge follow its bends.
+void MeshPieces::bend(const Polygon& triangle, int axis, Polygon& below, Polygon& above) {
+  if (!grid_.isBent(first_)) return;
+  const int seam = 2 * axis + 1;
+  const auto is_seam = [&](const Corner& corner) { return corner.face == seam; };
+  const auto start = std::find_if(below.begin(), below.end(), is_seam);
+  const auto back = std::find_if(above.begin(), above.end(),
+                                 [&](const Corner& corner) { return corner.face == seam - 1; });
+  if (start == below.end() || back == above.end()) return;
+  const auto bends = bendsBetween(start->vertex, back->vertex, triangle, axis);
+  if (bends.empty()) return;
+  Polygon bent_below = below, bent_above = above;
+  std::vector<Corner> forwards, backwards;
+  for (const int vertex : bends) forwards.push_back({vertex, seam});
+  for (auto vertex = bends.rbegin(); vertex != bends.rend(); ++vertex) {
+    backwards.push_back({*vertex, seam - 1});
+  }
+  bent_below.insert(bent_below.begin() + (start - below.begin()) + 1, forwards.begin(),
+                    forwards.end());
+  bent_above.insert(bent_above.begin() + (back - above.begin()) + 1, backwards.begin(),
+                    backwards.end());
+  if (fillOf(bent_below).empty() || fillOf(bent_above).empty()) return;
+  below.swap(bent_below);
+  above.swap(bent_above);
+}
+
+std::vector<MeshTriangle> MeshPieces::fillOf(const Polygon& polygon) const {
+  std::vector<Vec3> places;
+  for (const Corner& corner : polygon) places.push_back(places_[at(corner.vertex)]);
+  Vec3 area = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    area += (places[i] - places[0]).cross(places[i + 1] - places[0]);
+  }
+  return polygonTriangles(places, area).triangles;
+}
+
+std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon) const {
+  const auto count = static_cast<int>(polygon.size());
+  std::vector<MeshTriangle> fill;
+  if (count > 3) fill = fillOf(polygon);
+  if (fill.empty()) {  // one, or by rounding not a simple polygon
+    for (int i = 1; i + 1 < count; ++i) fill.push_back({0, i, i + 1});
+  }
   std::vector<Polygon> triangles;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
-    if (i > 1) triangles.back()[0].face = -1;
-    if (i + 2 < polygon.size()) triangles.back()[2].face = -1;
+  for (const MeshTriangle& each : fill) {
+    Polygon& triangle = triangles.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Corner& corner = polygon[at(each[i])];
+      const bool is_side = (each[i] + 1) % count == each[(i + 1) % 3];
+      triangle.push_back({corner.vertex, is_side ? corner.face : -1});
+    }
   }
   return triangles;
 }
 
-void MeshPieces::cutAlong(int axis, const Polygon& triangle, bool keep) {
-  if (axis == 3) {
-    if (keep) keepPiece(triangle);
-    return;
+void MeshPieces::keepWithin(int axis, int first, int last) {
+  first_[at(axis)] = first;
+  last_[at(axis)] = last;
+}
+
+void MeshPieces::keepWithinCell(int axis) {
+  const int low = lowOfCell(first_[at(axis)]);
+  keepWithin(axis, low, low + 1);
+}
+
+void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
+  for (int each = 0; each < 3; ++each) {
+    if (each < axis) {
+      keepWithinCell(each);
+    } else {
+      keepWithin(each, 0, octants_[at(each)] - 1);
+    }
   }
+  if (axis == 3) return cutBetweenNodes(0, triangle, keep);
   int first = octants_[at(axis)];
   int last = 0;
   for (const Corner& corner : triangle) {
@@ -148,37 +322,58 @@ void MeshPieces::cutAlong(int axis, const Polygon& triangle, bool keep) {
     first = std::min(first, octant);
     last = std::max(last, octant);
   }
-  if (first == last) {
-    octant_[at(axis)] = first;
-    cutAlong(axis + 1, triangle, keep);
-    return;
+  const int low = lowOfCell(first);
+  Polygon below = triangle, above;
+  if (last > low + 1) {
+    below.clear();
+    split(triangle, axis, low + 2, below, above);
   }
-  Polygon below, above;
-  split(triangle, axis, first + 1, below, above);
   for (const Polygon& piece : trianglesOf(below)) {
-    octant_[at(axis)] = first;
-    cutAlong(axis + 1, piece, keep);
+    keepWithin(axis, low, low + 1);
+    cutAtNodes(axis + 1, piece, keep);
   }
-  for (const Polygon& piece : trianglesOf(above)) cutAlong(axis, piece, keep);
+  for (const Polygon& piece : trianglesOf(above)) cutAtNodes(axis, piece, keep);
 }
 
+void MeshPieces::cutBetweenNodes(int axis, const Polygon& triangle, bool keep) {
+  for (int uncut = axis; uncut < 3; ++uncut) keepWithinCell(uncut);
+  if (axis == 3) {
+    if (keep) keepPiece(triangle);
+    return;
+  }
+  const int low = first_[at(axis)];
+  Polygon below, above;
+  split(triangle, axis, low + 1, below, above);
+  bend(triangle, axis, below, above);
+  for (const Polygon& piece : trianglesOf(below)) {
+    keepWithin(axis, low, low);
+    cutBetweenNodes(axis + 1, piece, keep);
+  }
+  for (const Polygon& piece : trianglesOf(above)) {
+    keepWithin(axis, low + 1, low + 1);
+    cutBetweenNodes(axis + 1, piece, keep);
+  }
+}
+
+// Of a piece without extent, as where a vertex is on a plane, the seams alone.
 void MeshPieces::keepPiece(const Polygon& piece) {
   Piece kept;
-  kept.octant = octant_;
+  kept.octant = first_;
+  kept.triangle = triangle_;
   for (std::size_t i = 0; i < piece.size(); ++i) {
-    kept.outline.push_back(piece[i].vertex);
+    const int from = piece[i].vertex, to = piece[(i + 1) % piece.size()].vertex;
+    if (from == to) continue;
+    kept.outline.push_back(from);
     const int face = piece[i].face;
-    if (face < 0 || face % 2 == 0) continue;
-    seams_[seamOf(octant_, face / 2)].push_back(
-        {piece[i].vertex, piece[(i + 1) % piece.size()].vertex});
+    if (face >= 0 && face % 2 == 1) seams_[seamOf(first_, face / 2)].push_back({from, to});
   }
-  pieces_.push_back(std::move(kept));
+  if (kept.outline.size() == 3) pieces_.push_back(std::move(kept));
 }
 
 int MeshPieces::gridPoint(const HalfIndex& point) {
   const auto [place, is_new] = grid_points_.try_emplace(point, 0);
   if (is_new) {
-    place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]));
+    place->second = addVertex(0.5 * Vec3(point[0], point[1], point[2]), grid_.placeOf(point));
   }
   return place->second;
 }
@@ -191,9 +386,8 @@ void MeshPieces::addEdge(const HalfIndex& start, int axis, Direction direction,
   std::vector<Crossing> on_edge;
   int inside = 0;
   for (const Crossing& crossing : line->second) {
-    const int octant = octantOf(vertices_[at(crossing.vertex)])[at(axis)];
-    if (octant < start[at(axis)]) inside += crossing.change;
-    if (octant == start[at(axis)]) on_edge.push_back(crossing);
+    if (crossing.octant < start[at(axis)]) inside += crossing.change;
+    if (crossing.octant == start[at(axis)]) on_edge.push_back(crossing);
   }
   std::sort(on_edge.begin(), on_edge.end(), [](const Crossing& a, const Crossing& b) {
     return std::make_pair(a.place, a.vertex) < std::make_pair(b.place, b.vertex);
@@ -202,6 +396,7 @@ void MeshPieces::addEdge(const HalfIndex& start, int axis, Direction direction,
   ++end[at(axis)];
   int from = inside != 0 ? gridPoint(start) : -1;
   const auto go = [&](int to) {
+    if (from == to) return;
     for (int times = 0; times < std::abs(inside); ++times) {
       const bool as_axis = (inside > 0) == (direction == Direction::kForwards);
       border.push_back(as_axis ? Segment{from, to} : Segment{to, from});
@@ -229,7 +424,14 @@ std::vector<MeshPieces::Segment> MeshPieces::lid(const HalfIndex& octant, int ax
   addEdge(low, afterNext(axis), Direction::kBackwards, border);
   const auto seam = seams_.find(seamOf(octant, axis));
   if (seam == seams_.end()) return border;
-  for (const auto& [from, to] : seam->second) border.push_back({to, from});
+  for (const auto& [from, to] : seam->second) {
+    const auto same = std::find(border.begin(), border.end(), Segment{from, to});
+    if (same == border.end()) {
+      border.push_back({to, from});
+    } else {
+      border.erase(same);  // to and fro: nothing is between
+    }
+  }
   return border;
 }
 

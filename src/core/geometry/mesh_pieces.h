@@ -5,6 +5,13 @@
 // All decisions hang on which side of a plane a vertex is, which is the same for all pieces that
 // have it; points that planes cut out of a common edge are common. So where the mesh is closed, the
 // pieces of one octant and the lids on its faces are closed to the last bit, whatever the rounding.
+//
+// Planes half way between nodes may be bent (bent_grid.h). A vertex then has a place, and straight
+// coordinates, which its place would have if the planes were straight: decisions hang on the
+// latter. The mesh is cut by the planes of nodes first. In a cell a bent plane is facets that meet
+// along lines from its middle; it cuts a triangle from where it meets one edge to where it meets
+// the other, over the points where those lines pass through the triangle. So all pieces lie in
+// the mesh's triangles, and all seams on the facets.
 #pragma once
 
 #include <array>
@@ -13,34 +20,35 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/bent_grid.h"
 #include "geometry/index_hash.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
-
-// Of an octant or of a point of the grid: indices along x, y, z in half spacings.
-using HalfIndex = std::array<int, 3>;
 
 class MeshPieces {
  public:
   struct Piece {
     HalfIndex octant{};
     std::vector<int> outline;  // three vertices, turned as the triangle
+    int triangle = 0;          // of the mesh
   };
   using Segment = std::pair<int, int>;  // directed, between vertices
 
-  // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z.
-  MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells);
+  // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z. The
+  // grid must outlive this.
+  MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells, const BentGrid& grid);
 
   // Cuts a triangle. Its pieces are kept if asked for; where it crosses the grid's lines always is.
-  void add(const MeshTriangle& triangle, bool keep_pieces);
+  void add(const MeshTriangle& triangle, int number, bool keep_pieces);
   // The points that planes cut out of an edge, in order, with its ends.
   std::vector<int> subdivided(int from, int to);
   // In the middle of these.
   int addMiddle(const std::vector<int>& points);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  const Vec3& vertex(int index) const { return vertices_[at(index)]; }
+  const Vec3& vertex(int index) const { return vertices_[at(index)]; }  // straight coordinates
+  const Vec3& place(int index) const { return places_[at(index)]; }
   HalfIndex octantOf(const Vec3& point) const;
 
   // Border of what the mesh encloses on the upper face of the octant along the axis, as seen from
@@ -60,26 +68,38 @@ class MeshPieces {
   struct Crossing {
     double place = 0.0;  // along the line, spacings
     int vertex = 0;
+    int octant = 0;  // along the line
     int change = 0;  // +1: into the mesh, going up
   };
   using LineKey = std::array<int, 3>;  // axis, and the half indices along the two next ones
 
   enum class Direction { kForwards, kBackwards };  // along an axis
 
-  int addVertex(const Vec3& place);
+  int addVertex(const Vec3& straight, const Vec3& place);
   bool isAbove(int vertex, int axis, int plane) const;
+  double alongEdge(int from, int to, int axis, int plane) const;
   int crossing(int from, int to, int axis, int plane);
+  std::vector<int> crossingsBetween(int from, int to, int axis, bool at_nodes);
   void split(const Polygon& triangle, int axis, int plane, Polygon& below, Polygon& above);
   void noteCrossing(const Corner& from, int axis, int plane, int vertex);
-  static std::vector<Polygon> trianglesOf(const Polygon& polygon);
-  void cutAlong(int axis, const Polygon& triangle, bool keep);
+  std::vector<int> bendsBetween(int from, int to, const Polygon& triangle, int axis);
+  void bend(const Polygon& triangle, int axis, Polygon& below, Polygon& above);
+  std::vector<MeshTriangle> fillOf(const Polygon& polygon) const;  // none: it crosses itself
+  std::vector<Polygon> trianglesOf(const Polygon& polygon) const;
+  void cutAtNodes(int axis, const Polygon& triangle, bool keep);
+  void cutBetweenNodes(int axis, const Polygon& triangle, bool keep);
+  void keepWithin(int axis, int first, int last);
+  void keepWithinCell(int axis);
   void keepPiece(const Polygon& piece);
   int gridPoint(const HalfIndex& point);
   void addEdge(const HalfIndex& start, int axis, Direction direction, std::vector<Segment>& border);
 
-  std::vector<Vec3> vertices_;
-  HalfIndex octants_{};  // of the grid, along x, y, z
-  HalfIndex octant_{};   // that is being cut out
+  const BentGrid& grid_;
+  std::vector<Vec3> places_;
+  std::vector<Vec3> vertices_;  // straight coordinates
+  int triangle_ = 0;            // that is being cut
+  HalfIndex octants_{};         // of the grid, along x, y, z
+  HalfIndex first_{}, last_{};  // octants that what is being cut out lies in
   std::vector<Piece> pieces_;
   template <std::size_t N, class Value>
   using Table = std::unordered_map<std::array<int, N>, Value, IndexHash>;

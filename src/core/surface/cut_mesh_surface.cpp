@@ -9,13 +9,18 @@
 #include "geometry/index_hash.h"
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
+#include "surface/divided_grid.h"
 #include "surface/hinges.h"
+#include "surface/merged_skin.h"
 #include "surface/mesh_surface.h"
 #include "surface/octant_grid.h"
 #include "surface/smooth_carriers.h"
 
 namespace robot_tissue {
 namespace {
+
+// Spacings (1): so near a line of straight coordinates a point is on it. Rounding.
+constexpr double kOnDiagonal = 1e-9;
 
 constexpr int kNotLookedFor = -2;  // a cell; -1: none
 
@@ -64,33 +69,43 @@ class CutMeshBuilder {
         state_(state),
         parts_(lattice, state),
         mesh_(mesh),
-        pieces_(inSpacings(), cells()) {
+        grid_(lattice, state),
+        pieces_(inSpacings(), cells(), grid_) {
     findRegion();
   }
 
   TissueSurface build() {
-    for (const MeshTriangle& triangle : mesh_.triangles) {
+    for (std::size_t number = 0; number < mesh_.triangles.size(); ++number) {
+      const MeshTriangle& triangle = mesh_.triangles[number];
       const bool near = isNear(triangle);
-      pieces_.add(triangle, near);
+      pieces_.add(triangle, static_cast<int>(number), near);
       if (!near) continue;
       for (std::size_t i = 0; i < 3; ++i) {
         cut_edges_.insert(edgeOf(triangle[i], triangle[(i + 1) % 3]));
       }
     }
-    for (const MeshTriangle& triangle : mesh_.triangles) {
-      if (!isNear(triangle)) addWhole(triangle);
+    for (std::size_t number = 0; number < mesh_.triangles.size(); ++number) {
+      mesh_triangle_ = static_cast<int>(number);
+      if (!isNear(mesh_.triangles[number])) addWhole(mesh_.triangles[number]);
     }
     for (const MeshPieces::Piece& piece : pieces_.pieces()) {
       if (isRemoved(piece.octant)) continue;
+      mesh_triangle_ = piece.triangle;
       for (std::size_t i = 1; i + 1 < piece.outline.size(); ++i) {
         add({piece.outline[0], piece.outline[i], piece.outline[i + 1]}, piece.octant, Face::kOuter);
       }
     }
+    mesh_triangle_ = -1;
     for (const HalfIndex& octant : region_) {
       for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
     }
-    separateHinges(OctantGrid(lattice_, state_), std::move(owners_), std::move(places_), surface_);
-    return std::move(surface_);
+    std::vector<int> mesh_triangles;
+    for (const int part_of : separateHinges(OctantGrid(lattice_, state_), std::move(owners_),
+                                            std::move(places_), surface_)) {
+      mesh_triangles.push_back(mesh_triangle_of_[at(part_of)]);
+    }
+    is_of_mesh_.resize(surface_.rest.size(), 1);
+    return mergedSkin(surface_, mesh_triangles, is_of_mesh_);
   }
 
  private:
@@ -203,6 +218,7 @@ class CutMeshBuilder {
     }
     surface_.triangles.push_back(corners);
     surface_.opened.push_back(0);
+    mesh_triangle_of_.push_back(mesh_triangle_);
     owners_.push_back(octantAt(pieces_.octantOf(pieces_.vertex(triangle[0]))));
   }
 
@@ -211,6 +227,7 @@ class CutMeshBuilder {
     for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex(triangle[i], octant);
     surface_.triangles.push_back(corners);
     surface_.opened.push_back(face == Face::kOpened ? 1 : 0);
+    mesh_triangle_of_.push_back(mesh_triangle_);
     owners_.push_back(octantAt(octant));
   }
 
@@ -232,13 +249,33 @@ class CutMeshBuilder {
              nodesOf(holdOf(segment.first, octant)) != nodesOf(holdOf(segment.first, upper));
     });
     if (!parted) return;
-    std::vector<int> points;
-    for (const auto& segment : border) points.push_back(segment.first);
-    const int middle = pieces_.addMiddle(points);
+    const int middle = pieces_.addMiddle(aroundMiddle(border, octant, axis));
     for (const auto& [from, to] : border) {
       if (below) add({middle, from, to}, octant, Face::kOpened);
       if (above) add({middle, to, from}, upper, Face::kOpened);
     }
+  }
+
+  // The lid is two flat facets that meet along the line from the node's corner of the face to the
+  // opposite one. Where the border is on both sides of that, the points on it; else all.
+  std::vector<int> aroundMiddle(const std::vector<MeshPieces::Segment>& border,
+                                const HalfIndex& octant, int axis) const {
+    const std::size_t u = at((axis + 1) % 3), v = at((axis + 2) % 3);
+    std::vector<int> all, on_line;
+    bool is_before = false, is_beyond = false;
+    for (const auto& [from, to] : border) {
+      all.push_back(from);
+      const Vec3& point = pieces_.vertex(from);
+      const auto from_node = [&](std::size_t along) {
+        const int node = (octant[along] + 1) / 2;
+        return std::abs(point[static_cast<Eigen::Index>(along)] - node);
+      };
+      const double side = from_node(u) - from_node(v);
+      if (std::abs(side) < kOnDiagonal) on_line.push_back(from);
+      is_before = is_before || side < -kOnDiagonal;
+      is_beyond = is_beyond || side > kOnDiagonal;
+    }
+    return is_before && is_beyond && on_line.size() > 1 ? on_line : all;
   }
 
   // The cell that the octant is of; beyond the lattice the nearest one.
@@ -255,7 +292,7 @@ class CutMeshBuilder {
   int cellAroundPoint(int point) {
     if (at(point) >= cell_around_.size()) cell_around_.resize(at(point) + 1, kNotLookedFor);
     int& cell = cell_around_[at(point)];
-    if (cell == kNotLookedFor) cell = cellAround(lattice_, pieces_.vertex(point));
+    if (cell == kNotLookedFor) cell = cellAround(lattice_, pieces_.place(point));
     return cell;
   }
 
@@ -281,7 +318,7 @@ class CutMeshBuilder {
   }
 
   Vec3 placeIn(const Cell& part, int point) const {
-    return robot_tissue::placeIn(lattice_, part, pieces_.vertex(point));
+    return robot_tissue::placeIn(lattice_, part, pieces_.place(point));
   }
 
   Hold holdOf(int point, const HalfIndex& octant) {
@@ -309,9 +346,10 @@ class CutMeshBuilder {
     const auto [known, is_new] = vertices_.try_emplace(key, 0);
     if (is_new) {
       known->second = static_cast<int>(surface_.rest.size());
-      surface_.rest.push_back(point < static_cast<int>(mesh_.vertices.size())
-                                  ? mesh_.vertices[at(point)]
-                                  : placed(pieces_.vertex(point)));
+      const bool is_of_mesh = point < static_cast<int>(mesh_.vertices.size());
+      surface_.rest.push_back(is_of_mesh ? mesh_.vertices[at(point)]
+                                         : placed(pieces_.place(point)));
+      is_of_mesh_.push_back(is_of_mesh ? 1 : 0);
       places_.push_back(2.0 * pieces_.vertex(point));
       const std::vector<NodeWeight> carriers = smoothCarriers(parts_.cells(), part, place);
       parts_.addCarriers({carriers.data(), carriers.data() + carriers.size()}, surface_.carriers);
@@ -339,8 +377,7 @@ class CutMeshBuilder {
   const LatticeState& state_;
   CellParts parts_;
   const TriangleMesh& mesh_;
-  // Cut half way between nodes, not where the blade passed: along bent planes, pieces of triangles
-  // that are larger than the bends come to cross each other.
+  DividedGrid grid_;
   MeshPieces pieces_;
   OnOctants<int> cell_of_;         // of each octant around the region
   std::vector<int> cell_around_;   // of the points up to the last that was asked for
@@ -349,8 +386,11 @@ class CutMeshBuilder {
   std::unordered_set<std::array<int, 2>, IndexHash> cut_edges_;
   std::unordered_map<std::array<int, 1 + kCorners>, int, IndexHash> vertices_;  // point, its nodes
   TissueSurface surface_;
-  std::vector<Octant> owners_;  // per triangle
-  std::vector<Vec3> places_;    // per vertex, in half spacings
+  int mesh_triangle_ = -1;             // that what is added is part of; -1: a cut opened it
+  std::vector<int> mesh_triangle_of_;  // the same per triangle
+  std::vector<char> is_of_mesh_;       // per vertex
+  std::vector<Octant> owners_;         // per triangle
+  std::vector<Vec3> places_;           // per vertex, in half spacings
 };
 
 }  // namespace

@@ -41,9 +41,18 @@ class HingeSeparator {
         owners_(std::move(owners)),
         places_(std::move(places)),
         surface_(surface),
-        fans_(3 * surface.triangles.size()) {}
+        part_of_(surface.triangles.size()),
+        fans_(3 * surface.triangles.size()) {
+    std::iota(part_of_.begin(), part_of_.end(), 0);
+  }
 
-  void run() {
+  std::vector<int> run() {
+    separateFans();
+    return std::move(part_of_);
+  }
+
+ private:
+  void separateFans() {
     findEdges();
     const bool has_hinges = hasHinges();
     forAll([this](const std::vector<EdgePlace>& places) { joinAlong(places); });
@@ -56,7 +65,6 @@ class HingeSeparator {
     }
   }
 
- private:
   // Ascending; by their lower ends first, of which each has few.
   void findEdges() {
     const int triangles = static_cast<int>(surface_.triangles.size());
@@ -126,6 +134,7 @@ class HingeSeparator {
 
   // An edge inside the side of an octant has that octant on one side of it, another one beyond.
   std::vector<int> wedgesOf(const std::vector<EdgePlace>& places) {
+    if (isPoint(places[0])) return wedgesAtPoint(places);
     if (!findAround(places[0])) {
       std::vector<int> owner_of;
       for (const EdgePlace place : places) {
@@ -136,8 +145,52 @@ class HingeSeparator {
     }
     const std::array<int, 4> wedge = wedgesAround();
     std::vector<int> wedge_of;
-    for (const EdgePlace place : places) wedge_of.push_back(wedge[around(place)]);
+    for (const EdgePlace place : places) wedge_of.push_back(wedge[numberAmong(around_, place)]);
     return wedge_of;
+  }
+
+  // Has no length, as where a mesh passes through a point of the half grid.
+  bool isPoint(EdgePlace place) const {
+    const Vec3& a = places_[at(vertexAt(place / 3, place % 3))];
+    const Vec3& b = places_[at(vertexAt(place / 3, (place % 3 + 1) % 3))];
+    return (a - b).cwiseAbs().maxCoeff() < kOnLine;
+  }
+
+  // Octants around the point that are joined over their sides are of one wedge.
+  std::vector<int> wedgesAtPoint(const std::vector<EdgePlace>& places) const {
+    const std::array<Octant, 8> around = aroundPoint(places_[at(vertexAt(places[0] / 3, places[0] % 3))]);
+    DisjointSets sets(8);
+    for (int i = 0; i < 8; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int beyond = i | 1 << axis;
+        const Octant &one = around[at(i)], &other = around[at(beyond)];
+        const bool is_same = one == other;
+        if (is_same || (octants_.isThere(one) && octants_.isJoined(one, 2 * axis + 1))) {
+          sets.join(i, beyond);
+        }
+      }
+    }
+    std::vector<int> wedge_of;
+    for (const EdgePlace place : places) {
+      wedge_of.push_back(sets.lowest(static_cast<int>(numberAmong(around, place))));
+    }
+    return wedge_of;
+  }
+
+  // The lower bit for x; the same one on both sides of a plane that the point is not on.
+  std::array<Octant, 8> aroundPoint(const Vec3& point) const {
+    std::array<Octant, 8> around;
+    for (int i = 0; i < 8; ++i) {
+      HalfPoint lowest{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double nearest = std::round(point[axis]);
+        const bool is_on_plane = std::abs(point[axis] - nearest) < kOnLine;
+        lowest[at(axis)] = static_cast<int>(is_on_plane ? nearest - 1.0 + (i >> axis & 1)
+                                                        : std::floor(point[axis]));
+      }
+      around[at(i)] = octants_.octantAt(lowest);
+    }
+    return around;
   }
 
   // The four octants around the edge, one after the other; of a longer edge around its middle.
@@ -183,14 +236,15 @@ class HingeSeparator {
     return wedges;
   }
 
-  // Which of the octants around the edge the triangle is of, or its cell has.
-  std::size_t around(EdgePlace place) const {
+  // Which of the octants the triangle is of, or its cell has.
+  template <std::size_t N>
+  std::size_t numberAmong(const std::array<Octant, N>& around, EdgePlace place) const {
     const Octant& owner = owners_[at(place / 3)];
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (around_[i] == owner) return i;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (around[i] == owner) return i;
     }
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (around_[i].cell == owner.cell && !octants_.isOpen(owner.cell)) return i;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (around[i].cell == owner.cell && !octants_.isOpen(owner.cell)) return i;
     }
     return 0;
   }
@@ -262,6 +316,7 @@ class HingeSeparator {
     other[at(place % 3)] = middle;
     surface_.triangles.push_back(other);
     owners_.push_back(Octant(owners_[triangle]));
+    part_of_.push_back(int(part_of_[triangle]));
     surface_.opened.push_back(std::uint8_t(surface_.opened[triangle]));
   }
 
@@ -269,6 +324,7 @@ class HingeSeparator {
   std::vector<Octant> owners_;  // per triangle
   std::vector<Vec3> places_;    // per vertex, in half spacings
   TissueSurface& surface_;
+  std::vector<int> part_of_;  // per triangle, the one it was
   DisjointSets fans_;        // of corners of triangles
   std::vector<Edge> edges_;  // by their ends
   int along_ = 0;            // axis of the edge that is looked at
@@ -277,9 +333,9 @@ class HingeSeparator {
 
 }  // namespace
 
-void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
-                    TissueSurface& surface) {
-  HingeSeparator(octants, std::move(owners), std::move(places), surface).run();
+std::vector<int> separateHinges(const OctantGrid& octants, std::vector<Octant> owners,
+                                std::vector<Vec3> places, TissueSurface& surface) {
+  return HingeSeparator(octants, std::move(owners), std::move(places), surface).run();
 }
 
 }  // namespace robot_tissue

@@ -12,8 +12,9 @@ namespace robot_tissue {
 // end at one line, get vertices of their own for each wedge of material, so that two triangles run
 // along every edge; likewise a vertex where wedges meet at a point. `owners`: per triangle, an
 // octant behind it. `places`: per vertex, where in the half grid it belongs, in half spacings;
-// where a blade parted cells it stands beside that.
-void separateHinges(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
+// where a blade parted cells it stands beside that. Returns, per triangle, which one it was or was
+// part of.
+std::vector<int> separateHinges(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
                     TissueSurface& surface);
 
 }  // namespace robot_tissue

@@ -30,13 +30,16 @@ std::array<HalfPoint, 4> cornersOfSide(const HalfPoint& lowest, int side, int le
 }
 
 OctantGrid::OctantGrid(const Lattice& lattice, const LatticeState& state)
-    : lattice_(lattice), state_(state), parts_(lattice, state), open_(lattice.cells().size(), 0) {
+    : lattice_(lattice),
+      state_(state),
+      parts_(lattice, state),
+      open_(lattice.cells().size(), 0),
+      divisions_(lattice, state) {
   placeCells();
   if (isAsMade(state)) return;
   for (std::size_t cell = 0; cell < open_.size(); ++cell) {
     open_[cell] = parts_.isOpen(static_cast<int>(cell)) ? 1 : 0;
   }
-  divide();
 }
 
 void OctantGrid::placeCells() {
@@ -47,17 +50,6 @@ void OctantGrid::placeCells() {
   for (const Cell& cell : lattice_.cells()) {
     const auto& low = lattice_.gridIndex(cell.nodes.front());
     cell_at_[at(low[0] + 1 + row_ * (low[1] + 1) + plane_ * (low[2] + 1))] = cell.place;
-  }
-}
-
-// Also cells that are whole may have springs that are parted.
-void OctantGrid::divide() {
-  division_of_.assign(open_.size(), -1);
-  const std::vector<char> has_severed = cellsWithSevered(lattice_, state_);
-  for (const Cell& cell : lattice_.cells()) {
-    if (has_severed[at(cell.place)] == 0 || !hasPartedSprings(lattice_, state_, cell)) continue;
-    division_of_[at(cell.place)] = static_cast<int>(divisions_.size());
-    divisions_.emplace_back(lattice_, state_, cell);
   }
 }
 
@@ -100,8 +92,7 @@ CellPoint OctantGrid::inCell(int cell, const HalfPoint& point) const {
 // From the cell's lowest corner, in spacings.
 Vec3 OctantGrid::placeInCell(const Octant& octant, const HalfPoint& point) const {
   const CellPoint from_low = inCell(octant.cell, point);
-  const int division = division_of_.empty() ? -1 : division_of_[at(octant.cell)];
-  if (division >= 0) return divisions_[at(division)].at(from_low);
+  if (const CellDivision* division = divisions_.find(octant.cell)) return division->at(from_low);
   return 0.5 * Vec3(from_low[0], from_low[1], from_low[2]);
 }
 

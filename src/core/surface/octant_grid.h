@@ -67,18 +67,16 @@ class OctantGrid {
 
  private:
   void placeCells();
-  void divide();
   Vec3 placeInCell(const Octant& octant, const HalfPoint& point) const;
   int cornerAt(const Octant& octant, const HalfPoint& node) const;
 
   const Lattice& lattice_;
   const LatticeState& state_;
   CellParts parts_;
-  std::vector<char> open_;        // per cell
-  std::vector<int> cell_at_;      // per lowest corner's grid point, with one more on all sides
-  int row_ = 0, plane_ = 0;       // of these
-  std::vector<int> division_of_;  // per cell, -1: nothing parts it
-  std::vector<CellDivision> divisions_;
+  std::vector<char> open_;    // per cell
+  std::vector<int> cell_at_;  // per lowest corner's grid point, with one more on all sides
+  int row_ = 0, plane_ = 0;   // of these
+  CellDivisions divisions_;
 };
 
 // Corners of an octant's or a cell's side, counter-clockwise seen from outside; the first is at the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace robot_tissue {
 namespace {
@@ -15,17 +16,56 @@ double cornerWeight(int corner, int axis, const Vec3& place) {
   return (corner >> axis & 1) != 0 ? place[axis] : 1.0 - place[axis];
 }
 
-// u = ... + bend * q of that neighbor.
-void addBend(const Cell& cell, const Cell& neighbor, int side, const Vec3& place, double bend,
+// An edge of a cell along an axis, from its lower to its upper end.
+struct CellEdge {
+  int lower = 0, upper = 0;  // corners
+  int axis = 0;
+};
+
+// How much the cells hold that have both of its ends, one beside the other (of h^3).
+double shareAround(const CellSet& cells, const Cell& cell, const CellEdge& edge) {
+  const int lower = cell.nodes[at(edge.lower)], upper = cell.nodes[at(edge.upper)];
+  double share = 0.0;
+  for (const auto* met = cells.first(lower); met != cells.last(lower); ++met) {
+    const Cell& other = cells.all()[met->cell];
+    const int corner = static_cast<int>(met->corner), end = corner | 1 << edge.axis;
+    if (corner != end && other.nodes[at(end)] == upper) share += other.share();
+  }
+  return share;
+}
+
+// The nodes next to an end of it, away from the edge, each with how much that cell holds which has
+// it next to the end.
+std::vector<NodeWeight> beyond(const CellSet& cells, const Cell& cell, const CellEdge& edge,
+                               bool is_lower) {
+  const int end = cell.nodes[at(is_lower ? edge.lower : edge.upper)], bit = 1 << edge.axis;
+  std::vector<NodeWeight> found;
+  for (const auto* met = cells.first(end); met != cells.last(end); ++met) {
+    const Cell& other = cells.all()[met->cell];
+    const int corner = static_cast<int>(met->corner);
+    if (((corner & bit) != 0) != is_lower) continue;
+    found.push_back({other.nodes[at(corner ^ bit)], other.share()});
+  }
+  return found;
+}
+
+double sumOf(const std::vector<NodeWeight>& shares) {
+  return std::accumulate(shares.begin(), shares.end(), 0.0,
+                         [](double sum, const NodeWeight& each) { return sum + each.weight; });
+}
+
+// u = ... + bend * q along the edge: of q of both ends.
+void addBend(const CellSet& cells, const Cell& cell, const CellEdge& edge, double bend,
              std::vector<NodeWeight>& to) {
-  const int axis = side / 2;
-  for (int r = 0; r < kFaceNodes; ++r) {
-    const int near = faceCorner(side, r), far = faceCorner(side ^ 1, r);
-    const double weight = bend * cornerWeight(near, (axis + 1) % 3, place) *
-                          cornerWeight(near, (axis + 2) % 3, place);
-    to.push_back({cell.nodes[at(near)], -2.0 * weight});
-    to.push_back({cell.nodes[at(far)], weight});
-    to.push_back({neighbor.nodes[at(near)], weight});
+  const auto below = beyond(cells, cell, edge, true), above = beyond(cells, cell, edge, false);
+  const double filled = std::max(shareAround(cells, cell, edge), sumOf(below) + sumOf(above));
+  for (const bool is_lower : {true, false}) {
+    for (const NodeWeight& next : is_lower ? below : above) {
+      const double weight = bend * next.weight / filled;
+      to.push_back({cell.nodes[at(is_lower ? edge.lower : edge.upper)], -2.0 * weight});
+      to.push_back({cell.nodes[at(is_lower ? edge.upper : edge.lower)], weight});
+      to.push_back({next.node, weight});
+    }
   }
 }
 
@@ -68,15 +108,11 @@ std::vector<NodeWeight> smoothCarriers(const CellSet& cells, const Cell& cell, c
   for (int axis = 0; axis < 3; ++axis) {
     const double bend = 0.5 * place[axis] * (place[axis] - 1.0);
     if (std::abs(bend) <= kNoWeight) continue;
-    const Cell* const below = cells.across(cell, 2 * axis);
-    const Cell* const above = cells.across(cell, 2 * axis + 1);
-    CellReach reach;
-    reach.weigh(axis, cell.share(), below == nullptr ? 0.0 : below->share(),
-                above == nullptr ? 0.0 : above->share());
-    for (const int side : {2 * axis, 2 * axis + 1}) {
-      if (!reach.has(side)) continue;
-      const Cell& neighbor = side % 2 == 0 ? *below : *above;
-      addBend(cell, neighbor, side, place, reach.share[at(side)] * bend, all);
+    for (int r = 0; r < kFaceNodes; ++r) {
+      const CellEdge edge{faceCorner(2 * axis, r), faceCorner(2 * axis + 1, r), axis};
+      const double weight = cornerWeight(edge.lower, (axis + 1) % 3, place) *
+                            cornerWeight(edge.lower, (axis + 2) % 3, place);
+      if (weight > kNoWeight) addBend(cells, cell, edge, weight * bend, all);
     }
   }
   return summed(std::move(all));
