@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "geometry/polygon_triangles.h"
 
@@ -410,7 +411,7 @@ void MeshPieces::addEdge(const HalfIndex& start, int axis, Direction direction,
   if (inside != 0) go(gridPoint(end));
 }
 
-std::vector<MeshPieces::Segment> MeshPieces::lid(const HalfIndex& octant, int axis) {
+std::vector<MeshPieces::Segment> MeshPieces::border(const HalfIndex& octant, int axis) {
   std::vector<Segment> border;
   HalfIndex low = octant;
   ++low[at(axis)];
@@ -424,15 +425,31 @@ std::vector<MeshPieces::Segment> MeshPieces::lid(const HalfIndex& octant, int ax
   addEdge(low, afterNext(axis), Direction::kBackwards, border);
   const auto seam = seams_.find(seamOf(octant, axis));
   if (seam == seams_.end()) return border;
-  for (const auto& [from, to] : seam->second) {
-    const auto same = std::find(border.begin(), border.end(), Segment{from, to});
-    if (same == border.end()) {
-      border.push_back({to, from});
-    } else {
-      border.erase(same);  // to and fro: nothing is between
-    }
-  }
+  for (const auto& [from, to] : seam->second) border.push_back({to, from});
   return border;
+}
+
+// Followed from each vertex on; where one is met again, what lies between is a loop.
+std::vector<std::vector<int>> MeshPieces::lid(const HalfIndex& octant, int axis) {
+  std::multimap<int, int> onwards;
+  for (const auto& [from, to] : border(octant, axis)) onwards.emplace(from, to);
+  std::vector<std::vector<int>> loops;
+  std::vector<int> path;
+  while (!onwards.empty()) {
+    if (path.empty()) path.push_back(onwards.begin()->first);
+    const auto step = onwards.find(path.back());
+    const int to = step->second;
+    onwards.erase(step);
+    const auto met = std::find(path.begin(), path.end(), to);
+    if (met == path.end()) {
+      path.push_back(to);
+      continue;
+    }
+    if (path.end() - met > 2) loops.emplace_back(met, path.end());  // of two: to and fro
+    path.erase(met + 1, path.end());
+    if (onwards.find(to) == onwards.end()) path.clear();
+  }
+  return loops;
 }
 
 }  // namespace robot_tissue

@@ -33,8 +33,6 @@ class MeshPieces {
     std::vector<int> outline;  // three vertices, turned as the triangle
     int triangle = 0;          // of the mesh
   };
-  using Segment = std::pair<int, int>;  // directed, between vertices
-
   // `vertices` in spacings from the grid's lowest corner; `cells` of the grid along x, y, z. The
   // grid must outlive this.
   MeshPieces(std::vector<Vec3> vertices, const std::array<int, 3>& cells, const BentGrid& grid);
@@ -51,10 +49,10 @@ class MeshPieces {
   const Vec3& place(int index) const { return places_[at(index)]; }
   HalfIndex octantOf(const Vec3& point) const;
 
-  // Border of what the mesh encloses on the upper face of the octant along the axis, as seen from
-  // above that face: where the mesh runs in it, and the parts of the face's edges inside the mesh.
-  // All triangles must have been added, those near it with their pieces.
-  std::vector<Segment> lid(const HalfIndex& octant, int axis);
+  // What the mesh encloses on the upper face of the octant along the axis: loops of points around
+  // it, as seen from above that face, where the mesh runs in it and along parts of its edges. None
+  // passes a point twice. All triangles must have been added, those near it with their pieces.
+  std::vector<std::vector<int>> lid(const HalfIndex& octant, int axis);
 
  private:
   // An edge of a polygon starts at `vertex`; `face` is 2 * axis + side of the octant's face that it
@@ -64,6 +62,7 @@ class MeshPieces {
     int face = -1;
   };
   using Polygon = std::vector<Corner>;
+  using Segment = std::pair<int, int>;  // directed, between vertices
   // Where a line of the grid passes through the mesh.
   struct Crossing {
     double place = 0.0;  // along the line, spacings
@@ -92,6 +91,7 @@ class MeshPieces {
   void keepWithinCell(int axis);
   void keepPiece(const Polygon& piece);
   int gridPoint(const HalfIndex& point);
+  std::vector<Segment> border(const HalfIndex& octant, int axis);
   void addEdge(const HalfIndex& start, int axis, Direction direction, std::vector<Segment>& border);
 
   const BentGrid& grid_;

@@ -243,39 +243,39 @@ class CutMeshBuilder {
     if (++upper[at(axis)] >= 2 * cells()[at(axis)]) return;  // beyond there is none
     const bool below = !isRemoved(octant), above = !isRemoved(upper);
     if ((!below && !above) || areOfOnePart(octant, upper)) return;
-    const auto border = pieces_.lid(octant, axis);
-    const bool parted = std::any_of(border.begin(), border.end(), [&](const auto& segment) {
-      return !below || !above ||
-             nodesOf(holdOf(segment.first, octant)) != nodesOf(holdOf(segment.first, upper));
-    });
-    if (!parted) return;
-    const int middle = pieces_.addMiddle(aroundMiddle(border, octant, axis));
-    for (const auto& [from, to] : border) {
-      if (below) add({middle, from, to}, octant, Face::kOpened);
-      if (above) add({middle, to, from}, upper, Face::kOpened);
+    for (const std::vector<int>& loop : pieces_.lid(octant, axis)) {
+      const bool parted = !below || !above || std::any_of(loop.begin(), loop.end(), [&](int point) {
+        return nodesOf(holdOf(point, octant)) != nodesOf(holdOf(point, upper));
+      });
+      if (!parted) continue;
+      const int middle = pieces_.addMiddle(aroundMiddle(loop, octant, axis));
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const int from = loop[i], to = loop[(i + 1) % loop.size()];
+        if (below) add({middle, from, to}, octant, Face::kOpened);
+        if (above) add({middle, to, from}, upper, Face::kOpened);
+      }
     }
   }
 
   // The lid is two flat facets that meet along the line from the node's corner of the face to the
-  // opposite one. Where the border is on both sides of that, the points on it; else all.
-  std::vector<int> aroundMiddle(const std::vector<MeshPieces::Segment>& border,
-                                const HalfIndex& octant, int axis) const {
+  // opposite one. Where its border is on both sides of that, the points on it; else all.
+  std::vector<int> aroundMiddle(const std::vector<int>& border, const HalfIndex& octant,
+                                int axis) const {
     const std::size_t u = at((axis + 1) % 3), v = at((axis + 2) % 3);
-    std::vector<int> all, on_line;
+    std::vector<int> on_line;
     bool is_before = false, is_beyond = false;
-    for (const auto& [from, to] : border) {
-      all.push_back(from);
-      const Vec3& point = pieces_.vertex(from);
+    for (const int vertex : border) {
+      const Vec3& point = pieces_.vertex(vertex);
       const auto from_node = [&](std::size_t along) {
         const int node = (octant[along] + 1) / 2;
         return std::abs(point[static_cast<Eigen::Index>(along)] - node);
       };
       const double side = from_node(u) - from_node(v);
-      if (std::abs(side) < kOnDiagonal) on_line.push_back(from);
+      if (std::abs(side) < kOnDiagonal) on_line.push_back(vertex);
       is_before = is_before || side < -kOnDiagonal;
       is_beyond = is_beyond || side > kOnDiagonal;
     }
-    return is_before && is_beyond && on_line.size() > 1 ? on_line : all;
+    return is_before && is_beyond && on_line.size() > 1 ? on_line : border;
   }
 
   // The cell that the octant is of; beyond the lattice the nearest one.
