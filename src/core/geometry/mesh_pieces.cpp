@@ -212,7 +212,7 @@ std::vector<int> MeshPieces::bendsBetween(int from, int to, const Polygon& trian
                             lowOfCell(first_[2]) + 1};
   const Vec3 &a = places_[at(triangle[0].vertex)], &b = places_[at(triangle[1].vertex)],
              &c = places_[at(triangle[2].vertex)];
-  const Vec3 area = (b - a).cross(c - a);
+  const Vec3 area = normalOf(triangle);
   const Vec3 start = grid_.placeOf(middle);
   const Vec3 along = places_[at(to)] - places_[at(from)];
   std::vector<std::pair<double, int>> bends;
@@ -263,25 +263,29 @@ void MeshPieces::bend(const Polygon& triangle, int axis, Polygon& below, Polygon
                     forwards.end());
   bent_above.insert(bent_above.begin() + (back - above.begin()) + 1, backwards.begin(),
                     backwards.end());
-  if (fillOf(bent_below).empty() || fillOf(bent_above).empty()) return;
+  const Vec3 normal = normalOf(triangle);
+  if (fillOf(bent_below, normal).empty() || fillOf(bent_above, normal).empty()) return;
   below.swap(bent_below);
   above.swap(bent_above);
 }
 
-std::vector<MeshTriangle> MeshPieces::fillOf(const Polygon& polygon) const {
+// Of a triangle's polygon: turned as that is.
+std::vector<MeshTriangle> MeshPieces::fillOf(const Polygon& polygon, const Vec3& normal) const {
   std::vector<Vec3> places;
   for (const Corner& corner : polygon) places.push_back(places_[at(corner.vertex)]);
-  Vec3 area = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
-    area += (places[i] - places[0]).cross(places[i + 1] - places[0]);
-  }
-  return polygonTriangles(places, area).triangles;
+  return polygonTriangles(places, normal).triangles;
 }
 
-std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon) const {
+Vec3 MeshPieces::normalOf(const Polygon& triangle) const {
+  const Vec3& first = places_[at(triangle[0].vertex)];
+  return (places_[at(triangle[1].vertex)] - first).cross(places_[at(triangle[2].vertex)] - first);
+}
+
+std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon,
+                                                             const Vec3& normal) const {
   const auto count = static_cast<int>(polygon.size());
   std::vector<MeshTriangle> fill;
-  if (count > 3) fill = fillOf(polygon);
+  if (count > 3) fill = fillOf(polygon, normal);
   if (fill.empty()) {  // one, or by rounding not a simple polygon
     for (int i = 1; i + 1 < count; ++i) fill.push_back({0, i, i + 1});
   }
@@ -325,15 +329,16 @@ void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
   }
   const int low = lowOfCell(first);
   Polygon below = triangle, above;
+  const Vec3 normal = normalOf(triangle);
   if (last > low + 1) {
     below.clear();
     split(triangle, axis, low + 2, below, above);
   }
-  for (const Polygon& piece : trianglesOf(below)) {
+  for (const Polygon& piece : trianglesOf(below, normal)) {
     keepWithin(axis, low, low + 1);
     cutAtNodes(axis + 1, piece, keep);
   }
-  for (const Polygon& piece : trianglesOf(above)) cutAtNodes(axis, piece, keep);
+  for (const Polygon& piece : trianglesOf(above, normal)) cutAtNodes(axis, piece, keep);
 }
 
 void MeshPieces::cutBetweenNodes(int axis, const Polygon& triangle, bool keep) {
@@ -344,13 +349,14 @@ void MeshPieces::cutBetweenNodes(int axis, const Polygon& triangle, bool keep) {
   }
   const int low = first_[at(axis)];
   Polygon below, above;
+  const Vec3 normal = normalOf(triangle);
   split(triangle, axis, low + 1, below, above);
   bend(triangle, axis, below, above);
-  for (const Polygon& piece : trianglesOf(below)) {
+  for (const Polygon& piece : trianglesOf(below, normal)) {
     keepWithin(axis, low, low);
     cutBetweenNodes(axis + 1, piece, keep);
   }
-  for (const Polygon& piece : trianglesOf(above)) {
+  for (const Polygon& piece : trianglesOf(above, normal)) {
     keepWithin(axis, low + 1, low + 1);
     cutBetweenNodes(axis + 1, piece, keep);
   }

@@ -83,8 +83,9 @@ class MeshPieces {
   void noteCrossing(const Corner& from, int axis, int plane, int vertex);
   std::vector<int> bendsBetween(int from, int to, const Polygon& triangle, int axis);
   void bend(const Polygon& triangle, int axis, Polygon& below, Polygon& above);
-  std::vector<MeshTriangle> fillOf(const Polygon& polygon) const;  // none: it crosses itself
-  std::vector<Polygon> trianglesOf(const Polygon& polygon) const;
+  Vec3 normalOf(const Polygon& triangle) const;
+  std::vector<MeshTriangle> fillOf(const Polygon& polygon, const Vec3& normal) const;
+  std::vector<Polygon> trianglesOf(const Polygon& polygon, const Vec3& normal) const;
   void cutAtNodes(int axis, const Polygon& triangle, bool keep);
   void cutBetweenNodes(int axis, const Polygon& triangle, bool keep);
   void keepWithin(int axis, int first, int last);
