@@ -11,7 +11,7 @@ namespace {
 
 // Spacings (1): so near a plane a vertex is on it. More: what is thinner vanishes; less: edges of no
 // length, which have no direction. Chosen.
-constexpr double kOnPlane = 1e-9;
+constexpr double kOnPlane = 1e-6;
 // Spacings (1) that the search for a point on a bent plane may be off it, and its steps. Rounding.
 constexpr double kFound = 1e-13;
 constexpr int kMostSteps = 60;

@@ -132,8 +132,25 @@ class HingeSeparator {
     }
   }
 
-  // An edge inside the side of an octant has that octant on one side of it, another one beyond.
+  // Each has two triangles: where the skin touches itself, more are of one and the same material.
   std::vector<int> wedgesOf(const std::vector<EdgePlace>& places) {
+    std::vector<int> wedge_of = materialOf(places);
+    constexpr int kApart = 1 << 26;  // more than there are octants around an edge, or in all
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      int before = 0;  // that run along the edge the same way
+      for (std::size_t j = 0; j < i; ++j) {
+        const bool is_same = wedge_of[j] % kApart == wedge_of[i] && startOf(places[j]) == startOf(places[i]);
+        before += is_same ? 1 : 0;
+      }
+      wedge_of[i] += kApart * before;
+    }
+    return wedge_of;
+  }
+
+  int startOf(EdgePlace place) const { return vertexAt(place / 3, place % 3); }
+
+  // An edge inside the side of an octant has that octant on one side of it, another one beyond.
+  std::vector<int> materialOf(const std::vector<EdgePlace>& places) {
     if (isPoint(places[0])) return wedgesAtPoint(places);
     if (!findAround(places[0])) {
       std::vector<int> owner_of;
