@@ -3,30 +3,62 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <unordered_map>
 
+#include "cutting/cell_division.h"
+#include "cutting/cut.h"
 #include "cutting/removal.h"
+#include "cutting/split_cells.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
 namespace {
 
-// In an eighth of a cell at the node there is some.
-bool hasTissue(const Lattice& lattice, const LatticeState& state, int node) {
+// Whether there is any tissue around a cell's corner: in its eighth, and up to where the blade
+// passed as much as a part has at least.
+class TissueInCells {
+ public:
+  TissueInCells(const Lattice& lattice, const LatticeState& state)
+      : lattice_(lattice), state_(state) {}
+
+  bool isAt(int place, int corner) {
+    if (!lattice_.hasTissueAt(place, corner) || isTaken(state_, place, corner)) return false;
+    const Cell& cell = lattice_.cells()[at(place)];
+    if (cell.fill == nullptr || !hasPartedSprings(lattice_, state_, cell)) return true;
+    return (cornersOf(cell) >> corner & 1U) != 0;
+  }
+
+ private:
+  unsigned cornersOf(const Cell& cell) {
+    const auto [known, is_new] = corners_.try_emplace(cell.place, 0U);
+    if (!is_new) return known->second;
+    const auto fills = cornerFills(lattice_, state_, cell);
+    for (std::size_t corner = 0; corner < kCorners; ++corner) {
+      if (fills[corner].volume >= leastShare(cell)) known->second |= 1U << corner;
+    }
+    return known->second;
+  }
+
+  const Lattice& lattice_;
+  const LatticeState& state_;
+  std::unordered_map<int, unsigned> corners_;  // bits, of cells that a blade passed
+};
+
+bool hasTissue(const Lattice& lattice, TissueInCells& tissue, int node) {
   for (int corner = 0; corner < kCorners; ++corner) {
     std::array<int, 3> lowest = lattice.gridIndex(node);
     for (int axis = 0; axis < 3; ++axis) lowest[at(axis)] -= corner >> axis & 1;
     const int place = lattice.cellAt(lowest);
-    if (place < 0 || !lattice.hasTissueAt(place, corner)) continue;
-    if (!isTaken(state, place, corner)) return true;
+    if (place >= 0 && tissue.isAt(place, corner)) return true;
   }
   return false;
 }
 
 // Goes from node to node over springs that are not severed, as far as there is no tissue.
-bool isCrumb(const Lattice& lattice, const LatticeState& state, int start) {
+bool isCrumb(const Lattice& lattice, const LatticeState& state, TissueInCells& tissue, int start) {
   std::vector<int> reached = {start};
   for (std::size_t next = 0; next < reached.size(); ++next) {
-    if (hasTissue(lattice, state, reached[next])) return false;
+    if (hasTissue(lattice, tissue, reached[next])) return false;
     for (int direction = 0; direction < kNeighbors; ++direction) {
       const int spring = lattice.springOf(reached[next], direction);
       if (spring < 0 || state.severed[at(spring)] != 0) continue;
@@ -42,7 +74,7 @@ bool isCrumb(const Lattice& lattice, const LatticeState& state, int start) {
 // What springs hold together, by the lowest node, and whether there is tissue in it.
 class HeldParts {
  public:
-  HeldParts(const Lattice& lattice, const LatticeState& state)
+  HeldParts(const Lattice& lattice, const LatticeState& state, TissueInCells& tissue)
       : nodes_(at(lattice.nodeCount())), has_tissue_(at(lattice.nodeCount()), 0) {
     for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
       if (state.severed[spring] != 0) continue;
@@ -51,8 +83,7 @@ class HeldParts {
     }
     for (const Cell& cell : lattice.cells()) {
       for (int corner = 0; corner < kCorners; ++corner) {
-        if (isTaken(state, cell.place, corner)) continue;
-        if (lattice.hasTissueAt(cell.place, corner)) has_tissue_[at(of(cell, corner))] = 1;
+        if (tissue.isAt(cell.place, corner)) has_tissue_[at(of(cell, corner))] = 1;
       }
     }
   }
@@ -103,15 +134,19 @@ std::vector<Crossing> sparingCrumbs(const Lattice& lattice, const LatticeState& 
   if (lattice.isFull()) return crossings;
   LatticeState after;  // as far as it is looked at here
   after.severed = state.severed;
+  after.parted_at = state.parted_at;
+  after.springs_cut = state.springs_cut;
+  after.ahead = state.ahead;
   after.taken = state.taken;
-  for (const Crossing& crossing : crossings) after.severed[at(crossing.spring)] = 1;
+  severSprings(crossings, after);
+  TissueInCells tissue(lattice, after);
   const bool leaves_any =
       std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
         const Spring& ends = lattice.springs()[at(crossing.spring)];
-        return isCrumb(lattice, after, ends.a) || isCrumb(lattice, after, ends.b);
+        return isCrumb(lattice, after, tissue, ends.a) || isCrumb(lattice, after, tissue, ends.b);
       });
   if (!leaves_any) return crossings;
-  HeldParts parts(lattice, after);
+  HeldParts parts(lattice, after, tissue);
   while (const std::optional<Bond> bond = nextBond(lattice, crossings, parts)) {
     const auto joins = [&](const Crossing& crossing) {
       const Spring& ends = lattice.springs()[at(crossing.spring)];
@@ -133,7 +168,8 @@ std::vector<std::uint8_t> withCrumbs(const Lattice& lattice, const LatticeState&
     after.taken[place] = static_cast<std::uint8_t>(after.taken[place] | cells[place]);
   }
   noteTaken(lattice, after);
-  HeldParts parts(lattice, after);
+  TissueInCells tissue(lattice, after);
+  HeldParts parts(lattice, after, tissue);
   for (const Cell& cell : lattice.cells()) {
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(after, cell.place, corner) || !parts.isCrumb(parts.of(cell, corner))) continue;

@@ -1,7 +1,7 @@
-// Crumbs (own): nodes that hold together, and in whose eighths of cells there is no tissue. Cells
-// that a mesh fills in part have nodes outside the mesh; where a blade took all springs from such a
-// node, a piece would be left of which nothing can be seen. So crumbs stay with what is beside
-// them.
+// Crumbs (own): nodes that hold together, and around which there is no tissue in any cell: none in
+// their eighths, or none up to where a blade passed. Cells that a mesh fills in part have nodes
+// outside the mesh; where a blade took all springs from such a node, a piece would be left of which
+// nothing can be seen. So crumbs stay with what is beside them.
 #pragma once
 
 #include <cstdint>

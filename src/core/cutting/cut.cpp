@@ -123,8 +123,6 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
   return crossings;
 }
 
-namespace {
-
 void severSprings(const std::vector<Crossing>& crossings, LatticeState& state) {
   if (state.parted_at.empty()) state.parted_at.assign(state.severed.size(), 0.5);
   for (const Crossing& crossing : crossings) {
@@ -133,6 +131,8 @@ void severSprings(const std::vector<Crossing>& crossings, LatticeState& state) {
   }
   state.springs_cut += static_cast<int>(crossings.size());
 }
+
+namespace {
 
 // `before`: what was ahead then.
 void partCells(const Lattice& lattice, const std::vector<Crossing>& crossings,

@@ -24,6 +24,9 @@ constexpr double kEnd = 1e-3;
 std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& state,
                                     const std::vector<Vec3>& corners);
 
+// The springs alone, without the cells: of a state that is only looked at.
+void severSprings(const std::vector<Crossing>& crossings, LatticeState& state);
+
 // Severs the springs, none of which is severed yet, where the blade crosses them, and the cells
 // with them; new ghosts are put behind the other nodes of state.displacement. A spring keeps a
 // thousandth of its length at both ends, so that every part of a cell has some of it.

@@ -19,11 +19,6 @@ int lowestOwn(const Cell& cell) {
   return corner;
 }
 
-// Of a cell (1): a part has as much of it at least, or an eighth of what there is, and the greatest
-// part so much less. More: thin parts are too stiff and heavy; less: their nodes are so soft that
-// solves take longer. Chosen, as for cells that a mesh fills.
-constexpr double kLeastShare = 1e-3;
-
 using PartFills = std::array<FillIntegrals, kCorners>;  // by the lowest corners of parts
 
 PartFills partFills(const Lattice& lattice, const LatticeState& state, const Cell& cell,
@@ -33,7 +28,7 @@ PartFills partFills(const Lattice& lattice, const LatticeState& state, const Cel
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     fills[at(parts[corner])] += of_corners[corner];
   }
-  const double least = std::min(kLeastShare, cell.share() / kCorners);
+  const double least = leastShare(cell);
   FillIntegrals& greatest = *std::max_element(
       fills.begin(), fills.end(),
       [](const auto& one, const auto& other) { return one.volume < other.volume; });
@@ -180,6 +175,16 @@ class GhostMaker {
 };
 
 }  // namespace
+
+namespace {
+
+// Of a cell (1). More: thin parts are too stiff and heavy; less: their nodes are so soft that
+// solves take longer. Chosen, as for cells that a mesh fills.
+constexpr double kLeastShare = 1e-3;
+
+}  // namespace
+
+double leastShare(const Cell& cell) { return std::min(kLeastShare, cell.share() / kCorners); }
 
 bool isOnePart(const std::array<int, kCorners>& parts) {
   return std::all_of(parts.begin(), parts.end(), [](int part) { return part == 0; });

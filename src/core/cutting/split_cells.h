@@ -28,6 +28,10 @@ namespace robot_tissue {
 std::array<int, kCorners> cellParts(const Lattice& lattice, const LatticeState& state,
                                     const std::array<int, kCorners>& corners);
 
+// What a part has of its cell's h^3 at least: a thousandth, or an eighth of what there is. The
+// greatest part has so much less.
+double leastShare(const Cell& cell);
+
 bool isOnePart(const std::array<int, kCorners>& parts);
 
 // What the severed springs, and what was removed, leave of the lattice's cells. Ghosts of
