@@ -249,25 +249,24 @@ TEST(MeshTissue, ThinShellsAreBalancedByCyclesAsByNewton) {
   }
 }
 
-// A ball of radius r cut in two at the middle of the cells that the blade meets: each half is
-// closed, and opened by the disk between them.
+// A ball of radius r cut in two: each half is closed, and opened by the disk where the blade
+// passed.
 TEST_P(BothModels, BallCutThroughHasTwoClosedHalves) {
   const double radius = 0.0333;
   TissueConfig config = ball(GetParam(), radius);
   config.mesh = std::make_shared<const TriangleMesh>(sphereMesh(radius, 5));
   Tissue tissue(config, methodFor(GetParam()));
-  constexpr double kMiddle = 0.01;
-  ASSERT_EQ(tissue.cut(cutPlane(0.0112, -1.0)).pieces, 2);
+  constexpr double kBlade = 0.0112;
+  ASSERT_EQ(tissue.cut(cutPlane(kBlade, -1.0)).pieces, 2);
   const TissueSurface& surface = tissue.surface();
   EXPECT_EQ(countOpenEdges(surface), 0U);
-  // Nodes stand at x = -0.005, 0.005, 0.015: the cells between the last two are split.
-  const double disk = M_PI * (radius * radius - kMiddle * kMiddle);
+  const double disk = M_PI * (radius * radius - kBlade * kBlade);
   EXPECT_NEAR(openedArea(surface, 0), 2.0 * disk, 0.005 * disk);
   EXPECT_NEAR(openedArea(surface, 1), 0.0, 1e-9 * disk);
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     if (surface.opened[i] == 0) continue;
     for (const int vertex : surface.triangles[i]) {
-      EXPECT_NEAR(surface.rest[at(vertex)].x(), kMiddle, 1e-9);
+      EXPECT_NEAR(surface.rest[at(vertex)].x(), kBlade, 1e-9);
     }
   }
   // Moved apart by 1 m, the halves enclose what they did.
@@ -280,6 +279,39 @@ TEST_P(BothModels, BallCutThroughHasTwoClosedHalves) {
   deform(surface, displacement, apart);
   const double volume = enclosedVolume(surface, surface.rest);
   EXPECT_NEAR(enclosedVolume(surface, apart), volume, 1e-9 * volume);
+}
+
+// Of a plane that is oblique to the grid, too; but for a thousandth of a spacing, which springs
+// keep at their ends.
+TEST(MeshTissue, WoundsLieOnTheBlade) {
+  Random random;
+  for (int blade = 0; blade < 5; ++blade) {
+    Tissue tissue(ball(), methodFor("elastic"));
+    const double volume = enclosedVolume(tissue.surface(), tissue.surface().rest);
+    const std::size_t triangles = tissue.surface().triangles.size();
+    const Pose pose = random.pose(0.01);
+    const Vec3 normal = pose.linear().col(2);
+    std::vector<Vec3> corners;
+    for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      corners.push_back(pose * Vec3(x, y, 0.0));
+    }
+    ASSERT_EQ(tissue.cut(corners).pieces, 2);
+    const TissueSurface& surface = tissue.surface();
+    EXPECT_EQ(countOpenEdges(surface), 0U);
+    EXPECT_NEAR(enclosedVolume(surface, surface.rest), volume, 1e-12 * volume);
+    std::size_t opened = 0;
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      if (surface.opened[i] == 0) continue;
+      ++opened;
+      for (const int vertex : surface.triangles[i]) {
+        const double off = normal.dot(surface.rest[at(vertex)] - pose.translation());
+        EXPECT_LT(std::abs(off), 1.1e-3 * kSpacing);
+      }
+    }
+    EXPECT_GT(opened, 100U);
+    // The skin has those of the mesh and what the wound's outline asks for.
+    EXPECT_LT(surface.triangles.size() - opened, triangles + 8 * triangles / 10);
+  }
 }
 
 }  // namespace

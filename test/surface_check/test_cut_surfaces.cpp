@@ -20,6 +20,9 @@ namespace {
 // Of the spacing (1): how far the vertices are moved inwards. Parts are as thin as a thousandth.
 constexpr double kInwards = 1e-5;
 
+// m: places along oblique wounds are rounded.
+constexpr double kRounding = 1e-13;
+
 // Each vertex against the mean direction of its triangles, so that sides along a cut part and what
 // only touched does so no longer; what still crosses then does.
 std::vector<Vec3> movedInwards(const TissueSurface& surface, double way) {
@@ -37,7 +40,9 @@ std::vector<Vec3> movedInwards(const TissueSurface& surface, double way) {
 }
 
 // `volume`: that its pieces enclose together (m^3).
-void expectSound(const Tissue& tissue, double volume) { EXPECT_EQ(faultOf(tissue, volume), ""); }
+void expectSound(const Tissue& tissue, double volume, double rounding = 0.0) {
+  EXPECT_EQ(faultOf(tissue, volume, rounding), "");
+}
 
 // With the sides along cuts moved apart, too. Not of meshes and of oblique cuts: their triangles
 // and wedges may be slivers that any move turns over.
@@ -127,6 +132,22 @@ TEST(CutSurfaces, OfALiverCutAtRandomAreSound) {
   }
   EXPECT_GT(tissue.state().springs_cut, 100);
   expectSound(tissue, volume);
+}
+
+// Wounds on flat blades, and on two that cross.
+TEST(CutSurfaces, OfALiverCutByFlatBladesAreSound) {
+  Scene scene = loadScene(std::string(ROBOT_TISSUE_SOURCE_DIR) + "/config/liver.yaml", {});
+  scene.solver.tolerance = 0.05;
+  Tissue tissue(scene.tissue, scene.solver);
+  const double volume = volumeOf(tissue);
+  const Vec3 middle = tissue.lattice().bounds().center();
+  for (const Vec3& normal : {Vec3(1.0, 0.2, 0.1), Vec3(-0.3, 1.0, 0.4), Vec3(0.1, 0.5, 1.0)}) {
+    const Vec3 along = 0.3 * normal.unitOrthogonal(), across = normal.normalized().cross(along);
+    tissue.cut({middle - along - across, middle + along - across, middle + along + across,
+                middle - along + across});
+    expectSound(tissue, volume, kRounding);
+  }
+  EXPECT_EQ(tissue.pieces().size(), 8U);
 }
 
 #else

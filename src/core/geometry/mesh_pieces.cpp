@@ -9,12 +9,16 @@
 namespace robot_tissue {
 namespace {
 
-// Spacings (1): so near a plane a vertex is on it. More: what is thinner vanishes; less: edges of no
-// length, which have no direction. Chosen.
+// Spacings (1): so near a plane a vertex is on it. More: what is thinner vanishes; less: edges of
+// no length, which have no direction. Chosen.
 constexpr double kOnPlane = 1e-6;
 // Spacings (1) that the search for a point on a bent plane may be off it, and its steps. Rounding.
 constexpr double kFound = 1e-13;
 constexpr int kMostSteps = 60;
+// Points along an edge at which bent planes are looked for, and rounds of that. More: finer turns
+// are found; less: tips of a wound stand out of the skin. Chosen.
+constexpr int kSamples = 7;
+constexpr int kMostTurns = 2;
 // Barycentric (1): a bend is so far inside a triangle at least. Less: slivers. Chosen.
 constexpr double kInside = 1e-6;
 
@@ -138,6 +142,68 @@ int MeshPieces::crossing(int from, int to, int axis, int plane) {
   return known->second;
 }
 
+// Along an edge in one cell a bent plane may come and go again. Where it does, a point between; in
+// order, from the lower number to the higher one.
+std::vector<int> MeshPieces::findTurns(int low, int high) {
+  std::array<Vec3, kSamples> straight;
+  for (int i = 0; i < kSamples; ++i) {
+    straight[at(i)] = straightBetween(low, high, (i + 1.0) / (kSamples + 1.0));
+  }
+  std::array<bool, kSamples> is_turn{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double start = vertices_[at(low)][axis], end = vertices_[at(high)][axis];
+    const double plane = std::floor(std::min(start, end)) + 0.5;
+    if (start == end && start == plane - 0.5) continue;  // in a plane of nodes
+    int farthest = -1;  // of those since the plane was crossed, the first run left out
+    bool is_above = start >= plane;
+    for (int i = 0; i <= kSamples; ++i) {
+      const double here = (i < kSamples ? straight[at(i)][axis] : end) - plane;
+      if ((here >= 0.0) != is_above) {
+        if (farthest >= 0) is_turn[at(farthest)] = true;
+        is_above = !is_above;
+        farthest = i < kSamples ? i : -1;
+      } else if (farthest >= 0 && i < kSamples &&
+                 std::abs(here) > std::abs(straight[at(farthest)][axis] - plane)) {
+        farthest = i;
+      }
+    }
+  }
+  std::vector<int> turns;
+  for (int i = 0; i < kSamples; ++i) {
+    if (!is_turn[at(i)]) continue;
+    const double share = (i + 1.0) / (kSamples + 1.0);
+    const Vec3& from = places_[at(low)];
+    turns.push_back(addVertex(straight[at(i)], from + share * (places_[at(high)] - from)));
+  }
+  return turns;
+}
+
+// Of a point on an edge that is in one cell, and stays there.
+Vec3 MeshPieces::straightBetween(int low, int high, double share) const {
+  const Vec3 &from = places_[at(low)], &to = places_[at(high)];
+  Vec3 straight = ontoPlanes(grid_.straightened(from + share * (to - from)));
+  for (int axis = 0; axis < 3; ++axis) {
+    const double start = vertices_[at(low)][axis], end = vertices_[at(high)][axis];
+    const double first = std::floor(std::min(start, end));
+    straight[axis] = start == end && start == first
+                         ? start
+                         : std::clamp(straight[axis], first, std::nextafter(first + 1.0, 0.0));
+  }
+  return straight;
+}
+
+std::vector<int> MeshPieces::turns(int from, int to) {
+  const auto [low, high] = std::minmax(from, to);
+  const auto [known, is_new] = turns_.try_emplace(std::array<int, 2>{low, high});
+  if (is_new) {
+    std::vector<int> found = findTurns(low, high);
+    turns_[{low, high}] = std::move(found);
+  }
+  std::vector<int> turns = turns_[{low, high}];
+  if (from == high) std::reverse(turns.begin(), turns.end());
+  return turns;
+}
+
 // In order. From below to above, as the pieces are cut, so that the points are the same.
 std::vector<int> MeshPieces::crossingsBetween(int from, int to, int axis, bool at_nodes) {
   const int start = octantOf(vertices_[at(from)])[at(axis)];
@@ -157,18 +223,42 @@ std::vector<int> MeshPieces::crossingsBetween(int from, int to, int axis, bool a
 
 std::vector<int> MeshPieces::subdivided(int from, int to) {
   std::vector<int> points = {from, to};
-  for (const bool at_nodes : {true, false}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<int> finer = {points.front()};
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const auto between = crossingsBetween(points[i], points[i + 1], axis, at_nodes);
-        finer.insert(finer.end(), between.begin(), between.end());
-        finer.push_back(points[i + 1]);
-      }
-      points.swap(finer);
+  const auto refine = [&](const auto& between) {
+    std::vector<int> finer = {points.front()};
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      for (const int point : between(points[i], points[i + 1])) finer.push_back(point);
+      finer.push_back(points[i + 1]);
     }
+    points.swap(finer);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    refine([&](int a, int b) { return crossingsBetween(a, b, axis, true); });
+  }
+  for (int round = 0; round < kMostTurns; ++round) {
+    refine([&](int a, int b) { return isBeside(a, b) ? turns(a, b) : std::vector<int>(); });
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    refine([&](int a, int b) { return crossingsBetween(a, b, axis, false); });
   }
   return points;
+}
+
+// The edge, which is in one cell or between some, is in one that is bent, or beside it.
+bool MeshPieces::isBeside(int from, int to) const {
+  const Vec3 low = vertices_[at(from)].cwiseMin(vertices_[at(to)]);
+  for (int around = 0; around < 8; ++around) {
+    HalfIndex octant{};
+    bool is_around = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool below = (around >> axis & 1) != 0;
+      const double first = std::floor(low[axis]);
+      const bool is_in_plane = vertices_[at(from)][axis] == first && vertices_[at(to)][axis] == first;
+      is_around = is_around && (!below || is_in_plane);
+      octant[at(axis)] = 2 * static_cast<int>(first) - (below ? 2 : 0);
+    }
+    if (is_around && grid_.isBent(octant)) return true;
+  }
+  return false;
 }
 
 void MeshPieces::split(const Polygon& triangle, int axis, int plane, Polygon& below,
@@ -225,9 +315,9 @@ std::vector<int> MeshPieces::bendsBetween(int from, int to, const Polygon& trian
     if (above_start * above_end >= 0.0) continue;
     const double share = above_start / (above_start - above_end);
     const Vec3 place = start + share * (end - start);
-    const double least = std::min({area.dot((b - a).cross(place - a)),
-                                   area.dot((c - b).cross(place - b)),
-                                   area.dot((a - c).cross(place - c))});
+    const double least =
+        std::min({area.dot((b - a).cross(place - a)), area.dot((c - b).cross(place - b)),
+                  area.dot((a - c).cross(place - c))});
     const Vec3 from_start = place - places_[at(from)];
     const bool is_straight = along.cross(from_start).norm() < kOnPlane * along.norm();
     if (is_straight || !(least > kInside * area.squaredNorm())) continue;
@@ -282,7 +372,7 @@ Vec3 MeshPieces::normalOf(const Polygon& triangle) const {
 }
 
 std::vector<MeshPieces::Polygon> MeshPieces::trianglesOf(const Polygon& polygon,
-                                                             const Vec3& normal) const {
+                                                         const Vec3& normal) const {
   const auto count = static_cast<int>(polygon.size());
   std::vector<MeshTriangle> fill;
   if (count > 3) fill = fillOf(polygon, normal);
@@ -319,7 +409,7 @@ void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
       keepWithin(each, 0, octants_[at(each)] - 1);
     }
   }
-  if (axis == 3) return cutBetweenNodes(0, triangle, keep);
+  if (axis == 3) return cutInCell(triangle, kMostTurns, keep);
   int first = octants_[at(axis)];
   int last = 0;
   for (const Corner& corner : triangle) {
@@ -339,6 +429,23 @@ void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
     cutAtNodes(axis + 1, piece, keep);
   }
   for (const Polygon& piece : trianglesOf(above, normal)) cutAtNodes(axis, piece, keep);
+}
+
+// In one cell: first at the points where edges meet a bent plane more than once.
+void MeshPieces::cutInCell(const Polygon& triangle, int rounds, bool keep) {
+  Polygon polygon;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Corner& from = triangle[i];
+    polygon.push_back(from);
+    const int to = triangle[(i + 1) % 3].vertex;
+    if (rounds == 0 || from.vertex == to || !grid_.isBent(first_)) continue;
+    for (const int turn : turns(from.vertex, to)) polygon.push_back({turn, from.face});
+  }
+  if (polygon.size() == 3) return cutBetweenNodes(0, triangle, keep);
+  for (const Polygon& piece : trianglesOf(polygon, normalOf(triangle))) {
+    for (int axis = 0; axis < 3; ++axis) keepWithinCell(axis);
+    cutInCell(piece, rounds - 1, keep);
+  }
 }
 
 void MeshPieces::cutBetweenNodes(int axis, const Polygon& triangle, bool keep) {

@@ -35,7 +35,9 @@ double signedFullness(const Point& a, const Point& b, const Point& c) {
 class BestTriangles {
  public:
   explicit BestTriangles(std::vector<Point> points)
-      : points_(std::move(points)), count_(static_cast<int>(points_.size())), parts_(at(count_ * count_)) {
+      : points_(std::move(points)),
+        count_(static_cast<int>(points_.size())),
+        parts_(at(count_ * count_)) {
     for (int length = 2; length < count_; ++length) {
       for (int first = 0; first + length < count_; ++first) find(first, first + length);
     }

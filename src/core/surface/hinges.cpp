@@ -139,7 +139,8 @@ class HingeSeparator {
     for (std::size_t i = 0; i < places.size(); ++i) {
       int before = 0;  // that run along the edge the same way
       for (std::size_t j = 0; j < i; ++j) {
-        const bool is_same = wedge_of[j] % kApart == wedge_of[i] && startOf(places[j]) == startOf(places[i]);
+        const bool is_same =
+            wedge_of[j] % kApart == wedge_of[i] && startOf(places[j]) == startOf(places[i]);
         before += is_same ? 1 : 0;
       }
       wedge_of[i] += kApart * before;
@@ -175,7 +176,8 @@ class HingeSeparator {
 
   // Octants around the point that are joined over their sides are of one wedge.
   std::vector<int> wedgesAtPoint(const std::vector<EdgePlace>& places) const {
-    const std::array<Octant, 8> around = aroundPoint(places_[at(vertexAt(places[0] / 3, places[0] % 3))]);
+    const std::array<Octant, 8> around =
+        aroundPoint(places_[at(vertexAt(places[0] / 3, places[0] % 3))]);
     DisjointSets sets(8);
     for (int i = 0; i < 8; ++i) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -342,9 +344,9 @@ class HingeSeparator {
   std::vector<Vec3> places_;    // per vertex, in half spacings
   TissueSurface& surface_;
   std::vector<int> part_of_;  // per triangle, the one it was
-  DisjointSets fans_;        // of corners of triangles
-  std::vector<Edge> edges_;  // by their ends
-  int along_ = 0;            // axis of the edge that is looked at
+  DisjointSets fans_;         // of corners of triangles
+  std::vector<Edge> edges_;   // by their ends
+  int along_ = 0;             // axis of the edge that is looked at
   std::array<Octant, 4> around_{};
 };
 

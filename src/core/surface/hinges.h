@@ -14,7 +14,7 @@ namespace robot_tissue {
 // octant behind it. `places`: per vertex, where in the half grid it belongs, in half spacings;
 // where a blade parted cells it stands beside that. Returns, per triangle, which one it was or was
 // part of.
-std::vector<int> separateHinges(const OctantGrid& octants, std::vector<Octant> owners, std::vector<Vec3> places,
-                    TissueSurface& surface);
+std::vector<int> separateHinges(const OctantGrid& octants, std::vector<Octant> owners,
+                                std::vector<Vec3> places, TissueSurface& surface);
 
 }  // namespace robot_tissue

@@ -15,6 +15,11 @@ constexpr std::size_t kMostAround = 24;
 // What one vertex leaves may let the next one go: more than a few rounds gain little. Chosen.
 constexpr int kMostRounds = 4;
 
+std::size_t cornerAt(const MeshTriangle& triangle, int vertex) {
+  return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), vertex) -
+                                  triangle.begin());
+}
+
 class SkinMerger {
  public:
   SkinMerger(const TissueSurface& surface, const std::vector<int>& mesh_triangles)
@@ -80,12 +85,14 @@ class SkinMerger {
     std::vector<MeshTriangle> fill;
     std::vector<int> of_mesh;
     double thinnest = kFull;
-    for (const int triangle : star) thinnest = std::min(thinnest, fullnessOf(triangles_[at(triangle)]));
+    for (const int triangle : star)
+      thinnest = std::min(thinnest, fullnessOf(triangles_[at(triangle)]));
     for (const Part& part : parts) {
       const PolygonTriangles found = filled(part.outline);
       if (found.triangles.empty() || found.thinnest < thinnest) return false;
       for (const MeshTriangle& each : found.triangles) {
-        fill.push_back({part.outline[at(each[0])], part.outline[at(each[1])], part.outline[at(each[2])]});
+        fill.push_back(
+            {part.outline[at(each[0])], part.outline[at(each[1])], part.outline[at(each[2])]});
         of_mesh.push_back(part.mesh_triangle);
       }
     }
@@ -102,13 +109,13 @@ class SkinMerger {
       const int mesh_triangle = mesh_triangles_[at(triangle)];
       if (mesh_triangle < 0) return {};
       const MeshTriangle& corners = triangles_[at(triangle)];
-      const auto tip = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-      edges.push_back({corners[at((tip + 1) % 3)], corners[at((tip + 2) % 3)], mesh_triangle});
+      const std::size_t tip = cornerAt(corners, vertex);
+      edges.push_back({corners[(tip + 1) % 3], corners[(tip + 2) % 3], mesh_triangle});
     }
     for (std::size_t i = 1; i < edges.size(); ++i) {
-      const auto next = std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(), [&](const Edge& edge) {
-        return edge.from == edges[i - 1].to;
-      });
+      const auto next =
+          std::find_if(edges.begin() + static_cast<std::ptrdiff_t>(i), edges.end(),
+                       [&](const Edge& edge) { return edge.from == edges[i - 1].to; });
       if (next == edges.end() || next->from == edges.front().from) return {};
       std::swap(edges[i], *next);
     }
@@ -173,8 +180,8 @@ class SkinMerger {
     const std::vector<int>& around = around_[at(from)];
     return std::any_of(around.begin(), around.end(), [&](int triangle) {
       const MeshTriangle& corners = triangles_[at(triangle)];
-      const auto start = std::find(corners.begin(), corners.end(), from) - corners.begin();
-      return corners[at((start + 1) % 3)] == to &&
+      const std::size_t start = cornerAt(corners, from);
+      return corners[(start + 1) % 3] == to &&
              std::find(star.begin(), star.end(), triangle) == star.end();
     });
   }

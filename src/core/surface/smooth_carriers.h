@@ -6,10 +6,10 @@
 //
 //   u = sum of N_i u_i + x (x - 1) / 2 q       x: 0 to 1 across the cell
 //
-// with q, along each edge of the cell, from the nodes next to its ends: as exact as trilinear weights
-// for a linear shape, and exact for a quadratic one, too. Between two whole neighbors that is the
-// cubic of Catmull and Rom (1974). What is next to an edge depends on the edge alone, so that the
-// shape goes on without a step from cell to cell, however they are filled.
+// with q, along each edge of the cell, from the nodes next to its ends: as exact as trilinear
+// weights for a linear shape, and exact for a quadratic one, too. Between two whole neighbors that
+// is the cubic of Catmull and Rom (1974). What is next to an edge depends on the edge alone, so
+// that the shape goes on without a step from cell to cell, however they are filled.
 #pragma once
 
 #include <vector>
