@@ -144,13 +144,13 @@ int MeshPieces::crossing(int from, int to, int axis, int plane) {
 
 // Along an edge in one cell a bent plane may come and go again. Where it does, a point between; in
 // order, from the lower number to the higher one.
-std::vector<int> MeshPieces::findTurns(int low, int high) {
+std::vector<int> MeshPieces::findTurns(int low, int high, int cut) {
   std::array<Vec3, kSamples> straight;
   for (int i = 0; i < kSamples; ++i) {
-    straight[at(i)] = straightBetween(low, high, (i + 1.0) / (kSamples + 1.0));
+    straight[at(i)] = straightBetween(low, high, cut, (i + 1.0) / (kSamples + 1.0));
   }
   std::array<bool, kSamples> is_turn{};
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = cut; axis < 3; ++axis) {
     const double start = vertices_[at(low)][axis], end = vertices_[at(high)][axis];
     const double plane = std::floor(std::min(start, end)) + 0.5;
     if (start == end && start == plane - 0.5) continue;  // in a plane of nodes
@@ -178,28 +178,26 @@ std::vector<int> MeshPieces::findTurns(int low, int high) {
   return turns;
 }
 
-// Of a point on an edge that is in one cell, and stays there.
-Vec3 MeshPieces::straightBetween(int low, int high, double share) const {
+// Of a point on an edge that is in one cell, and stays there, and in one octant along the axes that
+// it has been cut along.
+Vec3 MeshPieces::straightBetween(int low, int high, int cut, double share) const {
   const Vec3 &from = places_[at(low)], &to = places_[at(high)];
   Vec3 straight = ontoPlanes(grid_.straightened(from + share * (to - from)));
   for (int axis = 0; axis < 3; ++axis) {
     const double start = vertices_[at(low)][axis], end = vertices_[at(high)][axis];
-    const double first = std::floor(std::min(start, end));
+    const double step = axis < cut ? 0.5 : 1.0, first = step * std::floor(std::min(start, end) / step);
     straight[axis] = start == end && start == first
                          ? start
-                         : std::clamp(straight[axis], first, std::nextafter(first + 1.0, 0.0));
+                         : std::clamp(straight[axis], first, std::nextafter(first + step, 0.0));
   }
   return straight;
 }
 
-std::vector<int> MeshPieces::turns(int from, int to) {
+std::vector<int> MeshPieces::turns(int from, int to, int cut) {
   const auto [low, high] = std::minmax(from, to);
-  const auto [known, is_new] = turns_.try_emplace(std::array<int, 2>{low, high});
-  if (is_new) {
-    std::vector<int> found = findTurns(low, high);
-    turns_[{low, high}] = std::move(found);
-  }
-  std::vector<int> turns = turns_[{low, high}];
+  const auto [known, is_new] = turns_.try_emplace(std::array<int, 3>{low, high, cut});
+  if (is_new) known->second = findTurns(low, high, cut);
+  std::vector<int> turns = known->second;
   if (from == high) std::reverse(turns.begin(), turns.end());
   return turns;
 }
@@ -234,10 +232,10 @@ std::vector<int> MeshPieces::subdivided(int from, int to) {
   for (int axis = 0; axis < 3; ++axis) {
     refine([&](int a, int b) { return crossingsBetween(a, b, axis, true); });
   }
-  for (int round = 0; round < kMostTurns; ++round) {
-    refine([&](int a, int b) { return isBeside(a, b) ? turns(a, b) : std::vector<int>(); });
-  }
   for (int axis = 0; axis < 3; ++axis) {
+    for (int round = 0; round < kMostTurns; ++round) {
+      refine([&](int a, int b) { return isBeside(a, b) ? turns(a, b, axis) : std::vector<int>(); });
+    }
     refine([&](int a, int b) { return crossingsBetween(a, b, axis, false); });
   }
   return points;
@@ -409,7 +407,7 @@ void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
       keepWithin(each, 0, octants_[at(each)] - 1);
     }
   }
-  if (axis == 3) return cutInCell(triangle, kMostTurns, keep);
+  if (axis == 3) return cutInCell(0, triangle, kMostTurns, keep);
   int first = octants_[at(axis)];
   int last = 0;
   for (const Corner& corner : triangle) {
@@ -431,20 +429,23 @@ void MeshPieces::cutAtNodes(int axis, const Polygon& triangle, bool keep) {
   for (const Polygon& piece : trianglesOf(above, normal)) cutAtNodes(axis, piece, keep);
 }
 
-// In one cell: first at the points where edges meet a bent plane more than once.
-void MeshPieces::cutInCell(const Polygon& triangle, int rounds, bool keep) {
+// In one cell: first at the points where edges meet bent planes along the axis, or the next ones,
+// more than once.
+void MeshPieces::cutInCell(int axis, const Polygon& triangle, int rounds, bool keep) {
   Polygon polygon;
   for (std::size_t i = 0; i < 3; ++i) {
     const Corner& from = triangle[i];
     polygon.push_back(from);
     const int to = triangle[(i + 1) % 3].vertex;
-    if (rounds == 0 || from.vertex == to || !grid_.isBent(first_)) continue;
-    for (const int turn : turns(from.vertex, to)) polygon.push_back({turn, from.face});
+    if (rounds == 0 || from.vertex == to || axis == 3 || !grid_.isBent(first_)) continue;
+    for (const int turn : turns(from.vertex, to, axis)) polygon.push_back({turn, from.face});
   }
-  if (polygon.size() == 3) return cutBetweenNodes(0, triangle, keep);
+  if (polygon.size() == 3) return cutBetweenNodes(axis, triangle, keep);
+  const HalfIndex first = first_, last = last_;
   for (const Polygon& piece : trianglesOf(polygon, normalOf(triangle))) {
-    for (int axis = 0; axis < 3; ++axis) keepWithinCell(axis);
-    cutInCell(piece, rounds - 1, keep);
+    first_ = first;
+    last_ = last;
+    cutInCell(axis, piece, rounds - 1, keep);
   }
 }
 
@@ -461,11 +462,11 @@ void MeshPieces::cutBetweenNodes(int axis, const Polygon& triangle, bool keep) {
   bend(triangle, axis, below, above);
   for (const Polygon& piece : trianglesOf(below, normal)) {
     keepWithin(axis, low, low);
-    cutBetweenNodes(axis + 1, piece, keep);
+    cutInCell(axis + 1, piece, kMostTurns, keep);
   }
   for (const Polygon& piece : trianglesOf(above, normal)) {
     keepWithin(axis, low + 1, low + 1);
-    cutBetweenNodes(axis + 1, piece, keep);
+    cutInCell(axis + 1, piece, kMostTurns, keep);
   }
 }
 

@@ -78,9 +78,10 @@ class MeshPieces {
   bool isAbove(int vertex, int axis, int plane) const;
   double alongEdge(int from, int to, int axis, int plane) const;
   int crossing(int from, int to, int axis, int plane);
-  std::vector<int> turns(int from, int to);
-  std::vector<int> findTurns(int low, int high);
-  Vec3 straightBetween(int low, int high, double share) const;
+  // `cut`: axes before this one have been cut along, also between nodes.
+  std::vector<int> turns(int from, int to, int cut);
+  std::vector<int> findTurns(int low, int high, int cut);
+  Vec3 straightBetween(int low, int high, int cut, double share) const;
   bool isBeside(int from, int to) const;
   std::vector<int> crossingsBetween(int from, int to, int axis, bool at_nodes);
   void split(const Polygon& triangle, int axis, int plane, Polygon& below, Polygon& above);
@@ -91,7 +92,7 @@ class MeshPieces {
   std::vector<MeshTriangle> fillOf(const Polygon& polygon, const Vec3& normal) const;
   std::vector<Polygon> trianglesOf(const Polygon& polygon, const Vec3& normal) const;
   void cutAtNodes(int axis, const Polygon& triangle, bool keep);
-  void cutInCell(const Polygon& triangle, int rounds, bool keep);
+  void cutInCell(int axis, const Polygon& triangle, int rounds, bool keep);
   void cutBetweenNodes(int axis, const Polygon& triangle, bool keep);
   void keepWithin(int axis, int first, int last);
   void keepWithinCell(int axis);
@@ -110,7 +111,7 @@ class MeshPieces {
   template <std::size_t N, class Value>
   using Table = std::unordered_map<std::array<int, N>, Value, IndexHash>;
   Table<4, int> crossings_;  // edge's ends, axis, plane
-  Table<2, std::vector<int>> turns_;  // edge's ends
+  Table<3, std::vector<int>> turns_;  // edge's ends, axes cut
   Table<3, std::vector<Crossing>> lines_;
   Table<4, std::vector<Segment>> seams_;  // octant, axis: upper face
   Table<3, int> grid_points_;
