@@ -10,7 +10,7 @@ robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
   FILES bent_grid.h cell_fill.cpp polygon_triangles.cpp polygon_triangles.h exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
-    mesh_columns.h mesh_pieces.cpp mesh_pieces.h
+    mesh_columns.h mesh_pieces.cpp mesh_pieces.h mesh_points.cpp mesh_points.h
     mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h mesh_walls.cpp self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp tuning.h)
 robot_tissue_room(config

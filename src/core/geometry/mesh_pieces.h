@@ -6,12 +6,12 @@
 // have it; points that planes cut out of a common edge are common. So where the mesh is closed, the
 // pieces of one octant and the lids on its faces are closed to the last bit, whatever the rounding.
 //
-// Planes half way between nodes may be bent (bent_grid.h). A vertex then has a place, and straight
-// coordinates, which its place would have if the planes were straight: decisions hang on the
-// latter. The mesh is cut by the planes of nodes first. In a cell a bent plane is facets that meet
-// along lines from its middle; it cuts a triangle from where it meets one edge to where it meets
-// the other, over the points where those lines pass through the triangle. So all pieces lie in
-// the mesh's triangles, and all seams on the facets.
+// The mesh is cut by the planes of nodes first. In a cell a bent plane (bent_grid.h) is facets that
+// meet along lines from its middle; it cuts a triangle from where it meets one edge to where it
+// meets the other, over the points where those lines pass through the triangle. So all pieces lie
+// in the mesh's triangles, and all seams on the facets. Where planes bend so much that one meets an
+// edge more than once, the edge is parted there; what comes and goes between two of the points that
+// are looked at stands out of the skin.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/bent_grid.h"
 #include "geometry/index_hash.h"
+#include "geometry/mesh_points.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
@@ -39,15 +39,14 @@ class MeshPieces {
 
   // Cuts a triangle. Its pieces are kept if asked for; where it crosses the grid's lines always is.
   void add(const MeshTriangle& triangle, int number, bool keep_pieces);
-  // The points that planes cut out of an edge, in order, with its ends.
-  std::vector<int> subdivided(int from, int to);
-  // In the middle of these.
-  int addMiddle(const std::vector<int>& points);
+  // MeshPoints: those of the mesh first, then what planes cut out.
+  std::vector<int> subdivided(int from, int to) { return points_.subdivided(from, to); }
+  int addMiddle(const std::vector<int>& points) { return points_.addMiddle(points); }
+  const Vec3& straight(int point) const { return points_.straight(point); }
+  const Vec3& place(int point) const { return points_.place(point); }
+  HalfIndex octantOf(const Vec3& straight) const { return points_.octantOf(straight); }
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  const Vec3& vertex(int index) const { return vertices_[at(index)]; }  // straight coordinates
-  const Vec3& place(int index) const { return places_[at(index)]; }
-  HalfIndex octantOf(const Vec3& point) const;
 
   // What the mesh encloses on the upper face of the octant along the axis: loops of points around
   // it, as seen from above that face, where the mesh runs in it and along parts of its edges. None
@@ -74,16 +73,6 @@ class MeshPieces {
 
   enum class Direction { kForwards, kBackwards };  // along an axis
 
-  int addVertex(const Vec3& straight, const Vec3& place);
-  bool isAbove(int vertex, int axis, int plane) const;
-  double alongEdge(int from, int to, int axis, int plane) const;
-  int crossing(int from, int to, int axis, int plane);
-  // `cut`: axes before this one have been cut along, also between nodes.
-  std::vector<int> turns(int from, int to, int cut);
-  std::vector<int> findTurns(int low, int high, int cut);
-  Vec3 straightBetween(int low, int high, int cut, double share) const;
-  bool isBeside(int from, int to) const;
-  std::vector<int> crossingsBetween(int from, int to, int axis, bool at_nodes);
   void split(const Polygon& triangle, int axis, int plane, Polygon& below, Polygon& above);
   void noteCrossing(const Corner& from, int axis, int plane, int vertex);
   std::vector<int> bendsBetween(int from, int to, const Polygon& triangle, int axis);
@@ -102,16 +91,13 @@ class MeshPieces {
   void addEdge(const HalfIndex& start, int axis, Direction direction, std::vector<Segment>& border);
 
   const BentGrid& grid_;
-  std::vector<Vec3> places_;
-  std::vector<Vec3> vertices_;  // straight coordinates
+  HalfIndex octants_{};  // of the grid, along x, y, z
+  MeshPoints points_;
   int triangle_ = 0;            // that is being cut
-  HalfIndex octants_{};         // of the grid, along x, y, z
   HalfIndex first_{}, last_{};  // octants that what is being cut out lies in
   std::vector<Piece> pieces_;
   template <std::size_t N, class Value>
   using Table = std::unordered_map<std::array<int, N>, Value, IndexHash>;
-  Table<4, int> crossings_;  // edge's ends, axis, plane
-  Table<3, std::vector<int>> turns_;  // edge's ends, axes cut
   Table<3, std::vector<Crossing>> lines_;
   Table<4, std::vector<Segment>> seams_;  // octant, axis: upper face
   Table<3, int> grid_points_;

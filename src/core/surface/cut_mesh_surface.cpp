@@ -176,10 +176,10 @@ class CutMeshBuilder {
 
   // Its box reaches into the region.
   bool isNear(const MeshTriangle& triangle) const {
-    HalfIndex low = pieces_.octantOf(pieces_.vertex(triangle[0]));
+    HalfIndex low = pieces_.octantOf(pieces_.straight(triangle[0]));
     HalfIndex high = low;
     for (const int vertex : triangle) {
-      const HalfIndex octant = pieces_.octantOf(pieces_.vertex(vertex));
+      const HalfIndex octant = pieces_.octantOf(pieces_.straight(vertex));
       for (std::size_t axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], octant[axis]);
         high[axis] = std::max(high[axis], octant[axis]);
@@ -215,12 +215,12 @@ class CutMeshBuilder {
   void addPlain(const MeshTriangle& triangle) {
     MeshTriangle corners{};
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = vertex(triangle[i], pieces_.octantOf(pieces_.vertex(triangle[i])));
+      corners[i] = vertex(triangle[i], pieces_.octantOf(pieces_.straight(triangle[i])));
     }
     surface_.triangles.push_back(corners);
     surface_.opened.push_back(0);
     mesh_triangle_of_.push_back(mesh_triangle_);
-    owners_.push_back(octantAt(pieces_.octantOf(pieces_.vertex(triangle[0]))));
+    owners_.push_back(octantAt(pieces_.octantOf(pieces_.straight(triangle[0]))));
   }
 
   void add(const MeshTriangle& triangle, const HalfIndex& octant, Face face) {
@@ -266,7 +266,7 @@ class CutMeshBuilder {
     std::vector<int> on_line;
     bool is_before = false, is_beyond = false;
     for (const int vertex : border) {
-      const Vec3& point = pieces_.vertex(vertex);
+      const Vec3& point = pieces_.straight(vertex);
       const auto from_node = [&](std::size_t along) {
         const int node = (octant[along] + 1) / 2;
         return std::abs(point[static_cast<Eigen::Index>(along)] - node);
@@ -351,7 +351,7 @@ class CutMeshBuilder {
       surface_.rest.push_back(is_of_mesh ? mesh_.vertices[at(point)]
                                          : placed(pieces_.place(point)));
       is_of_mesh_.push_back(is_of_mesh ? 1 : 0);
-      places_.push_back(2.0 * pieces_.vertex(point));
+      places_.push_back(2.0 * pieces_.straight(point));
       const std::vector<NodeWeight> carriers = smoothCarriers(parts_.cells(), part, place);
       parts_.addCarriers({carriers.data(), carriers.data() + carriers.size()}, surface_.carriers);
       surface_.node.push_back(-1);
