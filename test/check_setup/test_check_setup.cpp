@@ -125,7 +125,8 @@ TEST_F(CheckSetup, ThinObliqueWallsAreMeasured) {
   EXPECT_TRUE(says("bend 71 to 128 % as far")) << out_;
   EXPECT_TRUE(says("tissue.spacing: 0.00125")) << out_;
   EXPECT_NE(check(kHead + shape + "\n  spacing: 0.002" + rest), kCannotRun) << out_ << err_;
-  EXPECT_FALSE(says("walls")) << out_;
+  EXPECT_FALSE(says("no thicker than a spacing")) << out_;
+  EXPECT_TRUE(says("oblique to the grid and no thicker than three spacings")) << out_;
 }
 
 TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {

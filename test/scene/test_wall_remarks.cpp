@@ -56,7 +56,6 @@ TEST(WallSamples, EdgesThatRunOutAreNone) {
 
 TEST(WallRemarks, TellThinWallsWithTheirNumber) {
   EXPECT_TRUE(wallRemarks(tissueOf(sheet(0.01, 0.0), 0.005)).empty());
-  EXPECT_TRUE(wallRemarks(tissueOf(sheet(0.0075, 45.0), 0.005)).empty());
   const auto thin = wallRemarks(tissueOf(sheet(0.005, 0.0), 0.005));
   ASSERT_EQ(thin.size(), 1U);
   EXPECT_NE(thin[0].text.find("the thinnest 5 mm"), std::string::npos) << thin[0].text;
@@ -67,6 +66,16 @@ TEST(WallRemarks, TellThinWallsWithTheirNumber) {
   const auto sheer = wallRemarks(tissueOf(sheet(0.0005, 45.0), 0.005));
   ASSERT_EQ(sheer.size(), 1U);
   EXPECT_NE(sheer[0].text.find("bend 5 to 9 % as far"), std::string::npos) << sheer[0].text;
+}
+
+TEST(WallRemarks, TellObliqueWallsUpToWhereTheyBendAsTheyShould) {
+  EXPECT_TRUE(wallRemarks(tissueOf(sheet(0.0075, 0.0), 0.005)).empty());
+  EXPECT_TRUE(wallRemarks(tissueOf(sheet(0.0175, 45.0), 0.005)).empty());
+  const auto told = wallRemarks(tissueOf(sheet(0.0125, 45.0), 0.005));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].text.find("oblique to the grid"), std::string::npos) << told[0].text;
+  EXPECT_NE(told[0].text.find("bend 98 to 106 % as far"), std::string::npos) << told[0].text;
+  EXPECT_EQ(told[0].remedy, "tissue.spacing: 0.003125 or less");
 }
 
 TEST(WallRemarks, OfABlockAreOfItsThinnestSide) {

@@ -13,8 +13,9 @@ struct WallRemark {
   std::string remedy;
 };
 
-// Of walls that do not bend as they should, with how far they are off (doc/accuracy.md); none where
-// they are a twentieth of the surface or less.
+// Of walls that do not bend as they should, with how far they are off (doc/accuracy.md): no thicker
+// than a spacing, a twentieth of the surface or more; oblique to the grid and no thicker than
+// three, a tenth.
 std::vector<WallRemark> wallRemarks(const TissueConfig& tissue);
 
 }  // namespace robot_tissue
