@@ -9,9 +9,9 @@ robot_tissue_room(simd
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
-  FILES bent_grid.h cell_fill.cpp polygon_triangles.cpp polygon_triangles.h exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
-    mesh_columns.h mesh_pieces.cpp mesh_pieces.h mesh_points.cpp mesh_points.h
-    mesh_refinement.cpp mesh_slicing.cpp mesh_slicing.h mesh_walls.cpp self_intersection.cpp tetrahedron.cpp
+  FILES bent_grid.h cell_fill.cpp exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
+    mesh_columns.h mesh_pieces.cpp mesh_pieces.h mesh_points.cpp mesh_points.h mesh_refinement.cpp mesh_slicing.cpp
+    mesh_slicing.h mesh_walls.cpp polygon_triangles.cpp polygon_triangles.h self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
@@ -30,10 +30,10 @@ robot_tissue_room(cutting
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC curved_surface.h surface.h
-  FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h divided_grid.cpp divided_grid.h
-    held_surface.cpp held_surface.h hinges.cpp hinges.h merged_skin.cpp merged_skin.h mesh_surface.cpp mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h
-    smooth_carriers.cpp smooth_carriers.h
-    surface.cpp)
+  FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h divided_grid.cpp
+    divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h merged_skin.cpp merged_skin.h mesh_surface.cpp
+    mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
+    smooth_carriers.h surface.cpp)
 robot_tissue_room(membrane
   USES base geometry config surface
   FILES hinge.cpp hinge.h membrane.cpp membrane.h membrane_plan.cpp membrane_plan.h node_blocks.cpp

@@ -24,14 +24,14 @@ class TissueInCells {
   bool isAt(int place, int corner) {
     if (!lattice_.hasTissueAt(place, corner) || isTaken(state_, place, corner)) return false;
     const Cell& cell = lattice_.cells()[at(place)];
-    if (cell.fill == nullptr || !hasPartedSprings(lattice_, state_, cell)) return true;
-    return (cornersOf(cell) >> corner & 1U) != 0;
+    return cell.fill == nullptr || (cornersOf(cell) >> corner & 1U) != 0;
   }
 
  private:
   unsigned cornersOf(const Cell& cell) {
     const auto [known, is_new] = corners_.try_emplace(cell.place, 0U);
     if (!is_new) return known->second;
+    if (!hasPartedSprings(lattice_, state_, cell)) return known->second = 0xff;
     const auto fills = cornerFills(lattice_, state_, cell);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       if (fills[corner].volume >= leastShare(cell)) known->second |= 1U << corner;
@@ -41,7 +41,7 @@ class TissueInCells {
 
   const Lattice& lattice_;
   const LatticeState& state_;
-  std::unordered_map<int, unsigned> corners_;  // bits, of cells that a blade passed
+  std::unordered_map<int, unsigned> corners_;  // bits, of cells that are filled in part
 };
 
 bool hasTissue(const Lattice& lattice, TissueInCells& tissue, int node) {

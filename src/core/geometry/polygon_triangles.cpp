@@ -22,12 +22,18 @@ std::vector<Point> flattened(const std::vector<Vec3>& corners, const Vec3& norma
   return points;
 }
 
-// Below zero: turned over.
-double signedFullness(const Point& a, const Point& b, const Point& c) {
-  const double area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+// `area`: twice the triangle's.
+template <typename Place>
+double overLongestSide(double area, const Place& a, const Place& b, const Place& c) {
   const double longest =
       std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return longest > 0.0 ? area / longest : 0.0;
+}
+
+// Below zero: turned over.
+double signedFullness(const Point& a, const Point& b, const Point& c) {
+  const double area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+  return overLongestSide(area, a, b, c);
 }
 
 // Of each part of the polygon from one corner on to another, cut off by the line between them: how
@@ -80,9 +86,7 @@ class BestTriangles {
 }  // namespace
 
 double fullness(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double longest =
-      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return longest > 0.0 ? (b - a).cross(c - a).norm() / longest : 0.0;
+  return overLongestSide((b - a).cross(c - a).norm(), a, b, c);
 }
 
 // Triangles that are all turned as the polygon do not overlap.

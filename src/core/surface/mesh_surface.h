@@ -23,10 +23,11 @@ Vec3 placeIn(const Lattice& lattice, const Cell& cell, const Vec3& point);
 
 // `mesh`: closed, of which the lattice was made, with edges of a spacing at most.
 //
-// Cuts open it half way between nodes whose cell they part: around a split cell the mesh is cut
-// into octants (mesh_pieces.h), every octant moves with the part of the cell that owns its corner,
-// and between octants that part with each other lids close both sides. Closed by construction: a
-// lid is left out only where both sides hang on the same nodes.
+// Cuts open it where the blade passed: around a split cell the mesh is cut into octants
+// (mesh_pieces.h), whose sides stand where the blade parted the cell (divided_grid.h), every octant
+// moves with the part of the cell that owns its corner, and between octants that part with each
+// other lids close both sides. Closed by construction: a lid is left out only where both sides hang
+// on the same nodes. Of the skin's pieces those stay that wounds ask for (merged_skin.h).
 TissueSurface meshSurface(const Lattice& lattice, const LatticeState& state,
                           const TriangleMesh& mesh);
 
