@@ -159,12 +159,13 @@ bool LoadStepper::turnedOver(const Checkpoint& good) const {
 // rigid tools deepestInRigid tells.
 bool LoadStepper::wentThrough(const Checkpoint& good) const {
   const std::vector<double>& depths = touch_finder_.depths();
+  const double of_limit = isOutOfTime() ? tuning::kThroughUnfinished : 1.0;
   for (std::size_t tool = 0; tool < world_.tools.sizeWithSupports(); ++tool) {
     if (world_.tools.isRigid(static_cast<int>(tool))) continue;
     const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
     for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
       const double before = link < good.depths.size() ? good.depths[link] : 0.0;
-      if (depths[link] > std::max(throughAt(link), before)) return true;
+      if (depths[link] > std::max(of_limit * throughAt(link), before)) return true;
     }
   }
   return false;

@@ -88,13 +88,15 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
       if (longest == 1.0) patience.forgetWay();
       gone = there;
+      hurried_in_a_row_ = 0;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
       if (is_last || !(isShort(world_.deadline, before_ms) || patience.cutsOff())) continue;
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
-    if (is_short || patience.isOver()) {
+    const bool is_hurried = load_step_.ranOutOfTime() && hurried_in_a_row_ < tuning::kMostHurried;
+    if (patience.isOver() || (is_short && !is_hurried)) {
       world_.report.lost = true;
       const double next = std::min(gone + tuning::kShortestStep, there);
       world_.dead_end = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
@@ -102,6 +104,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     }
     longest = tuning::kShortestStep;
     if (!load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
+    ++hurried_in_a_row_;
     begins_short_ = world_.report.too_fast = true;
     return came();
   }

@@ -37,6 +37,11 @@ constexpr double kMostLeap = 10.0;
 // its way through. More: thin tools get through; less: sharp edges are refused. Chosen.
 constexpr double kThrough = 0.25;
 constexpr double kThroughOfThickness = 0.25;
+// Of these (1): the same where time ran out, as rounds that are still to come bring it out. More:
+// past a link's middle, from where tissue comes out on the wrong side.
+constexpr double kThroughUnfinished = 1.5;
+// Updates in a row in which time ran out before any shape followed: as if none did. Chosen.
+constexpr int kMostHurried = 10;
 // Of the spacing (1): penetration of a rigid tool that asks for another round. Chosen.
 constexpr double kDeepEnough = 0.01;
 // Of the spacing (1): a deepest point after which a load step is solved on. Less: more solves,

@@ -170,6 +170,25 @@ TEST(ASolveThatOverflows, LeavesNothingBehind) {
   }
 }
 
+// Levels that are to be made anew are, also where there is no time for more.
+TEST(ASolveThatOverflows, IsFollowedByOneInNoTime) {
+  const TissueConfig config = withFixedBottom(elasticBlockOf(6, 6, 4, 0.45));
+  LayeredOptions hurried;
+  hurried.max_ms = 1e-6;
+  for (int digits = 0; digits < 30; ++digits) {
+    LayeredBlock block(config, hurried);
+    const std::vector<LoadingPatch> loads = {planeOn(block.lattice, block.model, 0.01)};
+    const int moved = block.lattice.node(3, 3, 2);
+    block.state.displacement[at(moved)] = Vec3(0.3, 0.2, 1.0) * kSpacing * std::pow(10.0, digits);
+    block.solve(loads);
+    block.state = block.lattice.restState();
+    for (int solve = 0; solve < 2; ++solve) {
+      EXPECT_EQ(block.solve(loads).status, SolveStatus::kLate) << digits;
+      for (const Vec3& u : block.state.displacement) ASSERT_TRUE(u.allFinite()) << digits;
+    }
+  }
+}
+
 // Also a point that fixed nodes carry in part hands its share to them.
 TEST(SpringOnAFixedNode, IsPartOfWhatTheFixedNodesHold) {
   SolverConfig solver;

@@ -59,7 +59,7 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
   const bool are_others = cells_ != state.cells;
   if (are_others) {
     is_measure_due_ =
-        measured_ == nullptr || part_.isEmpty() ||
+        !cells_ || !measured_ || part_.isEmpty() ||
         changedCells(lattice_, *measured_, *state.cells).share > tuning::kMeasuredAgain;
   }
   const double known_factor = ends_.between().isEmpty() ? 1.0 : iteration_.errorFactor();
@@ -67,7 +67,7 @@ void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budg
   is_measure_due_ = is_measure_due_ || is_longer;
   if (!are_others && !is_longer && (!is_measure_due_ || part_.isEmpty())) return;
   knows_cells_ = false;
-  const bool can_wait = shape_.exists() && !part_.isEmpty() && !is_longer;
+  const bool can_wait = cells_ && !part_.isEmpty() && !is_longer;
   const double before_ms = budget.elapsedMs();
   if (is_measure_due_ && (!can_wait || budget.leftMs() >= measuring_ms_)) {
     measureLevels(state, is_longer ? known_factor : 1.0, is_longer);
