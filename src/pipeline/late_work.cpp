@@ -11,7 +11,7 @@ namespace robot_tissue {
 Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
   World& world = pipeline.world_;
-  world.deadline = Deadline(pipeline.budget_s_);
+  world.deadline = Deadline(pipeline.budget_s_ - 1e-3 * pipeline.reporting_ms_);
   if (end && end->leftMs() < world.deadline.leftMs()) world.deadline = *end;
   if (end || std::isfinite(pipeline.budget_s_)) world.tissue.setDeadline(world.deadline);
 }
@@ -49,7 +49,12 @@ bool Pipeline::hasArrived() const {
 void Pipeline::finish() {
   world_.unfinished = false;
   if (anyToolIn(world_.tissue.patches(), world_)) {
-    world_.report.lost = !parts_->load_step.advance(world_.last_pose.value_or(world_.pose));
+    LoadStepper& load_step = parts_->load_step;
+    const bool arrived = load_step.isUnderWay()
+                             ? load_step.goOn()
+                             : load_step.advance(world_.last_pose.value_or(world_.pose));
+    if (!arrived && !load_step.isUnderWay()) world_.report.lost = true;
+    world_.unfinished = world_.unfinished || load_step.isUnderWay();
     if (world_.report.lost) world_.report.behind = parts_->motion.toolsBehind();
   } else if (world_.tissue.isLate() && !world_.tissue.isLoading()) {
     const Stopwatch watch(world_.report.solve_ms);

@@ -20,24 +20,76 @@ Bedding beddingOf(const World& world) {
 
 // One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
+  under_way_.reset();
   ++world_.report.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
   if (!takesShape(pose, good, otherwise)) {
-    ran_out_of_time_ = isOutOfTime();
-    goBackTo(good);
+    leave(good, otherwise, 0);
     return false;
   }
+  arrive();
+  return true;
+}
+
+void LoadStepper::arrive() {
   world_.tissue.endTimeStep();
-  world_.reached_s = pose.stamp_s;
+  world_.reached_s = world_.pose.stamp_s;
   grasping_.closeJaws();
-  world_.sliding.commit(pose, world_.tissue);
+  world_.sliding.commit(world_.pose, world_.tissue);
   endOverpulled();
   tear();
   world_.dead_end.reset();
+}
+
+// All is as it was before the load step. What it came to is kept where more time may help: a slip
+// takes many updates' time, and begun anew it would never be through.
+void LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, int iterations) {
+  ran_out_of_time_ = isOutOfTime();
+  iterations += std::max(1, world_.tissue.lastReport().iterations);
+  const bool is_late = ran_out_of_time_ && iterations <= tuning::kMostUnderWay;
+  std::optional<Checkpoint> came_to;
+  if (is_late && !world_.tools.anyRigid() && !world_.is_trial) came_to = checkpoint();
+  goBackTo(good);
+  if (!came_to) return;
+  under_way_ = UnderWay{std::move(*came_to), otherwise, iterations, world_.tissue.displacements(),
+                        world_.tissue.surface().revision};
+}
+
+// Unless something else moved or cut the tissue since.
+bool LoadStepper::isUnderWay() const {
+  return under_way_ && under_way_->from == world_.tissue.displacements() &&
+         under_way_->surface_revision == world_.tissue.surface().revision;
+}
+
+bool LoadStepper::goOn() {
+  ++world_.report.substeps;
+  const Checkpoint good = checkpoint();
+  const UnderWay step = std::move(*under_way_);
+  under_way_.reset();
+  goBackTo(step.came_to);
+  Patience& patience = world_.tissue.patience();
+  const Patience::LoadStep load_step(patience);
+  solveOn();
+  if (!settlesFrom(good, step.otherwise)) {
+    patience.noteLost();
+    leave(good, step.otherwise, step.iterations);
+    if (!under_way_ && step.otherwise == IfUnconverged::kTake) {
+      world_.report.lost = true;
+      world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
+    }
+    return false;
+  }
+  arrive();
   return true;
+}
+
+void LoadStepper::solveOn() {
+  std::vector<LoadingPatch> patches = patchesOfTools(world_);
+  if (patches.empty()) patches = touchesAtRest(world_.pose);
+  follow(std::move(patches));
 }
 
 bool LoadStepper::takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
@@ -109,15 +161,14 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
     if (is_last || !isUnsettled()) return true;
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
-    std::vector<LoadingPatch> patches = patchesOfTools(world_);
-    if (patches.empty()) patches = touchesAtRest(world_.pose);
-    follow(std::move(patches));
+    solveOn();
   }
 }
 
+// Where time ran out on the way through rounds, the forces are of no shape that the tissue takes.
 bool LoadStepper::isRefused(IfUnconverged otherwise) const {
-  return otherwise == IfUnconverged::kRefuse &&
-         world_.tissue.lastReport().status == SolveStatus::kUnconverged;
+  return world_.tissue.lastReport().status == SolveStatus::kUnconverged &&
+         (otherwise == IfUnconverged::kRefuse || isOutOfTime());
 }
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
@@ -159,13 +210,12 @@ bool LoadStepper::turnedOver(const Checkpoint& good) const {
 // rigid tools deepestInRigid tells.
 bool LoadStepper::wentThrough(const Checkpoint& good) const {
   const std::vector<double>& depths = touch_finder_.depths();
-  const double of_limit = isOutOfTime() ? tuning::kThroughUnfinished : 1.0;
   for (std::size_t tool = 0; tool < world_.tools.sizeWithSupports(); ++tool) {
     if (world_.tools.isRigid(static_cast<int>(tool))) continue;
     const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
     for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
       const double before = link < good.depths.size() ? good.depths[link] : 0.0;
-      if (depths[link] > std::max(of_limit * throughAt(link), before)) return true;
+      if (depths[link] > std::max(throughAt(link), before)) return true;
     }
   }
   return false;

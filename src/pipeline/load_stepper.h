@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "grasping.h"
@@ -47,9 +49,26 @@ class LoadStepper {
 
   // As the last load step that no shape followed ended.
   bool ranOutOfTime() const { return ran_out_of_time_; }
+  // Whether time ran out in it, and it can be gone on with from what it came to.
+  bool isUnderWay() const;
+  // As advance, to where that load step led.
+  bool goOn();
+  void forgetUnderWay() { under_way_.reset(); }
   double throughAt(std::size_t link) const;
 
  private:
+  // A load step that time ran out in.
+  struct UnderWay {
+    Checkpoint came_to;
+    IfUnconverged otherwise = IfUnconverged::kTake;
+    int iterations = 0;                  // so far
+    Tissue::Displacements from;          // the last good shape
+    std::uint64_t surface_revision = 0;  // likewise
+  };
+
+  void arrive();
+  void leave(const Checkpoint& good, IfUnconverged otherwise, int iterations);
+  void solveOn();
   double durationOf(const RobotPose& from, const RobotPose& to) const;
   void expectTimeStep(double duration);
   void beginTimeStep(double duration, Touched touched);
@@ -78,6 +97,7 @@ class LoadStepper {
   ToolContactUpdate& contact_update_;
   Grasping& grasping_;
   bool ran_out_of_time_ = false;
+  std::optional<UnderWay> under_way_;
 };
 
 }  // namespace robot_tissue

@@ -373,6 +373,7 @@ bool Pipeline::drive(const RobotPose& pose) {
 }
 
 void Pipeline::describeTools() {
+  const double before_ms = world_.report.contact_ms;
   {
     const Stopwatch watch(world_.report.contact_ms);
     for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -384,6 +385,7 @@ void Pipeline::describeTools() {
   }
   world_.depths_are_due = true;
   if (!leaves_depths_) findDepths();
+  reporting_ms_ = world_.report.contact_ms - before_ms;
 }
 
 void Pipeline::findDepths() const {

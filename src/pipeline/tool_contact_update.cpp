@@ -58,8 +58,8 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
 
 // How much of that share of the way from `vertices_` to the shape takes no point deep into a link:
 // looked at stride by stride, up to the last before one that does; within the first, by halves.
-// Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a
-// point came in is no longer known.
+// Where time is over it goes no farther than it was looked at. Deeper than the middle of a link,
+// the nearest way out is on the far side, and the side on which a point came in is no longer known.
 double ToolContactUpdate::shareOutside(double share, int strides) const {
   std::vector<double> before;  // found where they are asked for
   const auto is_deep = [&](double part) {
@@ -74,10 +74,11 @@ double ToolContactUpdate::shareOutside(double share, int strides) const {
     return false;
   };
   for (int stride = 1; stride <= strides; ++stride) {
-    if (!is_deep(share * stride / strides)) continue;
+    const bool is_over = stride > 1 && world_.deadline.isOver();
+    if (!is_over && !is_deep(share * stride / strides)) continue;
     if (stride > 1) return share * (stride - 1) / strides;
     share /= strides;
-    for (int trial = 1; trial < tuning::kDepthTrials; ++trial) {
+    for (int trial = 1; trial < tuning::kDepthTrials && !world_.deadline.isOver(); ++trial) {
       share *= 0.5;
       if (!is_deep(share)) return share;
     }

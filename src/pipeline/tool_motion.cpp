@@ -52,6 +52,16 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
     passTo(pose);
     return pose;
   }
+  if (!moves && load_step_.isUnderWay()) {
+    const double before_ms = world_.deadline.leftMs();
+    const bool arrived = load_step_.goOn();
+    if (arrived) start = world_.pose;
+    if (!arrived || isShort(world_.deadline, before_ms)) {
+      begins_short_ = !arrived && !load_step_.isUnderWay();
+      world_.report.too_fast = !world_.report.lost;
+      return start;
+    }
+  }
   if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
@@ -88,15 +98,17 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
       if (longest == 1.0) patience.forgetWay();
       gone = there;
-      hurried_in_a_row_ = 0;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
       if (is_last || !(isShort(world_.deadline, before_ms) || patience.cutsOff())) continue;
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
-    const bool is_hurried = load_step_.ranOutOfTime() && hurried_in_a_row_ < tuning::kMostHurried;
-    if (patience.isOver() || (is_short && !is_hurried)) {
+    if (load_step_.isUnderWay()) {
+      world_.report.too_fast = true;
+      return came();
+    }
+    if (is_short || patience.isOver()) {
       world_.report.lost = true;
       const double next = std::min(gone + tuning::kShortestStep, there);
       world_.dead_end = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
@@ -104,7 +116,6 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     }
     longest = tuning::kShortestStep;
     if (!load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
-    ++hurried_in_a_row_;
     begins_short_ = world_.report.too_fast = true;
     return came();
   }
@@ -221,6 +232,7 @@ bool ToolMotion::isHooked(std::size_t tool) const {
 
 void ToolMotion::letGoOf(std::size_t tool) {
   world_.dead_end.reset();
+  load_step_.forgetUnderWay();
   world_.sticking.letGo(static_cast<int>(tool));
   world_.sliding.clear(static_cast<int>(tool));
   grasping_.forgetJaws(tool);

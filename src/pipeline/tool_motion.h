@@ -63,7 +63,6 @@ class ToolMotion {
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;
   int lost_in_a_row_ = 0;      // updates that no shape followed
-  int hurried_in_a_row_ = 0;   // updates whose time was over before any shape followed
   bool begins_short_ = false;  // no shape followed the last load step, and time was over
 };
 

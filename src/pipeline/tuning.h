@@ -28,6 +28,10 @@ constexpr double kStandsStill = 1e-3;
 // Iterations of the method where the tools stand, over all updates: then what is late is given up.
 // As many as one load step takes at most (Tissue). More: a scene without balance works longer.
 constexpr int kMostLateIterations = 1500;
+// Iterations of a load step that updates without time go on with, in all: then no shape follows it.
+// More: jams are told later; less: long slips are given up. A needle that tissue snaps off takes
+// some 470.
+constexpr int kMostUnderWay = 600;
 
 // Shapes that are taken.
 // Of the spacing (1): the farthest that a vertex of the surface goes in a load step; beyond, the
@@ -37,11 +41,6 @@ constexpr double kMostLeap = 10.0;
 // its way through. More: thin tools get through; less: sharp edges are refused. Chosen.
 constexpr double kThrough = 0.25;
 constexpr double kThroughOfThickness = 0.25;
-// Of these (1): the same where time ran out, as rounds that are still to come bring it out. More:
-// past a link's middle, from where tissue comes out on the wrong side.
-constexpr double kThroughUnfinished = 1.5;
-// Updates in a row in which time ran out before any shape followed: as if none did. Chosen.
-constexpr int kMostHurried = 10;
 // Of the spacing (1): penetration of a rigid tool that asks for another round. Chosen.
 constexpr double kDeepEnough = 0.01;
 // Of the spacing (1): a deepest point after which a load step is solved on. Less: more solves,

@@ -131,15 +131,16 @@ TEST(JammedTool, StandsWhereAShapeLastFollowedAndComesOut) {
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
-// Short steps are tried all the same, and that none goes is said: no update catches up for ever.
+// Each update goes on with one cycle; then short steps are tried, and that none goes is said: no
+// update catches up for ever.
 TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
   Pipeline pipeline(block("elastic", 0.01), {}, {toolOf(boxOf(Vec3(0.1, 0.1, 0.02)))});
   pipeline.setBudget(0.0);
   pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + 0.011)}));
   const RobotPose down = at({Vec3(kMiddle, kMiddle, 0.01)});
   int updates = 0;
-  while (pipeline.step(down).too_fast && updates < 200) ++updates;
-  EXPECT_LT(updates, 200);
+  while (pipeline.step(down).too_fast && updates < 10000) ++updates;
+  EXPECT_LT(updates, 10000);
   EXPECT_TRUE(pipeline.report().lost);
   for (int late = 0; pipeline.report().late && late < 2000; ++late) pipeline.step(down);
   EXPECT_TRUE(pipeline.report().lost);

@@ -168,5 +168,38 @@ TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
   }
 }
 
+// Tissue snaps off a needle by solves that take many updates' time: they go on with what the last
+// one came to.
+TEST(LateWork, SlipIsFollowedThroughManyUpdates) {
+  ToolShape needle;
+  needle.type = ToolShape::Type::kCylinder;
+  needle.radius = 0.0005;
+  needle.length = 0.05;
+  needle.pose.translation().z() = 0.025;  // its tip at the origin
+  Pipeline pipeline = blockUnder({withFriction(0.3, toolOf(needle))});
+  const Vec3 above(0.0263, 0.0311, kTop + 0.001), deep = above - 0.012 * Vec3::UnitZ(),
+                                                  aside = deep + 0.008 * Vec3::UnitX(),
+                                                  out = aside + 0.012 * Vec3::UnitZ();
+  walk(pipeline, {above}, {deep}, 0.0005);
+  pipeline.setBudget(0.0);
+  int goes_on = 0;
+  for (const auto& [from, to] : {std::make_pair(deep, aside), std::make_pair(aside, out)}) {
+    for (int i = 1; i <= 16; ++i) {
+      const RobotPose pose = at({Vec3(from + (to - from) * (i / 16.0))});
+      for (int update = 0; update < 60; ++update) {
+        const Vec3 before = pipeline.pose()->links.front().translation();
+        const StepReport& report = pipeline.step(pose);
+        ASSERT_FALSE(report.lost) << i;
+        ASSERT_TRUE(report.tools.front().force_on_tool.allFinite());
+        goes_on += report.too_fast && pipeline.pose()->links.front().translation() == before;
+        if (!report.too_fast && !report.late) break;
+      }
+    }
+  }
+  EXPECT_GT(goes_on, 0);
+  stepUntilDone(pipeline, at({out}));
+  EXPECT_EQ(force(pipeline), 0.0);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_late_work

@@ -315,6 +315,7 @@ class Tissue {
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   bool isBounded() const;
   double mostMs() const;
+  void noteLook(double ms);
   int mostIterations() const;
   Patience::Of solved() const;
   double costOfIteration() const;
@@ -387,6 +388,7 @@ class Tissue {
   Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
+  double look_ms_ = 0.0;  // that looks at the contacts took lately
   ContactUpdate* contact_update_ = nullptr;
   std::unique_ptr<TimeIntegrator> time_;  // null: there is none
   // Nodes of each piece that no fixed node holds, and the cells that they were found for.

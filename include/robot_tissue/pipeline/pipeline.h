@@ -168,6 +168,7 @@ class Pipeline {
   World& world_;
   std::vector<SupportConfig> supports_;
   double budget_s_ = std::numeric_limits<double>::infinity();
+  double reporting_ms_ = 0.0;    // that the last reports on the tools took
   std::optional<Deadline> end_;  // of all calls
   int late_iterations_ = 0;      // of the method, where the tools stand
   bool gave_up_ = false;         // there

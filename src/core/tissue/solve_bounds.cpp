@@ -15,10 +15,15 @@ bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
 double Tissue::mostMs() const {
   if (in_time_step_) return 0.0;
   if (!deadline_) return max_ms_;
-  const double left = std::max(tuning::kLeastMs, tuning::kShareOfTime * deadline_->leftMs());
+  const double left = deadline_->leftMs();
   if (!std::isfinite(left)) return max_ms_;
-  return max_ms_ > 0.0 ? std::min(max_ms_, left) : left;
+  const double solve = std::min(tuning::kShareOfTime * left, left - look_ms_);
+  const double most = std::max(tuning::kLeastMs, solve);
+  return max_ms_ > 0.0 ? std::min(max_ms_, most) : most;
 }
+
+// How long a look at the contacts took.
+void Tissue::noteLook(double ms) { look_ms_ = std::max(ms, tuning::kLooksFade * look_ms_); }
 
 // Of the next solve.
 int Tissue::mostIterations() const {

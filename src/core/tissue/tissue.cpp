@@ -237,10 +237,9 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   SolveReport report = solveOnce(disturbed);
   SolveReport of_round = report;
   std::vector<LoadingPatch> of_tools;
-  double look_ms = 0.0;  // what the last round took besides its solve
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
     const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-    const bool late = isBounded() && left_ms <= 2.0 * look_ms + shortestMs(of_round);
+    const bool late = isBounded() && left_ms <= 2.0 * look_ms_ + shortestMs(of_round);
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = (goesThroughTime() || !goBack(*before)) && solved;
@@ -253,6 +252,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     const bool renewed = contact_update_->renew(
         of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
         last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
+    if (isBounded()) noteLook(left_ms - deadline_->leftMs());
     if (!renewed && (last || !hurried)) break;
     if (late) {
       is_late_ = true;
@@ -263,7 +263,6 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
     }
     if (last) break;
     if (renewed) putToolPatches(std::move(of_tools));
-    look_ms = isBounded() ? left_ms - deadline_->leftMs() : 0.0;
     before.reset();  // so that the next line's copy can take its memory
     before = displacements();
     const SolveReport earlier = report;

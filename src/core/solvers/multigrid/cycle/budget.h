@@ -21,7 +21,8 @@ class Budget {
     return max_ms_ > 0.0 ? max_ms_ - elapsedMs() : std::numeric_limits<double>::infinity();
   }
   int mostCycles() const { return most_cycles_; }
-  bool isSpent() const { return leftMs() < 0.0; }
+  // Whether another piece of work of that length would end later than to the half.
+  bool isSpentFor(double piece_ms) const { return leftMs() < 0.5 * piece_ms; }
   bool isOverdrawn() const { return leftMs() < -cycle_tuning::kMostOverdrawn * max_ms_; }
 
  private:

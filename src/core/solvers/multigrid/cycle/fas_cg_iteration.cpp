@@ -37,8 +37,11 @@ SolveStatus FasCgIteration<Real>::run(SolveContext& solve) {
   cycle_.begin();
   shape_.levels().coupleMembranes(false);
   SolveStatus status = check(solve);
+  double began_ms = solve.budget.elapsedMs();
   for (; status == SolveStatus::kLate; status = check(solve)) {
-    if (solve.cycles > 0 && solve.budget.isSpent()) break;
+    const double now_ms = solve.budget.elapsedMs();
+    if (solve.cycles > 0 && solve.budget.isSpentFor(now_ms - began_ms)) break;
+    began_ms = now_ms;
     if (areMembranesStiff(solve)) shape_.levels().coupleMembranes(true);
     const bool is_easy = isEasy(solve);
     const double rough = is_easy ? shape_.finest().squaredLocalMotion() : 0.0;
