@@ -21,6 +21,7 @@ Bedding beddingOf(const World& world) {
 // One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   under_way_.reset();
+  world_.unfinished = false;
   ++world_.report.substeps;
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   world_.pose = pose;

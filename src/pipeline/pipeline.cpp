@@ -83,7 +83,6 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   } else {
     late_iterations_ = 0;
     gave_up_ = false;
-    world_.unfinished = false;
     stepTo(goal, pose);
   }
   return endReport();

@@ -52,21 +52,33 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
     passTo(pose);
     return pose;
   }
-  if (!moves && load_step_.isUnderWay()) {
-    const double before_ms = world_.deadline.leftMs();
-    const bool arrived = load_step_.goOn();
-    if (arrived) start = world_.pose;
-    if (!arrived || isShort(world_.deadline, before_ms)) {
-      begins_short_ = !arrived && !load_step_.isUnderWay();
-      world_.report.too_fast = !world_.report.lost;
-      return start;
-    }
-  }
+  if (!moves && !finishes(start)) return start;
   if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
   }
   return walkFrom(start, pose);
+}
+
+// Ends the last load step, if time ran out in it, before the next one begins: errors of steps that
+// were cut short would add up. False: there is no time left for a next one.
+bool ToolMotion::finishes(RobotPose& start) {
+  const bool is_late = std::exchange(world_.unfinished, false);
+  const bool is_under_way = load_step_.isUnderWay();
+  if (!is_under_way && (!is_late || late_iterations_ > tuning::kMostToFinish)) {
+    late_iterations_ = 0;
+    return true;
+  }
+  const double before_ms = world_.deadline.leftMs();
+  const bool arrived = is_under_way ? load_step_.goOn() : load_step_.advance(start);
+  late_iterations_ += std::max(1, world_.tissue.lastReport().iterations);
+  if (arrived) start = world_.pose;
+  const bool is_done = arrived && !world_.unfinished;
+  if (is_done) late_iterations_ = 0;
+  if (is_done && !isShort(world_.deadline, before_ms)) return true;
+  begins_short_ = !arrived && !load_step_.isUnderWay();
+  world_.report.too_fast = !world_.report.lost;
+  return false;
 }
 
 // Load steps of the way, or time steps, if these are more: whole ones, as a short one at the end
@@ -337,6 +349,7 @@ bool ToolMotion::waitsOutside(std::size_t tool, Others others, RobotPose& pose) 
 
 void ToolMotion::passTo(const RobotPose& pose) {
   world_.pose = pose;
+  world_.unfinished = false;
   world_.reached_s = pose.stamp_s;
   world_.sliding.pass(pose);
   grasping_.openJaws();

@@ -44,6 +44,7 @@ class ToolMotion {
   enum class Others { kNone, kCame };  // of the tools, in this step
 
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
+  bool finishes(RobotPose& start);
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);
@@ -63,6 +64,7 @@ class ToolMotion {
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;
   int lost_in_a_row_ = 0;      // updates that no shape followed
+  int late_iterations_ = 0;    // of a load step that is being finished
   bool begins_short_ = false;  // no shape followed the last load step, and time was over
 };
 

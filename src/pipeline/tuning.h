@@ -32,6 +32,10 @@ constexpr int kMostLateIterations = 1500;
 // More: jams are told later; less: long slips are given up. A needle that tissue snaps off takes
 // some 470.
 constexpr int kMostUnderWay = 600;
+// Iterations that a load step whose shape is shown, but late, is finished with before the next one
+// begins all the same. More: tools are followed later, less: forces of steps that were cut short
+// add up.
+constexpr int kMostToFinish = 150;
 
 // Shapes that are taken.
 // Of the spacing (1): the farthest that a vertex of the surface goes in a load step; beyond, the
