@@ -58,8 +58,9 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
 
 // How much of that share of the way from `vertices_` to the shape takes no point deep into a link:
 // looked at stride by stride, up to the last before one that does; within the first, by halves.
-// Where time is over it goes no farther than it was looked at. Deeper than the middle of a link,
-// the nearest way out is on the far side, and the side on which a point came in is no longer known.
+// Where there is time for the contacts of the shape only, it goes no farther than it was looked at.
+// Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a
+// point came in is no longer known.
 double ToolContactUpdate::shareOutside(double share, int strides) const {
   std::vector<double> before;  // found where they are asked for
   const auto is_deep = [&](double part) {
@@ -74,17 +75,21 @@ double ToolContactUpdate::shareOutside(double share, int strides) const {
     return false;
   };
   for (int stride = 1; stride <= strides; ++stride) {
-    const bool is_over = stride > 1 && world_.deadline.isOver();
+    const bool is_over = stride > 1 && hasTimeForContactsOnly();
     if (!is_over && !is_deep(share * stride / strides)) continue;
     if (stride > 1) return share * (stride - 1) / strides;
     share /= strides;
-    for (int trial = 1; trial < tuning::kDepthTrials && !world_.deadline.isOver(); ++trial) {
+    for (int trial = 1; trial < tuning::kDepthTrials && !hasTimeForContactsOnly(); ++trial) {
       share *= 0.5;
       if (!is_deep(share)) return share;
     }
     return 0.5 * share;
   }
   return share;
+}
+
+bool ToolContactUpdate::hasTimeForContactsOnly() const {
+  return world_.deadline.leftMs() < contacts_ms_;
 }
 
 // depthsIn of the shape at that share of the way.
@@ -115,6 +120,13 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
 
 // The shape was solved for the contacts of before: are they those of the shape?
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
+  const double before_ms = world_.deadline.leftMs();
+  const bool renewed = renewIn(of_tools, shape, round);
+  if (std::isfinite(before_ms)) contacts_ms_ = before_ms - world_.deadline.leftMs();
+  return renewed;
+}
+
+bool ToolContactUpdate::renewIn(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
   const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
   surface_revision_ = world_.tissue.surface().revision;
   const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);

@@ -2,8 +2,9 @@
 // that is shown, how smooth the force is, how long a millimeter takes.
 //   contact_press [TOOL|all] [SPEED in m/s at 100 updates a second, 0 = increments of 0.25 mm]
 //                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE] [PRESS in mm]
+//                 [MAX_MS of an update, 0 = none]
 // Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update, ms of
-// processor.
+// processor; status of the solve, or LATE, TOO_FAST, LOST as the report has it.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -110,10 +111,16 @@ struct Worst {
   int updates = 0, not_ok = 0;
 };
 
+std::string statusOf(const StepReport& report, const SolveReport& solve) {
+  if (report.lost) return "LOST";
+  if (report.too_fast) return "TOO_FAST";
+  return report.late ? "LATE" : toString(solve.status);
+}
+
 class Trial {
  public:
   Trial(const std::string& name, const ToolShape& shape, double spacing, double friction,
-        const std::string& method, double tolerance)
+        const std::string& method, double tolerance, double max_ms)
       : name_(name) {
     ToolGeometry tool;
     tool.name = name;
@@ -123,6 +130,7 @@ class Trial {
     solver.method = method;
     solver.tolerance = tolerance;
     pipeline_ = std::make_unique<Pipeline>(block(spacing), solver, std::vector<ToolGeometry>{tool});
+    if (max_ms > 0.0) pipeline_->setBudget(1e-3 * max_ms);
   }
 
   void go(const char* leg, const Vec3& from, const Vec3& to, double increment) {
@@ -146,13 +154,13 @@ class Trial {
     const SolveReport& solve = pipeline_->tissue().lastReport();
     std::printf("%s,%s,%.3f,%.5f,%.5f,%.5f,%.4f,%.2f,%d,%s\n", name_.c_str(), leg, 1e3 * way,
                 tool.force_on_tool.x(), tool.force_on_tool.y(), tool.force_on_tool.z(),
-                1e3 * tool.max_penetration, ms, report.substeps, toString(solve.status));
+                1e3 * tool.max_penetration, ms, report.substeps, statusOf(report, solve).c_str());
     worst_.penetration = std::max(worst_.penetration, tool.max_penetration);
     worst_.jump = std::max(worst_.jump, (tool.force_on_tool - last_).norm());
     worst_.force = std::max(worst_.force, tool.force_on_tool.norm());
     worst_.ms += ms;
     ++worst_.updates;
-    if (solve.status != SolveStatus::kOk) ++worst_.not_ok;
+    if (statusOf(report, solve) != toString(SolveStatus::kOk)) ++worst_.not_ok;
     last_ = tool.force_on_tool;
   }
 
@@ -174,11 +182,12 @@ int main(int argc, char** argv) {
   const std::string method = argc > 5 ? argv[5] : "layered";
   const double tolerance = argc > 6 ? std::atof(argv[6]) : 0.01;
   const double press = 1e-3 * (argc > 7 ? std::atof(argv[7]) : 15.0);
+  const double max_ms = argc > 8 ? std::atof(argv[8]) : 0.0;
   const double increment = speed > 0.0 ? 0.01 * speed : 0.00025;
   std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status\n");
   for (const auto& [name, shape] : toolShapes()) {
     if (wanted != "all" && wanted != name) continue;
-    Trial trial(name, shape, spacing, friction, method, tolerance);
+    Trial trial(name, shape, spacing, friction, method, tolerance, max_ms);
     // Off the nodes, and off the middle between them.
     const Vec3 above(0.0363, 0.0511, kTop + kClear), pressed = above - Vec3(0, 0, press + kClear);
     trial.go("appear", above, above, 1.0);

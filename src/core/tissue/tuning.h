@@ -103,7 +103,7 @@ constexpr int kMostTearRounds = 500;
 constexpr double kShareOfTime = 0.5;
 // Of the time that a look at the contacts took (1): the next one is taken to need as much at least.
 // Less: what was longer once is forgotten sooner, and calls end later. Chosen.
-constexpr double kLooksFade = 0.5;
+constexpr double kLooksFade = 0.7;
 // ms: a solve has so much at least; one cycle, however short. Chosen.
 constexpr double kLeastMs = 1e-6;
 // Iterations that take as long as what a solve of any length begins and ends with (1): by
