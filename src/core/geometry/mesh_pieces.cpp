@@ -78,8 +78,9 @@ void MeshPieces::noteCrossing(const Corner& from, int axis, int plane, int verte
 std::vector<int> MeshPieces::bendsBetween(int from, int to, const Polygon& triangle, int axis) {
   const HalfIndex middle = {lowOfCell(first_[0]) + 1, lowOfCell(first_[1]) + 1,
                             lowOfCell(first_[2]) + 1};
-  const Vec3 &a = points_.place(triangle[0].vertex), &b = points_.place(triangle[1].vertex),
-             &c = points_.place(triangle[2].vertex);
+  // Copies: adding a point moves the others.
+  const Vec3 a = points_.place(triangle[0].vertex), b = points_.place(triangle[1].vertex),
+             c = points_.place(triangle[2].vertex);
   const Vec3 area = normalOf(triangle);
   const Vec3 start = grid_.placeOf(middle);
   const Vec3 along = points_.place(to) - points_.place(from);
