@@ -22,6 +22,7 @@ TOOLS = ["sphere", "cylinder_upright", "cylinder_lying", "box_face", "box_edge",
 LEGS = ["press", "drag", "lift"]
 LEG_MM = {"press": 16.0, "drag": 30.0, "lift": 16.0}  # of contact_press
 CLEAR_MM = 1.0                                        # its tools start so far above the block
+BOUNDS = ["10", "5"]                                  # ms: max_ms of an update
 YOUNG, POISSON = 1e4, 0.45                            # Pa, of all blocks
 PRESS = ["tool", "leg", "way_mm", "fx", "fz", "penetration_mm", "ms", "status"]
 HERTZ = ["spacing_mm", "radius_mm", "layer_mm", "depth_mm", "force_n", "lateral_n", "touches",
@@ -44,6 +45,9 @@ STUDIES = [Study(f"press_{tool}", "press", PRESS, "contact_press", [tool, "0", "
                  ("tool", tool), 42) for tool in TOOLS]
 STUDIES += [Study(f"slide_{tool}", "slide", PRESS, "contact_press", [tool, "0", "5", "0"],
                   ("tool", tool), 60) for tool in TOOLS if tool not in ("needle", "cup")]
+STUDIES += [Study(f"bounded_{bound}_{tool}", f"bounded_{bound}", PRESS, "contact_press",
+                  [tool, "0", "5", "0.3", "layered", "0.01", "15", bound], ("tool", tool), 60)
+            for bound in BOUNDS for tool in TOOLS]
 STUDIES += [Study(f"hertz_{spacing}", "hertz", HERTZ, "contact_hertz",
                   [spacing, "40", "50", "160", "4", "8"], ("spacing_mm", spacing), 110)
             for spacing in ("2.5", "5")]
@@ -202,6 +206,30 @@ def tell_press():
               f"| {len(bad)} |")
 
 
+def tell_bounded():
+    """Updates of at most so many ms: what they take, what is late, how deep and how smooth."""
+    print("| tool | max_ms | ms an update: median, 99 %, greatest but the first in contact | OK, LATE, "
+          "TOO_FAST, LOST (%) | penetration: 99 %, greatest (mm) | jump: press, drag, lift (%) |")
+    print("|---|---|---|---|---|---|")
+    for tool in TOOLS:
+        for bound in BOUNDS:
+            rows = [row for row in table_of(f"bounded_{bound}")
+                    if row["tool"] == tool and row["leg"] in LEGS]
+            if not rows:
+                continue
+            most = max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
+            first = next(i for i, row in enumerate(rows) if float(row["fz"]) > 0.0)
+            ms = numbers(rows[:first] + rows[first + 1:], "ms")
+            shares = [100.0 * sum(row["status"] == status for row in rows) / len(rows)
+                      for status in ("OK", "LATE", "TOO_FAST", "LOST")]
+            deep = numbers(rows, "penetration_mm")
+            jumps = ", ".join(f"{jumps_of(rows, leg, most):.0f}" for leg in LEGS)
+            print(f"| {tool.replace('_', ' ')} | {bound} | {percentile(ms, 50):.1f}, "
+                  f"{percentile(ms, 99):.1f}, {max(ms):.1f} "
+                  f"| {', '.join(f'{share:.0f}' for share in shares)} "
+                  f"| {percentile(deep, 99):.2f}, {max(deep):.2f} | {jumps} |")
+
+
 def tell_slide():
     print("| tool without friction | force aside over force up, mean of the last 10 mm dragged; greatest | "
           "jump, dragged (%) | penetration, greatest (mm) | ms: median, mean | not OK |")
@@ -318,5 +346,5 @@ def run(options):
         measure(options.programs, options.only)
     draw_press()
     draw_hertz()
-    for tell in (tell_press, tell_slide, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
+    for tell in (tell_press, tell_bounded, tell_slide, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
         tell()
