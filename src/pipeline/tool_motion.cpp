@@ -93,16 +93,18 @@ double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const Robo
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double load_steps = ways_.stepsBetween(start, pose);
   const double steps = stepsOf(load_steps, start, pose);
+  // Rigid patches find the shapes that they left by the steps of their ways, as these were.
+  const double end = world_.tools.anyRigid() ? steps : steps - tuning::kWayRounding;
   double gone = 0.0, longest = std::exchange(begins_short_, false) ? tuning::kShortestStep : 1.0;
   Patience& patience = world_.tissue.patience();
   patience.forgetWay();
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
-  while (gone < steps) {
+  while (gone < end) {
     const bool flies = load_steps > 0.0 && !world_.tissue.isMoving();
     const double free = flies ? ways_.freeSteps(came(), pose) * (steps / load_steps) : 0.0;
     // Whole ones in time, too: what is left at the end would be short.
     const double stride = std::max(longest, world_.tissue.hasTime() ? std::floor(free) : free);
-    const bool is_last = gone + stride >= steps;
+    const bool is_last = gone + stride >= end;
     const double there = is_last ? steps : gone + stride;
     const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
     const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
@@ -131,7 +133,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     begins_short_ = world_.report.too_fast = true;
     return came();
   }
-  if (steps == 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
+  if (end <= 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
   if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
   return pose;
 }

@@ -19,6 +19,9 @@ constexpr double kShortestStep = 1.0 / 8.0;
 // takes about that (0.7 to 0.9 under two tools in tissue cut 200 times). More: tools fall behind by
 // a load step more; less: calls end later.
 constexpr double kOfLastLoadStep = 0.7;
+// Of a load step (1): so little more than whole ones is rounding. A needle that goes by just its
+// load step in each update takes half the time.
+constexpr double kWayRounding = 1e-6;
 // Shapes at the ends of load steps that are kept for rigid patches to come back to. More: a longer
 // way back is found again, for a copy of the shape each. Chosen.
 constexpr std::size_t kMostCheckpoints = 64;
