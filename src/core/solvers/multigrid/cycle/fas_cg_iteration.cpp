@@ -110,12 +110,16 @@ bool FasCgIteration<Real>::isQuiet(double rough_before) const {
          forces_.isSettled(part_.loaded(), tuning::kQuietForceShare);
 }
 
+template <typename Real>
+bool FasCgIteration<Real>::wentTooFar() const {
+  return limits_.areExceeded([this](int node) { return shape_.levels().displacements().of(node); });
+}
+
 // What went beyond its limit is cut back: the rest of the solve would be in vain.
 template <typename Real>
 bool FasCgIteration<Real>::isHopeless(const SolveContext& solve) const {
   const int cycles = solve.cycles;
-  const auto place = [this](int node) { return shape_.levels().displacements().of(node); };
-  if (cycles > 0 && limits_.areExceeded(place)) return true;
+  if (cycles > 0 && wentTooFar()) return true;
   const bool whole = shape_.levels().isWhole();
   if (!whole && progress_.isStuck(cycles, tuning::kPatienceInPart)) return true;
   const int most = solve.in_contact ? options_.max_cycles_in_contact : options_.max_cycles;

@@ -43,6 +43,7 @@ class FasCgIteration {
 
   SolveStatus run(SolveContext& solve);
   double error() const { return estimator_.error(); }  // of the shape that the last run left
+  bool wentTooFar() const;                             // likewise: beyond the limits of ways
 
  private:
   SolveStatus check(const SolveContext& solve);

@@ -170,7 +170,8 @@ SolveStatus FasCgSolver<Real>::balance(SolveContext& solve) {
   for (int round = 1;; ++round) {
     solve.warm_started = warm_start_.take() && forces_.greatestAtStart() > 0.0 && warm_start_.go();
     const SolveStatus status = iteration_.run(solve);
-    if (status == SolveStatus::kUnconverged && !shape_.levels().isWhole()) {
+    const bool fails = status == SolveStatus::kUnconverged && !iteration_.wentTooFar();
+    if (fails && !shape_.levels().isWhole()) {
       open(solve, shape_.levels().grid().between());
     } else if (status == SolveStatus::kOk && part_.raise(shape_.missedBeyond())) {
       writeShape(solve);
