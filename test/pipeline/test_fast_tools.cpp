@@ -139,7 +139,7 @@ TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
   pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + 0.011)}));
   const RobotPose down = at({Vec3(kMiddle, kMiddle, 0.01)});
   int updates = 0;
-  while (pipeline.step(down).too_fast && updates < 10000) ++updates;
+  while (!pipeline.step(down).lost && updates < 10000) ++updates;
   EXPECT_LT(updates, 10000);
   EXPECT_TRUE(pipeline.report().lost);
   for (int late = 0; pipeline.report().late && late < 2000; ++late) pipeline.step(down);
