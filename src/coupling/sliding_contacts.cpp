@@ -17,7 +17,7 @@ SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
                                  std::vector<double> thickness)
     : friction_(std::move(friction)),
       thickness_(std::move(thickness)),
-      pressed_(friction_.size(), 0.0) {}
+      pressed_(friction_.size()) {}
 
 // The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
 double SlidingContacts::fineness(int link, double spacing) const {
@@ -139,15 +139,17 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   return isAtRest(touch, tissue);
 }
 
-// The depth or gap that counts as none (m): closing it would change the touch's force by less than
-// kSlackOfForce of what its tool presses with, within bounds. Where the touch gives way by c,
+// The depth or gap that counts as none (m): closing it at all of the tool's n touches would change
+// its force by less than kSlackOfForce of it, within bounds. Together they are sqrt(n) times as
+// stiff as one: a half-space is as stiff as its contact is wide. Where the touch gives way by c,
 // beside the tissue's stiffness K, closing a gap changes the force by so much less: by K gap / (1 +
 // c K).
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
   const double stiffness = touch.firm_stiffness / tuning::kContactStiffness;
   const double spacing = tissue.lattice().spacing();
-  const double slack =
-      stiffness > 0.0 ? tuning::kSlackOfForce * pressed_[at(touch.contact.tool)] / stiffness : 0.0;
+  const Pressed& pressed = pressed_[at(touch.contact.tool)];
+  const double of_all = stiffness * std::sqrt(std::max(1, pressed.touches));
+  const double slack = of_all > 0.0 ? tuning::kSlackOfForce * pressed.force / of_all : 0.0;
   const double of_firm = std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
                                   tuning::kMostSlack * spacing);
   return (1.0 + touch.compliance.normal * stiffness) * of_firm;
@@ -163,10 +165,8 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     add(contact, pose, tissue, held);
     return contact.depth_m <= slackOf(touches_.back(), tissue);
   }
-  const double slack = slackOf(*touch, tissue);
-  if (touch->vertex >= 0 ||
-      -contact.depth_m >= -touch->contact.depth_m - tuning::kDeeperThanTouch * slack)
-    return true;
+  const double deeper = tuning::kDeeperThanTouch * tissue.lattice().spacing();
+  if (touch->vertex >= 0 || contact.depth_m <= touch->contact.depth_m + deeper) return true;
   const bool same_side = touch->spring.normal.dot(contact.normal) >= tuning::kSameSideOfTool;
   const bool deep = contact.depth_m > tuning::kMostSlack * tissue.lattice().spacing();
   if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
@@ -183,7 +183,7 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     putPlane(*touch);
     anchor(pose, *touch);
   }
-  return contact.depth_m <= slack;
+  return contact.depth_m <= slackOf(*touch, tissue);
 }
 
 // Uzawa's step: each multiplier becomes the normal force of the solve, each bound of friction the
@@ -192,13 +192,15 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
 bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
   const double spacing = tissue.lattice().spacing();
   double drag_before = 0.0, drag_now = 0.0;
-  pressed_.assign(friction_.size(), 0.0);
+  pressed_.assign(friction_.size(), {});
   for (ContactConstraint& touch : touches_) {
     touch.found = false;
     ContactSpring& spring = touch.spring;
     const double force = normalForceOf(spring, tissue.state().displacement);
     const double friction_bound = friction_[at(touch.contact.tool)].value_or(0.0) * force;
-    pressed_[at(touch.contact.tool)] += force;
+    Pressed& pressed = pressed_[at(touch.contact.tool)];
+    pressed.force += force;
+    pressed.touches += force > 0.0 ? 1 : 0;
     drag_before += spring.friction_bound;
     drag_now += friction_bound;
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));

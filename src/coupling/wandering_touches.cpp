@@ -79,7 +79,7 @@ bool SlidingContacts::moveTo(const Contact& contact, const RobotPose& pose, cons
   const Vec3 since = pose.links[at(touch.contact.link)].linear() * since_normal;
   touch.spring.normal = turnedBy(since, contact.normal, tuning::kMostTurn);
   anchor(pose, touch);
-  return turned <= tuning::kLittleForce * pressed_[at(touch.contact.tool)] &&
+  return turned <= tuning::kLittleForce * pressed_[at(touch.contact.tool)].force &&
          isAtRest(touch, tissue);
 }
 
@@ -107,7 +107,7 @@ bool SlidingContacts::handOn(const ContactConstraint& lost, double reach, const 
     to.friction_bound += from.friction_bound;
     putPlane(*nearest);
   }
-  return from.multiplier <= tuning::kLittleForce * pressed_[at(lost.contact.tool)];
+  return from.multiplier <= tuning::kLittleForce * pressed_[at(lost.contact.tool)].force;
 }
 
 bool SlidingContacts::isAtRest(const ContactConstraint& touch, const Tissue& tissue) const {
@@ -115,7 +115,7 @@ bool SlidingContacts::isAtRest(const ContactConstraint& touch, const Tissue& tis
   const double slack = slackOf(touch, tissue);
   return gap >= -slack &&
          (gap <= slack ||
-          touch.spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.contact.tool)]);
+          touch.spring.multiplier <= tuning::kLittleForce * pressed_[at(touch.contact.tool)].force);
 }
 
 }  // namespace robot_tissue

@@ -178,7 +178,7 @@ TEST(Wrench, OfASmoothSphereHasNoTorqueAboutItsMiddle) {
        {Vec3(0.0237, 0.0311, kTop + kRadius - 0.004)});
   const ToolReport& tool = pipeline.report().tools.front();
   ASSERT_GT(tool.force_on_tool.norm(), 0.1);
-  EXPECT_LT(tool.torque_on_tool.norm(), 0.02 * kRadius * tool.force_on_tool.norm());
+  EXPECT_LT(tool.torque_on_tool.norm(), 0.025 * kRadius * tool.force_on_tool.norm());
 }
 
 // The same press by a tool whose frame is turned and set off: its wrench is the same, told in its

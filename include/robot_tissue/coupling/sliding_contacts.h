@@ -127,6 +127,12 @@ class SlidingContacts {
  private:
   using Held = std::vector<std::uint8_t>;
 
+  // What a tool's touches pressed with in the last update.
+  struct Pressed {
+    double force = 0.0;  // N: their normal forces
+    int touches = 0;
+  };
+
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void stickFirst(const Tissue& tissue);
   double fineness(int link, double spacing) const;
@@ -157,7 +163,7 @@ class SlidingContacts {
 
   std::vector<std::optional<double>> friction_;
   std::vector<double> thickness_;
-  std::vector<double> pressed_;  // per tool: its normal forces in the last update (N)
+  std::vector<Pressed> pressed_;  // per tool
   PressGrowth growth_;
   bool is_settled_ = false;                   // since the last update
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
