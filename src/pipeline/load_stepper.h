@@ -51,6 +51,7 @@ class LoadStepper {
   bool ranOutOfTime() const { return ran_out_of_time_; }
   // Whether time ran out in it, and it can be gone on with from what it came to.
   bool isUnderWay() const;
+  const RobotPose& goesTo() const { return under_way_->came_to.pose; }  // only while it is
   // As advance, to where that load step led.
   bool goOn();
   void forgetUnderWay() { under_way_.reset(); }

@@ -52,7 +52,7 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
     passTo(pose);
     return pose;
   }
-  if (!moves && !finishes(start)) return start;
+  if (!moves && !finishes(start, pose)) return start;
   if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
@@ -61,10 +61,13 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
 }
 
 // Ends the last load step, if time ran out in it, before the next one begins: errors of steps that
-// were cut short would add up. False: there is no time left for a next one.
-bool ToolMotion::finishes(RobotPose& start) {
+// were cut short would add up. Not one that leads away from the pose, as of tools that go back.
+// False: there is no time left for a next one.
+bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   const bool is_late = std::exchange(world_.unfinished, false);
-  const bool is_under_way = load_step_.isUnderWay();
+  const bool is_under_way =
+      load_step_.isUnderWay() &&
+      ways_.stepsBetween(load_step_.goesTo(), pose) <= ways_.stepsBetween(start, pose);
   if (!is_under_way && (!is_late || late_iterations_ > tuning::kMostToFinish)) {
     late_iterations_ = 0;
     return true;

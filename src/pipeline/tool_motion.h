@@ -44,7 +44,7 @@ class ToolMotion {
   enum class Others { kNone, kCame };  // of the tools, in this step
 
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
-  bool finishes(RobotPose& start);
+  bool finishes(RobotPose& start, const RobotPose& pose);
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);

@@ -147,6 +147,31 @@ TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
   EXPECT_FALSE(pipeline.step(down).changed);
 }
 
+// What is on its way into a jam is no longer gone on with.
+TEST(JammedTool, GoesBackAtOnceAlsoWhereTimeIsOver) {
+  Pipeline pipeline(block("elastic", 0.01), {}, {toolOf(boxOf(Vec3(0.1, 0.1, 0.02)))});
+  const auto place = [](double height) { return at({Vec3(kMiddle, kMiddle, height + 0.01)}); };
+  pipeline.step(place(kTop + 0.001));
+  pipeline.step(place(0.5 * kTop));
+  pipeline.setBudget(0.0);
+  int goes_on = 0;
+  for (int update = 0; update < 400 && goes_on < 60; ++update) {
+    const double before = pipeline.pose()->links.front().translation().z();
+    const bool behind = pipeline.step(place(0.0)).too_fast;
+    const bool stands = pipeline.pose()->links.front().translation().z() == before;
+    goes_on = behind && stands ? goes_on + 1 : 0;
+  }
+  ASSERT_EQ(goes_on, 60);
+  const double jammed = pipeline.pose()->links.front().translation().z();
+  const auto height = [&] { return pipeline.pose()->links.front().translation().z(); };
+  int updates = 0;
+  while (updates < 600 && height() <= jammed) {
+    pipeline.step(place(kTop));
+    ++updates;
+  }
+  EXPECT_LT(updates, 60);
+}
+
 // No solve meets this tolerance: each step is tried short, and costs cycles that lead nowhere.
 TEST(JammedTool, IsGivenUpWhereNoSolveConverges) {
   SolverConfig solver;
