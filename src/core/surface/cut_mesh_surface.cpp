@@ -105,7 +105,6 @@ class CutMeshBuilder {
       mesh_triangles.push_back(mesh_triangle_of_[at(part_of)]);
     }
     is_of_mesh_.resize(surface_.rest.size(), 1);
-    if (getenv("NOM")) return surface_;
     return mergedSkin(surface_, mesh_triangles, is_of_mesh_);
   }
 
