@@ -62,12 +62,14 @@ SolveReport LayeredMethod::solve(std::vector<LoadingPatch>& patches,
   ConstrainedState shape{std::move(state), std::move(patches)};
   hold_.bind(shape);
   hold_.place(shape);
+  solver_->limitWays(limits_);
   SolveReport report = solver_->run(shape, hold_, disturbed, budget);
   if (solver_->wantsDouble()) {
     const int in_single = report.iterations;
     use(Precision::kDouble);
     if (!model_.movesInTime()) other_.reset();
     hold_.bind(shape);
+    solver_->limitWays(limits_);  // those that it had are of an earlier surface
     report = solver_->run(shape, hold_, disturbed, budget);
     report.iterations += in_single;
   }

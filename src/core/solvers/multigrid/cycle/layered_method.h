@@ -22,7 +22,7 @@ class LayeredMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   void beginStep(const LatticeState& state) override;
-  void limitWays(std::vector<WayLimit>&& limits) override { solver_->limitWays(std::move(limits)); }
+  void limitWays(std::vector<WayLimit>&& limits) override { limits_ = std::move(limits); }
   void forget() override;
   bool remembers() const override { return true; }
   const GridBox* visited() const override { return solver_->visited(); }
@@ -46,6 +46,7 @@ class LayeredMethod : public SolverMethod {
   LayeredOptions options_;
   int most_cycles_ = std::numeric_limits<int>::max();
   DofConstraints hold_;
+  std::vector<WayLimit> limits_;
   Precision precision_;
   std::unique_ptr<MultigridSolver> solver_;
   std::unique_ptr<MultigridSolver> other_;  // in the other precision; null: was not used yet
