@@ -126,8 +126,12 @@ def way_along(row):
     return before + float(row["way_mm"])
 
 
-def press_rows(tool):
-    return [row for row in table_of("press") if row["tool"] == tool and row["leg"] in LEGS]
+def press_rows(tool, table="press"):
+    return [row for row in table_of(table) if row["tool"] == tool and row["leg"] in LEGS]
+
+
+def greatest_force(rows):
+    return max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
 
 
 def draw_press():
@@ -195,7 +199,7 @@ def tell_press():
         rows = press_rows(tool)
         if not rows:
             continue
-        most = max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
+        most = greatest_force(rows)
         jumps = ", ".join(f"{jumps_of(rows, leg, most):.1f}" for leg in LEGS)
         deep, ms = numbers(rows, "penetration_mm"), numbers(rows, "ms")
         bad = [row for row in rows if row["status"] != "OK"]
@@ -213,11 +217,10 @@ def tell_bounded():
     print("|---|---|---|---|---|---|")
     for tool in TOOLS:
         for bound in BOUNDS:
-            rows = [row for row in table_of(f"bounded_{bound}")
-                    if row["tool"] == tool and row["leg"] in LEGS]
+            rows = press_rows(tool, f"bounded_{bound}")
             if not rows:
                 continue
-            most = max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
+            most = greatest_force(rows)
             first = next(i for i, row in enumerate(rows) if float(row["fz"]) > 0.0)
             ms = numbers(rows[:first] + rows[first + 1:], "ms")
             shares = [100.0 * sum(row["status"] == status for row in rows) / len(rows)
@@ -240,7 +243,7 @@ def tell_slide():
         if not aside:
             continue
         last = aside[-len(aside) // 3:]
-        most = max(math.hypot(float(row["fx"]), float(row["fz"])) for row in rows)
+        most = greatest_force(rows)
         ms = numbers(rows, "ms")
         print(f"| {tool.replace('_', ' ')} | {sum(last) / len(last):.3f}; {max(map(abs, aside)):.3f} "
               f"| {jumps_of(rows, 'drag', most):.1f} | {max(numbers(rows, 'penetration_mm')):.3f} "

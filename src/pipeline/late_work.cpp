@@ -50,9 +50,7 @@ void Pipeline::finish() {
   world_.unfinished = false;
   if (anyToolIn(world_.tissue.patches(), world_)) {
     LoadStepper& load_step = parts_->load_step;
-    const bool arrived = load_step.isUnderWay()
-                             ? load_step.goOn()
-                             : load_step.advance(world_.last_pose.value_or(world_.pose));
+    const bool arrived = load_step.finish(world_.last_pose.value_or(world_.pose));
     if (!arrived && !load_step.isUnderWay()) world_.report.lost = true;
     world_.unfinished = world_.unfinished || load_step.isUnderWay();
     if (world_.report.lost) world_.report.behind = parts_->motion.toolsBehind();

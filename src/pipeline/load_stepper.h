@@ -52,8 +52,8 @@ class LoadStepper {
   // Whether time ran out in it, and it can be gone on with from what it came to.
   bool isUnderWay() const;
   const RobotPose& goesTo() const { return under_way_->came_to.pose; }  // only while it is
-  // As advance, to where that load step led.
-  bool goOn();
+  // Goes on with it, to where it led; where there is none, as advance to the pose.
+  bool finish(const RobotPose& pose) { return isUnderWay() ? goOn() : advance(pose); }
   void forgetUnderWay() { under_way_.reset(); }
   double throughAt(std::size_t link) const;
 
@@ -67,6 +67,7 @@ class LoadStepper {
     std::uint64_t surface_revision = 0;  // likewise
   };
 
+  bool goOn();
   void arrive();
   void leave(const Checkpoint& good, IfUnconverged otherwise, int iterations);
   void solveOn();

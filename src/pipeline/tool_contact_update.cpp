@@ -120,13 +120,8 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
 
 // The shape was solved for the contacts of before: are they those of the shape?
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
-  const double before_ms = world_.deadline.leftMs();
-  const bool renewed = renewIn(of_tools, shape, round);
-  if (std::isfinite(before_ms)) contacts_ms_ = before_ms - world_.deadline.leftMs();
-  return renewed;
-}
-
-bool ToolContactUpdate::renewIn(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
+  contacts_ms_ = 0.0;
+  const Stopwatch watch(contacts_ms_);
   const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
   surface_revision_ = world_.tissue.surface().revision;
   const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);

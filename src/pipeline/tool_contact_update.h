@@ -32,7 +32,6 @@ class ToolContactUpdate : public ContactUpdate {
   };
 
   std::vector<Surroundings> surroundings() const;
-  bool renewIn(std::vector<LoadingPatch>& of_tools, Shape shape, Round round);
   double shareOutside(double share, int strides) const;
   bool hasTimeForContactsOnly() const;
   std::vector<double> depthsAt(double share) const;
@@ -43,7 +42,7 @@ class ToolContactUpdate : public ContactUpdate {
   std::uint64_t surface_revision_;
   std::vector<Vec3> vertices_;  // where the way began that is looked at
   std::vector<Vec3> now_;       // and where it ends, of the lattice's own
-  double contacts_ms_ = 0.0;    // that the last renewal took, where time is bounded
+  double contacts_ms_ = 0.0;    // that the last renewal took
   double left_inside_ = 0.0;    // depth of the deepest contact after the last solve (m)
 };
 

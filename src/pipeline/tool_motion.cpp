@@ -65,15 +65,17 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
 // False: there is no time left for a next one.
 bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   const bool is_late = std::exchange(world_.unfinished, false);
-  const bool is_under_way =
-      load_step_.isUnderWay() &&
-      ways_.stepsBetween(load_step_.goesTo(), pose) <= ways_.stepsBetween(start, pose);
-  if (!is_under_way && (!is_late || late_iterations_ > tuning::kMostToFinish)) {
+  if (load_step_.isUnderWay() &&
+      ways_.stepsBetween(load_step_.goesTo(), pose) > ways_.stepsBetween(start, pose)) {
+    load_step_.forgetUnderWay();
+  }
+  const bool may_end = !is_late || late_iterations_ > tuning::kMostToFinish;
+  if (!load_step_.isUnderWay() && may_end) {
     late_iterations_ = 0;
     return true;
   }
   const double before_ms = world_.deadline.leftMs();
-  const bool arrived = is_under_way ? load_step_.goOn() : load_step_.advance(start);
+  const bool arrived = load_step_.finish(start);
   late_iterations_ += std::max(1, world_.tissue.lastReport().iterations);
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;

@@ -97,12 +97,7 @@ INSTANTIATE_TEST_SUITE_P(MetersPerSecond, FastTool, ::testing::Values(1.0, 5.0))
 
 // A needle thinner than a fifth of the spacing.
 TEST(ThinTool, DoesNotPassThroughASheet) {
-  ToolShape needle;
-  needle.type = ToolShape::Type::kCylinder;
-  needle.radius = 0.0005;
-  needle.length = 0.04;
-  needle.pose.translation().z() = 0.02;  // its tip at the origin
-  Pipeline pipeline(sheet(), {}, {toolOf(needle)});
+  Pipeline pipeline(sheet(), {}, {toolOf(uprightCylinder(0.0005, 0.04))});
   const Vec3 above(0.0313, 0.0211, kSheet + 0.002);
   walk(pipeline, {above}, {above - 0.006 * Vec3::UnitZ()}, 0.003);
   const ToolReport& tool = pipeline.report().tools.front();
@@ -151,19 +146,18 @@ TEST(JammedTool, IsGivenUpAlsoWhenTimeIsOver) {
 TEST(JammedTool, GoesBackAtOnceAlsoWhereTimeIsOver) {
   Pipeline pipeline(block("elastic", 0.01), {}, {toolOf(boxOf(Vec3(0.1, 0.1, 0.02)))});
   const auto place = [](double height) { return at({Vec3(kMiddle, kMiddle, height + 0.01)}); };
+  const auto height = [&] { return pipeline.pose()->links.front().translation().z(); };
   pipeline.step(place(kTop + 0.001));
   pipeline.step(place(0.5 * kTop));
   pipeline.setBudget(0.0);
   int goes_on = 0;
   for (int update = 0; update < 400 && goes_on < 60; ++update) {
-    const double before = pipeline.pose()->links.front().translation().z();
+    const double before = height();
     const bool behind = pipeline.step(place(0.0)).too_fast;
-    const bool stands = pipeline.pose()->links.front().translation().z() == before;
-    goes_on = behind && stands ? goes_on + 1 : 0;
+    goes_on = behind && height() == before ? goes_on + 1 : 0;
   }
   ASSERT_EQ(goes_on, 60);
-  const double jammed = pipeline.pose()->links.front().translation().z();
-  const auto height = [&] { return pipeline.pose()->links.front().translation().z(); };
+  const double jammed = height();
   int updates = 0;
   while (updates < 600 && height() <= jammed) {
     pipeline.step(place(kTop));

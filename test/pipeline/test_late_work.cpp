@@ -171,12 +171,7 @@ TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
 // Tissue snaps off a needle by solves that take many updates' time: they go on with what the last
 // one came to.
 TEST(LateWork, SlipIsFollowedThroughManyUpdates) {
-  ToolShape needle;
-  needle.type = ToolShape::Type::kCylinder;
-  needle.radius = 0.0005;
-  needle.length = 0.05;
-  needle.pose.translation().z() = 0.025;  // its tip at the origin
-  Pipeline pipeline = blockUnder({withFriction(0.3, toolOf(needle))});
+  Pipeline pipeline = blockUnder({withFriction(0.3, toolOf(uprightCylinder(0.0005, 0.05)))});
   const Vec3 above(0.0263, 0.0311, kTop + 0.001), deep = above - 0.012 * Vec3::UnitZ(),
                                                   aside = deep + 0.008 * Vec3::UnitX(),
                                                   out = aside + 0.012 * Vec3::UnitZ();

@@ -21,7 +21,7 @@ class Budget {
     return max_ms_ > 0.0 ? max_ms_ - elapsedMs() : std::numeric_limits<double>::infinity();
   }
   int mostCycles() const { return most_cycles_; }
-  // Whether another piece of work of that length would end later than to the half.
+  // Whether time would be over before half of another piece of work of that length is done.
   bool isSpentFor(double piece_ms) const { return leftMs() < 0.5 * piece_ms; }
   bool isOverdrawn() const { return leftMs() < -cycle_tuning::kMostOverdrawn * max_ms_; }
 
