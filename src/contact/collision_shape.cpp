@@ -107,13 +107,14 @@ SignedDistance CollisionShape::distanceWithin(const Vec3& point, double bound) c
 }
 
 // The mesh answers points inside it at any depth, those outside within the reach only.
-std::optional<SignedDistance> CollisionShape::distanceNear(const Vec3& point, double reach) const {
+std::optional<SignedDistance> CollisionShape::distanceNear(const Vec3& point, double reach,
+                                                           double bound) const {
   if (!grownBy(reach, bounds_).contains(point) || !point.allFinite()) return std::nullopt;
   if (!isMesh()) {
     const SignedDistance found = distance(point);
     return found.value > reach ? std::nullopt : std::optional<SignedDistance>(found);
   }
-  auto found = mesh_->distance(point, reach + shape_.padding);
+  auto found = mesh_->distance(point, reach + shape_.padding, bound + shape_.padding);
   if (found) found->value -= shape_.padding;
   return found;
 }

@@ -26,8 +26,10 @@ class CollisionShape {
   SignedDistance distance(const Vec3& point) const;
   // Of a point that is not farther than `bound` (m) from the padded surface.
   SignedDistance distanceWithin(const Vec3& point, double bound) const;
-  // Nothing when the point is farther than `reach` (m), or not finite.
-  std::optional<SignedDistance> distanceNear(const Vec3& point, double reach) const;
+  // Nothing when the point is farther than `reach` (m), or not finite. With a bound (m), a mesh
+  // whose padded surface is farther from the point than that, inside or outside, may say nothing.
+  std::optional<SignedDistance> distanceNear(const Vec3& point, double reach,
+                                             double bound = kInfinity) const;
   // Where the padded shape reaches farthest in a unit direction; not for meshes and planes.
   Vec3 farthest(const Vec3& direction) const;
 

@@ -35,6 +35,9 @@ void requireLinks(const RobotPose& pose, std::size_t links) {
                    " links of the scene's tools");
 }
 
+// Of triangles beside a mesh: where they are deepest.
+enum class Places { kFollowed, kAnew };
+
 // What the last find() met, so that neither it nor penetrations() look for the same again.
 struct Found {
   std::uint64_t move = 0;  // SurfaceTree::moves() then
@@ -54,7 +57,8 @@ struct ContactFinder::Impl {
   // Of one link, some of whose shapes are near the surface.
   void addContacts(const PlacedLink& here, std::size_t link,
                    const std::vector<std::size_t>& near_shapes, const TissueSurface& surface,
-                   const std::vector<Vec3>& vertices, double margin, ContactSet& contacts);
+                   const std::vector<Vec3>& vertices, double margin, Places places,
+                   ContactSet& contacts);
   double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
                      const TissueSurface& surface, const std::vector<Vec3>& vertices,
                      const Bulge& bulge);
@@ -83,6 +87,13 @@ struct ContactFinder::Impl {
     return true;
   }
 
+  void forgetMinima() {
+    known_minima_of = surface_tree.trees();
+    for (TouchingLink& link : links) {
+      for (KnownMinima& minima : link.known_minima) minima.forget();
+    }
+  }
+
   bool knowsAll(const RobotPose& pose, double margin) const {
     if (!surface_tree.exists() || found.margin != margin) return false;
     for (std::size_t link = 0; link < links.size(); ++link) {
@@ -94,6 +105,8 @@ struct ContactFinder::Impl {
   // Kept from call to call, to spare allocations and to answer the same question once.
   LinkContacts link_contacts;
   SurfaceTree surface_tree;
+  bool in_step = false;
+  std::uint64_t known_minima_of = 0;  // SurfaceTree::trees()
   Found found;
 };
 
@@ -117,6 +130,11 @@ void ContactFinder::useShapes(std::size_t link, std::size_t count) {
   if (impl_->links[link].shapesInUse() == count) return;
   impl_->links[link].useShapes(count);
   impl_->found = {};
+}
+
+void ContactFinder::beginStep() const {
+  impl_->in_step = true;
+  impl_->forgetMinima();
 }
 
 ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& surface,
@@ -193,7 +211,7 @@ void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
                                       const std::vector<std::size_t>& near_shapes,
                                       const TissueSurface& surface,
                                       const std::vector<Vec3>& vertices, double margin,
-                                      ContactSet& contacts) {
+                                      Places places, ContactSet& contacts) {
   const TriangleBvh& tree = surface_tree.last();
   std::vector<int> triangles;
   std::vector<const FacePairs*> faces(here.size(), nullptr);
@@ -208,7 +226,13 @@ void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
   }
-  const LinkContacts::Asked asked{here,  links[link].tool, static_cast<int>(link), triangles, faces,
+  if (known_minima_of != surface_tree.trees()) forgetMinima();
+  const LinkContacts::Asked asked{here,
+                                  links[link].tool,
+                                  static_cast<int>(link),
+                                  triangles,
+                                  faces,
+                                  places == Places::kAnew ? nullptr : &links[link].known_minima,
                                   margin};
   link_contacts.find(asked, surface, vertices, contacts);
 }
@@ -227,7 +251,8 @@ ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surfa
   ContactSet found;
   for (std::size_t link = 0; link < links.size(); ++link) {
     if (near_shapes[link].empty()) continue;
-    impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin, found);
+    impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin,
+                       impl_->in_step ? Places::kFollowed : Places::kAnew, found);
   }
   impl_->found = {impl_->surface_tree.moves(), pose, margin, found};
   return found;
@@ -242,7 +267,7 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
   if (!is_known) {
     std::vector<std::size_t> shapes(here.size());
     std::iota(shapes.begin(), shapes.end(), std::size_t{0});
-    addContacts(here, link, shapes, surface, vertices, 0.0, asked);
+    addContacts(here, link, shapes, surface, vertices, 0.0, Places::kAnew, asked);
   }
   const auto of_link = [&](const SurfacePoint& point) -> Vec3 {
     return bulge ? bulge(link, point) : Vec3::Zero();

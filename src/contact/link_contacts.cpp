@@ -25,6 +25,7 @@ void LinkContacts::find(const Asked& asked, const TissueSurface& surface,
                         const std::vector<Vec3>& vertices, ContactSet& found) {
   link_ = &asked.link;
   faces_ = &asked.faces;
+  known_ = asked.known;
   surface_ = &surface;
   vertices_ = &vertices;
   margin_ = asked.margin;
@@ -111,12 +112,7 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
   const double accuracy = 0.5 * accuracyFor(asked, corners);
   std::vector<TriangleMinimum> minima;
   if (asked.isMesh()) {
-    near_faces_.clear();
-    if (const FacePairs* pairs = (*faces_)[shape]) pairs->facesNear(triangle_, near_faces_);
-    // No face comes near: all of the triangle is inside, or all of it outside.
-    const Seen& corner = seen(shape, triangle[0]);
-    if (near_faces_.empty() && (!corner.is_near || corner.distance.value > 0.0)) return minima;
-    minima = meshMinima(seeds_, asked, corners, near_faces_, accuracy, margin_);
+    minima = minimaInMesh(shape, triangle, corners, accuracy);
   } else {
     minima = {convexMinimum(asked, corners, distances, accuracy, margin_)};
   }
@@ -126,6 +122,31 @@ std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
                                        isVertexAlready(minimum, shape, triangle, accuracy);
                               }),
                minima.end());
+  return minima;
+}
+
+std::vector<TriangleMinimum> LinkContacts::minimaInMesh(std::size_t shape,
+                                                        const MeshTriangle& triangle,
+                                                        const Corners& corners, double accuracy) {
+  const CollisionShape& asked = *(*link_)[shape].shape;
+  KnownMinima* const known = known_ == nullptr ? nullptr : &(*known_)[shape];
+  if (known != nullptr) {
+    if (auto minima = known->follow(triangle_, asked, corners, accuracy, margin_)) return *minima;
+  }
+  near_faces_.clear();
+  if (const FacePairs* pairs = (*faces_)[shape]) pairs->facesNear(triangle_, near_faces_);
+  // No face comes near: all of the triangle is inside, or all of it outside.
+  std::vector<TriangleMinimum> minima;
+  const Seen& corner = seen(shape, triangle[0]);
+  if (!near_faces_.empty() || (corner.is_near && corner.distance.value <= 0.0)) {
+    double center_bound = kInfinity;
+    if (corner.is_near) {
+      const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
+      center_bound = boundAfter(corner.distance.value, (center - corners[0]).norm());
+    }
+    minima = meshMinima(seeds_, asked, corners, near_faces_, accuracy, margin_, center_bound);
+  }
+  if (known != nullptr) known->note(triangle_, corners, margin_, minima);
   return minima;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "known_minima.h"
 #include "mesh_seeds.h"
 #include "placed_link.h"
 #include "robot_tissue/core/contact_set.h"
@@ -25,6 +26,7 @@ class LinkContacts {
     int tool_index, link_index;
     const std::vector<int>& triangles;           // that may touch it, ascending
     const std::vector<const FacePairs*>& faces;  // per shape; of meshes near the surface, else null
+    std::vector<KnownMinima>* known;             // per shape; null: all are looked for anew
     double margin;                               // m
   };
   void find(const Asked& asked, const TissueSurface& surface, const std::vector<Vec3>& vertices,
@@ -45,6 +47,8 @@ class LinkContacts {
   const Seen& seen(std::size_t shape, int vertex);
   Corners cornersOf(const MeshTriangle& triangle) const;  // tissue frame (m)
   std::vector<TriangleMinimum> minimaOf(std::size_t shape, const MeshTriangle& triangle);
+  std::vector<TriangleMinimum> minimaInMesh(std::size_t shape, const MeshTriangle& triangle,
+                                            const Corners& corners, double accuracy);
   bool isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
                        const MeshTriangle& triangle, double accuracy);
   bool isOnKnownEdge(const Vec3& weights, std::size_t shape, const MeshTriangle& triangle);
@@ -52,6 +56,7 @@ class LinkContacts {
 
   const PlacedLink* link_ = nullptr;
   const std::vector<const FacePairs*>* faces_ = nullptr;
+  std::vector<KnownMinima>* known_ = nullptr;
   const TissueSurface* surface_ = nullptr;
   const std::vector<Vec3>* vertices_ = nullptr;
   double margin_ = 0.0;  // m

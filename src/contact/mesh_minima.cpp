@@ -23,18 +23,6 @@ bool isKnown(const Vec3& point, double distance, const Corners& corners,
   });
 }
 
-// Of places that are one contact the deepest stays.
-void keep(const TriangleMinimum& found, const Corners& corners,
-          std::vector<TriangleMinimum>& minima) {
-  if (isKnown(pointOf(corners, found.weights), found.distance.value, corners, minima)) return;
-  minima.erase(std::remove_if(minima.begin(), minima.end(),
-                              [&](const TriangleMinimum& known) {
-                                return standsFor(found, pointOf(corners, known.weights), corners);
-                              }),
-               minima.end());
-  minima.push_back(found);
-}
-
 // Whether the nearest of the deepest places found before is in the same hollow: half way there the
 // distance is no greater than by a straight line. Else a search from here would lead elsewhere.
 bool isInHollowOf(const std::vector<TriangleMinimum>& minima, const TriangleMinimum& there,
@@ -74,9 +62,20 @@ TriangleMinimum approached(const CollisionShape& shape, const Corners& corners,
 
 }  // namespace
 
+void keepApart(const TriangleMinimum& found, const Corners& corners,
+               std::vector<TriangleMinimum>& minima) {
+  if (isKnown(pointOf(corners, found.weights), found.distance.value, corners, minima)) return;
+  minima.erase(std::remove_if(minima.begin(), minima.end(),
+                              [&](const TriangleMinimum& known) {
+                                return standsFor(found, pointOf(corners, known.weights), corners);
+                              }),
+               minima.end());
+  minima.push_back(found);
+}
+
 std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
                                         const Corners& corners, const std::vector<int>& faces,
-                                        double accuracy, double limit) {
+                                        double accuracy, double limit, double center_bound) {
   std::vector<TriangleMinimum> minima;
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   if (!(area.norm() > 0.0)) return minima;
@@ -85,9 +84,11 @@ std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& 
   const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());
-  const auto found_at_center = shape.distanceNear(center, limit + widest);
-  if (!found_at_center) return minima;
-  const double at_center = found_at_center->value;
+  const auto of_center = center_bound < kInfinity
+                             ? std::optional(shape.distanceWithin(center, center_bound))
+                             : shape.distanceNear(center, limit + widest);
+  if (!of_center || of_center->value > limit + widest) return minima;
+  const double at_center = of_center->value;
 
   const ToolMesh& mesh = shape.mesh();
   const double reach = std::max(0.0, shape.padding() + limit);
@@ -97,14 +98,13 @@ std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& 
     const Vec3 start = pointOf(corners, seed);
     const bool is_center = &seed == &all_seeds.back();
     const double bound = boundAfter(at_center, (start - center).norm());
-    const TriangleMinimum there{seed,
-                                is_center ? *found_at_center : shape.distanceWithin(start, bound)};
+    const TriangleMinimum there{seed, is_center ? *of_center : shape.distanceWithin(start, bound)};
     if (isKnown(start, there.distance.value, corners, minima)) continue;
     if (isInHollowOf(minima, there, shape, corners)) continue;
     const bool is_alone = all_seeds.size() == 1;
     const TriangleMinimum found = localMinimum(
         shape, corners, is_alone ? approached(shape, corners, there) : there, accuracy);
-    if (found.distance.value < limit) keep(found, corners, minima);
+    if (found.distance.value < limit) keepApart(found, corners, minima);
   }
   std::stable_sort(minima.begin(), minima.end(),
                    [](const TriangleMinimum& a, const TriangleMinimum& b) {

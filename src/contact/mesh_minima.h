@@ -11,9 +11,16 @@
 namespace robot_tissue {
 
 // Local least distances below `limit` (m), the least first; corners in the frame of the shape,
-// which is a mesh. In: the mesh's faces that are nearer than the limit and the padding, ascending.
+// which is a mesh. In: the mesh's faces that are nearer than the limit and the padding, ascending;
+// a bound of the center's distance (m).
 std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
                                         const Corners& corners, const std::vector<int>& faces,
-                                        double accuracy, double limit);
+                                        double accuracy, double limit,
+                                        double center_bound = kInfinity);
+
+// Adds a place to those that were found on a triangle: of places that are one contact the deepest
+// stays.
+void keepApart(const TriangleMinimum& found, const Corners& corners,
+               std::vector<TriangleMinimum>& minima);
 
 }  // namespace robot_tissue

@@ -39,10 +39,11 @@ Box boundsOf(const PlacedLink& link) {
   return box;
 }
 
-std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach) {
+std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach,
+                             double bound) {
   std::optional<WayOut> best;
   for (const PlacedShape& placed : link) {
-    const auto found = placed.shape->distanceNear(placed.shape_T_tissue * point, reach);
+    const auto found = placed.shape->distanceNear(placed.shape_T_tissue * point, reach, bound);
     if (!found || (best && -found->value <= best->depth_m)) continue;
     best = WayOut{-found->value, placed.tissue_T_shape.linear() * found->slope};
   }

@@ -26,7 +26,9 @@ bool isRigid(const Pose& pose);
 PlacedLink placed(const std::vector<CollisionShape>& shapes, const Pose& tissue_T_link);
 Box boundsOf(const PlacedLink& link);
 
-// The deepest of the shapes at a point; all in the tissue's frame.
-std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach);
+// The deepest of the shapes at a point; all in the tissue's frame. `bound` (m): where the point's
+// signed distance from the link is known to be no greater, whatever its sign, that is found sooner.
+std::optional<WayOut> wayOut(const PlacedLink& link, const Vec3& point, double reach,
+                             double bound = kInfinity);
 
 }  // namespace robot_tissue

@@ -162,14 +162,14 @@ void ToolMesh::measureThickness() {
   }
 }
 
-std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach) const {
+std::optional<SignedDistance> ToolMesh::distance(const Vec3& point, double reach,
+                                                 double bound) const {
   const Box& box = bounds();
   // A point in the mesh's box may be inside, and deeper than the reach: it is looked for at any
   // distance.
   const bool in_box =
       (point.array() >= box.min().array()).all() && (point.array() <= box.max().array()).all();
-  const auto nearest =
-      tree_.nearest(point, in_box ? std::numeric_limits<double>::infinity() : reach);
+  const auto nearest = tree_.nearest(point, in_box ? bound : std::min(reach, bound));
   if (!nearest) return std::nullopt;
   const SignedDistance found = signedBy(point, *nearest);
   if (found.value > reach) return std::nullopt;

@@ -33,7 +33,8 @@ class ToolMesh {
            std::vector<std::string>& warnings);
 
   // Nothing when the point is outside and farther than `reach` (m).
-  std::optional<SignedDistance> distance(const Vec3& point, double reach) const;
+  std::optional<SignedDistance> distance(const Vec3& point, double reach,
+                                         double bound = kInfinity) const;
   // Of a point that the surface is known to be within `bound` (m) of.
   SignedDistance distanceWithin(const Vec3& point, double bound) const;
 

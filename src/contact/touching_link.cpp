@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "link_penetration.h"
+#include "triangle_minimum.h"
 
 namespace robot_tissue {
 namespace {
@@ -28,6 +29,7 @@ TouchingLink::TouchingLink(int tool_index, const std::string& tool_name,
   }
   in_use_ = shapes.size();
   face_pairs.resize(shapes.size());
+  known_minima.resize(shapes.size());
   clear_points.resize(shapes.size());
 }
 
@@ -49,7 +51,12 @@ std::optional<WayOut> TouchingLink::wayOutAt(const Pose& tissue_T_link, const Ve
                                              double reach) const {
   const PlacedLink& here = placedAt(tissue_T_link);
   if (!last_asked_ || last_asked_->point != point || last_asked_->reach != reach) {
-    last_asked_ = Asked{point, reach, wayOut(here, point, reach)};
+    // A signed distance changes by no more than the way between two points.
+    const double bound =
+        last_asked_ && last_asked_->out
+            ? boundAfter(last_asked_->out->depth_m, (point - last_asked_->point).norm())
+            : kInfinity;
+    last_asked_ = Asked{point, reach, wayOut(here, point, reach, bound)};
   }
   return last_asked_->out;
 }

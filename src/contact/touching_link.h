@@ -7,6 +7,7 @@
 
 #include "clear_points.h"
 #include "collision_shape.h"
+#include "known_minima.h"
 #include "placed_link.h"
 #include "robot_tissue/contact/contact_finder.h"
 #include "shape_gap.h"
@@ -37,6 +38,7 @@ class TouchingLink {
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
   std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
+  std::vector<KnownMinima> known_minima;          // as shapes; of meshes
   std::vector<ClearPoints> clear_points;          // as shapes
 
  private:

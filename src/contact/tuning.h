@@ -52,6 +52,11 @@ constexpr double kSquare = 1e-9;
 // Far above rounding where segments are nearly parallel (kSquare); more: more of them are compared.
 constexpr double kSurelyOffEdge = 1e-3;
 
+// Of the edge (1): triangles that went no farther since their deepest places were looked for are
+// followed from these. More: fewer are looked for, but a place that only now comes near is met
+// later. Chosen: a fifth of how far off a tool places are kept.
+constexpr double kFollowed = 0.05;
+
 // Equal or not.
 // m, and of a distance (1): what a bound of a distance is widened by. Less: the nearest face may be
 // missed; more: more faces are asked. Rounding.

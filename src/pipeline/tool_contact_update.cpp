@@ -53,7 +53,7 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
       strides = std::max(strides, way / near.stride);
     }
   }
-  return shareOutside(share, static_cast<int>(std::ceil(share * strides)));
+  return shareOutside(share, static_cast<int>(std::ceil(share * strides)), before);
 }
 
 // How much of that share of the way from `vertices_` to the shape takes no point deep into a link:
@@ -61,16 +61,17 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
 // Where there is time for the contacts of the shape only, it goes no farther than it was looked at.
 // Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a
 // point came in is no longer known.
-double ToolContactUpdate::shareOutside(double share, int strides) const {
-  std::vector<double> before;  // found where they are asked for
+double ToolContactUpdate::shareOutside(double share, int strides,
+                                       const std::vector<Vec3>& start) const {
+  const std::vector<double> before = touch_finder_.depths();
   const auto is_deep = [&](double part) {
-    const std::vector<double> depths = depthsAt(part);
+    const std::vector<double> depths = depthsAt(part, start);
     for (std::size_t link = 0; link < depths.size(); ++link) {
       const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
                                    tuning::kDeepestOfThickness * world_.finder.thickness(link));
       if (depths[link] <= most) continue;
-      if (before.empty()) before = depthsIn(vertices_);
-      if (depths[link] > before[link] + tuning::kDepthGrowth * most) return true;
+      const double at_start = link < before.size() ? before[link] : 0.0;
+      if (depths[link] > at_start + tuning::kDepthGrowth * most) return true;
     }
     return false;
   };
@@ -92,14 +93,18 @@ bool ToolContactUpdate::hasTimeForContactsOnly() const {
   return world_.deadline.leftMs() < contacts_ms_;
 }
 
-// depthsIn of the shape at that share of the way.
-std::vector<double> ToolContactUpdate::depthsAt(double share) const {
+// depthsIn of the shape at that share of the way from `start`, found as Tissue goes back to it:
+// where it stays there, what was found is found.
+std::vector<double> ToolContactUpdate::depthsAt(double share,
+                                                const std::vector<Vec3>& start) const {
   if (share == 1.0) return depthsIn(now_);
-  std::vector<Vec3> there(now_.size());
-  for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
-    there[vertex] = vertices_[vertex] + share * (now_[vertex] - vertices_[vertex]);
+  std::vector<Vec3> there = world_.tissue.state().displacement;
+  for (std::size_t node = 0; node < there.size(); ++node) {
+    there[node] = start[node] + share * (there[node] - start[node]);
   }
-  return depthsIn(there);
+  std::vector<Vec3> vertices;
+  deform(world_.tissue.surface(), there, vertices);
+  return depthsIn(vertices);
 }
 
 // Per link of the tools: depth of the deepest point that gives way (m). Of the contacts that are

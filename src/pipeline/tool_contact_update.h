@@ -32,9 +32,9 @@ class ToolContactUpdate : public ContactUpdate {
   };
 
   std::vector<Surroundings> surroundings() const;
-  double shareOutside(double share, int strides) const;
+  double shareOutside(double share, int strides, const std::vector<Vec3>& start) const;
   bool hasTimeForContactsOnly() const;
-  std::vector<double> depthsAt(double share) const;
+  std::vector<double> depthsAt(double share, const std::vector<Vec3>& start) const;
   std::vector<double> depthsIn(const std::vector<Vec3>& vertices) const;
 
   World& world_;

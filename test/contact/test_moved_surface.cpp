@@ -121,6 +121,53 @@ TEST(MovedSurface, PlacesOfTheLastSearchAreSeenFromWhereTheToolIs) {
   EXPECT_GT(met, 200);
 }
 
+// Of its triangle, or near it (m): what is on an edge may be told of the other triangle, and a
+// corner stands for what it is as far from as it is deep.
+double deepestAround(const Contact& place, const ContactSet& found) {
+  double deepest = -kInfinity;
+  for (const Contact& contact : found.contacts) {
+    const double near = std::max(0.001, contact.depth_m);
+    const bool is_near = (contact.point - place.point).norm() < near;
+    if (!is_near && contact.place.triangle != place.place.triangle) continue;
+    deepest = std::max(deepest, contact.depth_m);
+  }
+  return deepest;
+}
+
+// Within a step the deepest places are followed: as deep as a new search finds them, but for twice
+// its accuracy, and none is missed that touches.
+TEST(MovedSurface, WithinAStepPlacesAreAsDeepAsOfANewSearch) {
+  constexpr double kMargin = 0.00125, kAccuracy = 0.005 * 0.0071;  // m: of the longest edge
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ToolGeometry tool =
+      makeTool({mesh(writeStl("followed.stl", ballTriangles(12, 0.008)))}, 0.0);
+  const ContactFinder finder({tool});
+  Walk walk(block);
+  int met = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Vec3> vertices = walk.next();
+    const RobotPose pose = at(walk.place());
+    finder.beginStep();
+    finder.find(pose, block.surface, vertices, kMargin);
+    std::vector<Vec3> little = vertices;
+    double angle = 0.0;
+    for (Vec3& vertex : little) {
+      vertex += 0.0001 * Vec3(std::sin(7.0 * angle), std::cos(5.0 * angle), std::sin(3.0 * angle));
+      angle += 1.0;
+    }
+    for (const std::vector<Vec3>& moved : {little, walk.next()}) {
+      const ContactFinder fresh({tool});
+      const ContactSet followed = finder.find(pose, block.surface, moved, kMargin);
+      for (const Contact& expected : fresh.find(pose, block.surface, moved, kMargin).contacts) {
+        if (expected.depth_m < 0.0) continue;
+        EXPECT_GE(deepestAround(expected, followed), expected.depth_m - 2.0 * kAccuracy);
+        ++met;
+      }
+    }
+  }
+  EXPECT_GT(met, 200);
+}
+
 // What was asked for before, at the same point, place or reach or at others, leaves no trace.
 TEST(MovedSurface, WaysOutAreThoseOfAFinderThatIsAskedForTheFirstTime) {
   constexpr double kReach = 0.002;

@@ -61,6 +61,10 @@ class ContactFinder {
   // One line each.
   const std::vector<std::string>& warnings() const;
 
+  // A load step begins: from here to the next one, find() follows the deepest places of triangles
+  // that go only a little beside a mesh; it does not look for them anew.
+  void beginStep() const;
+
   // Contacts with depth > -margin (m), in order of links, then triangles: of each vertex, and of
   // each triangle the deepest point when that is neither a vertex nor, by more than a hair, less
   // deep than one of them. A point of an edge is found once.
