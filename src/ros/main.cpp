@@ -4,8 +4,10 @@
 #include <exception>
 
 #include "robot_tissue/ros/tissue_node.h"
+#include "robot_tissue/scene/memory.h"
 
 int main(int argc, char** argv) {
+  robot_tissue::keepFreeMemory();
   ros::init(argc, argv, "robot_tissue");
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });  // as roscpp does on SIGINT
   // The last handle to go closes the log, so one stays until the last line is said.

@@ -142,6 +142,13 @@ double residentMemory() {
 
 double heapInUse() { return compat::heapInUse(); }
 
+void keepFreeMemory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, tuning::kLargestKept);
+  mallopt(M_TRIM_THRESHOLD, tuning::kMostKept);
+#endif
+}
+
 void giveBackFreeMemory() {
 #ifdef __GLIBC__
   malloc_trim(0);

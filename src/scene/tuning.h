@@ -16,6 +16,11 @@ constexpr double kBytesPerGridCell = 45.0;
 constexpr double kBytesPerTriangle = 500.0;
 constexpr double kBytesPerMembraneTriangle = 2800.0;
 
+// Bytes that are kept when they are free: of one array, at most (the C library takes no more), and
+// of what is at the heap's end. More: a node that drew a large tissue once holds the more memory.
+constexpr int kLargestKept = 32 << 20;
+constexpr int kMostKept = 128 << 20;
+
 // Refusals.
 // Letters of a value that are shown. More: longer lines. Chosen.
 constexpr std::size_t kLongestValue = 60;

@@ -207,6 +207,24 @@ TEST(Memory, GapsOfTheHeapAreGivenBack) {
   EXPECT_EQ(*stay.back(), std::string(100, 'b'));
 }
 
+// As of frames that are drawn one after the other.
+TEST(Memory, WhatIsKeptIsNotAskedOfTheSystemAgain) {
+  if (kSanitized) GTEST_SKIP() << kOwnHeap;
+  constexpr std::size_t kBytes = 4 << 20;
+  constexpr long kPages = kBytes / 4096;
+  const auto faultsOfAFrame = [] {
+    rusage before{}, after{};
+    getrusage(RUSAGE_SELF, &before);
+    const std::string frame(kBytes, 'a');
+    EXPECT_EQ(frame.back(), 'a');
+    getrusage(RUSAGE_SELF, &after);
+    return after.ru_minflt - before.ru_minflt;
+  };
+  keepFreeMemory();
+  faultsOfAFrame();
+  for (int frame = 0; frame < 5; ++frame) EXPECT_LT(faultsOfAFrame(), kPages / 10);
+}
+
 TEST(Memory, HeapInUseIsWhatSomebodyHolds) {
   if (kSanitized) GTEST_SKIP() << kOwnHeap;
   constexpr double kBlocks = 1000.0, kBytes = 20000.0;
