@@ -16,6 +16,12 @@ void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   drive.force = force;
 }
 
+bool ForceDrive::waits(std::size_t tool, bool is_late) {
+  int& waits = drives_[tool].waits;
+  waits = is_late && waits < tuning::kMostToFinish ? waits + 1 : 0;
+  return waits > 0;
+}
+
 bool ForceDrive::drivesAny() const {
   return std::any_of(drives_.begin(), drives_.end(),
                      [](const Drive& drive) { return drive.force.has_value(); });

@@ -36,11 +36,16 @@ class ForceDrive {
   };
   bool meetForce(std::size_t tool, const Way& way);
 
+  // What a shape that time ran out in answers is not what it will: corrections wait for its end.
+  // Not for ever, as not all have one.
+  bool waits(std::size_t tool, bool is_late);
+
  private:
   struct Drive {
     std::optional<Vec3> force;  // N
     double way = 0.0;           // along the force, from its pose (m)
     double off = kInfinity;     // from the force, where the calls that left a way ended (N)
+    int waits = 0;              // in a row
   };
 
   class Search;

@@ -358,6 +358,10 @@ bool Pipeline::drive(const RobotPose& pose) {
   const StepReport& report = world_.report;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!parts_->drive.drives(tool)) continue;
+    if (parts_->drive.waits(tool, isLate())) {
+      goes_on = true;
+      continue;
+    }
     const auto walk = [&] {
       world_.last_pose =
           parts_->motion.walk(parts_->drive.driven(world_.tools.complete(pose), world_.tools));

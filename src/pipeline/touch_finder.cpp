@@ -85,6 +85,60 @@ void TouchFinder::curve(Contact& contact) const {
   contact.depth_m -= contact.bulge.dot(contact.normal);
 }
 
+// A triangle's deepest point is not where the curved surface over it is deepest: there it goes, by
+// steps along the depth's slope in the weights of the corners.
+// False: it stays.
+bool TouchFinder::deepen(const RobotPose& pose, Contact& contact) const {
+  const double spacing = world_.tissue.lattice().spacing();
+  const double share = smooth_[at(contact.link)];
+  const bool is_off = contact.depth_m < -tuning::kDeepenedFrom * spacing;
+  if (share == 0.0 || is_off || vertexAt(world_.tissue.surface(), contact.place) >= 0) return false;
+  struct Place {
+    Vec3 weights, bulge, point, normal;
+    double depth;
+  };
+  const std::size_t link = at(contact.link);
+  const auto placeAt = [&](const Vec3& weights) -> std::optional<Place> {
+    const SurfacePoint on{contact.place.triangle, weights};
+    const Vec3 bulge = share * curved_.bulgeAt(on), point = placeOf(on) + bulge;
+    const auto out = world_.finder.wayOut(link, pose.links[link], point, spacing);
+    if (!out || out->normal.isZero()) return std::nullopt;
+    return Place{weights, bulge, point, out->normal, out->depth_m};
+  };
+  auto best = placeAt(contact.place.barycentric);
+  if (!best) return false;
+  const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.place.triangle)];
+  Eigen::Matrix3d flat;
+  for (int k = 0; k < 3; ++k) flat.col(k) = vertices_[at(corners[at(k)])];
+  double step = tuning::kFirstDeepening;
+  Vec3 way = Vec3::Zero();
+  bool is_new = true;
+  for (int look = 0; look < tuning::kDeepenings && step > tuning::kLastDeepening; ++look) {
+    if (is_new) {
+      const SurfacePoint on{contact.place.triangle, best->weights};
+      way = -(flat + share * curved_.bulgeSlopesAt(on)).transpose() * best->normal;
+      way.array() -= way.mean();
+    }
+    const double longest = way.cwiseAbs().maxCoeff();
+    if (!(step * longest > tuning::kLeastDeepening * spacing)) break;
+    Vec3 weights = (best->weights + step / longest * way).cwiseMax(0.0);
+    weights /= weights.sum();
+    const auto there = placeAt(weights);
+    is_new = there && there->depth > best->depth;
+    if (is_new) {
+      best = there;
+    } else {
+      step *= 0.4;
+    }
+  }
+  contact.place.barycentric = best->weights;
+  contact.bulge = best->bulge;
+  contact.point = best->point;
+  contact.normal = best->normal;
+  contact.depth_m = best->depth;
+  return true;
+}
+
 // A link thinner than half a spacing is among so few triangles that these count by themselves, one
 // thicker than a spacing touches the smooth surface. Under a flat face normals are the face's;
 // triangles at its edge lie partly on it, and their smooth normals would let it in.
@@ -177,7 +231,10 @@ ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3
   ContactSet contacts = flatContacts(pose, vertices);
   curved_.take(world_.tissue.surface(), vertices);
   smooth_.resize(pose.links.size(), 0.0);
-  for (Contact& contact : contacts.contacts) curve(contact);
+  for (Contact& contact : contacts.contacts) {
+    curve(contact);
+    if (contact.depth_m > 0.0) deepen(pose, contact);
+  }
   return contacts;
 }
 
@@ -215,11 +272,14 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   std::size_t kept = 0;
   for (Contact& contact : all) {
     curve(contact);
-    const double depth = contact.depth_m;
+    double depth = contact.depth_m;
     if (!turn(pose, contact) && world_.isInWound(at(contact.link))) continue;
     contact.wanders = wanders(pose, contact);
     if (contact.wanders) {
       contact.turn = curved_.hollowAt(contact.place);
+    } else if (!world_.finder.hasMesh(at(contact.link)) && deepen(pose, contact)) {
+      depth = contact.depth_m;
+      turn(pose, contact);
     }
     nearest.push_back(depth);
     all[kept++] = contact;

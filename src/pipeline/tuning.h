@@ -115,6 +115,15 @@ constexpr double kAtVertex = 0.99;
 // Barycentric weight (1): with more of each corner, a point is on no edge of its triangle. Chosen.
 constexpr double kInsideTriangle = 1e-3;
 
+// Where a triangle's curved surface is deepest: looked for where it is no farther off the link than
+// so much of the spacing (1), by steps in the weights of its corners (1) from the first to the last
+// of these, as long as the slope promises so much of the spacing (1), at most so often. Chosen.
+constexpr double kDeepenedFrom = 0.1;
+constexpr double kFirstDeepening = 0.2;
+constexpr double kLastDeepening = 0.02;
+constexpr double kLeastDeepening = 0.001;
+constexpr int kDeepenings = 10;
+
 // Contacts: rims of flat faces.
 // Of the spacing (1): how far from a point edges of its face are looked for. Less: the other side
 // of a face is not seen. Chosen: more than kWideFace.

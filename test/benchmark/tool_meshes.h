@@ -41,9 +41,9 @@ std::string writeRings(const std::string& name, int rings, int sides, Vertex ver
 
 // An ellipsoid of 2,000 triangles about the origin.
 inline std::string writeEllipsoid(const Vec3& semi_axes) {
-  constexpr int kSides = 40, kRings = 25;
-  return writeRings("ellipsoid", kRings, kSides, [&](int ring, int side) -> Vec3 {
-    const double down = M_PI * ring / kRings, round = 2.0 * M_PI * (side % kSides) / kSides;
+  constexpr int kMeshSides = 40, kRings = 25;
+  return writeRings("ellipsoid", kRings, kMeshSides, [&](int ring, int side) -> Vec3 {
+    const double down = M_PI * ring / kRings, round = 2.0 * M_PI * (side % kMeshSides) / kMeshSides;
     if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? semi_axes.z() : -semi_axes.z()};
     const Vec3 unit(std::sin(down) * std::cos(round), std::sin(down) * std::sin(round),
                     std::cos(down));
@@ -54,10 +54,10 @@ inline std::string writeEllipsoid(const Vec3& semi_axes) {
 // A torus of 3,200 triangles that stands upright, about the origin: radii of its middle line and of
 // its tube (m).
 inline std::string writeRing(double radius, double tube) {
-  constexpr int kSides = 25, kRings = 64;
-  return writeRings("ring", kRings, kSides, [&](int ring, int side) -> Vec3 {
+  constexpr int kMeshSides = 25, kRings = 64;
+  return writeRings("ring", kRings, kMeshSides, [&](int ring, int side) -> Vec3 {
     const double along = 2.0 * M_PI * (ring % kRings) / kRings;
-    const double round = 2.0 * M_PI * (side % kSides) / kSides;
+    const double round = 2.0 * M_PI * (side % kMeshSides) / kMeshSides;
     const double out = radius + tube * std::cos(round);
     return {out * std::cos(along), tube * std::sin(round), out * std::sin(along)};
   });
@@ -66,14 +66,14 @@ inline std::string writeRing(double radius, double tube) {
 // A finger of 3,000 triangles: a capsule with bumps that stands upright, its tip at the origin;
 // radius and length (m). As scripts/studies/hand.py makes it.
 inline std::string writeFinger(double radius, double length) {
-  constexpr int kSides = 50, kRings = 31;
+  constexpr int kMeshSides = 50, kRings = 31;
   constexpr double kBump = 0.04, kWave = 400.0;  // of the radius, 1; 1/m
-  return writeRings("finger", kRings, kSides, [&](int ring, int side) -> Vec3 {
+  return writeRings("finger", kRings, kMeshSides, [&](int ring, int side) -> Vec3 {
     if (ring == 0 || ring == kRings) return {0.0, 0.0, ring == 0 ? length : 0.0};
     const double straight = length - 2.0 * radius;
     const double way = (M_PI * radius + straight) * (kRings - ring) / kRings;
     const double along = std::min(std::max(way - 0.5 * M_PI * radius, 0.0), straight);
-    const double bend = (way - along) / radius, round = 2.0 * M_PI * (side % kSides) / kSides;
+    const double bend = (way - along) / radius, round = 2.0 * M_PI * (side % kMeshSides) / kMeshSides;
     const double bump = 1.0 + kBump * std::cos(5.0 * round) * std::cos(kWave * way);
     const double out = radius * std::sin(bend) * bump;
     return {out * std::cos(round), out * std::sin(round), radius * (1.0 - std::cos(bend)) + along};

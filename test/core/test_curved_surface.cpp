@@ -91,6 +91,24 @@ TEST(CurvedSurface, OfABallIsNearlyTheBall) {
   }
 }
 
+TEST(CurvedSurface, SlopesOfItsBulgeAreThoseOfFiniteDifferences) {
+  constexpr double kStep = 1e-6;  // of a weight
+  const TissueSurface surface = square();
+  const std::vector<Vec3> vertices = onBall(surface, 1.0);
+  CurvedSurface curved;
+  curved.take(surface, vertices);
+  forEachInnerPlace(surface, vertices, [&](const Place& place) {
+    const Eigen::Matrix3d slopes = curved.bulgeSlopesAt(place.point);
+    for (int k = 0; k < 3; ++k) {
+      SurfacePoint less = place.point, more = place.point;
+      less.barycentric[k] -= kStep;
+      more.barycentric[k] += kStep;
+      const Vec3 slope = (curved.bulgeAt(more) - curved.bulgeAt(less)) / (2.0 * kStep);
+      EXPECT_LT((slopes.col(k) - slope).norm(), 1e-9);
+    }
+  });
+}
+
 TEST(CurvedSurface, OfAPlaneIsThePlaneAlsoWhereItIsStretched) {
   const TissueSurface surface = square();
   std::vector<Vec3> vertices = surface.rest;

@@ -136,7 +136,7 @@ TEST(Budget, DrivenToolMeetsItsForceInLaterSteps) {
     EXPECT_LE(pipeline.report().substeps, 3) << "the bound holds for all corrections together";
   } while (pipeline.report().changed && ++steps < 500);
   EXPECT_LT(steps, 500);
-  EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), wanted, 0.05 * wanted);
+  EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), wanted, 0.01 * wanted);
 }
 
 }  // namespace

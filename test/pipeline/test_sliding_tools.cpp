@@ -68,6 +68,23 @@ TEST(SlidingTools, ABallPressesACoarseLatticeAsAFineOne) {
   EXPECT_NEAR(force(kSpacing), fine, 0.03 * fine);
 }
 
+// It touches where the curved surface is deepest in it: a dragged ball is held as smoothly as it is
+// round, and stands no deeper than its touches' slack.
+TEST(SlidingTools, ADraggedBallIsHeldSmoothlyAndNotLetIn) {
+  Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.3, probe())});
+  const double y = kMiddle + 0.3 * kSpacing, down = kTop - kDepth + kRadius;
+  walk(pipeline, {{0.018, y, kTop + kRadius}}, {{0.018, y, down}});
+  walk(pipeline, {{0.018, y, down}}, {{0.018 + kSpacing, y, down}});
+  Vec3 before = pipeline.report().tools.front().force_on_tool;
+  for (double x = 0.018 + kSpacing; x < kMiddle + kSpacing; x += 0.05 * kSpacing) {
+    pipeline.step(at(std::vector<Vec3>{{x, y, down}}));
+    const ToolReport& tool = pipeline.report().tools.front();
+    EXPECT_LT((tool.force_on_tool - before).norm(), 0.04 * before.norm()) << x;
+    EXPECT_LT(tool.max_penetration, 0.035 * kSpacing) << x;
+    before = tool.force_on_tool;
+  }
+}
+
 // Its touches go along it as tissue slides past, and do not pile up where they once were.
 TEST(SlidingTools, AnEdgeIsNoDeeperDraggedThanPressed) {
   Pipeline pipeline(block(), methodOf("elastic"), {withFriction(0.0, toolOf(boxOnItsEdge()))});

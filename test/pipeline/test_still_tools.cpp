@@ -98,7 +98,7 @@ TEST(PassingTool, WithARigidPatchChangesNothingOfWhatOthersPress) {
       pose.links.push_back(at({Vec3::Ones()}).links.front());
       pipeline.step(pose);
     }
-    EXPECT_GT(pipeline.report().tools.front().max_penetration, 0.001 * kSpacing);
+    EXPECT_GT(pipeline.report().tools.front().max_penetration, 0.0001 * kSpacing);
     return pipeline.tissue().state().displacement;
   };
   EXPECT_EQ(pressBeside(ToolConfig::Patch::kRigid), pressBeside(ToolConfig::Patch::kConforming));

@@ -33,6 +33,8 @@ class CurvedSurface {
   Vec3 normalAt(const SurfacePoint& point) const;
   // How far the surface is from the triangle's point (m); zero at corners.
   Vec3 bulgeAt(const SurfacePoint& point) const;
+  // How it changes with the weight of each corner, the others as they are: a column each (m).
+  Eigen::Matrix3d bulgeSlopesAt(const SurfacePoint& point) const;
   // Where it is hollow, how fast its normal turns against the way along it (1/m): symmetric, of no
   // negative direction.
   Eigen::Matrix3d hollowAt(const SurfacePoint& point) const;
@@ -49,6 +51,7 @@ class CurvedSurface {
   void takeSurface(const TissueSurface& surface);
   const Vec3& triangleNormal(std::size_t triangle) const;
   const Vec3& cornerNormal(int triangle, std::size_t corner) const;
+  double riseOf(int triangle, int corner, int other) const;
   Vec3 findCornerNormal(int triangle, std::size_t corner) const;
 
   std::uint64_t revision_ = 0;                // of the surface; 0: none yet

@@ -123,23 +123,42 @@ Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point) const {
 // flat triangle, with weights u and the rise w_ij = N_i (x_j - x_i) of corner j over the plane of
 // corner i: - sum over i, j != i of w_ij N_i (u_i^2 u_j + u_0 u_1 u_2 / 2).
 Vec3 CurvedSurface::bulgeAt(const SurfacePoint& point) const {
-  const MeshTriangle& corners = corners_[at(point.triangle)];
   const Vec3& u = point.barycentric;
   Vec3 bulge = Vec3::Zero();
   for (int i = 0; i < 3; ++i) {
-    const auto corner = static_cast<std::size_t>(i);
-    const Vec3& normal = cornerNormal(point.triangle, corner);
     double lift = 0.0;
     for (int j = 0; j < 3; ++j) {
-      if (j == i) continue;
-      const Vec3 way = vertices_[at(corners[at(j)])] - vertices_[at(corners[corner])];
-      const double most = kMostRise * way.norm();
-      const double rise = std::min(most, std::max(-most, normal.dot(way)));
-      lift += rise * (u[i] * u[i] * u[j] + 0.5 * u.prod());
+      if (j != i) lift += riseOf(point.triangle, i, j) * (u[i] * u[i] * u[j] + 0.5 * u.prod());
     }
-    bulge -= lift * normal;
+    bulge -= lift * cornerNormal(point.triangle, at(i));
   }
   return bulge;
+}
+
+Eigen::Matrix3d CurvedSurface::bulgeSlopesAt(const SurfacePoint& point) const {
+  const Vec3& u = point.barycentric;
+  const Vec3 of_product(0.5 * u[1] * u[2], 0.5 * u[2] * u[0], 0.5 * u[0] * u[1]);
+  Eigen::Matrix3d slopes = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    Vec3 of_lift = Vec3::Zero();
+    for (int j = 0; j < 3; ++j) {
+      if (j == i) continue;
+      Vec3 of_shape = of_product;
+      of_shape[i] += 2.0 * u[i] * u[j];
+      of_shape[j] += u[i] * u[i];
+      of_lift += riseOf(point.triangle, i, j) * of_shape;
+    }
+    slopes -= cornerNormal(point.triangle, at(i)) * of_lift.transpose();
+  }
+  return slopes;
+}
+
+// w_ij, within kMostRise.
+double CurvedSurface::riseOf(int triangle, int corner, int other) const {
+  const MeshTriangle& corners = corners_[at(triangle)];
+  const Vec3 way = vertices_[at(corners[at(other)])] - vertices_[at(corners[at(corner)])];
+  const double most = kMostRise * way.norm();
+  return std::min(most, std::max(-most, cornerNormal(triangle, at(corner)).dot(way)));
 }
 
 }  // namespace robot_tissue
