@@ -132,6 +132,7 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   } else {
     parts_->grasping.forgetLetGo();
   }
+  expectTouch();
   describeTools();
 }
 

@@ -8,6 +8,10 @@
 
 namespace robot_tissue::tuning {
 
+// Spacings (1): a tool that is nearer to the tissue is expected to touch it. More: the solver's
+// levels are made for tools that pass by. Chosen.
+constexpr double kExpectedFrom = 2.0;
+
 // Load steps.
 // Of the thickness (1): the longest load step of a link. More: fewer solves, but a thin link may be
 // through what it meets. Chosen.

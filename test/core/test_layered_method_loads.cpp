@@ -40,6 +40,21 @@ TEST_P(LayeredByForce, PatchFindsWhereItsForceAndMomentBalance) {
 INSTANTIATE_TEST_SUITE_P(RatiosAndTurns, LayeredByForce,
                          testing::Combine(testing::Values(0.25, 0.45), testing::Bool()));
 
+// As where a tool comes near: nothing but the time of the first solve changes.
+TEST(LayeredLoads, WhatIsExpectedAnswersAlike) {
+  for (const bool is_long : {false, true}) {
+    const TissueConfig config = is_long ? withFixedBottom(elasticBlockOf(64, 6, 6, 0.45))
+                                        : withFixedBottom(elasticBlockOf(24, 24, 12, 0.45));
+    LayeredBlock expected(config), plain(config);
+    expected.method.expect(expected.state);
+    for (LayeredBlock* block : {&expected, &plain}) {
+      LoadingPatch patch = punchByForce(*block, config, Vec3(0.0, 0.0, -0.2), false);
+      ASSERT_EQ(block->solve({patch}).status, SolveStatus::kOk);
+    }
+    EXPECT_EQ(expected.state.displacement, plain.state.displacement);
+  }
+}
+
 TEST(LayeredLoads, CutAtRestNeedsNoCycle) {
   const TissueConfig config = withFixedBottom(elasticBlockOf(24, 24, 12, 0.45));
   const double h = config.spacing;

@@ -159,6 +159,7 @@ class Pipeline {
   bool drive(const RobotPose& pose);
   void touch();
   void describeTools();
+  void expectTouch();  // expected_touch.cpp
   // late_work.cpp
   void loadOn();
   void finish();
@@ -174,6 +175,7 @@ class Pipeline {
   bool gave_up_ = false;         // there
   bool touched_ = true;          // the reports are to be brought up to date
   bool leaves_depths_ = false;
+  bool was_near_ = false;                   // a tool, in the last step in which nothing was solved
   std::shared_ptr<const Mark> trial_from_;  // null: none is under way
 };
 

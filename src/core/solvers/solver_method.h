@@ -28,6 +28,10 @@ class SolverMethod {
   virtual SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                             LatticeState& state) = 0;
 
+  // There will be solves of this state's cells: what the first one makes may be made now. Their
+  // answers are the same.
+  virtual void expect(const LatticeState&) {}
+
   // The solves that follow, up to the next call, are of one load step.
   virtual void beginStep(const LatticeState&) {}
 

@@ -190,6 +190,10 @@ Vec3 Tissue::nodePosition(int node) const {
   return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
 }
 
+void Tissue::expectTouch() {
+  if (!hasTime()) method_->expect(state_);
+}
+
 // The surface is another one: touches are found anew where it is now.
 void Tissue::renewContacts() {
   if (contact_update_ == nullptr) return;

@@ -52,6 +52,12 @@ Vec3 FasCgSolver<Real>::forceLeft() {
   return shape_.exists() ? forceLeftOn(shape_, lattice_.spacing()) : Vec3(Vec3::Zero());
 }
 
+// Of a long block the levels hang on where the loads are.
+template <typename Real>
+void FasCgSolver<Real>::expect(const LatticeState& state) {
+  if (!ends_.mayBeLeftOut()) findLevels(state, Budget(0.0, 0));
+}
+
 // Measuring takes longer than a solve may: where there is no time for it, it is left to a later
 // one.
 template <typename Real>

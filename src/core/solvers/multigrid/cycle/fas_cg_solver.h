@@ -37,6 +37,7 @@ class FasCgSolver : public MultigridSolver {
   const GridBox* visited() const override;
   void forget() override;
   std::vector<Vec3> cellForces(const LatticeState& shape) override;
+  void expect(const LatticeState& state) override;
 
  private:
   void takeTimeStep(const SolveContext& solve);

@@ -22,6 +22,7 @@ class LayeredMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   void beginStep(const LatticeState& state) override;
+  void expect(const LatticeState& state) override { solver_->expect(state); }
   void limitWays(std::vector<WayLimit>&& limits) override { limits_ = std::move(limits); }
   void forget() override;
   bool remembers() const override { return true; }

@@ -44,8 +44,9 @@ class MultigridSolver {
   virtual bool wantsDouble() const = 0;
   virtual void limitWays(std::vector<WayLimit> limits) = 0;  // as SolverMethod
   virtual void beginStep() = 0;
-  virtual const GridBox* visited() const = 0;  // as SolverMethod
-  virtual Vec3 forceLeft() = 0;                // likewise (N)
+  virtual void expect(const LatticeState& state) = 0;  // as SolverMethod
+  virtual const GridBox* visited() const = 0;          // as SolverMethod
+  virtual Vec3 forceLeft() = 0;                        // likewise (N)
   virtual void forget() = 0;
   virtual std::vector<Vec3> cellForces(const LatticeState& shape) = 0;  // likewise
 };

@@ -27,6 +27,7 @@ class FreeEnds {
   // leaving the ends out saves little.
   const GridBox& between() const { return between_; }
   void forget();
+  bool mayBeLeftOut() const { return is_long_; }
 
  private:
   GridBox leastAround(const GridBox& loaded) const;
