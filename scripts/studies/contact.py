@@ -212,7 +212,7 @@ def tell_press():
 
 def tell_bounded():
     """Updates of at most so many ms: what they take, what is late, how deep and how smooth."""
-    print("| tool | max_ms | ms an update: median, 99 %, greatest but the first in contact | OK, LATE, "
+    print("| tool | max_ms | ms an update from the first contact on: median, 99 %, greatest | OK, LATE, "
           "TOO_FAST, LOST (%) | penetration: 99 %, greatest (mm) | jump: press, drag, lift (%) |")
     print("|---|---|---|---|---|---|")
     for tool in TOOLS:
@@ -222,7 +222,7 @@ def tell_bounded():
                 continue
             most = greatest_force(rows)
             first = next(i for i, row in enumerate(rows) if float(row["fz"]) > 0.0)
-            ms = numbers(rows[:first] + rows[first + 1:], "ms")
+            ms = numbers(rows[first:], "ms")
             shares = [100.0 * sum(row["status"] == status for row in rows) / len(rows)
                       for status in ("OK", "LATE", "TOO_FAST", "LOST")]
             deep = numbers(rows, "penetration_mm")
