@@ -48,6 +48,12 @@ struct Found {
 
 }  // namespace
 
+struct ContactFinder::Kept {
+  Found found;
+  std::vector<std::vector<KeptFacePairs>> face_pairs;  // per link
+  bool is_found_of_tree = false;
+};
+
 struct ContactFinder::Impl {
   std::vector<TouchingLink> links;
   std::vector<std::string> warnings;
@@ -130,6 +136,24 @@ void ContactFinder::useShapes(std::size_t link, std::size_t count) {
   if (impl_->links[link].shapesInUse() == count) return;
   impl_->links[link].useShapes(count);
   impl_->found = {};
+}
+
+std::shared_ptr<const ContactFinder::Kept> ContactFinder::kept() const {
+  auto kept = std::make_shared<Kept>();
+  kept->found = impl_->found;
+  kept->is_found_of_tree = impl_->found.move == impl_->surface_tree.moves();
+  for (const TouchingLink& link : impl_->links) kept->face_pairs.push_back(link.face_pairs);
+  return kept;
+}
+
+void ContactFinder::restore(const Kept& kept, const TissueSurface& surface,
+                            const std::vector<Vec3>& vertices) const {
+  for (std::size_t link = 0; link < impl_->links.size(); ++link) {
+    impl_->links[link].face_pairs = kept.face_pairs[link];
+  }
+  if (impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
+  impl_->found = kept.found;
+  if (kept.is_found_of_tree) impl_->found.move = impl_->surface_tree.moves();
 }
 
 void ContactFinder::beginStep() const {

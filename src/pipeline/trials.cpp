@@ -18,6 +18,7 @@ struct Pipeline::Mark {
   bool unfinished = false;
   bool touched = true;
   StepReport report;
+  std::shared_ptr<const ContactFinder::Kept> searches;
 };
 
 void Pipeline::beginTrial() {
@@ -25,7 +26,7 @@ void Pipeline::beginTrial() {
       Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
            parts_->blades.states(), parts_->burrs.states(), parts_->scissors.states(),
            world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
-           world_.unfinished, touched_, world_.report});
+           world_.unfinished, touched_, world_.report, world_.finder.kept()});
   world_.tissue.beginAside();
   world_.is_trial = true;
 }
@@ -49,6 +50,7 @@ void Pipeline::undoTrial() {
   world_.unfinished = mark.unfinished;
   touched_ = mark.touched;
   world_.report = mark.report;
+  world_.finder.restore(*mark.searches, world_.tissue.surface(), world_.tissue.vertices());
   trial_from_.reset();
 }
 

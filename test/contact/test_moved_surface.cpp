@@ -168,6 +168,37 @@ TEST(MovedSurface, WithinAStepPlacesAreAsDeepAsOfANewSearch) {
   EXPECT_GT(met, 200);
 }
 
+// As around a trial step: places of a search are known again as if nothing had been asked since.
+TEST(MovedSurface, WhatIsRestoredIsKnownAgain) {
+  constexpr double kMargin = 0.00125, kWay = 0.0002;
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ToolGeometry tool =
+      makeTool({mesh(writeStl("restored.stl", ballTriangles(12, 0.008)))}, 0.0);
+  const ContactFinder finder({tool}), undisturbed({tool});
+  Walk walk(block);
+  int apart = 0;
+  for (int step = 0; step < 20; ++step) {
+    const std::vector<Vec3> vertices = walk.next();
+    RobotPose pose = at(walk.place());
+    finder.find(pose, block.surface, vertices, kMargin);
+    undisturbed.find(pose, block.surface, vertices, kMargin);
+    const auto kept = finder.kept();
+    finder.find(at(walk.place()), block.surface, walk.next(), kMargin);
+    finder.restore(*kept, block.surface, vertices);
+    pose.links[0].translation() += 0.6 * kWay * Vec3(0.5, -0.3, 0.7);
+    const auto again = finder.findAgain(pose, block.surface, vertices, kMargin, kWay).contacts;
+    const auto expected =
+        undisturbed.findAgain(pose, block.surface, vertices, kMargin, kWay).contacts;
+    const auto anew = ContactFinder({tool}).find(pose, block.surface, vertices, kMargin).contacts;
+    ASSERT_EQ(again.size(), expected.size());
+    for (std::size_t i = 0; i < again.size(); ++i) {
+      EXPECT_EQ(again[i].point, expected[i].point);
+      apart += i >= anew.size() || again[i].point != anew[i].point ? 1 : 0;
+    }
+  }
+  EXPECT_GT(apart, 20);
+}
+
 // What was asked for before, at the same point, place or reach or at others, leaves no trace.
 TEST(MovedSurface, WaysOutAreThoseOfAFinderThatIsAskedForTheFirstTime) {
   constexpr double kReach = 0.002;

@@ -59,26 +59,60 @@ TEST(ToolSteps, WithoutIncrementsAMoveHasOneALoadStep) {
   EXPECT_EQ(result.increments.size(), 5U);  // of a fifth of the spacing
 }
 
-// A box that slips, its edges in folds: a way of 20 mm in load steps of 2 mm.
-RunResult draggedIn(int increments) {
-  return run(block() +
-             "tools:\n  - {name: probe, friction: 0.3,"
-             " shapes: [{type: box, size: [0.02, 0.02, 0.04]}]}\nsteps:\n" +
-             placed("probe", {0.041, 0.0483, 0.09}, {0.041, 0.0483, 0.06}, 2) +
+// A tool that slips, its edges in folds: a way of 20 mm in load steps of 2 mm.
+RunResult draggedIn(int increments, const std::string& shape) {
+  return run(block() + "tools:\n  - {name: probe, friction: 0.3, shapes: [" + shape +
+             "]}\nsteps:\n" + placed("probe", {0.041, 0.0483, 0.09}, {0.041, 0.0483, 0.06}, 2) +
              moved("probe", {0.061, 0.0483, 0.06}, increments) +
              moved("probe", {0.061, 0.0533, 0.06}, 2));
 }
 
-TEST(ToolSteps, WhatSlipsEndsAlikeInAnyNumberOfIncrements) {
-  const RunResult one = draggedIn(1);
-  for (const int increments : {3, 10, 14}) {
-    const RunResult more = draggedIn(increments);
+class SlippingTools : public testing::TestWithParam<std::string> {};
+
+TEST_P(SlippingTools, EndAlikeInAnyNumberOfIncrements) {
+  const RunResult one = draggedIn(1, GetParam());
+  for (const int increments : {3, 10, 14, 40}) {
+    const RunResult more = draggedIn(increments, GetParam());
     EXPECT_EQ(rowsOf(more, 1, "probe").back().force, rowsOf(one, 1, "probe").back().force);
     EXPECT_EQ(more.displacement, one.displacement) << increments << " increments";
     EXPECT_TRUE(more.allOk());
   }
   EXPECT_GT(std::abs(one.tools.back().force.x()), 0.1);
 }
+
+// A tube of 24 sides, closed by a ring at each end, from -20 to 20 mm along z.
+std::string writeTube() {
+  const std::string path = testing::TempDir() + "robot_tissue_tube.stl";
+  std::ofstream stl(path);
+  const auto put = [&](const Vec3& corner) {
+    stl << "vertex " << corner.x() << ' ' << corner.y() << ' ' << corner.z() << '\n';
+  };
+  const auto facet = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    stl << "facet normal 0 0 0\nouter loop\n";
+    put(a), put(b), put(c);
+    stl << "endloop\nendfacet\n";
+  };
+  const std::array<Eigen::Vector2d, 5> outline = {
+      {{0.011, -0.02}, {0.011, 0.02}, {0.007, 0.02}, {0.007, -0.02}, {0.011, -0.02}}};
+  stl << "solid tube\n";
+  for (int side = 0; side < 24; ++side) {
+    const auto at_side = [&](const Eigen::Vector2d& place, int k) -> Vec3 {
+      const double angle = M_PI * (k % 24) / 12.0;
+      return {place.x() * std::cos(angle), place.x() * std::sin(angle), place.y()};
+    };
+    for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+      const Vec3 a = at_side(outline[i], side), b = at_side(outline[i], side + 1);
+      const Vec3 c = at_side(outline[i + 1], side + 1), d = at_side(outline[i + 1], side);
+      facet(a, b, c), facet(a, c, d);
+    }
+  }
+  stl << "endsolid tube\n";
+  return path;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SlippingTools,
+                         testing::Values("{type: box, size: [0.02, 0.02, 0.04]}",
+                                         "{type: mesh, resource: 'file://" + writeTube() + "'}"));
 
 TEST(ToolSteps, AFarWayInOneIncrementIsWalkedAll) {
   const RunResult result =

@@ -65,6 +65,13 @@ class ContactFinder {
   // that go only a little beside a mesh; it does not look for them anew.
   void beginStep() const;
 
+  // What is kept of the last searches: the next answers hang on it by less than their accuracy.
+  struct Kept;
+  std::shared_ptr<const Kept> kept() const;
+  // As it was then, of a surface that was there then.
+  void restore(const Kept& kept, const TissueSurface& surface,
+               const std::vector<Vec3>& vertices) const;
+
   // Contacts with depth > -margin (m), in order of links, then triangles: of each vertex, and of
   // each triangle the deepest point when that is neither a vertex nor, by more than a hair, less
   // deep than one of them. A point of an edge is found once.
