@@ -73,7 +73,8 @@ inline std::string writeFinger(double radius, double length) {
     const double straight = length - 2.0 * radius;
     const double way = (M_PI * radius + straight) * (kRings - ring) / kRings;
     const double along = std::min(std::max(way - 0.5 * M_PI * radius, 0.0), straight);
-    const double bend = (way - along) / radius, round = 2.0 * M_PI * (side % kMeshSides) / kMeshSides;
+    const double bend = (way - along) / radius,
+                 round = 2.0 * M_PI * (side % kMeshSides) / kMeshSides;
     const double bump = 1.0 + kBump * std::cos(5.0 * round) * std::cos(kWave * way);
     const double out = radius * std::sin(bend) * bump;
     return {out * std::cos(round), out * std::sin(round), radius * (1.0 - std::cos(bend)) + along};

@@ -20,9 +20,9 @@ double residentMemory();
 // known.
 double heapInUse();
 
-// From now on what is freed stays with the heap, up to some megabytes, for who asks next. The system
-// gives memory page by page, as each is first written to: of an array of a megabyte, asked for anew
-// with each drawn frame, that takes longer than to fill it.
+// From now on what is freed stays with the heap, up to some megabytes, for who asks next. The
+// system gives memory page by page, as each is first written to: of an array of a megabyte, asked
+// for anew with each drawn frame, that takes longer than to fill it.
 void keepFreeMemory();
 
 // Whole pages of the heap that nothing is in go back to the system, also from between what stays.
