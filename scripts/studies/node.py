@@ -51,7 +51,9 @@ def poses_of(tool, options):
     command = [program("pose_age", options.programs), options.seconds, options.rate, options.speed]
     for link in TOOLS[tool][0]:
         command += link
-    told = subprocess.run(list(map(str, command)), stdout=subprocess.PIPE, check=True, text=True).stdout
+    # Without a node, as where its launch failed, it would wait for ever.
+    told = subprocess.run(list(map(str, command)), stdout=subprocess.PIPE, check=True, text=True,
+                          timeout=options.seconds + 60.0).stdout
     return list(csv.DictReader(io.StringIO(told)))
 
 
