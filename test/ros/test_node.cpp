@@ -84,7 +84,7 @@ TEST_F(RunningNode, ContactsTellPatchAndNormal) {
   EXPECT_GT(contact.nodes.size(), 3U);
   EXPECT_NEAR(contact.normal.z, -1.0, 0.01);
   EXPECT_LT(contact.force.z, 0.0);  // of the tool on the tissue: down
-  EXPECT_GT(contact.depth, 0.0);    // looked for, though the wrench does not wait for it
+  EXPECT_GE(contact.depth, 0.0);    // no depth is none: straight above a node it lies all around
 }
 
 TEST_F(RunningNode, CutSeversSpringsAndResetBringsThemBackBitForBit) {

@@ -133,7 +133,7 @@ TEST_F(Shape, TouchesTellWhereAndHowHard) {
     EXPECT_NEAR(std::hypot(touch.point.x - 0.05, touch.point.y - 0.05,
                            touch.point.z - kTop - kRadius + depth_),
                 kRadius, 5e-4);
-    EXPECT_LT(std::abs(touch.depth), 1e-4);
+    EXPECT_LT(std::abs(touch.depth), 1.5e-4);  // the slack: 3 % of the spacing
     sum.x += touch.normal_force * normal.x + touch.friction_force.x;
     sum.z += touch.normal_force * normal.z + touch.friction_force.z;
   }
