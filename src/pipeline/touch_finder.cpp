@@ -88,11 +88,15 @@ void TouchFinder::curve(Contact& contact) const {
 // A triangle's deepest point is not where the curved surface over it is deepest: there it goes, by
 // steps along the depth's slope in the weights of the corners.
 // False: it stays.
-bool TouchFinder::deepen(const RobotPose& pose, Contact& contact) const {
+bool TouchFinder::deepen(const RobotPose& pose, const std::vector<Vec3>& vertices,
+                         Contact& contact) const {
   const double spacing = world_.tissue.lattice().spacing();
   const double share = smooth_[at(contact.link)];
   const bool is_off = contact.depth_m < -tuning::kDeepenedFrom * spacing;
   if (share == 0.0 || is_off || vertexAt(world_.tissue.surface(), contact.place) >= 0) return false;
+  const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.place.triangle)];
+  Eigen::Matrix3d flat;
+  for (int k = 0; k < 3; ++k) flat.col(k) = vertices[at(corners[at(k)])];
   struct Place {
     Vec3 weights, bulge, point, normal;
     double depth;
@@ -100,16 +104,13 @@ bool TouchFinder::deepen(const RobotPose& pose, Contact& contact) const {
   const std::size_t link = at(contact.link);
   const auto placeAt = [&](const Vec3& weights) -> std::optional<Place> {
     const SurfacePoint on{contact.place.triangle, weights};
-    const Vec3 bulge = share * curved_.bulgeAt(on), point = placeOf(on) + bulge;
+    const Vec3 bulge = share * curved_.bulgeAt(on), point = flat * weights + bulge;
     const auto out = world_.finder.wayOut(link, pose.links[link], point, spacing);
     if (!out || out->normal.isZero()) return std::nullopt;
     return Place{weights, bulge, point, out->normal, out->depth_m};
   };
   auto best = placeAt(contact.place.barycentric);
   if (!best) return false;
-  const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.place.triangle)];
-  Eigen::Matrix3d flat;
-  for (int k = 0; k < 3; ++k) flat.col(k) = vertices_[at(corners[at(k)])];
   double step = tuning::kFirstDeepening;
   Vec3 way = Vec3::Zero();
   bool is_new = true;
@@ -233,7 +234,7 @@ ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3
   smooth_.resize(pose.links.size(), 0.0);
   for (Contact& contact : contacts.contacts) {
     curve(contact);
-    if (contact.depth_m > 0.0) deepen(pose, contact);
+    if (contact.depth_m > 0.0) deepen(pose, vertices, contact);
   }
   return contacts;
 }
@@ -277,7 +278,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
     contact.wanders = wanders(pose, contact);
     if (contact.wanders) {
       contact.turn = curved_.hollowAt(contact.place);
-    } else if (!world_.finder.hasMesh(at(contact.link)) && deepen(pose, contact)) {
+    } else if (!world_.finder.hasMesh(at(contact.link)) && deepen(pose, vertices_, contact)) {
       depth = contact.depth_m;
       turn(pose, contact);
     }

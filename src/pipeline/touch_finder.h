@@ -71,7 +71,7 @@ class TouchFinder {
   ContactSet flatContacts(const RobotPose& pose, const std::vector<Vec3>& vertices,
                           double way = 0.0) const;
   void curve(Contact& contact) const;
-  bool deepen(const RobotPose& pose, Contact& contact) const;
+  bool deepen(const RobotPose& pose, const std::vector<Vec3>& vertices, Contact& contact) const;
   bool turnOut(const RobotPose& pose, Contact& contact) const;
   bool turnAside(const RobotPose& pose, Contact& contact) const;
   bool turn(const RobotPose& pose, Contact& contact) const;

@@ -165,11 +165,11 @@ class Tissue {
   // one solve at least, with one cycle of the method, but for a change of the topology, which may
   // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
   // solver.max_ms bounds each solve.
+  void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
+
   // Something comes near, but does not touch yet: the solver makes what its first solve needs,
   // where nothing was solved for since the tissue, or its cells, are as they are.
   void expectTouch();
-
-  void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
 
   // Equilibrium under what acts now, at rest.
   SolveReport settle();
