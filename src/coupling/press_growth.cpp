@@ -12,16 +12,21 @@ void PressGrowth::note(const std::vector<Pose>& links, std::vector<Press> presse
   presses_before_ = std::exchange(presses_, std::move(presses));
 }
 
-double PressGrowth::times(std::size_t link, const Pose& pose) const {
-  if (link >= links_before_.size() || link >= links_.size()) return 1.0;
-  const double before = presses_before_[link].force, now = presses_[link].force;
-  if (before <= 0.0 || now <= 0.0) return 1.0;
+double PressGrowth::shareOfLastWay(std::size_t link, const Pose& pose) const {
+  if (link >= links_before_.size() || link >= links_.size()) return 0.0;
+  if (presses_before_[link].force <= 0.0 || presses_[link].force <= 0.0) return 0.0;
   const Vec3& place = presses_[link].place;
   const Vec3 on_link = links_[link].inverse() * place;
   const Vec3 last_way = place - links_before_[link] * on_link;
   const Vec3 way = pose * on_link - place;
-  if (last_way.isZero(0.0)) return 1.0;
-  const double share = std::clamp(way.dot(last_way) / last_way.squaredNorm(), -1.0, 1.0);
+  if (last_way.isZero(0.0)) return 0.0;
+  return std::clamp(way.dot(last_way) / last_way.squaredNorm(), -1.0, 1.0);
+}
+
+double PressGrowth::times(std::size_t link, const Pose& pose) const {
+  const double share = shareOfLastWay(link, pose);
+  if (share == 0.0) return 1.0;
+  const double before = presses_before_[link].force, now = presses_[link].force;
   const double growth = share * (now - before) / now;
   return 1.0 + std::clamp(growth, -tuning::kMostGrowth, tuning::kMostGrowth);
 }

@@ -31,13 +31,14 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   }
   is_settled_ = false;
   for (ContactConstraint& touch : touches_) {
-    const Pose moved =
-        pose.links[at(touch.contact.link)] * since_links_[at(touch.contact.link)].inverse();
-    const double times = growth_.times(at(touch.contact.link), pose.links[at(touch.contact.link)]);
+    const std::size_t link = at(touch.contact.link);
+    const Pose moved = pose.links[link] * since_links_[link].inverse();
+    const double times = growth_.times(link, pose.links[link]);
     touch.spring.multiplier *= times;
     touch.spring.friction_bound *= times;
-    touch.tool_point = moved * touch.tool_point;
     touch.spring.normal = moved.linear() * touch.spring.normal;
+    const double drift = touch.drift.foresee(growth_.shareOfLastWay(link, pose.links[link]));
+    touch.tool_point = moved * touch.tool_point + drift * touch.spring.normal;
     touch.spring.turned_from = moved * touch.spring.turned_from;
     putPlane(touch);
     anchor(pose, touch);
@@ -125,6 +126,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   ContactSpring& spring = touch.spring;
   touch.found = contact.has_value();
   if (!contact) return spring.multiplier <= 0.0;
+  const double gap_before = gapOf(spring, tissue.state().displacement);
   spring.rest += contact->bulge - touch.contact.bulge;
   const Rim rim_before = touch.contact.rim;
   putContact(*contact, tissue.surface(), touch);
@@ -136,7 +138,17 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   }
   soften(tissue, touch);
   anchor(pose, touch);
+  touch.drift.meet(gap_before - gapOf(spring, tissue.state().displacement));
   return isAtRest(touch, tissue);
+}
+
+// Vertices are not off their surface, rims have a law of their own, touches that wander are
+// elsewhere each time, and so are all of a thin link; in time planes are not where they were found
+// (`entry`).
+bool SlidingContacts::driftsEvenly(const ContactConstraint& touch, const Tissue& tissue) const {
+  const double thick = tuning::kThickForDrift * tissue.lattice().spacing();
+  return touch.vertex < 0 && !touch.contact.wanders && touch.contact.rim.edges.empty() &&
+         thickness_[at(touch.contact.link)] >= thick && !tissue.hasTime();
 }
 
 // The depth or gap that counts as none (m): closing it at all of the tool's n touches would change
@@ -325,6 +337,11 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
     const ContactSpring& spring = touch.spring;
     const Eigen::Matrix3d link_R_tissue = pose.links[at(touch.contact.link)].linear().transpose();
     touch.since_normal = link_R_tissue * spring.normal;
+    if (driftsEvenly(touch, tissue)) {
+      touch.drift.learn();
+    } else {
+      touch.drift.forget();
+    }
     if (spring.multiplier <= 0.0) continue;
     const double force = normalForceOf(spring, *since_displacement_);
     const Vec3 drag = forceOf(spring, *since_displacement_) - force * spring.normal -

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "box_distance.h"
 #include "strides.h"
 #include "tuning.h"
 
@@ -47,12 +46,15 @@ bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
 RobotPose ToolMotion::walk(const RobotPose& pose) {
   RobotPose start = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
   world_.asked = pose;
+  const bool goes_back = turnsBack(start, pose);
+  last_goal_ = pose;
   const bool moves = world_.tissue.isMoving();
   if (!moves && letPass(start, pose)) {
     passTo(pose);
     return pose;
   }
-  if (!moves && !finishes(start, pose)) return start;
+  if (goes_back) forgetUnfinished();
+  if (!moves && !goes_back && !finishes(start, pose)) return start;
   if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
@@ -60,14 +62,30 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
   return walkFrom(start, pose);
 }
 
+// Whether the tools go back: what time ran out in on the way there they need not wait for.
+bool ToolMotion::turnsBack(const RobotPose& start, const RobotPose& pose) const {
+  if (last_goal_.links.size() != pose.links.size()) return false;
+  return ways_.stepsBetween(last_goal_, pose) >
+         std::max(ways_.stepsBetween(start, pose), ways_.stepsBetween(start, last_goal_));
+}
+
+void ToolMotion::forgetUnfinished() {
+  load_step_.forgetUnderWay();
+  world_.unfinished = false;
+  late_iterations_ = 0;
+}
+
 // Ends the last load step, if time ran out in it, before the next one begins: errors of steps that
 // were cut short would add up. Not one that leads away from the pose, as of tools that go back.
 // False: there is no time left for a next one.
 bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   const bool is_late = std::exchange(world_.unfinished, false);
-  if (load_step_.isUnderWay() &&
-      ways_.stepsBetween(load_step_.goesTo(), pose) > ways_.stepsBetween(start, pose)) {
-    load_step_.forgetUnderWay();
+  if (load_step_.isUnderWay()) {
+    const double left = ways_.stepsBetween(start, pose);
+    const bool leads_away = ways_.stepsBetween(load_step_.goesTo(), pose) > left;
+    const bool stays = ways_.stepsBetween(start, load_step_.goesTo()) == 0.0;
+    const bool holds_up = stays && left > 0.0 && late_iterations_ > tuning::kMostToFinish;
+    if (leads_away || holds_up) load_step_.forgetUnderWay();
   }
   const bool may_end = !is_late || late_iterations_ > tuning::kMostToFinish;
   if (!load_step_.isUnderWay() && may_end) {
@@ -208,55 +226,6 @@ void ToolMotion::comeAndGo(RobotPose& pose) {
   checkIn(from);
 }
 
-// Where no shape could follow, tools that have come out of the tissue by themselves let go.
-void ToolMotion::leaveStuck(RobotPose& pose) {
-  RobotPose from = *world_.last_pose;
-  bool any = false;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    const RobotPose moved = world_.tools.withTool(tool, pose, from);
-    if (ways_.stepsBetween(from, moved) == 0.0 || overlap_.isInTissue(tool, pose)) continue;
-    any = true;
-    from = moved;
-    letGoOf(tool);
-  }
-  if (!any) return;
-  world_.last_pose = from;
-  if (!load_step_.advance(from)) {
-    if (world_.tissue.patience().cutsOff()) return;  // all would meet the jam anew
-    startAnew(pose);
-  }
-  world_.last_pose = walk(pose);
-}
-
-// Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
-// away from where the tissue is at rest, and deeper in its surface than throughAt.
-bool ToolMotion::isHooked(std::size_t tool) const {
-  if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
-  std::vector<std::size_t> links;
-  for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    if (world_.isInWound(link)) return false;
-    const Box box = world_.finder.bounds(link, world_.last_pose->links[link]);
-    if (distance(box, world_.tissue.lattice().bounds()) < world_.tissue.lattice().spacing()) {
-      return false;
-    }
-    links.push_back(link);
-  }
-  const std::vector<double> depths = world_.finder.penetrations(
-      links, *world_.last_pose, world_.tissue.surface(), world_.tissue.vertices());
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (depths[i] > load_step_.throughAt(links[i])) return true;
-  }
-  return false;
-}
-
-void ToolMotion::letGoOf(std::size_t tool) {
-  world_.dead_end.reset();
-  load_step_.forgetUnderWay();
-  world_.sticking.letGo(static_cast<int>(tool));
-  world_.sliding.clear(static_cast<int>(tool));
-  grasping_.forgetJaws(tool);
-}
-
 bool ToolMotion::standsStill(const RobotPose& pose) const {
   if (!world_.last_pose) return false;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -271,77 +240,6 @@ std::vector<std::size_t> ToolMotion::toolsBehind() const {
     if (!ways_.isAt(tool, world_.pose, world_.asked)) behind.push_back(tool);
   }
   return behind;
-}
-
-// A tool that drags tissue out with it that stands through it, as where it went beneath fixed
-// nodes, lets go.
-void ToolMotion::unhook(RobotPose& pose) {
-  std::vector<std::size_t> hooked;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (!isHooked(tool)) continue;
-    hooked.push_back(tool);
-    addOnce(tool, world_.report.were_inside);
-  }
-  if (!hooked.empty()) comeAnew(hooked, pose);
-}
-
-// Tissue that hangs on what a grasper holds goes through its jaws: where no shape follows it out of
-// them when they are told to let go, it comes back without them.
-void ToolMotion::leaveReleased(RobotPose& pose) {
-  std::vector<std::size_t> released;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (grasping_.jaws()[tool].let_go) released.push_back(tool);
-  }
-  if (released.empty()) return;
-  world_.report.lost = false;
-  comeAnew(released, pose);
-}
-
-// Tools that no shape follows again and again are on ways that lead through what has no room, as
-// one that was thrown to the other side of the tissue. What a tool holds, and blades in their
-// wounds, stay; so do all where work is bounded for a scene, of which this takes a good part.
-void ToolMotion::leaveJam(RobotPose& pose) {
-  lost_in_a_row_ = world_.report.lost ? lost_in_a_row_ + 1 : 0;
-  if (lost_in_a_row_ < tuning::kMostLostInARow) return;
-  if (world_.tools.anyRigid() || world_.tissue.patience().isForScene()) return;
-  lost_in_a_row_ = 0;
-  std::vector<std::size_t> jammed;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (ways_.isAt(tool, *world_.last_pose, pose) || isAttached(tool)) continue;
-    jammed.push_back(tool);
-    addOnce(tool, world_.report.were_inside);
-  }
-  if (jammed.empty()) return;
-  world_.report.lost = false;
-  comeAnew(jammed, pose);
-}
-
-// Whether it holds tissue, or is in a wound of its own.
-bool ToolMotion::isAttached(std::size_t tool) const {
-  if (world_.sticking.holds(static_cast<int>(tool))) return true;
-  for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    if (world_.isInWound(link)) return true;
-  }
-  return false;
-}
-
-// The tissue comes back without these tools, and what they still meet they meet from outside.
-void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose) {
-  RobotPose without = *world_.last_pose;
-  for (const std::size_t tool : tools) {
-    without = world_.tools.withTool(tool, world_.tools.complete({}), without);
-    letGoOf(tool);
-  }
-  world_.last_pose = without;
-  if (load_step_.advance(without)) {
-    comeAndGo(pose);
-  } else if (world_.tissue.patience().cutsOff()) {
-    world_.report.lost = true;
-    return;  // as in leaveStuck
-  } else {
-    startAnew(pose);
-  }
-  world_.last_pose = walk(pose);
 }
 
 // Looking for the way out of the tissue takes time: a tool that there is none for stays away in the

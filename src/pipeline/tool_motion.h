@@ -44,6 +44,8 @@ class ToolMotion {
   enum class Others { kNone, kCame };  // of the tools, in this step
 
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
+  bool turnsBack(const RobotPose& start, const RobotPose& pose) const;
+  void forgetUnfinished();
   bool finishes(RobotPose& start, const RobotPose& pose);
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
@@ -63,6 +65,7 @@ class ToolMotion {
   Grasping& grasping_;
   LoadStepper& load_step_;
   std::vector<Checkpoint> checkpoints_;
+  RobotPose last_goal_;        // of the last walk
   int lost_in_a_row_ = 0;      // updates that no shape followed
   int late_iterations_ = 0;    // of a load step that is being finished
   bool begins_short_ = false;  // no shape followed the last load step, and time was over

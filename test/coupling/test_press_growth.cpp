@@ -47,5 +47,14 @@ TEST(PressGrowth, AFarWayOrAFirstTouchIsBounded) {
   EXPECT_LE(first.times(0, atX(0.001)), 1.5);
 }
 
+TEST(PressGrowth, TellsWhichShareOfItsLastWayTheLinkGoes) {
+  const PressGrowth growth = grownByAFifth();
+  EXPECT_NEAR(growth.shareOfLastWay(0, atX(0.0004)), 0.4, 1e-12);
+  EXPECT_NEAR(growth.shareOfLastWay(0, atX(-0.0004)), -0.4, 1e-12);
+  EXPECT_EQ(growth.shareOfLastWay(0, atX(1.0)), 1.0);
+  EXPECT_EQ(growth.shareOfLastWay(0, Pose(Eigen::Translation3d(0.0, 0.001, 0.0))), 0.0);
+  EXPECT_EQ(PressGrowth().shareOfLastWay(0, atX(0.001)), 0.0);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_press_growth

@@ -25,6 +25,9 @@ class PressGrowth {
   // What the link presses with, once it has gone to that pose, over what it pressed with at the end
   // of the last load step.
   double times(std::size_t link, const Pose& pose) const;
+  // How far the link goes on along its last way, to that pose, over how far it went (1), within 1
+  // to either side; zero where it pressed nothing.
+  double shareOfLastWay(std::size_t link, const Pose& pose) const;
 
  private:
   std::vector<Pose> links_, links_before_;

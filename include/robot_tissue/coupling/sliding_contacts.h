@@ -31,6 +31,7 @@
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/tissue.h"
 #include "robot_tissue/core/triangle_point.h"
+#include "robot_tissue/coupling/plane_drift.h"
 #include "robot_tissue/coupling/press_growth.h"
 
 namespace robot_tissue {
@@ -61,6 +62,7 @@ class SlidingContacts {
     Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
     Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
+    PlaneDrift drift;                    // of its plane
     double stiffening = 1.0;             // of the tissue, in the time step under way
     double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
     bool found = false;                  // in the last update
@@ -142,6 +144,7 @@ class SlidingContacts {
            ContactConstraint& touch);
   bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
              ContactConstraint& touch);
+  bool driftsEvenly(const ContactConstraint& touch, const Tissue& tissue) const;
   bool isAtRest(const ContactConstraint& touch, const Tissue& tissue) const;
   bool wander(const ContactSet& found, const Tracked& tracked, const RobotPose& pose,
               const Tissue& tissue, const Held& held);
