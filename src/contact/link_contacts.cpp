@@ -139,12 +139,8 @@ std::vector<TriangleMinimum> LinkContacts::minimaInMesh(std::size_t shape,
   std::vector<TriangleMinimum> minima;
   const Seen& corner = seen(shape, triangle[0]);
   if (!near_faces_.empty() || (corner.is_near && corner.distance.value <= 0.0)) {
-    double center_bound = kInfinity;
-    if (corner.is_near) {
-      const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
-      center_bound = boundAfter(corner.distance.value, (center - corners[0]).norm());
-    }
-    minima = meshMinima(seeds_, asked, corners, near_faces_, accuracy, margin_, center_bound);
+    const auto at_first = corner.is_near ? std::optional(corner.distance.value) : std::nullopt;
+    minima = meshMinima(seeds_, asked, corners, near_faces_, accuracy, margin_, at_first);
   }
   if (known != nullptr) known->note(triangle_, corners, margin_, minima);
   return minima;

@@ -75,7 +75,8 @@ void keepApart(const TriangleMinimum& found, const Corners& corners,
 
 std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
                                         const Corners& corners, const std::vector<int>& faces,
-                                        double accuracy, double limit, double center_bound) {
+                                        double accuracy, double limit,
+                                        std::optional<double> at_first_corner) {
   std::vector<TriangleMinimum> minima;
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   if (!(area.norm() > 0.0)) return minima;
@@ -84,9 +85,11 @@ std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& 
   const Vec3 center = (corners[0] + corners[1] + corners[2]) / 3.0;
   double widest = 0.0;
   for (const Vec3& corner : corners) widest = std::max(widest, (corner - center).norm());
-  const auto of_center = center_bound < kInfinity
-                             ? std::optional(shape.distanceWithin(center, center_bound))
-                             : shape.distanceNear(center, limit + widest);
+  const double way = (center - corners[0]).norm();
+  const auto of_center =
+      at_first_corner
+          ? std::optional(shape.distanceWithin(center, boundAfter(*at_first_corner, way)))
+          : shape.distanceNear(center, limit + widest);
   if (!of_center || of_center->value > limit + widest) return minima;
   const double at_center = of_center->value;
 

@@ -2,6 +2,7 @@
 // that comes through the triangle or near it (own).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "collision_shape.h"
@@ -12,11 +13,11 @@ namespace robot_tissue {
 
 // Local least distances below `limit` (m), the least first; corners in the frame of the shape,
 // which is a mesh. In: the mesh's faces that are nearer than the limit and the padding, ascending;
-// a bound of the center's distance (m).
+// the distance of the first corner (m), where it is known.
 std::vector<TriangleMinimum> meshMinima(MeshSeeds& seeds, const CollisionShape& shape,
                                         const Corners& corners, const std::vector<int>& faces,
                                         double accuracy, double limit,
-                                        double center_bound = kInfinity);
+                                        std::optional<double> at_first_corner = std::nullopt);
 
 // Adds a place to those that were found on a triangle: of places that are one contact the deepest
 // stays.

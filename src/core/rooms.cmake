@@ -1,7 +1,8 @@
 # The rooms of core, from the lowest up, and what each may use: those before it. The test
 # Layering and doc/architecture.md have the same table.
 robot_tissue_room(base
-  PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h robot_pose.h types.h)
+  PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
+    types.h)
 robot_tissue_room(simd
   USES base
   FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h

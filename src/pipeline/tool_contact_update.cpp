@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "robot_tissue/core/part_of_way.h"
 #include "stopwatch.h"
 #include "tuning.h"
 
@@ -93,15 +94,13 @@ bool ToolContactUpdate::hasTimeForContactsOnly() const {
   return world_.deadline.leftMs() < contacts_ms_;
 }
 
-// depthsIn of the shape at that share of the way from `start`, found as Tissue goes back to it:
-// where it stays there, what was found is found.
+// depthsIn of the shape at that share of the way from `start`: where Tissue goes back to it, what
+// was found is found.
 std::vector<double> ToolContactUpdate::depthsAt(double share,
                                                 const std::vector<Vec3>& start) const {
   if (share == 1.0) return depthsIn(now_);
   std::vector<Vec3> there = world_.tissue.state().displacement;
-  for (std::size_t node = 0; node < there.size(); ++node) {
-    there[node] = start[node] + share * (there[node] - start[node]);
-  }
+  takeBack(start, share, there);
   std::vector<Vec3> vertices;
   deform(world_.tissue.surface(), there, vertices);
   return depthsIn(vertices);

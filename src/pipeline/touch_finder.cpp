@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "deepest_place.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "stopwatch.h"
 #include "tuning.h"
@@ -85,58 +86,21 @@ void TouchFinder::curve(Contact& contact) const {
   contact.depth_m -= contact.bulge.dot(contact.normal);
 }
 
-// A triangle's deepest point is not where the curved surface over it is deepest: there it goes, by
-// steps along the depth's slope in the weights of the corners.
+// A triangle's deepest point is not where the curved surface over it is deepest: there it goes.
 // False: it stays.
 bool TouchFinder::deepen(const RobotPose& pose, const std::vector<Vec3>& vertices,
                          Contact& contact) const {
-  const double spacing = world_.tissue.lattice().spacing();
   const double share = smooth_[at(contact.link)];
-  const bool is_off = contact.depth_m < -tuning::kDeepenedFrom * spacing;
+  const bool is_off = contact.depth_m < -tuning::kDeepenedFrom * world_.tissue.lattice().spacing();
   if (share == 0.0 || is_off || vertexAt(world_.tissue.surface(), contact.place) >= 0) return false;
-  const MeshTriangle& corners = world_.tissue.surface().triangles[at(contact.place.triangle)];
-  Eigen::Matrix3d flat;
-  for (int k = 0; k < 3; ++k) flat.col(k) = vertices[at(corners[at(k)])];
-  struct Place {
-    Vec3 weights, bulge, point, normal;
-    double depth;
-  };
-  const std::size_t link = at(contact.link);
-  const auto placeAt = [&](const Vec3& weights) -> std::optional<Place> {
-    const SurfacePoint on{contact.place.triangle, weights};
-    const Vec3 bulge = share * curved_.bulgeAt(on), point = flat * weights + bulge;
-    const auto out = world_.finder.wayOut(link, pose.links[link], point, spacing);
-    if (!out || out->normal.isZero()) return std::nullopt;
-    return Place{weights, bulge, point, out->normal, out->depth_m};
-  };
-  auto best = placeAt(contact.place.barycentric);
-  if (!best) return false;
-  double step = tuning::kFirstDeepening;
-  Vec3 way = Vec3::Zero();
-  bool is_new = true;
-  for (int look = 0; look < tuning::kDeepenings && step > tuning::kLastDeepening; ++look) {
-    if (is_new) {
-      const SurfacePoint on{contact.place.triangle, best->weights};
-      way = -(flat + share * curved_.bulgeSlopesAt(on)).transpose() * best->normal;
-      way.array() -= way.mean();
-    }
-    const double longest = way.cwiseAbs().maxCoeff();
-    if (!(step * longest > tuning::kLeastDeepening * spacing)) break;
-    Vec3 weights = (best->weights + step / longest * way).cwiseMax(0.0);
-    weights /= weights.sum();
-    const auto there = placeAt(weights);
-    is_new = there && there->depth > best->depth;
-    if (is_new) {
-      best = there;
-    } else {
-      step *= 0.4;
-    }
-  }
-  contact.place.barycentric = best->weights;
-  contact.bulge = best->bulge;
-  contact.point = best->point;
-  contact.normal = best->normal;
-  contact.depth_m = best->depth;
+  const DeepestPlace deepest(world_, curved_, share, pose, vertices, contact);
+  const auto place = deepest.from(contact.place.barycentric);
+  if (!place) return false;
+  contact.place.barycentric = place->weights;
+  contact.bulge = place->bulge;
+  contact.point = place->point;
+  contact.normal = place->normal;
+  contact.depth_m = place->depth;
   return true;
 }
 

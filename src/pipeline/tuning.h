@@ -121,10 +121,12 @@ constexpr double kInsideTriangle = 1e-3;
 
 // Where a triangle's curved surface is deepest: looked for where it is no farther off the link than
 // so much of the spacing (1), by steps in the weights of its corners (1) from the first to the last
-// of these, as long as the slope promises so much of the spacing (1), at most so often. Chosen.
+// of these, each so much (1) of the one before that led nowhere deeper, as long as the slope
+// promises so much of the spacing (1), at most so often. Chosen.
 constexpr double kDeepenedFrom = 0.1;
 constexpr double kFirstDeepening = 0.2;
 constexpr double kLastDeepening = 0.02;
+constexpr double kShorterDeepening = 0.4;
 constexpr double kLeastDeepening = 0.001;
 constexpr int kDeepenings = 10;
 

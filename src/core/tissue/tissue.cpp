@@ -11,6 +11,7 @@
 #include "membrane/membrane_plan.h"
 #include "robot_tissue/core/body_load.h"
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/part_of_way.h"
 #include "surface/mesh_surface.h"
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
@@ -297,9 +298,7 @@ bool Tissue::goBack(const std::vector<Vec3>& before) {
   const double share = contact_update_->shareOfWay(before);
   if (share >= 1.0) return false;
   kept_.reset();
-  for (std::size_t node = 0; node < before.size(); ++node) {
-    state_.displacement[node] = before[node] + share * (state_.displacement[node] - before[node]);
-  }
+  takeBack(before, share, state_.displacement);
   deformSurface();
   return true;
 }

@@ -1,0 +1,69 @@
+// Pipeline: what tools are told, to grasp, to let go and to push by a force.
+#include <optional>
+#include <string>
+
+#include "pipeline_parts.h"
+#include "robot_tissue/pipeline/pipeline.h"
+#include "tool_reports.h"
+
+namespace robot_tissue {
+
+void Pipeline::grasp(std::size_t tool) {
+  const std::string name = "tool '" + world_.tools.nameOf(tool) + "'";
+  if (!world_.tools[tool].role.holds) {
+    throw InputError(name + ": its role is " + world_.tools[tool].role.name +
+                     "; allowed: a tool with the role " + toolRolesWith(&ToolRole::holds));
+  }
+  if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
+  if (!parts_->grasping.grasp(tool)) {
+    describeTools();
+    const std::string& why = world_.report.tools[tool].holds_nothing;
+    throw InputError(name + ": holds nothing: " +
+                     (why.empty() ? "its jaws stand nowhere or have no shapes" : why) +
+                     "; allowed: jaws around tissue");
+  }
+  touched_ = true;
+}
+
+void Pipeline::letGo(std::size_t tool) {
+  if (parts_->grasping.letGo(tool)) touched_ = true;
+}
+
+void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
+  if (force && !(force->norm() > 0.0 && force->allFinite())) {
+    throw InputError("tool '" + world_.tools.nameOf(tool) +
+                     "': the force is zero or not finite; allowed: a force");
+  }
+  const ToolRole& role = world_.tools[tool].role;
+  if (force && !role.touches()) {
+    throw InputError("tool '" + world_.tools.nameOf(tool) + "': role " + role.name + " only " +
+                     role.deed() + "; allowed: a tool that pushes");
+  }
+  parts_->drive.push(tool, force);
+  touched_ = true;
+}
+
+// True: a driven tool has a way left to go.
+bool Pipeline::drive(const RobotPose& pose) {
+  bool goes_on = false;
+  const StepReport& report = world_.report;
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!parts_->drive.drives(tool)) continue;
+    if (parts_->drive.waits(tool, isLate())) {
+      goes_on = true;
+      continue;
+    }
+    const auto walk = [&] {
+      world_.last_pose =
+          parts_->motion.walk(parts_->drive.driven(world_.tools.complete(pose), world_.tools));
+      return !report.too_fast && !report.lost && !world_.deadline.isOver();
+    };
+    const bool on = parts_->drive.meetForce(
+        tool, {parts_->ways.stepOf(world_.tools.firstLink(tool)),
+               [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
+    goes_on = goes_on || on;
+  }
+  return goes_on;
+}
+
+}  // namespace robot_tissue
