@@ -141,7 +141,7 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
   } else if (!new_surface) {
-    touch_finder_.wanderHalfWay(world_.pose, contacts);
+    touch_finder_.wanderPartOfWay(world_.pose, contacts);
     const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose, contacts),
                                                contacts, world_.pose, world_.tissue, held, shape);
     if (world_.tissue.goesThroughTime()) return false;

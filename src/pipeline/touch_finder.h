@@ -32,8 +32,9 @@ class TouchFinder {
   // Likewise, of those that wander alone; none of the others.
   std::vector<std::optional<Contact>> trackWandering(const RobotPose& pose,
                                                      const ContactSet& found) const;
-  // Takes those of them that wander back, half of the way to the touches that were there before.
-  void wanderHalfWay(const RobotPose& pose, ContactSet& found) const;
+  // Takes those of them that wander back, to a part of the way from the touches that were there
+  // before.
+  void wanderPartOfWay(const RobotPose& pose, ContactSet& found) const;
   // How deep each of these links is in the surface that it touches (m), as
   // ContactFinder::penetrations.
   std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose);
@@ -61,7 +62,8 @@ class TouchFinder {
                                  const SlidingContacts::ContactConstraint& touch) const;
   bool wanderTo(const SurfacePoint& place, const RobotPose& pose, Contact& contact) const;
   std::vector<std::pair<std::size_t, SurfacePoint>> placesBefore(const ContactSet& found) const;
-  std::optional<SurfacePoint> halfWay(const SurfacePoint& from, const SurfacePoint& to) const;
+  std::optional<SurfacePoint> between(const SurfacePoint& from, const SurfacePoint& to,
+                                      double share) const;
   Vec3 placeOf(const SurfacePoint& point) const;
   Corners cornersOf(int triangle) const;
   bool areBeside(int one, int other) const;

@@ -117,14 +117,16 @@ Corners TouchFinder::cornersOf(int triangle) const {
 }
 
 // Where a touch wanders to hangs on the shape, and the shape on where it is: going all of the way
-// in each round, both would go to and fro for ever.
-void TouchFinder::wanderHalfWay(const RobotPose& pose, ContactSet& found) const {
+// in each round, both would go to and fro for ever. Where it is deep it has farther to go.
+void TouchFinder::wanderPartOfWay(const RobotPose& pose, ContactSet& found) const {
+  const double deep = tuning::kDeepToWander * world_.tissue.lattice().spacing();
   for (const auto& [number, from] : placesBefore(found)) {
     Contact& contact = found.contacts[number];
-    const auto middle = halfWay(from, contact.place);
-    if (!middle) continue;
-    Contact half_way = contact;
-    if (wanderTo(*middle, pose, half_way)) contact = half_way;
+    const double share = contact.depth_m > deep ? tuning::kWanderWhereDeep : tuning::kWander;
+    const auto place = between(from, contact.place, share);
+    if (!place) continue;
+    Contact there = contact;
+    if (wanderTo(*place, pose, there)) contact = there;
   }
 }
 
@@ -160,16 +162,16 @@ std::vector<std::pair<std::size_t, SurfacePoint>> TouchFinder::placesBefore(
   return places;
 }
 
-// The surface's point half way between two on triangles that are one, or beside each other. None
-// where that is a vertex.
-std::optional<SurfacePoint> TouchFinder::halfWay(const SurfacePoint& from,
-                                                 const SurfacePoint& to) const {
-  const Vec3 middle = 0.5 * (placeOf(from) + placeOf(to));
+// The surface's point at that share of the way between two on triangles that are one, or beside
+// each other. None where that is a vertex.
+std::optional<SurfacePoint> TouchFinder::between(const SurfacePoint& from, const SurfacePoint& to,
+                                                 double share) const {
+  const Vec3 there = (1.0 - share) * placeOf(from) + share * placeOf(to);
   SurfacePoint nearest;
   double nearest_off = std::numeric_limits<double>::infinity();
   for (const int triangle : {from.triangle, to.triangle}) {
-    const SurfacePoint point = {triangle, nearestInTriangle(middle, cornersOf(triangle))};
-    const double off = (placeOf(point) - middle).norm();
+    const SurfacePoint point = {triangle, nearestInTriangle(there, cornersOf(triangle))};
+    const double off = (placeOf(point) - there).norm();
     if (off >= nearest_off) continue;
     nearest_off = off;
     nearest = point;

@@ -184,7 +184,7 @@ TEST(JammedTool, ComesInAnewWhereItIsLostAgainAndAgain) {
   const ToolShape box = boxOf(Vec3(0.02, 0.025, 0.015));
   Pipeline pipeline(block("elastic", 0.01), {}, {withFriction(0.3, toolOf(box))});
   walk(pipeline, {{kMiddle, kMiddle, kTop + 0.01}}, {{kMiddle, kMiddle, kTop}}, 0.004);
-  RobotPose pose = at({Vec3(0.054, 0.067, 0.0041)});
+  RobotPose pose = at({Vec3(0.045, 0.067, 0.001)});
   pose.links[0].rotate(Eigen::AngleAxisd(1.935, Vec3(0.583, -0.791, -0.185).normalized()));
   EXPECT_TRUE(pipeline.step(pose).lost);
   const auto follows = [&] {
