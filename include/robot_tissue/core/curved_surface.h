@@ -3,8 +3,11 @@
 // rest is. It is what is drawn, and what tools touch (own).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
+#include "robot_tissue/core/sparse_values.h"
 #include "robot_tissue/core/surface.h"
 
 namespace robot_tissue {
@@ -42,28 +45,35 @@ class CurvedSurface {
   Vec3 doubleAreaAt(int vertex) const;
 
  private:
-  // A normal, and the shape that it is of; found where it is asked for.
-  struct Normal {
-    Vec3 normal = Vec3::Zero();
-    std::uint64_t shape = 0;  // 0: of none
+  // What was asked for of a triangle.
+  struct OfTriangle {
+    Vec3 rest_normal = Vec3::Zero();     // unit
+    Vec3 corner_weights = Vec3::Zero();  // at rest
+    Vec3 normal = Vec3::Zero();          // unit
+    std::uint64_t shape = 0;             // that the normal is of; 0: of none
+  };
+  struct OfCorners {
+    std::array<Vec3, 3> normals;  // unit
+    std::array<bool, 3> are_found{};
   };
 
   void takeSurface(const TissueSurface& surface);
-  const Vec3& triangleNormal(std::size_t triangle) const;
-  const Vec3& cornerNormal(int triangle, std::size_t corner) const;
+  OfTriangle& ofTriangle(int triangle) const;
+  const Vec3& triangleNormal(int triangle, OfTriangle& known) const;
+  Vec3 cornerNormal(int triangle, std::size_t corner) const;
   double riseOf(int triangle, int corner, int other) const;
   Vec3 findCornerNormal(int triangle, std::size_t corner) const;
 
-  std::uint64_t revision_ = 0;                // of the surface; 0: none yet
-  std::vector<MeshTriangle> corners_;         // per triangle
-  std::vector<int> triangles_;                // of each vertex, ascending
-  std::vector<std::size_t> first_;            // per vertex, in triangles_, and their end
-  std::vector<Vec3> rest_normals_;            // per triangle, unit
-  std::vector<Vec3> corner_weights_;          // likewise, of its corners
-  std::vector<Vec3> vertices_;                // m
-  std::uint64_t shape_ = 0;                   // counts surfaces, and their vertices
-  mutable std::vector<Normal> of_triangles_;  // unit
-  mutable std::vector<Normal> of_corners_;    // three a triangle, unit
+  std::uint64_t revision_ = 0;         // of the surface; 0: none yet
+  std::vector<MeshTriangle> corners_;  // per triangle
+  std::vector<int> triangles_;         // of each vertex, ascending
+  std::vector<int> first_;             // per vertex, in triangles_, and their end
+  std::vector<Vec3> rest_;             // per vertex (m)
+  std::vector<Vec3> vertices_;         // m
+  std::uint64_t shape_ = 0;            // counts surfaces, and their vertices
+  // Tools touch few triangles: of those alone.
+  mutable SparseValues<OfTriangle> of_triangles_;
+  mutable SparseValues<OfCorners> of_corners_;  // of this shape
 };
 
 }  // namespace robot_tissue

@@ -29,11 +29,13 @@ void CurvedSurface::take(const TissueSurface& surface, const std::vector<Vec3>& 
   if (is_known && areSame(vertices, vertices_)) return;
   vertices_ = vertices;
   ++shape_;
+  of_corners_.clearFor(corners_.size());
 }
 
 void CurvedSurface::takeSurface(const TissueSurface& surface) {
   revision_ = surface.revision;
   corners_ = surface.triangles;
+  rest_ = surface.rest;
   first_.assign(surface.rest.size() + 1, 0);
   for (const MeshTriangle& corners : surface.triangles) {
     for (const int corner : corners) ++first_[at(corner) + 1];
@@ -41,52 +43,62 @@ void CurvedSurface::takeSurface(const TissueSurface& surface) {
   for (std::size_t vertex = 1; vertex < first_.size(); ++vertex) {
     first_[vertex] += first_[vertex - 1];
   }
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  triangles_.resize(first_.back());
-  rest_normals_.resize(surface.triangles.size());
-  corner_weights_.resize(surface.triangles.size());
-  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
-    const MeshTriangle& corners = surface.triangles[triangle];
-    rest_normals_[triangle] = doubleArea(surface.rest, corners).stableNormalized();
-    corner_weights_[triangle] = cornerWeights(surface.rest, corners);
-    for (const int corner : corners) triangles_[next[at(corner)]++] = static_cast<int>(triangle);
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  triangles_.resize(at(first_.back()));
+  for (std::size_t triangle = 0; triangle < corners_.size(); ++triangle) {
+    for (const int corner : corners_[triangle]) {
+      triangles_[at(next[at(corner)]++)] = static_cast<int>(triangle);
+    }
   }
-  of_triangles_.assign(corners_.size(), {});
-  of_corners_.assign(3 * corners_.size(), {});
+  of_triangles_.clearFor(corners_.size());
 }
 
 Vec3 CurvedSurface::doubleAreaAt(int vertex) const {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    sum += doubleArea(vertices_, corners_[at(triangles_[i])]);
+  for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
+    sum += doubleArea(vertices_, corners_[at(triangles_[at(i)])]);
   }
   return sum;
 }
 
-const Vec3& CurvedSurface::triangleNormal(std::size_t triangle) const {
-  Normal& known = of_triangles_[triangle];
+CurvedSurface::OfTriangle& CurvedSurface::ofTriangle(int triangle) const {
+  if (OfTriangle* known = of_triangles_.find(triangle)) return *known;
+  OfTriangle& known = of_triangles_.add(triangle);
+  const MeshTriangle& corners = corners_[at(triangle)];
+  known.rest_normal = doubleArea(rest_, corners).stableNormalized();
+  known.corner_weights = cornerWeights(rest_, corners);
+  return known;
+}
+
+const Vec3& CurvedSurface::triangleNormal(int triangle, OfTriangle& known) const {
   if (known.shape == shape_) return known.normal;
-  known = {doubleArea(vertices_, corners_[triangle]).stableNormalized(), shape_};
+  known.normal = doubleArea(vertices_, corners_[at(triangle)]).stableNormalized();
+  known.shape = shape_;
   return known.normal;
 }
 
-const Vec3& CurvedSurface::cornerNormal(int triangle, std::size_t corner) const {
-  Normal& known = of_corners_[3 * at(triangle) + corner];
-  if (known.shape != shape_) known = {findCornerNormal(triangle, corner), shape_};
-  return known.normal;
+Vec3 CurvedSurface::cornerNormal(int triangle, std::size_t corner) const {
+  OfCorners* known = of_corners_.find(triangle);
+  if (known == nullptr) known = &of_corners_.add(triangle);
+  if (!known->are_found[corner]) {
+    known->normals[corner] = findCornerNormal(triangle, corner);
+    known->are_found[corner] = true;
+  }
+  return known->normals[corner];
 }
 
 // Of the triangles around the corner that no sharp edge parts from its own.
 Vec3 CurvedSurface::findCornerNormal(int triangle, std::size_t corner) const {
   const int vertex = corners_[at(triangle)][corner];
-  const Vec3& own = rest_normals_[at(triangle)];
+  const Vec3 own = ofTriangle(triangle).rest_normal;
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    const auto other = at(triangles_[i]);
-    if (own.dot(rest_normals_[other]) < kSharpFold) continue;
-    const MeshTriangle& corners = corners_[other];
+  for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
+    const int other = triangles_[at(i)];
+    OfTriangle& of_other = ofTriangle(other);
+    if (own.dot(of_other.rest_normal) < kSharpFold) continue;
+    const MeshTriangle& corners = corners_[at(other)];
     const auto k = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-    sum += corner_weights_[other][k] * triangleNormal(other);
+    sum += of_other.corner_weights[k] * triangleNormal(other, of_other);
   }
   return sum.stableNormalized();
 }
