@@ -32,12 +32,15 @@ void LinkContacts::find(const Asked& asked, const TissueSurface& surface,
   tool_ = asked.tool_index;
   link_index_ = asked.link_index;
   box_ = grownBy(margin_, boundsOf(asked.link));
-  ++search_;
-  vertex_asked_in_.resize(vertices.size());
-  seen_.resize(std::max(seen_.size(), link_->size()));
-  for (std::size_t i = 0; i < link_->size(); ++i) seen_[i].resize(vertices.size());
+  forgetVertices();
   edge_places_.clear();
   for (const int triangle : asked.triangles) askTriangle(triangle, found);
+}
+
+void LinkContacts::forgetVertices() {
+  asked_.clearFor(vertices_->size());
+  seen_.resize(std::max(seen_.size(), link_->size()));
+  for (SparseValues<Seen>& of_shape : seen_) of_shape.clearFor(vertices_->size());
 }
 
 void LinkContacts::askTriangle(int triangle, ContactSet& found) {
@@ -51,7 +54,8 @@ void LinkContacts::askTriangle(int triangle, ContactSet& found) {
   }
   for (int k = 0; k < 3; ++k) {
     const int vertex = corners[at(k)];
-    if (std::exchange(vertex_asked_in_[at(vertex)], search_) == search_) continue;
+    if (asked_.find(vertex) != nullptr) continue;
+    asked_.add(vertex) = true;
     if (box_.contains((*vertices_)[at(vertex)])) askVertex(vertex, Vec3::Unit(k), found);
   }
   if ((box.max() - box.min()).isZero(0.0)) return;
@@ -68,10 +72,9 @@ Corners LinkContacts::cornersOf(const MeshTriangle& triangle) const {
 }
 
 const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
-  Seen& seen = seen_[shape][at(vertex)];
-  if (seen.search == search_) return seen;
+  if (const Seen* known = seen_[shape].find(vertex)) return *known;
+  Seen& seen = seen_[shape].add(vertex);
   const PlacedShape& placed = (*link_)[shape];
-  seen.search = search_;
   seen.point = placed.shape_T_tissue * (*vertices_)[at(vertex)];
   if (placed.shape->isMesh()) {
     const auto found = placed.shape->distanceNear(seen.point, margin_);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "mesh_seeds.h"
 #include "placed_link.h"
 #include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/sparse_values.h"
 #include "robot_tissue/core/surface.h"
 #include "surface_traversal.h"
 #include "triangle_minimum.h"
@@ -33,18 +33,19 @@ class LinkContacts {
             ContactSet& found);
 
  private:
-  // A vertex in a shape's frame and its distance, asked for once a search.
+  // A vertex in a shape's frame and its distance, asked for once a search; they are of few
+  // vertices.
   struct Seen {
-    std::uint64_t search = 0;  // number of the search that asked; 0: none
-    bool is_near = false;      // of a mesh: not farther than the margin; else always
+    bool is_near = false;  // of a mesh: not farther than the margin; else always
     Vec3 point = Vec3::Zero();
     SignedDistance distance;
   };
 
+  void forgetVertices();
   void askTriangle(int triangle, ContactSet& found);
   void askVertex(int vertex, const Vec3& weights, ContactSet& found);
   void askShape(std::size_t shape, const MeshTriangle& triangle, ContactSet& found);
-  const Seen& seen(std::size_t shape, int vertex);
+  const Seen& seen(std::size_t shape, int vertex);        // until the next call
   Corners cornersOf(const MeshTriangle& triangle) const;  // tissue frame (m)
   std::vector<TriangleMinimum> minimaOf(std::size_t shape, const MeshTriangle& triangle);
   std::vector<TriangleMinimum> minimaInMesh(std::size_t shape, const MeshTriangle& triangle,
@@ -63,12 +64,10 @@ class LinkContacts {
   int tool_ = 0;
   int link_index_ = 0;
   int triangle_ = 0;
-  std::uint64_t search_ = 0;  // number of the present one
 
-  Box box_;  // around the link and the margin (m)
-  std::vector<std::uint64_t>
-      vertex_asked_in_;                  // per vertex: the search in which its contact was told
-  std::vector<std::vector<Seen>> seen_;  // per shape and vertex
+  Box box_;                               // around the link and the margin (m)
+  SparseValues<bool> asked_;              // vertices whose contacts were told
+  std::vector<SparseValues<Seen>> seen_;  // per shape, of vertices
   std::vector<int> near_faces_;
   MeshSeeds seeds_;
   struct EdgePlace {
