@@ -15,14 +15,11 @@ const TriangleBvh& SurfaceTree::of(const TissueSurface& surface,
                                    const std::vector<Vec3>& vertices) {
   if (!isOf(surface)) {
     revision_ = surface.revision;
-    rest_ = surface.rest;
-    tree_.emplace(rest_, surface.triangles);
+    tree_.emplace(surface.rest, surface.triangles);
     ++trees_;
-    vertices_ = rest_;
     ++moves_;
   }
-  if (areSame(vertices, vertices_)) return *tree_;
-  vertices_ = vertices;
+  if (areSame(vertices, tree_->vertices())) return *tree_;
   if (tree_->moveTo(vertices)) ++moves_;
   return *tree_;
 }
@@ -30,7 +27,7 @@ const TriangleBvh& SurfaceTree::of(const TissueSurface& surface,
 bool SurfaceTree::isOf(const TissueSurface& surface) const {
   if (!tree_) return false;
   if (surface.revision != 0 || revision_ != 0) return surface.revision == revision_;
-  return surface.triangles == tree_->triangles() && areSame(surface.rest, rest_);
+  return surface.triangles == tree_->triangles() && areSame(surface.rest, tree_->madeOf());
 }
 
 }  // namespace robot_tissue

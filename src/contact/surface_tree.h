@@ -26,8 +26,6 @@ class SurfaceTree {
   bool isOf(const TissueSurface& surface) const;
 
   std::uint64_t revision_ = 0;
-  std::vector<Vec3> rest_;
-  std::vector<Vec3> vertices_;  // that the tree is of
   std::optional<TriangleBvh> tree_;
   std::uint64_t moves_ = 0;
   std::uint64_t trees_ = 0;

@@ -66,15 +66,13 @@ int crossingOf(const MeshTriangle& triangle, const Corners& corners, const Vec3&
 
 TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
                          const std::vector<MeshTriangle>& triangles)
-    : triangles_(triangles), splitter_(vertices, triangles) {
+    : triangles_(triangles), splitter_(vertices, triangles_) {
   if (triangles.empty()) return;
-  nodes_.resize(2 * triangles.size() - 1);
-  corners_.resize(triangles.size());
-  slots_.resize(triangles.size());
   findParts();
-  std::vector<int> last_slots(vertices.size(), -1);
-  for (Part& part : parts_) addSlots(part, last_slots);
-  places_.assign(vertices_.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  std::vector<int> part_of_last(vertices.size(), -1);
+  for (Part& part : parts_) addVertices(part, part_of_last);
+  vertices_of_parts_.shrink_to_fit();
+  vertices_.assign(vertices.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   moveTo(vertices);
 }
 
@@ -82,8 +80,8 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
 void TriangleBvh::findParts() {
   const int all = static_cast<int>(triangles_.size());
   const int most = std::max(tuning::kTrianglesOfPart, all / tuning::kParts);
+  nodes_.resize(1);
   nodes_.front().triangles = all;
-  first_within_ = 1;
   std::vector<int> waiting = {0}, roots;
   while (!waiting.empty()) {
     const int number = waiting.back();
@@ -92,12 +90,14 @@ void TriangleBvh::findParts() {
       roots.push_back(number);
       continue;
     }
-    splitNode(number, first_within_);
+    const int first = static_cast<int>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    splitNode(number, first);
     above_.push_back(number);
-    waiting.push_back(first_within_ + 1);
-    waiting.push_back(first_within_);
-    first_within_ += 2;
+    waiting.push_back(first + 1);
+    waiting.push_back(first);
   }
+  first_within_ = static_cast<int>(nodes_.size());
   part_at_.assign(at(first_within_), -1);
   for (const int root : roots) addPart(root);
 }
@@ -106,31 +106,23 @@ void TriangleBvh::addPart(int root) {
   Node& node = nodes_[at(root)];
   Part part;
   part.root = root;
-  part.first = parts_.empty() ? first_within_ : parts_.back().end;
-  part.end = part.first + 2 * (node.triangles - 1);
   part.is_split = node.triangles == 1;
-  node.first_child = part.is_split ? -1 - splitter_.triangleAt(node.first_triangle) : part.first;
+  // Of one to be split: that it is no leaf.
+  node.first_child = part.is_split ? -1 - splitter_.triangleAt(node.first_triangle) : 0;
   part_at_[at(root)] = static_cast<int>(parts_.size());
   parts_.push_back(part);
 }
 
-// A vertex of several parts has a slot in each.
-void TriangleBvh::addSlots(Part& part, std::vector<int>& last_slots) {
-  part.first_slot = static_cast<int>(vertices_.size());
+void TriangleBvh::addVertices(Part& part, std::vector<int>& part_of_last) {
+  part.first_vertex = static_cast<int>(vertices_of_parts_.size());
   const Node& root = nodes_[at(part.root)];
   for (int place = root.first_triangle; place < root.first_triangle + root.triangles; ++place) {
-    const std::size_t triangle = at(splitter_.triangleAt(place));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int vertex = triangles_[triangle][k];
-      int& slot = last_slots[at(vertex)];
-      if (slot < part.first_slot) {
-        slot = static_cast<int>(vertices_.size());
-        vertices_.push_back(vertex);
-      }
-      slots_[triangle][k] = slot;
+    for (const int vertex : triangles_[at(splitter_.triangleAt(place))]) {
+      if (std::exchange(part_of_last[at(vertex)], part.root) == part.root) continue;
+      vertices_of_parts_.push_back(vertex);
     }
   }
-  part.end_slot = static_cast<int>(vertices_.size());
+  part.end_vertex = static_cast<int>(vertices_of_parts_.size());
 }
 
 void TriangleBvh::splitNode(int number, int first_child) const {
@@ -148,6 +140,11 @@ void TriangleBvh::splitNode(int number, int first_child) const {
 
 void TriangleBvh::splitPart(Part& part) const {
   part.is_split = true;
+  part.first = static_cast<int>(nodes_.size());
+  part.end = part.first + 2 * (nodes_[at(part.root)].triangles - 1);
+  // Tools come to few parts: that vectors double would be more than the nodes themselves.
+  if (at(part.end) > nodes_.capacity()) nodes_.reserve(at(part.end) + nodes_.size() / 4);
+  nodes_.resize(at(part.end));
   splitNode(part.root, part.first);
   int next = part.first + 2;
   for (int number = part.first; number < part.end; ++number) {
@@ -168,18 +165,22 @@ void TriangleBvh::openPart(int number) const {
 bool TriangleBvh::moveTo(const std::vector<Vec3>& vertices) {
   bool moved = false;
   for (Part& part : parts_) moved = movePart(part, vertices) || moved;
-  for (std::size_t i = above_.size(); moved && i-- > 0;) fit(above_[i]);
-  return moved;
+  vertices_ = vertices;
+  if (!moved) return false;
+  for (const Part& part : parts_) {
+    if (isLeaf(nodes_[at(part.root)])) open(part.root);
+  }
+  for (std::size_t i = above_.size(); i-- > 0;) fit(above_[i]);
+  return true;
 }
 
 bool TriangleBvh::movePart(Part& part, const std::vector<Vec3>& vertices) {
   VertexBounds bounds;
   bool is_same = true;
-  for (int slot = part.first_slot; slot < part.end_slot; ++slot) {
-    const Vec3& now = vertices[at(vertices_[at(slot)])];
-    Vec3& here = places_[at(slot)];
-    is_same &= (now.x() == here.x()) & (now.y() == here.y()) & (now.z() == here.z());
-    here = now;
+  for (int i = part.first_vertex; i < part.end_vertex; ++i) {
+    const std::size_t vertex = at(vertices_of_parts_[at(i)]);
+    const Vec3 &now = vertices[vertex], &before = vertices_[vertex];
+    is_same &= (now.x() == before.x()) & (now.y() == before.y()) & (now.z() == before.z());
     bounds.add(now);
   }
   if (is_same) return false;
@@ -188,7 +189,6 @@ bool TriangleBvh::movePart(Part& part, const std::vector<Vec3>& vertices) {
   root.low = box.min();
   root.high = box.max();
   part.is_stale = true;
-  if (isLeaf(root)) openPart(part_at_[at(part.root)]);
   return true;
 }
 
@@ -207,9 +207,7 @@ void TriangleBvh::fit(int number) const {
     node.high = left.high.cwiseMax(right.high);
     return;
   }
-  Corners& here = corners_[at(triangleOf(node))];
-  const auto& [a, b, c] = slots_[at(triangleOf(node))];
-  here = {places_[at(a)], places_[at(b)], places_[at(c)]};
+  const Corners here = corners(triangleOf(node));
   Box box;
   if ((here[0] + here[1] + here[2]).allFinite()) {
     for (const Vec3& corner : here) box.extend(corner);
@@ -238,8 +236,8 @@ std::optional<TriangleBvh::Nearest> TriangleBvh::nearest(const Vec3& point, doub
 void TriangleBvh::searchBelow(int number, Search& search) const {
   const Node& node = nodes_[at(number)];
   if (isLeaf(node)) return searchTriangle(triangleOf(node), search);
-  open(number);
-  int near = node.first_child, far = node.first_child + 1;
+  open(number);  // `node` is no more
+  int near = nodes_[at(number)].first_child, far = near + 1;
   double to_near = squaredDistance(nodes_[at(near)], search.point);
   double to_far = squaredDistance(nodes_[at(far)], search.point);
   if (to_far < to_near) {
@@ -251,7 +249,7 @@ void TriangleBvh::searchBelow(int number, Search& search) const {
 }
 
 void TriangleBvh::searchTriangle(int triangle, Search& search) const {
-  const Corners& here = corners_[at(triangle)];
+  const Corners here = corners(triangle);
   const Vec3 weights = nearestInTriangle(search.point, here);
   const Vec3 foot = pointOf(here, weights);
   const double squared = (search.point - foot).squaredNorm();
@@ -273,10 +271,11 @@ int TriangleBvh::crossingsBelow(int number, const Vec3& point) const {
   if (!rayMeets(node, point)) return 0;
   if (isLeaf(node)) {
     const int triangle = triangleOf(node);
-    return crossingOf(triangles_[at(triangle)], corners_[at(triangle)], point);
+    return crossingOf(triangles_[at(triangle)], corners(triangle), point);
   }
-  open(number);
-  return crossingsBelow(node.first_child, point) + crossingsBelow(node.first_child + 1, point);
+  open(number);  // `node` is no more
+  const int first = nodes_[at(number)].first_child;
+  return crossingsBelow(first, point) + crossingsBelow(first + 1, point);
 }
 
 }  // namespace robot_tissue

@@ -55,25 +55,29 @@ class TriangleBvh {
 
   Box bounds() const;  // empty (min > max) without triangles
   const std::vector<MeshTriangle>& triangles() const { return triangles_; }
+  const std::vector<Vec3>& madeOf() const { return splitter_.vertices(); }
+  const std::vector<Vec3>& vertices() const { return vertices_; }  // where they are now
 
   // For traversals: 0 is the root.
   bool isEmpty() const { return triangles_.empty(); }
-  // A node is there, and its box up to date, once the nodes above it are open.
+  // A node is there, and its box up to date, once the nodes above it are open. It stays where it is
+  // until the next one is opened.
   const Node& node(int number) const { return nodes_[at(number)]; }
   void open(int number) const {
     if (number < first_within_ && part_at_[at(number)] >= 0) openPart(part_at_[at(number)]);
   }
   static bool isLeaf(const Node& node) { return node.first_child < 0; }
   static int triangleOf(const Node& leaf) { return -leaf.first_child - 1; }
-  // Places of a triangle's corners; up to date once the nodes above its leaf are open.
-  const Corners& corners(int triangle) const { return corners_[at(triangle)]; }
+  Corners corners(int triangle) const {
+    const auto& [a, b, c] = triangles_[at(triangle)];
+    return {vertices_[at(a)], vertices_[at(b)], vertices_[at(c)]};
+  }
 
  private:
-  // A subtree; below its root its nodes follow each other, parents first. It has its own copies of
-  // the vertices: places from one slot to another.
+  // A subtree; once it is split, its nodes below its root follow each other, parents first.
   struct Part {
     int root = 0, first = 0, end = 0;
-    int first_slot = 0, end_slot = 0;
+    int first_vertex = 0, end_vertex = 0;  // in vertices_of_parts_
     bool is_stale = true;
     bool is_split = false;
   };
@@ -89,7 +93,7 @@ class TriangleBvh {
   int crossingsBelow(int number, const Vec3& point) const;
   void findParts();
   void addPart(int root);
-  void addSlots(Part& part, std::vector<int>& last_slots);
+  void addVertices(Part& part, std::vector<int>& part_of_last);
   bool movePart(Part& part, const std::vector<Vec3>& vertices);
   void openPart(int number) const;
   void splitNode(int number, int first_child) const;
@@ -97,13 +101,11 @@ class TriangleBvh {
   void refit(const Part& part) const;
   void fit(int number) const;
 
-  std::vector<MeshTriangle> triangles_;
-  std::vector<int> vertices_;        // per slot: the vertex whose place it keeps
-  std::vector<Vec3> places_;         // per slot: where that is (m)
-  std::vector<MeshTriangle> slots_;  // per triangle: those of its corners
+  const std::vector<MeshTriangle> triangles_;
+  std::vector<Vec3> vertices_;          // m
+  std::vector<int> vertices_of_parts_;  // one after the other: a vertex may be of several
   mutable TriangleSplitter splitter_;
-  mutable std::vector<Node> nodes_;       // down to the parts' roots, then those within the parts
-  mutable std::vector<Corners> corners_;  // per triangle
+  mutable std::vector<Node> nodes_;  // down to the parts' roots, then those within split parts
   mutable std::vector<Part> parts_;
   int first_within_ = 0;      // the first node that is within a part
   std::vector<int> part_at_;  // per node before: the part whose root it is, or -1

@@ -15,23 +15,22 @@ Eigen::Index longestAxis(const Vec3& size) {
 
 TriangleSplitter::TriangleSplitter(const std::vector<Vec3>& vertices,
                                    const std::vector<MeshTriangle>& triangles)
-    : order_(triangles.size()) {
+    : vertices_(vertices), triangles_(triangles), order_(triangles.size()) {
   std::iota(order_.begin(), order_.end(), 0);
-  boxes_.reserve(triangles.size());
-  centers_.reserve(triangles.size());
-  for (const auto& [i, j, k] : triangles) {
-    const Vec3 &a = vertices[at(i)], &b = vertices[at(j)], &c = vertices[at(k)];
-    boxes_.emplace_back(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
-    centers_.emplace_back((a + b + c) / 3.0);
-  }
 }
 
 Box TriangleSplitter::boundsOf(int first, int count) const {
   Box bounds;
   for (int place = first; place < first + count; ++place) {
-    bounds.extend(boxes_[at(order_[at(place)])]);
+    for (const int corner : triangles_[at(order_[at(place)])]) bounds.extend(vertices_[at(corner)]);
   }
   return bounds;
+}
+
+// Mean of its corners.
+double TriangleSplitter::centerOf(int triangle, Eigen::Index axis) const {
+  const auto& [i, j, k] = triangles_[at(triangle)];
+  return (vertices_[at(i)][axis] + vertices_[at(j)][axis] + vertices_[at(k)][axis]) / 3.0;
 }
 
 int TriangleSplitter::split(int first, int count) {
@@ -40,7 +39,7 @@ int TriangleSplitter::split(int first, int count) {
   const double middle = 0.5 * (bounds.min()[axis] + bounds.max()[axis]);
   int end = first;  // of the first part
   for (int place = first; place < first + count; ++place) {
-    if (centers_[at(order_[at(place)])][axis] > middle) continue;
+    if (centerOf(order_[at(place)], axis) > middle) continue;
     std::swap(order_[at(place)], order_[at(end)]);
     ++end;
   }

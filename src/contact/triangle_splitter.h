@@ -11,7 +11,10 @@ namespace robot_tissue {
 
 class TriangleSplitter {
  public:
+  // By where the vertices are now, however they move; the triangles must outlive it.
   TriangleSplitter(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles);
+
+  const std::vector<Vec3>& vertices() const { return vertices_; }
 
   // Numbers of the triangles; those of a node of the tree follow each other.
   int triangleAt(int place) const { return order_[at(place)]; }
@@ -21,10 +24,11 @@ class TriangleSplitter {
 
  private:
   Box boundsOf(int first, int count) const;
+  double centerOf(int triangle, Eigen::Index axis) const;
 
+  const std::vector<Vec3> vertices_;
+  const std::vector<MeshTriangle>& triangles_;
   std::vector<int> order_;
-  std::vector<Box> boxes_;     // of the triangles
-  std::vector<Vec3> centers_;  // means of their corners
 };
 
 }  // namespace robot_tissue
