@@ -29,9 +29,10 @@ void lessen(LevelSource& source) {
       if (modulus != moduli->front()) return;
     }
   }
-  source.shear = {source.shear.front()};
-  source.bulk = {source.bulk.front()};
-  source.stiffening = {source.stiffening.front()};
+  // As new vectors: those of all cells go.
+  source.shear = std::vector<double>(1, source.shear.front());
+  source.bulk = std::vector<double>(1, source.bulk.front());
+  source.stiffening = std::vector<double>(1, source.stiffening.front());
 }
 
 // Cells with the mean of the moduli of eight each; those beyond the block's end count as 0.
