@@ -2,7 +2,7 @@
 # Layering and doc/architecture.md have the same table.
 robot_tissue_room(base
   PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
-    sparse_values.h types.h)
+    shared_const.h sparse_values.h types.h)
 robot_tissue_room(simd
   USES base
   FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h

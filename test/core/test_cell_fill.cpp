@@ -169,8 +169,7 @@ std::vector<Cell> stacked(double thickness, double below) {
     cells[1].nodes[at(corner)] = corner + 4;
   }
   const auto slab = [](double low, double high) {
-    return std::make_shared<const CellFill>(
-        fillOf(boxIntegrals({-0.5, -0.5, low}, {0.5, 0.5, high})));
+    return SharedConst<CellFill>(fillOf(boxIntegrals({-0.5, -0.5, low}, {0.5, 0.5, high})));
   };
   if (below < 1.0) cells[0].fill = slab(0.5 - below, 0.5);
   cells[1].fill = slab(-0.5, -0.5 + thickness);

@@ -16,6 +16,7 @@
 
 #include "robot_tissue/core/cell_fill.h"
 #include "robot_tissue/core/grid_box.h"
+#include "robot_tissue/core/shared_const.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
@@ -62,10 +63,10 @@ constexpr int faceCorner(int side, int r) {
 
 struct Cell {
   std::array<int, kCorners> nodes{};
-  int place = 0;            // which of the lattice's cells it is, or is a part of
-  std::uint8_t own = 0xff;  // bit c: corner c is its own; not set: a cut took it from this part
-  std::shared_ptr<const CellFill> fill;    // what of that cell's volume h^3 it holds; null: all
-  std::shared_ptr<const CellReach> reach;  // of one that is filled in part; null: no neighbor
+  int place = 0;               // which of the lattice's cells it is, or is a part of
+  std::uint8_t own = 0xff;     // bit c: corner c is its own; not set: a cut took it from this part
+  SharedConst<CellFill> fill;  // what of that cell's volume h^3 it holds; null: all
+  SharedConst<CellReach> reach;  // of one that is filled in part; null: no neighbor
 
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }

@@ -228,7 +228,7 @@ void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split
     for (int corner = part; corner < kCorners; ++corner) {
       if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
     }
-    parted.fill = std::make_shared<const CellFill>(fillOf(fills[at(part)]));
+    parted.fill = SharedConst<CellFill>(fillOf(fills[at(part)]));
     left.push_back(parted);
   }
 }

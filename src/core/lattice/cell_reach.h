@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
 
 #include "robot_tissue/core/cells.h"
 
@@ -25,7 +24,7 @@ struct NeighborCell {
 
 // Null: of no neighbor. `share`: of h^3, the cell's own. across(side): the NeighborCell there.
 template <typename Across>
-std::shared_ptr<const CellReach> reachOf(double share, const Across& across) {
+SharedConst<CellReach> reachOf(double share, const Across& across) {
   CellReach reach;
   reach.nodes.fill(-1);
   bool any = false;
@@ -43,7 +42,7 @@ std::shared_ptr<const CellReach> reachOf(double share, const Across& across) {
     }
     reach.weigh(axis, share, shares[0], shares[1]);
   }
-  return any ? std::make_shared<const CellReach>(reach) : nullptr;
+  return any ? SharedConst<CellReach>(reach) : SharedConst<CellReach>();
 }
 
 }  // namespace robot_tissue

@@ -36,7 +36,7 @@ void CellSet::findReaches() {
       cell.reach.reset();
       continue;
     }
-    std::shared_ptr<const CellReach> reach = reachOf(cell.share(), [&](int side) -> NeighborCell {
+    SharedConst<CellReach> reach = reachOf(cell.share(), [&](int side) -> NeighborCell {
       const Cell* neighbor = across(cell, side);
       if (neighbor == nullptr) return {};
       return {&neighbor->nodes, neighbor->share()};

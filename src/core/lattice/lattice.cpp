@@ -126,7 +126,7 @@ void Lattice::placeCells(const FilledGrid& tissue) {
     Cell cell;
     cell.place = static_cast<int>(cells.size());
     if (partial != tissue.partial.end() && partial->first == number) {
-      cell.fill = std::make_shared<const CellFill>((partial++)->second);
+      cell.fill = SharedConst<CellFill>((partial++)->second);
     }
     const auto points = grid_.cornersOf(number);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {

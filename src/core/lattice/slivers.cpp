@@ -51,15 +51,15 @@ void stiffenSlivers(std::vector<Cell>& cells, int node_count) {
     if (!is_beside_full) continue;
     CellFill raised = *cell.fill;
     raised.lent = CellFill().spread[0];
-    cell.fill = std::make_shared<const CellFill>(raised);
+    cell.fill = SharedConst<CellFill>(raised);
   }
 }
 
-std::shared_ptr<const CellFill> unraised(const std::shared_ptr<const CellFill>& fill) {
+SharedConst<CellFill> unraised(const SharedConst<CellFill>& fill) {
   if (fill->lent == 0.0) return fill;
   CellFill before = *fill;
   before.lent = 0.0;
-  return std::make_shared<const CellFill>(before);
+  return SharedConst<CellFill>(before);
 }
 
 }  // namespace robot_tissue

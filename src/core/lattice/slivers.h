@@ -16,6 +16,6 @@ namespace robot_tissue {
 void stiffenSlivers(std::vector<Cell>& cells, int node_count);
 
 // A fill as it was before that.
-std::shared_ptr<const CellFill> unraised(const std::shared_ptr<const CellFill>& fill);
+SharedConst<CellFill> unraised(const SharedConst<CellFill>& fill);
 
 }  // namespace robot_tissue

@@ -34,16 +34,15 @@ inline bool hasCell(const GridBox& points, const std::array<int, 3>& place) {
 
 // The same by other numbers of the nodes, without neighbors of which a node has none (-1).
 template <typename EntryOf>
-std::shared_ptr<const CellReach> reachAt(const std::shared_ptr<const CellReach>& reach,
-                                         EntryOf entry_of) {
-  if (reach == nullptr) return nullptr;
-  auto renumbered = std::make_shared<CellReach>(*reach);
+SharedConst<CellReach> reachAt(const SharedConst<CellReach>& reach, EntryOf entry_of) {
+  if (reach == nullptr) return {};
+  CellReach renumbered = *reach;
   for (std::size_t i = 0; i < kBeyond; ++i) {
-    int& node = renumbered->nodes[i];
+    int& node = renumbered.nodes[i];
     if (node >= 0) node = entry_of(node);
-    if (node < 0) renumbered->share[i / kFaceNodes] = 0.0;
+    if (node < 0) renumbered.share[i / kFaceNodes] = 0.0;
   }
-  return renumbered;
+  return SharedConst<CellReach>(renumbered);
 }
 
 // A cell of the finest level; `entry_of` a node: its entry there. Moduli in `modulus` (Pa).

@@ -30,7 +30,7 @@ struct LevelCell {
   double stiffening = 0.0;                // of the law `fung` (material/elastic_law.h)
   std::shared_ptr<const LevelFill> fill;  // null: full
   // Of one that is filled in part, as Cell::reach, by entries; null: no neighbor.
-  std::shared_ptr<const CellReach> reach;
+  SharedConst<CellReach> reach;
 };
 
 // Gives the cells that are filled in part what they reach of each other, and of all others.
