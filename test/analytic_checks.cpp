@@ -174,7 +174,7 @@ double patchTestError(double poisson_ratio) {
     const Vec3 rest = lattice.restPosition(node);
     const Vec3 moved = gradient * rest - rest;
     greatest = std::max(greatest, moved.norm());
-    const auto& index = lattice.gridIndex(node);
+    const auto index = lattice.gridIndex(node);
     bool inside = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       inside = inside && index[axis] > 0 && index[axis] + 1 < lattice.size()[axis];

@@ -278,11 +278,10 @@ void MarkerBuilder::findWires(const Tissue& tissue) {
     if (node >= 0) on_surface[at(node)] = 1;
   }
   wires_.clear();
-  for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
-    const Spring& ends = lattice.springs()[spring];
-    if (tissue.state().severed[spring] == 0 && on_surface[at(ends.a)] != 0 &&
+  for (const Spring ends : lattice.springs()) {
+    if (tissue.state().severed[at(ends.number)] == 0 && on_surface[at(ends.a)] != 0 &&
         on_surface[at(ends.b)] != 0) {
-      wires_.push_back({static_cast<int>(spring), display_.edgeBetween(ends.a, ends.b)});
+      wires_.push_back({ends.number, display_.edgeBetween(ends.a, ends.b)});
     }
   }
   springs_revision_ = tissue.surface().revision;

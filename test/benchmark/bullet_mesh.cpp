@@ -33,7 +33,7 @@ std::vector<std::array<int, 4>> tetrahedraOf(const Lattice& lattice) {
       {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 4, 2, 7}, {1, 2, 4, 7}};
   std::vector<std::array<int, 4>> tetrahedra;
   for (const Cell& cell : lattice.cells()) {
-    const auto& index = lattice.gridIndex(cell.nodes[0]);
+    const auto index = lattice.gridIndex(cell.nodes[0]);
     const int mirror = (index[0] + index[1] + index[2]) % 2;  // of corner c: c ^ 1
     for (const auto& corners : kFive) {
       std::array<int, 4> nodes{};

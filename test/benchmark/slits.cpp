@@ -110,7 +110,7 @@ struct Answer {
 std::vector<Vec3> coarseNodesOf(const ElasticBlock& block, int finer) {
   std::vector<Vec3> shape;
   for (int node = 0; node < block.lattice.nodeCount(); ++node) {
-    const auto& index = block.lattice.gridIndex(node);
+    const auto index = block.lattice.gridIndex(node);
     const bool is_coarse =
         std::all_of(index.begin(), index.end(), [&](int i) { return i % finer == 0; });
     if (is_coarse) shape.push_back(block.state.displacement[at(node)]);

@@ -49,7 +49,7 @@ TEST(WarpedPolygon, SeversOneSpringOfEveryRowAndParts) {
     for (const int spring : crossing) {
       const Spring cut = lattice.springs()[at(spring)];
       if (cut.axis != 2) continue;
-      const auto& index = lattice.gridIndex(cut.a);
+      const auto index = lattice.gridIndex(cut.a);
       EXPECT_TRUE(columns.insert({index[0], index[1]}).second);
     }
     EXPECT_EQ(columns.size(), 49u);

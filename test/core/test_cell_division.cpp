@@ -124,7 +124,7 @@ Lattice blockCut(const std::vector<Plane>& planes, LatticeState& state) {
 // where its corners are in several, so that planes cross there and no spring tells.
 bool findExactPart(const Lattice& lattice, const Cell& part, const std::vector<Plane>& planes,
                    FillIntegrals& exact) {
-  const auto& low = lattice.gridIndex(lattice.cells()[at(part.place)].nodes.front());
+  const auto low = lattice.gridIndex(lattice.cells()[at(part.place)].nodes.front());
   const Vec3 middle = Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5);
   std::vector<HalfSpace> halves;
   for (const Plane& plane : planes) {

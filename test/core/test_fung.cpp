@@ -236,7 +236,7 @@ TEST(FungBlock, ShearsAsTheClosedForm) {
     ElasticBlock block(config);
     LoadingPatch outside = displaced({}, Vec3::Zero());
     for (const int node : nodesOf(block.lattice)) {
-      const auto& place = block.lattice.gridIndex(node);
+      const auto place = block.lattice.gridIndex(node);
       const bool inside = place[0] % 4 != 0 && place[1] % 3 != 0 && place[2] % 3 != 0;
       if (inside) continue;
       outside.nodes.push_back(node);

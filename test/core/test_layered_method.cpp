@@ -64,7 +64,7 @@ TEST(Layered, SymmetricPressHasASymmetricShape) {
           .status,
       SolveStatus::kOk);
   for (const int node : nodesOf(block.lattice)) {
-    const auto& index = block.lattice.gridIndex(node);
+    const auto index = block.lattice.gridIndex(node);
     const int mirrored = block.lattice.node(8 - index[0], index[1], index[2]);
     const int swapped = block.lattice.node(index[1], index[0], index[2]);
     const Vec3& here = block.state.displacement[at(node)];

@@ -46,7 +46,7 @@ TEST(LightNodes, WeighWhatTheyCarryBesideACut) {
   const double ghost_below = 0.99 * 0.99 / 2;
   std::vector<double> expected(static_cast<std::size_t>(cells.nodeCount()), 1.0);
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    const auto& place = lattice.gridIndex(cells.original(node));
+    const auto place = lattice.gridIndex(cells.original(node));
     double column = 1.0;  // in areas of a cell's face
     for (std::size_t axis = 0; axis < 2; ++axis) column *= place[axis] == 1 ? 1.0 : 0.5;
     double height_carried = place[2] == 0 ? 0.5 : 1.0;

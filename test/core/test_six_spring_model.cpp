@@ -33,7 +33,8 @@ double energyOf(const Lattice& lattice, const LatticeState& state) {
     const Spring& spring = lattice.springs()[index];
     const Vec3 a = lattice.restPosition(spring.a) + state.displacement[at(spring.a)];
     const Vec3 b = lattice.restPosition(spring.b) + state.displacement[at(spring.b)];
-    energy += 0.5 * spring.stiffness * std::pow((b - a).norm() - lattice.spacing(), 2);
+    energy +=
+        0.5 * lattice.springStiffness(spring) * std::pow((b - a).norm() - lattice.spacing(), 2);
   }
   return energy;
 }

@@ -21,7 +21,8 @@ using Composition = std::vector<MaterialShare>;  // ascending: what lies under t
 
 struct CellCompositions {
   std::vector<Composition> kinds;      // of one material: each once
-  std::vector<std::uint32_t> of_cell;  // per cell that holds tissue, in their order: into kinds
+  std::vector<std::uint32_t> of_cell;  // per cell that holds tissue, in their order: into
+                                       // kinds; empty: all have the only one
 };
 
 // Of two regions the later one has what both enclose.

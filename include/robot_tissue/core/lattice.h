@@ -24,8 +24,8 @@ namespace robot_tissue {
 struct Spring {
   int a = 0;  // node at the lower end along `axis`
   int b = 0;
-  int axis = 0;            // 0, 1, 2 = x, y, z
-  double stiffness = 0.0;  // N/m
+  int axis = 0;  // 0, 1, 2 = x, y, z
+  int number = 0;
 };
 
 class Lattice;
@@ -36,24 +36,24 @@ class SpringList {
  public:
   class Iterator {
    public:
-    Iterator(const SpringList& list, std::size_t index) : list_(&list), index_(index) {}
-    Spring operator*() const { return (*list_)[index_]; }
-    Iterator& operator++() {
-      ++index_;
-      return *this;
-    }
-    bool operator!=(const Iterator& other) const { return index_ != other.index_; }
+    Iterator(const Lattice& lattice, int number, int node)
+        : lattice_(&lattice), number_(number), node_(node) {}
+    Spring operator*() const;
+    Iterator& operator++();
+    bool operator!=(const Iterator& other) const { return number_ != other.number_; }
 
    private:
-    const SpringList* list_;
-    std::size_t index_;
+    const Lattice* lattice_;
+    int number_;
+    int node_;  // its lower end
   };
 
   explicit SpringList(const Lattice& lattice) : lattice_(lattice) {}
   std::size_t size() const;
-  Spring operator[](std::size_t index) const;
-  Iterator begin() const { return {*this, 0}; }
-  Iterator end() const { return {*this, size()}; }
+  // Looks for its lower end: to go through all of them iterators are faster.
+  Spring operator[](std::size_t number) const;
+  Iterator begin() const;
+  Iterator end() const { return {lattice_, static_cast<int>(size()), 0}; }
 
  private:
   const Lattice& lattice_;
@@ -67,7 +67,7 @@ class Lattice {
   // Throws InputError when the extent is no multiple of the spacing or a box holds no node.
   explicit Lattice(const TissueConfig& config);
 
-  int nodeCount() const { return static_cast<int>(index_of_.size()); }
+  int nodeCount() const { return static_cast<int>(fixed_.size()); }
   double spacing() const { return grid_.spacing(); }
   const std::array<int, 3>& size() const { return grid_.size(); }  // grid points along x, y, z
 
@@ -75,12 +75,15 @@ class Lattice {
   int node(int i, int j, int k) const {
     const auto& size = grid_.size();
     if (i < 0 || j < 0 || k < 0 || i >= size[0] || j >= size[1] || k >= size[2]) return -1;
-    return node_at_[at(i + size[0] * (j + size[1] * k))];
+    const int point = i + size[0] * (j + size[1] * k);
+    return hasAllPoints() ? point : node_at_[at(point)];
   }
-  const std::array<int, 3>& gridIndex(int node) const { return index_of_[at(node)]; }
+  std::array<int, 3> gridIndex(int node) const {
+    return hasAllPoints() ? indexOfPoint(node) : index_of_[at(node)];
+  }
   Vec3 restPosition(int node) const;
   bool isFixed(int node) const { return fixed_[at(node)] != 0; }
-  double mass(int node) const { return mass_[at(node)]; }  // kg
+  double mass(int node) const;  // kg; summed up anew over the cells each time
 
   // Box around the nodes at rest (m).
   const Box& bounds() const { return grid_.shape(); }
@@ -92,7 +95,7 @@ class Lattice {
   const std::vector<Composition>& compositions() const { return compositions_.kinds; }
   // Which of them the cell has, or the one that it is a part of.
   std::size_t compositionOf(const Cell& cell) const {
-    return compositions_.of_cell[at(cell.place)];
+    return compositions_.of_cell.empty() ? 0 : compositions_.of_cell[at(cell.place)];
   }
 
   // There is tissue in the cell's eighth at the corner: a mesh may not reach all of a cell.
@@ -102,8 +105,13 @@ class Lattice {
   bool isFull() const { return eighths_.empty(); }  // there is in all of them
 
   SpringList springs() const { return SpringList(*this); }
-  // Index of the spring in `direction`, -1 at the border.
-  int springOf(int node, int direction) const { return springs_of_node_[at(node)][at(direction)]; }
+  // Number of the spring in `direction`, -1 at the border.
+  int springOf(int node, int direction) const {
+    if (direction % 2 == 1) return springUp(node, direction / 2);
+    const int lower = pointBelow(node, direction / 2);
+    return lower < 0 ? -1 : springUp(lower, direction / 2);
+  }
+  double springStiffness(const Spring& spring) const;  // N/m; likewise
   // Node in `direction`, -1 at the border.
   int neighbor(int node, int direction) const;
 
@@ -112,12 +120,20 @@ class Lattice {
 
   LatticeState restState() const;
 
-  // Masses of the nodes and stiffnesses of the springs, from the materials of the cells around
-  // them.
+  // Masses of the nodes and stiffnesses of the springs are from now on of the materials that the
+  // cells around them have there.
   void weigh(const TissueConfig& config);
 
  private:
   friend class SpringList;
+
+  // Means over a cell's materials.
+  struct Substance {
+    double density = 0.0;  // kg/m^3
+    bool has_spring_constants = false;
+    double spring_stiffness = 0.0;  // N/m
+    double young_modulus = 0.0;     // Pa
+  };
 
   Lattice(const TissueConfig& config, const FilledGrid& tissue);
   void placeNodes(const std::vector<double>& filled);
@@ -125,18 +141,47 @@ class Lattice {
   void placeEighths(const TissueConfig& config);
   void placeSprings();
   void fix(const std::vector<Box>& boxes);
+  static Substance substanceOf(const TissueConfig& config, const Composition& composition);
+  const Substance& substanceOf(const Cell& cell) const { return substances_[compositionOf(cell)]; }
+  // Every grid point has a node, of the same number.
+  bool hasAllPoints() const { return node_at_.empty(); }
+  std::array<int, 3> indexOfPoint(int point) const;
+  int pointBelow(int node, int axis) const;
+  int firstSpring(int node) const { return static_cast<int>(springs_up_[at(node)] >> 3U); }
+  int springUp(int node, int axis) const;
 
   Grid grid_;
-  std::vector<int> node_at_;                  // per grid point, -1 = none
-  std::vector<std::array<int, 3>> index_of_;  // per node
+  std::vector<int> node_at_;                  // per grid point, -1 = none; empty: hasAllPoints
+  std::vector<std::array<int, 3>> index_of_;  // per node; likewise
   std::shared_ptr<const CellSet> cells_;
   std::vector<std::uint8_t> eighths_;  // per cell, bit c: hasTissueAt; empty: all
   CellCompositions compositions_;
   std::vector<std::uint8_t> fixed_;
-  std::vector<double> mass_;
-  std::vector<int> lower_ends_;           // per spring: 4 times the node, and the axis
-  std::vector<double> spring_stiffness_;  // per spring (N/m)
-  std::vector<std::array<int, kNeighbors>> springs_of_node_;
+  std::vector<Substance> substances_;  // of compositions()
+  // Per node: 8 times how many springs nodes before it have upwards, and bit a: it has one itself
+  // along axis a.
+  std::vector<std::uint32_t> springs_up_;
+  int spring_count_ = 0;
 };
+
+inline int Lattice::springUp(int node, int axis) const {
+  const std::uint32_t up = springs_up_[at(node)];
+  if ((up >> axis & 1U) == 0) return -1;
+  const std::uint32_t before = up & ((1U << axis) - 1U);  // bits 0 and 1 alone
+  return static_cast<int>((up >> 3U) + (before & 1U) + (before >> 1U));
+}
+
+// The node next to it down the axis; where the grid has all points, that or one that has no spring
+// up the axis; -1: there is none.
+inline int Lattice::pointBelow(int node, int axis) const {
+  const auto& size = grid_.size();
+  if (hasAllPoints()) {
+    const int step = axis == 0 ? 1 : axis == 1 ? size[0] : size[0] * size[1];
+    return node < step ? -1 : node - step;
+  }
+  std::array<int, 3> index = index_of_[at(node)];
+  --index[at(axis)];
+  return this->node(index[0], index[1], index[2]);
+}
 
 }  // namespace robot_tissue

@@ -76,10 +76,8 @@ class HeldParts {
  public:
   HeldParts(const Lattice& lattice, const LatticeState& state, TissueInCells& tissue)
       : nodes_(at(lattice.nodeCount())), has_tissue_(at(lattice.nodeCount()), 0) {
-    for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
-      if (state.severed[spring] != 0) continue;
-      const Spring& ends = lattice.springs()[spring];
-      nodes_.join(ends.a, ends.b);
+    for (const Spring ends : lattice.springs()) {
+      if (state.severed[at(ends.number)] == 0) nodes_.join(ends.a, ends.b);
     }
     for (const Cell& cell : lattice.cells()) {
       for (int corner = 0; corner < kCorners; ++corner) {

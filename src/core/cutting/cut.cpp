@@ -106,7 +106,7 @@ std::vector<Crossing> springsAcross(const Lattice& lattice, const LatticeState& 
   }
   std::vector<Crossing> crossings;
   for (int node = 0; node < lattice.nodeCount(); ++node) {
-    const std::array<int, 3>& low = lattice.gridIndex(node);
+    const std::array<int, 3> low = lattice.gridIndex(node);
     for (int axis = 0; axis < 3; ++axis) {
       const int spring = lattice.springOf(node, 2 * axis + 1);
       if (spring < 0 || state.severed[at(spring)] != 0) continue;

@@ -238,6 +238,7 @@ CellCompositions compositionsOf(const TissueConfig& config, const FilledGrid& ti
     if (is_pure) kind_of[composition.front().region] = next;
     found.kinds.push_back(std::move(composition));
   }
+  if (found.kinds.size() == 1) found.of_cell = std::vector<std::uint32_t>();
   return found;
 }
 

@@ -87,9 +87,8 @@ bool holdTogether(const Lattice& lattice, const LatticeState& state,
 std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state) {
   const CellSet& cells = *state.cells;
   DisjointSets nodes(at(cells.nodeCount()));
-  for (std::size_t spring = 0; spring < lattice.springs().size(); ++spring) {
-    const Spring& ends = lattice.springs()[spring];
-    if (state.severed[spring] == 0) nodes.join(ends.a, ends.b);
+  for (const Spring ends : lattice.springs()) {
+    if (state.severed[at(ends.number)] == 0) nodes.join(ends.a, ends.b);
   }
   for (const Cell& part : cells.all()) {
     if (!part.isPart() || part.own == 0) continue;

@@ -10,7 +10,6 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kAxes = 4;  // numbers of axes that an end leaves room for
 // So many times a mesh is sliced at half the spacing, each time a part of it: as much memory at a
 // time as slicing it at the spacing takes.
 constexpr int kSlabs = 8;
@@ -49,35 +48,16 @@ class HalfSlab {
   std::vector<std::uint8_t> occupied_;
 };
 
-// Means over a cell's materials.
-struct CellStiffness {
-  bool has_constants = false;
-  double spring_stiffness = 0.0;  // N/m
-  double young_modulus = 0.0;     // Pa
-};
-
-CellStiffness stiffnessOf(const TissueConfig& config, const Composition& composition) {
-  CellStiffness mean;
-  for (const MaterialShare& part : composition) {
-    const Material& material = materialOf(config, part.region);
-    mean.has_constants = material.spring_stiffness.has_value();
-    mean.spring_stiffness += part.share * material.spring_stiffness.value_or(0.0);
-    mean.young_modulus += part.share * material.young_modulus;
-  }
-  return mean;
-}
-
 // What the four cells round a spring give it: moduli add up, E h / 4 a cell, so that a bar of any
 // cross section has the stiffness E A / L; a spring constant is the paper's, the same on a face.
 class SpringStiffness {
  public:
-  void add(const CellStiffness& cell, double spacing, double share) {
-    if (cell.has_constants) {
-      sum_ += cell.spring_stiffness;
-      ++constants_;
-    } else {
-      sum_ += share * cell.young_modulus * spacing / 4.0;
-    }
+  void add(double constant) {
+    sum_ += constant;
+    ++constants_;
+  }
+  void add(double modulus, double spacing, double share) {
+    sum_ += share * modulus * spacing / 4.0;
   }
   double value() const { return constants_ > 0 ? sum_ / constants_ : sum_; }
 
@@ -107,15 +87,26 @@ void Lattice::placeNodes(const std::vector<double>& filled) {
     if (filled[at(cell)] <= 0.0) continue;
     for (const int point : grid_.cornersOf(cell)) node_at_[at(point)] = 0;
   }
-  index_of_.reserve(node_at_.size() -
-                    at(static_cast<int>(std::count(node_at_.begin(), node_at_.end(), -1))));
-  int count = 0;
+  const auto nodes =
+      node_at_.size() - at(static_cast<int>(std::count(node_at_.begin(), node_at_.end(), -1)));
+  fixed_.assign(nodes, 0);
+  if (nodes == node_at_.size()) {
+    node_at_ = std::vector<int>();
+    return;
+  }
+  index_of_.reserve(nodes);
   for (std::size_t point = 0; point < node_at_.size(); ++point) {
     if (node_at_[point] < 0) continue;
-    node_at_[point] = count++;
-    const int row = static_cast<int>(point) / size()[0];
-    index_of_.push_back({static_cast<int>(point) % size()[0], row % size()[1], row / size()[1]});
+    node_at_[point] = static_cast<int>(index_of_.size());
+    index_of_.push_back(indexOfPoint(static_cast<int>(point)));
   }
+}
+
+std::array<int, 3> Lattice::indexOfPoint(int point) const {
+  const auto number = static_cast<unsigned>(point), along_x = static_cast<unsigned>(size()[0]),
+             along_y = static_cast<unsigned>(size()[1]), row = number / along_x;
+  return {static_cast<int>(number % along_x), static_cast<int>(row % along_y),
+          static_cast<int>(row / along_y)};
 }
 
 void Lattice::placeCells(const FilledGrid& tissue) {
@@ -130,7 +121,7 @@ void Lattice::placeCells(const FilledGrid& tissue) {
     }
     const auto points = grid_.cornersOf(number);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
-      cell.nodes[corner] = node_at_[at(points[corner])];
+      cell.nodes[corner] = hasAllPoints() ? points[corner] : node_at_[at(points[corner])];
     }
     cells.push_back(cell);
   }
@@ -146,7 +137,7 @@ void Lattice::placeEighths(const TissueConfig& config) {
   for (int first = 0; first < layers; first += thick) {
     const HalfSlab slab(*config.mesh, grid_, first, std::min(first + thick, layers));
     for (const Cell& cell : cells()) {
-      const std::array<int, 3>& lowest = gridIndex(cell.nodes.front());
+      const std::array<int, 3> lowest = gridIndex(cell.nodes.front());
       if (slab.has(lowest)) eighths_[at(cell.place)] = slab.eighthsOf(lowest);
     }
   }
@@ -154,51 +145,70 @@ void Lattice::placeEighths(const TissueConfig& config) {
 
 // One along every edge of a cell.
 void Lattice::placeSprings() {
-  std::array<int, kNeighbors> none{};
-  none.fill(-1);
-  springs_of_node_.assign(index_of_.size(), none);
-  lower_ends_.reserve(3 * index_of_.size());
+  springs_up_.reserve(at(nodeCount()));
   for (int node = 0; node < nodeCount(); ++node) {
+    std::uint32_t up = 8U * static_cast<std::uint32_t>(spring_count_);
     for (int axis = 0; axis < 3; ++axis) {
-      for (auto cell = cells_->first(node); cell != cells_->last(node); ++cell) {
-        if (cell->corner >> axis & 1) continue;
-        const int upper = cells()[at(cell->cell)].nodes[at(cell->corner | 1 << axis)];
-        const int spring = static_cast<int>(lower_ends_.size());
-        lower_ends_.push_back(kAxes * node + axis);
-        springs_of_node_[at(node)][at(2 * axis + 1)] = spring;
-        springs_of_node_[at(upper)][at(2 * axis)] = spring;
-        break;
-      }
+      const bool has = std::any_of(cells_->first(node), cells_->last(node),
+                                   [axis](auto met) { return (met.corner >> axis & 1U) == 0; });
+      if (!has) continue;
+      up |= 1U << axis;
+      ++spring_count_;
     }
+    springs_up_.push_back(up);
   }
+}
+
+Lattice::Substance Lattice::substanceOf(const TissueConfig& config,
+                                        const Composition& composition) {
+  Substance mean;
+  mean.density = densityOf(config, composition);
+  for (const MaterialShare& part : composition) {
+    const Material& material = materialOf(config, part.region);
+    mean.has_spring_constants = material.spring_stiffness.has_value();
+    mean.spring_stiffness += part.share * material.spring_stiffness.value_or(0.0);
+    mean.young_modulus += part.share * material.young_modulus;
+  }
+  return mean;
 }
 
 void Lattice::weigh(const TissueConfig& config) {
-  mass_.assign(index_of_.size(), 0.0);
-  std::vector<SpringStiffness> stiffness(lower_ends_.size());
+  substances_.clear();
+  substances_.reserve(compositions().size());
+  for (const Composition& composition : compositions()) {
+    substances_.push_back(substanceOf(config, composition));
+  }
+}
+
+double Lattice::mass(int node) const {
   const double volume = std::pow(spacing(), 3), corner_volume = volume / kCorners;
-  for (const Cell& cell : cells()) {
-    const Composition& composition = compositions()[compositionOf(cell)];
-    const double density = densityOf(config, composition);
-    const CellStiffness here = stiffnessOf(config, composition);
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const int node = cell.nodes[at(corner)];
-      mass_[at(node)] += cell.fill == nullptr
-                             ? density * corner_volume
-                             : cell.share() * density * volume * cell.fill->cornerShare(corner);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (corner >> axis & 1) continue;
-        stiffness[at(springOf(node, 2 * axis + 1))].add(here, spacing(), cell.share());
-      }
+  double mass = 0.0;
+  for (auto met = cells_->first(node); met != cells_->last(node); ++met) {
+    const Cell& cell = cells()[at(met->cell)];
+    const double density = substanceOf(cell).density;
+    mass += cell.fill == nullptr
+                ? density * corner_volume
+                : cell.share() * density * volume * cell.fill->cornerShare(met->corner);
+  }
+  return mass;
+}
+
+double Lattice::springStiffness(const Spring& spring) const {
+  SpringStiffness stiffness;
+  for (auto met = cells_->first(spring.a); met != cells_->last(spring.a); ++met) {
+    if (met->corner >> spring.axis & 1) continue;
+    const Cell& cell = cells()[at(met->cell)];
+    const Substance& here = substanceOf(cell);
+    if (here.has_spring_constants) {
+      stiffness.add(here.spring_stiffness);
+    } else {
+      stiffness.add(here.young_modulus, spacing(), cell.share());
     }
   }
-  spring_stiffness_.clear();
-  spring_stiffness_.reserve(stiffness.size());
-  for (const SpringStiffness& each : stiffness) spring_stiffness_.push_back(each.value());
+  return stiffness.value();
 }
 
 void Lattice::fix(const std::vector<Box>& boxes) {
-  fixed_.assign(index_of_.size(), 0);
   for (std::size_t box = 0; box < boxes.size(); ++box) {
     const std::vector<int> nodes = nodesIn(boxes[box]);
     if (nodes.empty()) {
@@ -210,7 +220,7 @@ void Lattice::fix(const std::vector<Box>& boxes) {
 }
 
 Vec3 Lattice::restPosition(int node) const {
-  const auto& index = index_of_[at(node)];
+  const std::array<int, 3> index = gridIndex(node);
   return grid_.shape().min() + spacing() * Vec3(index[0], index[1], index[2]);
 }
 
@@ -227,18 +237,44 @@ Vec3 Lattice::cellCenter(const Cell& cell) const {
 }
 
 int Lattice::neighbor(int node, int direction) const {
-  if (springOf(node, direction) < 0) return -1;
-  std::array<int, 3> index = gridIndex(node);
-  index[at(direction / 2)] += direction % 2 == 1 ? 1 : -1;
+  const int axis = direction / 2;
+  if (direction % 2 == 0) {
+    const int lower = pointBelow(node, axis);
+    return lower >= 0 && springUp(lower, axis) >= 0 ? lower : -1;
+  }
+  if (springUp(node, axis) < 0) return -1;
+  if (hasAllPoints()) return node + (axis == 0 ? 1 : axis == 1 ? size()[0] : size()[0] * size()[1]);
+  std::array<int, 3> index = index_of_[at(node)];
+  ++index[at(axis)];
   return this->node(index[0], index[1], index[2]);
 }
 
-std::size_t SpringList::size() const { return lattice_.lower_ends_.size(); }
+std::size_t SpringList::size() const { return at(lattice_.spring_count_); }
 
-Spring SpringList::operator[](std::size_t index) const {
-  const int end = lattice_.lower_ends_[index];
-  const int node = end / kAxes, axis = end % kAxes;
-  return {node, lattice_.neighbor(node, 2 * axis + 1), axis, lattice_.spring_stiffness_[index]};
+Spring SpringList::operator[](std::size_t number) const {
+  const auto& up = lattice_.springs_up_;
+  const auto is_after = [](std::size_t spring, std::uint32_t of_node) {
+    return spring < of_node >> 3U;
+  };
+  const auto next = std::upper_bound(up.begin(), up.end(), number, is_after);
+  return *Iterator(lattice_, static_cast<int>(number), static_cast<int>(next - up.begin()) - 1);
+}
+
+SpringList::Iterator SpringList::begin() const {
+  Iterator first(lattice_, -1, 0);
+  return ++first;
+}
+
+Spring SpringList::Iterator::operator*() const {
+  int axis = 0;
+  while (lattice_->springUp(node_, axis) != number_) ++axis;
+  return {node_, lattice_->neighbor(node_, 2 * axis + 1), axis, number_};
+}
+
+SpringList::Iterator& SpringList::Iterator::operator++() {
+  ++number_;
+  while (node_ + 1 < lattice_->nodeCount() && lattice_->firstSpring(node_ + 1) <= number_) ++node_;
+  return *this;
 }
 
 std::vector<int> Lattice::nodesIn(const Box& box) const {
@@ -256,9 +292,9 @@ std::vector<int> Lattice::nodesIn(const Box& box) const {
 
 LatticeState Lattice::restState() const {
   LatticeState state;
-  state.displacement.assign(index_of_.size(), Vec3::Zero());
+  state.displacement.assign(at(nodeCount()), Vec3::Zero());
   state.cells = cells_;
-  state.severed.assign(lower_ends_.size(), 0);
+  state.severed.assign(springs().size(), 0);
   state.pieces = countPieces(*this, state);
   return state;
 }

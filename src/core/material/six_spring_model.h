@@ -2,6 +2,8 @@
 // It resists stretch of the springs only: rows and columns shear for nothing (doc/paper.md).
 #pragma once
 
+#include <vector>
+
 #include "material/tissue_model.h"
 #include "robot_tissue/core/lattice.h"
 
@@ -9,7 +11,7 @@ namespace robot_tissue {
 
 class SixSpringModel : public TissueModel {
  public:
-  // gravity in m/s^2; the lattice must outlive the model.
+  // gravity in m/s^2; the lattice must outlive the model. Of the materials that it has now.
   SixSpringModel(const Lattice& lattice, const Vec3& gravity);
 
   Vec3 nodeForce(const LatticeState& state, int node) const override;
@@ -22,6 +24,8 @@ class SixSpringModel : public TissueModel {
 
   const Lattice& lattice_;
   Vec3 gravity_;
+  std::vector<double> stiffness_;  // per spring (N/m)
+  std::vector<double> mass_;       // per node of the lattice (kg)
 };
 
 }  // namespace robot_tissue

@@ -147,7 +147,7 @@ class CutMeshBuilder {
   }
 
   Octants octantsAround(const Cell& cell) const {
-    const auto& lowest = lattice_.gridIndex(cell.nodes.front());
+    const auto lowest = lattice_.gridIndex(cell.nodes.front());
     Octants around;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       around.first[axis] = std::max(0, 2 * lowest[axis] - 2);
@@ -364,7 +364,7 @@ class CutMeshBuilder {
 
   // The cell's corner at the node that the octant belongs to, or the nearest to that.
   int cornerOf(int cell, const HalfIndex& octant) const {
-    const auto& lowest = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
+    const auto lowest = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
     int corner = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const int node = (octant[at(axis)] + 1) / 2;

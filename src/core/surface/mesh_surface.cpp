@@ -14,7 +14,7 @@ namespace {
 constexpr double kAsNear = 1e-9;
 
 Vec3 inCell(const Lattice& lattice, const Cell& cell, const Vec3& point) {
-  const auto& lowest = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes.front());
+  const auto lowest = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes.front());
   return point - Vec3(lowest[0], lowest[1], lowest[2]);
 }
 

@@ -48,7 +48,7 @@ void OctantGrid::placeCells() {
   plane_ = row_ * (size[1] + 2);
   cell_at_.assign(at(plane_ * (size[2] + 2)), -1);
   for (const Cell& cell : lattice_.cells()) {
-    const auto& low = lattice_.gridIndex(cell.nodes.front());
+    const auto low = lattice_.gridIndex(cell.nodes.front());
     cell_at_[at(low[0] + 1 + row_ * (low[1] + 1) + plane_ * (low[2] + 1))] = cell.place;
   }
 }
@@ -83,7 +83,7 @@ Octant OctantGrid::beyond(const Octant& octant, int side) const {
 }
 
 CellPoint OctantGrid::inCell(int cell, const HalfPoint& point) const {
-  const auto& low = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
+  const auto low = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
   CellPoint from_low{};
   for (std::size_t axis = 0; axis < 3; ++axis) from_low[axis] = point[axis] - 2 * low[axis];
   return from_low;
@@ -98,7 +98,7 @@ Vec3 OctantGrid::placeInCell(const Octant& octant, const HalfPoint& point) const
 
 // Of the octant's cell.
 int OctantGrid::cornerAt(const Octant& octant, const HalfPoint& node) const {
-  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  const auto low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
   int corner = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (node[at(axis)] > 2 * low[at(axis)]) corner |= 1 << axis;
@@ -136,7 +136,7 @@ bool OctantGrid::isJoined(const Octant& octant, int side) const {
 }
 
 Vec3 OctantGrid::placeOf(const Octant& octant, const HalfPoint& point) const {
-  const auto& low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
+  const auto low = lattice_.gridIndex(lattice_.cells()[at(octant.cell)].nodes.front());
   const Vec3 place = Vec3(low[0], low[1], low[2]) + placeInCell(octant, point);
   return lattice_.bounds().min() + lattice_.spacing() * place;
 }

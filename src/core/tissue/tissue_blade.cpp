@@ -86,10 +86,9 @@ bool Tissue::tearOut(const std::vector<int>& nodes) {
   std::vector<std::uint8_t> goes(at(lattice_.nodeCount()), 0);
   for (const int node : nodes) goes[at(state_.cells->original(node))] = 1;
   std::vector<int> around;
-  for (std::size_t spring = 0; spring < lattice_.springs().size(); ++spring) {
-    const Spring& ends = lattice_.springs()[spring];
-    const bool parts = goes[at(ends.a)] != goes[at(ends.b)] && state_.severed[spring] == 0;
-    if (parts) around.push_back(static_cast<int>(spring));
+  for (const Spring ends : lattice_.springs()) {
+    const bool parts = goes[at(ends.a)] != goes[at(ends.b)] && state_.severed[at(ends.number)] == 0;
+    if (parts) around.push_back(ends.number);
   }
   const std::vector<Crossing> crossings = sparingCrumbs(lattice_, state_, halfWay(around));
   if (crossings.empty()) return false;

@@ -38,8 +38,9 @@ PaperMethod::PaperMethod(const Lattice& lattice, const TissueModel& model,
   for (int node = 0; node < lattice.nodeCount(); ++node) {
     if (lattice.isFixed(node)) locked_[at(node)] = kAllAxes;
   }
-  for (const Spring& spring : lattice.springs()) {
-    rounding_force_ = std::max(rounding_force_, kRounding * spring.stiffness * lattice.spacing());
+  for (const Spring spring : lattice.springs()) {
+    rounding_force_ =
+        std::max(rounding_force_, kRounding * lattice.springStiffness(spring) * lattice.spacing());
   }
 }
 
@@ -124,7 +125,7 @@ bool PaperMethod::balancePatch(const LoadingPatch& patch, LatticeState& state, i
                              lattice_.neighbor(node, direction))) {
         continue;
       }
-      stiffness[direction / 2] += lattice_.springs()[at(spring)].stiffness;
+      stiffness[direction / 2] += lattice_.springStiffness(lattice_.springs()[at(spring)]);
     }
   }
   const double enough = std::max(kPatchBalance * patch.force.norm(), rounding_force_);

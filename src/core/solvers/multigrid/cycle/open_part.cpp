@@ -28,7 +28,7 @@ double OpenPart::firstLayers() const {
 }
 
 void OpenPart::addSeed(const CellSet& cells, int node) {
-  const std::array<int, 3>& place = lattice_.gridIndex(cells.original(node));
+  const std::array<int, 3> place = lattice_.gridIndex(cells.original(node));
   seeds_ = joined(seeds_, {place, place});
 }
 

@@ -254,7 +254,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
   LevelGrid grid(lattice_.size());
   int beside = static_cast<int>(cells.ghosts().size());
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    const std::array<int, 3>& place = lattice_.gridIndex(cells.original(node));
+    const std::array<int, 3> place = lattice_.gridIndex(cells.original(node));
     entries_.push_back(cells.isGhost(node) ? grid.beside + node - cells.latticeNodeCount()
                                            : grid.index(place[0], place[1], place[2]));
   }
@@ -288,7 +288,7 @@ std::vector<LevelCell> CompositeGrid<Real>::finestCells(const ElasticModel& mode
   std::vector<LevelCell> level_cells;
   level_cells.reserve(cells.all().size());
   for (const Cell& cell : cells.all()) {
-    const auto& place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
+    const auto place = lattice_.gridIndex(lattice_.cells()[at(cell.place)].nodes[0]);
     level_cells.push_back(
         levelCellOf(model, cell, modulus_, place, [this](int node) { return entryOf(node); }));
   }

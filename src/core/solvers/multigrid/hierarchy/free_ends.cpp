@@ -65,7 +65,7 @@ FreeEnds::FreeEnds(const Lattice& lattice, double tolerance)
   is_long_ = !coarser.isThick() && sorted[2] > decay_;
   forget();
   for (int node = 0; is_long_ && node < lattice.nodeCount(); ++node) {
-    const std::array<int, 3>& place = lattice.gridIndex(node);
+    const std::array<int, 3> place = lattice.gridIndex(node);
     if (lattice.isFixed(node)) held_ = joined(held_, {place, place});
   }
 }

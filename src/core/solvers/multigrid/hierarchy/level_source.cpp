@@ -113,7 +113,7 @@ bool isBlock(const Lattice& lattice, const ElasticModel& model) {
 GridBox cutBox(const Lattice& lattice, const CellSet& cells) {
   GridBox box = kNowhere;
   const auto add = [&](int place) {
-    const std::array<int, 3>& low = lattice.gridIndex(lattice.cells()[at(place)].nodes[0]);
+    const std::array<int, 3> low = lattice.gridIndex(lattice.cells()[at(place)].nodes[0]);
     box = joined(box, {low, {low[0] + 1, low[1] + 1, low[2] + 1}});
   };
   int next = 0;
@@ -137,11 +137,11 @@ ListedCells listedIn(const GridBox& box, const Lattice& lattice, const ElasticMo
   listed.beside = static_cast<int>(cells.ghosts().size());
   const auto entry_of = [&](int node) {
     if (cells.isGhost(node)) return listed.grid.beside + node - cells.latticeNodeCount();
-    const std::array<int, 3>& place = lattice.gridIndex(node);
+    const std::array<int, 3> place = lattice.gridIndex(node);
     return listed.grid.index(place[0], place[1], place[2]);
   };
   for (const Cell& cell : cells.all()) {
-    const std::array<int, 3>& place = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes[0]);
+    const std::array<int, 3> place = lattice.gridIndex(lattice.cells()[at(cell.place)].nodes[0]);
     if (hasCell(box, place)) {
       listed.cells.push_back(levelCellOf(model, cell, modulus, place, entry_of));
     }

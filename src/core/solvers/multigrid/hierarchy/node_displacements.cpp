@@ -54,7 +54,7 @@ template <typename Real>
 Vec3 NodeDisplacements<Real>::of(int node) const {
   const int entry = grid_.entryOf(node);
   if (entry < 0 && grid_.hasEnds()) {
-    const std::array<int, 3>& place = grid_.lattice().gridIndex(node);
+    const std::array<int, 3> place = grid_.lattice().gridIndex(node);
     const GridBox& between = grid_.between();
     const auto along = [&](std::size_t axis) {
       return std::clamp(place[axis], between.low[axis], between.high[axis]);
