@@ -1,6 +1,7 @@
 #include "loads/dof_constraints.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
@@ -9,15 +10,19 @@ bool isLoose(const CellSet& cells, int node) { return cells.first(node) == cells
 
 }  // namespace
 
-void DofConstraints::SpringList::clear(std::size_t node_count) {
+void DofConstraints::SpringList::clear(std::size_t of_nodes) {
   all.clear();
-  if (first.size() != node_count) first.assign(node_count, -1);
-  for (const int node : nodes) first[at(node)] = -1;
+  if (std::exchange(node_count, of_nodes) != of_nodes) {
+    first = std::vector<int>();
+  } else {
+    for (const int node : nodes) first[at(node)] = -1;
+  }
   nodes.clear();
 }
 
 void DofConstraints::SpringList::add(int node, std::size_t patch, std::size_t spring,
                                      double weight) {
+  if (first.empty()) first.assign(node_count, -1);
   if (first[at(node)] < 0) nodes.push_back(node);
   all.push_back({patch, spring, weight, first[at(node)]});
   first[at(node)] = static_cast<int>(all.size()) - 1;
@@ -36,7 +41,7 @@ void DofConstraints::bind(ConstrainedState& shape) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (holds(patch, axis)) dirichlet_[at(node)] |= static_cast<std::uint8_t>(1U << axis);
       }
-      if (byForce(patch)) carriers_[at(node)] = static_cast<int>(index);
+      if (byForce(patch)) carry(node, index);
       if (dirichlet_[at(node)] == kAllAxes && !was_held) --free_nodes_;
     }
     for (std::size_t spring = 0; spring < patch.rim.size(); ++spring) {
@@ -52,13 +57,18 @@ void DofConstraints::bind(ConstrainedState& shape) {
   std::sort(touched_.begin(), touched_.end());
 }
 
+void DofConstraints::carry(int node, std::size_t patch) {
+  if (carriers_.empty()) carriers_.assign(dirichlet_.size(), -1);
+  carriers_[at(node)] = static_cast<int>(patch);
+}
+
 // Back to what is held without patches. Where the cells are those of the last bind, only what its
 // patches held is undone: to look at all nodes again would take longer than a small solve.
 void DofConstraints::letGo(const LatticeState& state) {
   const std::size_t nodes = state.displacement.size();
   if (cells_ != state.cells || held_by_itself_.size() != nodes) {
     cells_ = state.cells;
-    carriers_.assign(nodes, -1);
+    carriers_ = std::vector<int>();
     held_by_itself_.assign(nodes, 0);
     for (std::size_t node = 0; node < nodes; ++node) {
       const int index = static_cast<int>(node);
@@ -71,7 +81,7 @@ void DofConstraints::letGo(const LatticeState& state) {
   }
   for (const std::vector<int>& hard : hard_) {
     for (const int node : hard) {
-      if (at(node) < nodes) carriers_[at(node)] = -1;
+      if (at(node) < carriers_.size()) carriers_[at(node)] = -1;
     }
   }
   dirichlet_ = held_by_itself_;
@@ -108,7 +118,7 @@ Vec3 DofConstraints::freePart(int node, const Vec3& vector) const {
 void DofConstraints::addContacts(const ConstrainedState& shape, int node,
                                  NodeBalance& balance) const {
   const std::vector<Vec3>& displacement = shape.state.displacement;
-  for (int index = contacts_.first[at(node)]; index >= 0; index = contacts_.all[at(index)].next) {
+  for (int index = contacts_.firstOf(node); index >= 0; index = contacts_.all[at(index)].next) {
     const SpringPlace& place = contacts_.all[at(index)];
     const ContactSpring& spring = shape.patches[place.patch].contacts[place.spring];
     balance.force += place.weight * forceOf(spring, displacement);
@@ -119,7 +129,7 @@ void DofConstraints::addContacts(const ConstrainedState& shape, int node,
 void DofConstraints::addSprings(const ConstrainedState& shape, int node,
                                 NodeBalance& balance) const {
   addContacts(shape, node, balance);
-  for (int index = rims_.first[at(node)]; index >= 0; index = rims_.all[at(index)].next) {
+  for (int index = rims_.firstOf(node); index >= 0; index = rims_.all[at(index)].next) {
     const LoadingPatch& patch = shape.patches[rims_.all[at(index)].patch];
     const RimSpring& spring = patch.rim[rims_.all[at(index)].spring];
     const Eigen::Matrix3d stiffness = stiffnessOf(patch, spring);

@@ -38,8 +38,8 @@ class DofConstraints {
   const std::vector<std::uint8_t>& dirichletMask() const { return dirichlet_; }
   // Nodes that a contact hangs on, ascending.
   const std::vector<int>& touched() const { return touched_; }
-  // Per node: index of the patch by force in which it is hard, -1 = none.
-  const std::vector<int>& carriers() const { return carriers_; }
+  // Index of the patch by force in which the node is hard, -1 = none.
+  int carrierOf(std::size_t node) const { return carriers_.empty() ? -1 : carriers_[node]; }
   const std::vector<int>& hardOf(std::size_t patch) const { return hard_[patch]; }
   int freeNodes() const { return free_nodes_; }  // of which not all is held
   Vec3 freePart(int node, const Vec3& vector) const;
@@ -58,6 +58,7 @@ class DofConstraints {
 
  private:
   void letGo(const LatticeState& state);
+  void carry(int node, std::size_t patch);
   void addContacts(const ConstrainedState& shape, int node, NodeBalance& balance) const;
 
   // Where a spring of a node stands.
@@ -70,10 +71,12 @@ class DofConstraints {
   // The springs of each node, as linked lists in one array.
   struct SpringList {
     std::vector<SpringPlace> all;
-    std::vector<int> first;  // per node: index in all, -1 = none
+    std::size_t node_count = 0;
+    std::vector<int> first;  // per node: index in all, -1 = none; empty: there was none yet
     std::vector<int> nodes;  // those with a spring
 
-    void clear(std::size_t node_count);
+    int firstOf(int node) const { return first.empty() ? -1 : first[at(node)]; }
+    void clear(std::size_t of_nodes);
     void add(int node, std::size_t patch, std::size_t spring, double weight);
   };
 
@@ -83,7 +86,7 @@ class DofConstraints {
   std::vector<std::uint8_t> held_by_itself_;
   int free_by_themselves_ = 0, free_nodes_ = 0;
   std::vector<std::uint8_t> dirichlet_;
-  std::vector<int> carriers_;
+  std::vector<int> carriers_;           // as carrierOf; empty: there was no patch by force yet
   std::vector<std::vector<int>> hard_;  // per patch
   SpringList rims_;
   SpringList contacts_;

@@ -237,7 +237,7 @@ SolveStatus ExplicitMethod::pass(Passage& passage, int steps) {
       const int index = static_cast<int>(node);
       const Vec3 held = passage.before[node] + share * (passage.end[node] - passage.before[node]);
       const Vec3 free = place[node] + passage.step * velocity_[node];
-      if (hold_.carriers()[node] >= 0) continue;  // moved with its patch
+      if (hold_.carrierOf(node) >= 0) continue;  // moved with its patch
       place[node] = held + hold_.freePart(index, free - held);
     }
     pushTouches(passage, {share, 1.0 / steps});
@@ -285,7 +285,7 @@ void ExplicitMethod::findForcesOn(Passage& passage) {
 void ExplicitMethod::pushTouches(Passage& passage, const ContactPassage::SmallStep& step) {
   const auto mobility = [&](int node) -> Vec3 {
     const double mass = passage.masses[at(node)];
-    if (mass <= 0.0 || hold_.carriers()[at(node)] >= 0) return Vec3::Zero();
+    if (mass <= 0.0 || hold_.carrierOf(at(node)) >= 0) return Vec3::Zero();
     return hold_.freePart(node, Vec3::Constant(passage.step * passage.step / mass));
   };
   const auto push = [&](int node, const Vec3& force) {

@@ -218,8 +218,8 @@ double RelaxationMethod::movedLength() const {
                               field_->size());
   }
   squared *= field_->unit() * field_->unit();
-  for (std::size_t node = 0; node < hold_.carriers().size(); ++node) {
-    if (hold_.carriers()[node] >= 0) squared += shape_.state.displacement[node].squaredNorm();
+  for (std::size_t node = 0; node < hold_.dirichletMask().size(); ++node) {
+    if (hold_.carrierOf(node) >= 0) squared += shape_.state.displacement[node].squaredNorm();
   }
   const double still = tuning::kStill * lattice_.spacing();
   return std::sqrt(std::max(squared, still * still * (field_->nodeCount() + 1.0)));

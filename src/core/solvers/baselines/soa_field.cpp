@@ -42,7 +42,10 @@ void SoaField::takeInertia() {
 }
 
 void SoaField::bind(const ConstrainedState& shape, const DofConstraints& patch_hold) {
-  std::vector<int> loads = patch_hold.carriers();
+  std::vector<int> loads;
+  for (std::size_t node = 0; node < shape.state.displacement.size(); ++node) {
+    loads.push_back(patch_hold.carrierOf(node));
+  }
   loads.insert(loads.end(), patch_hold.touched().begin(), patch_hold.touched().end());
   for (const LoadingPatch& patch : shape.patches) {
     for (const RimSpring& spring : patch.rim) loads.push_back(spring.node);
@@ -136,7 +139,7 @@ void SoaField::hold(const ConstrainedState& shape, const DofConstraints& patch_h
     for (std::size_t axis = 0; axis < 3; ++axis) {
       free_[axis][slots_[node]] = (held >> axis & 1) != 0 ? 0.0F : 1.0F;
     }
-    if (held != kAllAxes || patch_hold.carriers()[node] >= 0) {
+    if (held != kAllAxes || patch_hold.carrierOf(node) >= 0) {
       movable_.push_back(static_cast<int>(node));
     }
   }

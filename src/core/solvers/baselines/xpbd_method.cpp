@@ -202,7 +202,7 @@ SolveStatus XpbdMethod::goThrough(int& steps) {
     for (int step = 1; step <= steps; ++step) {
       for (std::size_t node = 0; node < place.size(); ++node) {  // what is held goes evenly
         const Vec3 held = before[node] + (step / count) * (end[node] - before[node]);
-        if (hold_.carriers()[node] >= 0) continue;
+        if (hold_.carrierOf(node) >= 0) continue;
         place[node] = held + hold_.freePart(static_cast<int>(node), place[node] - held);
       }
       makeSmallStep({term.duration / count, step / count, 1.0 / count, term.damping_time}, masses,
@@ -239,7 +239,7 @@ void XpbdMethod::makeSmallStep(const SmallStep& step, const std::vector<double>&
   pushTouches(contacts, {step.end, step.share});
   for (std::size_t node = 0; node < predicted.size(); ++node) {
     const int index = static_cast<int>(node), slot = field_->slotOf(index);
-    if (hold_.carriers()[node] >= 0) continue;
+    if (hold_.carrierOf(node) >= 0) continue;
     Vec3 pushed;
     for (int axis = 0; axis < 3; ++axis) {
       pushed[axis] = static_cast<double>(field_->moved()[at(axis)][slot] -

@@ -85,7 +85,7 @@ int OpenPart::layersIn(const GridBox& open) const {
 
 int OpenPart::nodesIn(const GridBox& open, const DofConstraints& hold) const {
   const auto moves = [&hold](std::size_t node) {
-    return hold.dirichletMask()[node] != kAllAxes || hold.carriers()[node] >= 0 ? 1 : 0;
+    return hold.dirichletMask()[node] != kAllAxes || hold.carrierOf(node) >= 0 ? 1 : 0;
   };
   int count = 0;
   const auto ghosts = at(lattice_.nodeCount());  // which are all in the part

@@ -82,7 +82,7 @@ void LevelConstraints<Real>::holdFinest(const ConstrainedState& shape, const Dof
   }
   for (std::size_t i = 0; i < grid_.nodes().size(); ++i) {
     const std::size_t node = at(grid_.nodes()[i]);
-    level.hold(grid_.entries()[i], hold.carriers()[node] >= 0 ? 0U : hold.dirichletMask()[node]);
+    level.hold(grid_.entries()[i], hold.carrierOf(node) >= 0 ? 0U : hold.dirichletMask()[node]);
   }
   if (!grid_.weight().front().empty()) level.right_hand_side = grid_.weight();
 }
@@ -199,7 +199,8 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
   fine_springs.clear();
   FreeShares shares{
       std::vector<std::optional<NodeShares>>(grid_.level(index - 1).constrained.count()),
-      std::vector<int>(at(coarse.count()), 0)};
+      std::vector<int>(at(coarse.count()), 0),
+      {}};
   coarse.constrained.springs.reserve(fine.size());
   for (std::size_t i = 0; i < fine.size(); ++i) {
     std::vector<LevelSpring::Carrier> carriers = freeCarriers(index, fine[i].carriers, shares);
@@ -221,8 +222,8 @@ void LevelConstraints<Real>::addSpringsToCoarse(std::size_t index) {
 template <typename Real>
 std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
     std::size_t index, const std::vector<LevelSpring::Carrier>& fine, FreeShares& known) const {
-  std::vector<LevelSpring::Carrier> carriers;
-  carriers.reserve(kCorners);
+  std::vector<LevelSpring::Carrier>& carriers = known.carriers;
+  carriers.clear();
   for (const LevelSpring::Carrier& carrier : fine) {
     std::optional<NodeShares>& shares = known.of_constrained[at(carrier.constrained)];
     if (!shares) shares = freeShares(index, carrier.node);
@@ -236,7 +237,7 @@ std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
     }
   }
   for (const LevelSpring::Carrier& carrier : carriers) known.place_of[at(carrier.node)] = 0;
-  return carriers;
+  return carriers;  // a copy, without room for more
 }
 
 template <typename Real>

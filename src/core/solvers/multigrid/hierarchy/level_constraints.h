@@ -57,6 +57,7 @@ class LevelConstraints {
   struct FreeShares {
     std::vector<std::optional<NodeShares>> of_constrained;  // per node with springs; asked for
     std::vector<int> place_of;  // per coarse node: among a spring's carriers, from 1 on; 0: none
+    std::vector<LevelSpring::Carrier> carriers;  // of the spring that was looked at last
   };
   std::vector<LevelSpring::Carrier> freeCarriers(std::size_t coarse,
                                                  const std::vector<LevelSpring::Carrier>& fine,
