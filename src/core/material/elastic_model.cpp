@@ -211,11 +211,14 @@ double ElasticModel::stiffnessAtRest(const CellSet& cells, int node) const {
 Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
   if (node_stiffness_of_ != state.cells) {
     node_stiffness_of_ = state.cells;
-    node_stiffness_.assign(at(state.cells->nodeCount()), -1.0);
+    node_stiffness_.clearFor(at(state.cells->nodeCount()));
   }
-  double& stiffness = node_stiffness_[at(node)];
-  if (stiffness < 0.0) stiffness = stiffnessAtRest(*state.cells, node);
-  return Vec3::Constant(stiffness);
+  const double* known = node_stiffness_.find(node);
+  if (known == nullptr) {
+    const double found = stiffnessAtRest(*state.cells, node);
+    known = &(node_stiffness_.add(node) = found);
+  }
+  return Vec3::Constant(*known);
 }
 
 Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {

@@ -15,6 +15,7 @@
 #include "material/energy_model.h"
 #include "material/inertial_term.h"
 #include "robot_tissue/core/lattice.h"
+#include "robot_tissue/core/sparse_values.h"
 
 namespace robot_tissue {
 
@@ -91,8 +92,8 @@ class ElasticModel : public EnergyModel {
   bool has_membranes_;
   std::shared_ptr<const Membrane> membrane_;  // null: none
   std::vector<Substance> substances_;         // per composition of the lattice
-  // Per node (N/m), < 0: nobody asked yet; and the cells that it is of. Touches ask in every round.
-  mutable std::vector<double> node_stiffness_;
+  // Of nodes that were asked for (N/m), and the cells that it is of. Touches ask in every round.
+  mutable SparseValues<double> node_stiffness_;
   mutable std::shared_ptr<const CellSet> node_stiffness_of_;
 };
 
