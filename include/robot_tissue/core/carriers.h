@@ -58,6 +58,12 @@ class CarrierLists {
     push_back(CarrierRange(carriers.begin(), carriers.end()));
   }
 
+  // Gives back the room that is left for more.
+  void shrinkToFit() {
+    all_.shrink_to_fit();
+    ends_.shrink_to_fit();
+  }
+
   class Iterator {
    public:
     Iterator(const CarrierLists& lists, std::size_t point) : lists_(lists), point_(point) {}

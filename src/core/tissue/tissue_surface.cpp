@@ -18,6 +18,14 @@ std::uint64_t newRevision() {
   return ++last;
 }
 
+void shrinkToFit(TissueSurface& surface) {
+  surface.rest.shrink_to_fit();
+  surface.carriers.shrinkToFit();
+  surface.node.shrink_to_fit();
+  surface.triangles.shrink_to_fit();
+  surface.opened.shrink_to_fit();
+}
+
 }  // namespace
 
 double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
@@ -72,6 +80,7 @@ void Tissue::rebuildSurface() {
   renewTies();
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);
+  shrinkToFit(surface_);
   surface_.revision = newRevision();
   rest_volume_ = enclosedVolume(surface_, surface_.rest);
   vertices_ = surface_.rest;
