@@ -294,6 +294,8 @@ void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const T
     const double most = tuning::kMostEntry * tissue.lattice().spacing();
     touch.entry = std::min(std::max(contact.depth_m, 0.0), most);
   }
+  // Each is a kilobyte: room for twice as many would be more than is used.
+  if (touches_.size() == touches_.capacity()) touches_.reserve(9 * touches_.size() / 8 + 8);
   touches_.push_back(touch);
   put(contact, pose, tissue, held, touches_.back());
 }
