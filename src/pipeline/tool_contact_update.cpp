@@ -43,13 +43,16 @@ std::vector<double> ToolContactUpdate::longestWays() {
 
 double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   const Stopwatch watch(world_.report.contact_ms);
-  deform(world_.tissue.surface(), before, vertices_);
-  deform(world_.tissue.surface(), world_.tissue.state().displacement, now_);
+  const TissueSurface& surface = world_.tissue.surface();
+  deform(surface, world_.tissue.state().displacement, now_);
+  const std::vector<Surroundings> around = surroundings();
   double share = 1.0, strides = 1.0;
-  for (const Surroundings& near : surroundings()) {
-    for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
-      if (!near.box.contains(now_[vertex]) && !near.box.contains(vertices_[vertex])) continue;
-      const double way = (now_[vertex] - vertices_[vertex]).norm();
+  for (std::size_t vertex = 0; vertex < now_.size(); ++vertex) {
+    const Vec3& now = now_[vertex];
+    const Vec3 from = carriedFrom(surface.rest[vertex], surface.carriers[vertex], before);
+    for (const Surroundings& near : around) {
+      if (!near.box.contains(now) && !near.box.contains(from)) continue;
+      const double way = (now - from).norm();
       if (way > near.longest) share = std::min(share, near.longest / way);
       strides = std::max(strides, way / near.stride);
     }
@@ -57,7 +60,7 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
   return shareOutside(share, static_cast<int>(std::ceil(share * strides)), before);
 }
 
-// How much of that share of the way from `vertices_` to the shape takes no point deep into a link:
+// How much of that share of the way from `start` to the shape takes no point deep into a link:
 // looked at stride by stride, up to the last before one that does; within the first, by halves.
 // Where there is time for the contacts of the shape only, it goes no farther than it was looked at.
 // Deeper than the middle of a link, the nearest way out is on the far side, and the side on which a

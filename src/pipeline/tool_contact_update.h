@@ -40,10 +40,9 @@ class ToolContactUpdate : public ContactUpdate {
   World& world_;
   TouchFinder& touch_finder_;
   std::uint64_t surface_revision_;
-  std::vector<Vec3> vertices_;  // where the way began that is looked at
-  std::vector<Vec3> now_;       // and where it ends, of the lattice's own
-  double contacts_ms_ = 0.0;    // that the last renewal took
-  double left_inside_ = 0.0;    // depth of the deepest contact after the last solve (m)
+  std::vector<Vec3> now_;     // where the way that is looked at ends, of the lattice's own
+  double contacts_ms_ = 0.0;  // that the last renewal took
+  double left_inside_ = 0.0;  // depth of the deepest contact after the last solve (m)
 };
 
 }  // namespace robot_tissue
