@@ -43,6 +43,8 @@ class CompositeShape {
   GridLevel<Real>& finest() { return levels_->finest(); }
   const GridLevel<Real>& finest() const { return levels_->finest(); }
 
+  // Room for a vector, of whoever is at work: what it holds is lost when another one is.
+  Vector& spare() { return spare_; }
   void keepPlaces(Vector& places) const;
   void keepForces(Vector& forces);
   void keepForcesInPart(Vector& forces) const;
@@ -76,6 +78,7 @@ class CompositeShape {
   void placeAt(const Vector& places);
 
   std::unique_ptr<GridHierarchy<Real>> levels_;
+  Vector spare_;
 };
 
 extern template struct CompositeVector<float>;

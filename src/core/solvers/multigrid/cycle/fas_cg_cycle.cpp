@@ -22,6 +22,15 @@ void FasCgCycle<Real>::reset() {
   steps_ = std::max(tuning::kFewestSteps, rounded(tuning::kStepsOfRoot * std::sqrt(greatest)));
 }
 
+// As a smaller part leaves vectors that were larger their room.
+template <typename Real>
+void FasCgCycle<Real>::noteOpened() {
+  for (Vector* vector : {&start_, &force_, &force_before_, &direction_, &direction_before_}) {
+    *vector = Vector();
+  }
+  begin();
+}
+
 // Springs in contact are the stiffest of all, and begin and end: what is rough beside them lasts.
 // Where tissue slips, the first cycle is all that a solve has.
 template <typename Real>

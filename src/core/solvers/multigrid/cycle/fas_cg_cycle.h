@@ -24,10 +24,12 @@ class FasCgCycle {
  public:
   // longest_step: of a node in one cycle, in spacings.
   FasCgCycle(CompositeShape<Real>& shape, double longest_step)
-      : shape_(shape), longest_step_(longest_step) {}
+      : shape_(shape), longest_step_(longest_step), direction_(shape.spare()) {}
 
   // The shape is on other levels: how many steps their smoother takes.
   void reset();
+  // Another part of the levels is open: the vectors are of its size from now on.
+  void noteOpened();
   int smootherSteps() const { return steps_; }
   int smootherSteps(const SolveContext& solve) const;
 
@@ -59,7 +61,7 @@ class FasCgCycle {
   int steps_ = 3;
   Vector start_;
   Vector force_, force_before_;  // f, f'
-  Vector direction_;             // s, then d
+  Vector& direction_;            // s, then d
   Vector direction_before_;      // d'
   Vector start_before_;          // of a long solve's cycle, for `ways_`
   EarlierWays<Real> ways_;

@@ -38,7 +38,10 @@ class FasCgIteration {
                     double known);
   double errorFactor() const { return estimator_.factor.value(); }
   // The shape is on the same levels, of which another part is open.
-  void noteOpened() { estimator_.noteOpened(); }
+  void noteOpened() {
+    cycle_.noteOpened();
+    estimator_.noteOpened();
+  }
   void forget() { estimator_.factor.forget(); }
 
   SolveStatus run(SolveContext& solve);

@@ -35,7 +35,8 @@ bool WarmStart<Real>::take() {
 // to `here`; were the energy quadratic, it would be zero at slope / (slope - here) times that.
 template <typename Real>
 bool WarmStart<Real>::go() {
-  shape_.keepPlaces(undo_);
+  CompositeVector<Real>& undo = shape_.spare();
+  shape_.keepPlaces(undo);
   last_step_.groups.assign(shape_.finest().constrained.groups.size(), GroupVector::Zero());
   const double slope = shape_.workOfForcesInPart(last_step_);
   if (slope == 0.0 || !std::isfinite(slope)) return false;
@@ -43,22 +44,22 @@ bool WarmStart<Real>::go() {
   const double local = ended_late_ ? shape_.finest().squaredLocalMotion() : 0.0;
   shape_.move(last_step_, share);
   const double here = shape_.workOfForcesInPart(last_step_);
-  if (std::abs(here) <= cycle_tuning::kFlatEnough * std::abs(slope)) return isGood(local);
+  if (std::abs(here) <= cycle_tuning::kFlatEnough * std::abs(slope)) return isGood(local, undo);
   const double best = slope / (slope - here);
   if (!std::isfinite(here) || !(best > 0.0)) {
-    shape_.restore(undo_);
+    shape_.restore(undo);
     return false;
   }
   shape_.move(last_step_, share * (std::min(best, cycle_tuning::kFarthestWarmStart) - 1.0));
-  return isGood(local);
+  return isGood(local, undo);
 }
 
 // A step that ended late also made up for what was left before, which is not to be gone on with.
 // squared_local_before: the motion left to nodes alone before (GridLevel::squaredLocalMotion).
 template <typename Real>
-bool WarmStart<Real>::isGood(double squared_local_before) {
+bool WarmStart<Real>::isGood(double squared_local_before, const CompositeVector<Real>& undo) {
   if (!ended_late_ || shape_.finest().squaredLocalMotion() <= squared_local_before) return true;
-  shape_.restore(undo_);
+  shape_.restore(undo);
   return false;
 }
 

@@ -27,10 +27,10 @@ class WarmStart {
   bool go();
 
  private:
-  bool isGood(double squared_local_before);
+  bool isGood(double squared_local_before, const CompositeVector<Real>& undo);
 
   CompositeShape<Real>& shape_;
-  CompositeVector<Real> start_, last_step_, undo_;
+  CompositeVector<Real> start_, last_step_;
   bool has_start_ = false, has_step_ = false, first_of_step_ = false;
   bool ended_late_ = false;
 };
