@@ -48,7 +48,9 @@ PieceNumbers::PieceNumbers(const Lattice& lattice, const LatticeState& state, Na
     : PieceNumbers(lattice, std::move(names), pieceOfNodes(lattice, state)) {}
 
 PieceNumbers::PieceNumbers(const Lattice& lattice, Names names, std::vector<int> parts)
-    : names_(std::move(names)), of_nodes_(std::move(parts)) {
+    : names_(std::move(names)) {
+  if (names_.of_parts.size() == 1) return;
+  of_nodes_ = std::move(parts);
   of_nodes_.resize(at(lattice.nodeCount()));
   for (int& of_node : of_nodes_) {
     if (of_node >= 0) of_node = names_.of_parts[at(of_node)];
@@ -59,8 +61,8 @@ PieceNumbers PieceNumbers::after(const Lattice& lattice, const LatticeState& sta
   std::vector<int> parts = pieceOfNodes(lattice, state);
   const std::vector<std::int64_t> sizes = sizesOf(lattice, state, parts);
   std::vector<int> earlier(at(state.pieces), -1);  // number of what each part was of
-  for (std::size_t node = 0; node < of_nodes_.size(); ++node) {
-    if (parts[node] >= 0) earlier[at(parts[node])] = of_nodes_[node];
+  for (std::size_t node = 0; node < at(lattice.nodeCount()); ++node) {
+    if (parts[node] >= 0) earlier[at(parts[node])] = numberAt(node);
   }
   std::vector<int> heirs(at(names_.next), -1);
   for (int part = 0; part < state.pieces; ++part) {

@@ -38,8 +38,12 @@ class PieceNumbers {
   // `parts`: of each node, as pieceOfNodes has them.
   PieceNumbers(const Lattice& lattice, Names names, std::vector<int> parts);
 
+  int numberAt(std::size_t node) const {
+    return of_nodes_.empty() ? names_.of_parts.front() : of_nodes_[node];
+  }
+
   Names names_;
-  std::vector<int> of_nodes_;  // of the lattice's nodes; of removed ones: any
+  std::vector<int> of_nodes_;  // of the lattice's nodes; of removed ones: any; empty: of one part
 };
 
 }  // namespace robot_tissue
