@@ -25,7 +25,7 @@ void FasCgCycle<Real>::reset() {
 // As a smaller part leaves vectors that were larger their room.
 template <typename Real>
 void FasCgCycle<Real>::noteOpened() {
-  for (Vector* vector : {&start_, &force_, &force_before_, &direction_, &direction_before_}) {
+  for (Vector* vector : {&start_, &force_, &direction_}) {
     *vector = Vector();
   }
   begin();
@@ -43,6 +43,7 @@ template <typename Real>
 void FasCgCycle<Real>::begin() {
   fresh_ = true;
   conjugate_ = false;
+  for (Vector* vector : {&force_before_, &direction_before_}) *vector = Vector();
 }
 
 template <typename Real>

@@ -33,7 +33,7 @@ class FasCgCycle {
   int smootherSteps() const { return steps_; }
   int smootherSteps(const SolveContext& solve) const;
 
-  // Forgets the last direction.
+  // Forgets the last direction, and what only cycles that go on with it keep.
   void begin();
   // After CoarseCorrection::find.
   void run(const SolveContext& solve, const MotionLeft& left);
