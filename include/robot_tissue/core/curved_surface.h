@@ -27,8 +27,9 @@ class CurvedSurface {
   // beside it.
   static Vec3 cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners);
 
-  // What follows is of that surface with its vertices there (m). Without a look at all of it where
-  // its revision is known; what was found of the same vertices stays.
+  // What follows is of that surface with its vertices there (m); it is asked for what it has until
+  // the next one is taken. Without a look at all of it where its revision is known; what was found
+  // of the same vertices stays.
   void take(const TissueSurface& surface, const std::vector<Vec3>& vertices);
 
   // Unit normal outwards, even from corner to corner of the point's triangle; zero where it has
@@ -64,13 +65,14 @@ class CurvedSurface {
   double riseOf(int triangle, int corner, int other) const;
   Vec3 findCornerNormal(int triangle, std::size_t corner) const;
 
-  std::uint64_t revision_ = 0;         // of the surface; 0: none yet
-  std::vector<MeshTriangle> corners_;  // per triangle
-  std::vector<int> triangles_;         // of each vertex, ascending
-  std::vector<int> first_;             // per vertex, in triangles_, and their end
-  std::vector<Vec3> rest_;             // per vertex (m)
-  std::vector<Vec3> vertices_;         // m
-  std::uint64_t shape_ = 0;            // counts surfaces, and their vertices
+  const MeshTriangle& cornersOf(int triangle) const { return surface_->triangles[at(triangle)]; }
+
+  const TissueSurface* surface_ = nullptr;  // that was taken last
+  std::uint64_t revision_ = 0;              // of it; 0: none yet
+  std::vector<int> triangles_;              // of each vertex, ascending
+  std::vector<int> first_;                  // per vertex, in triangles_, and their end
+  std::vector<Vec3> vertices_;              // m
+  std::uint64_t shape_ = 0;                 // counts surfaces, and their vertices
   // Tools touch few triangles: of those alone.
   mutable SparseValues<OfTriangle> of_triangles_;
   mutable SparseValues<OfCorners> of_corners_;  // of this shape

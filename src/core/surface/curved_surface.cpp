@@ -25,17 +25,16 @@ Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTrian
 
 void CurvedSurface::take(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
   const bool is_known = revision_ != 0 && revision_ == surface.revision;
+  surface_ = &surface;
   if (!is_known) takeSurface(surface);
   if (is_known && areSame(vertices, vertices_)) return;
   vertices_ = vertices;
   ++shape_;
-  of_corners_.clearFor(corners_.size());
+  of_corners_.clearFor(surface.triangles.size());
 }
 
 void CurvedSurface::takeSurface(const TissueSurface& surface) {
   revision_ = surface.revision;
-  corners_ = surface.triangles;
-  rest_ = surface.rest;
   first_.assign(surface.rest.size() + 1, 0);
   for (const MeshTriangle& corners : surface.triangles) {
     for (const int corner : corners) ++first_[at(corner) + 1];
@@ -45,18 +44,18 @@ void CurvedSurface::takeSurface(const TissueSurface& surface) {
   }
   std::vector<int> next(first_.begin(), first_.end() - 1);
   triangles_.resize(at(first_.back()));
-  for (std::size_t triangle = 0; triangle < corners_.size(); ++triangle) {
-    for (const int corner : corners_[triangle]) {
+  for (std::size_t triangle = 0; triangle < surface.triangles.size(); ++triangle) {
+    for (const int corner : surface.triangles[triangle]) {
       triangles_[at(next[at(corner)]++)] = static_cast<int>(triangle);
     }
   }
-  of_triangles_.clearFor(corners_.size());
+  of_triangles_.clearFor(surface.triangles.size());
 }
 
 Vec3 CurvedSurface::doubleAreaAt(int vertex) const {
   Vec3 sum = Vec3::Zero();
   for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
-    sum += doubleArea(vertices_, corners_[at(triangles_[at(i)])]);
+    sum += doubleArea(vertices_, cornersOf(triangles_[at(i)]));
   }
   return sum;
 }
@@ -64,15 +63,15 @@ Vec3 CurvedSurface::doubleAreaAt(int vertex) const {
 CurvedSurface::OfTriangle& CurvedSurface::ofTriangle(int triangle) const {
   if (OfTriangle* known = of_triangles_.find(triangle)) return *known;
   OfTriangle& known = of_triangles_.add(triangle);
-  const MeshTriangle& corners = corners_[at(triangle)];
-  known.rest_normal = doubleArea(rest_, corners).stableNormalized();
-  known.corner_weights = cornerWeights(rest_, corners);
+  const MeshTriangle& corners = cornersOf(triangle);
+  known.rest_normal = doubleArea(surface_->rest, corners).stableNormalized();
+  known.corner_weights = cornerWeights(surface_->rest, corners);
   return known;
 }
 
 const Vec3& CurvedSurface::triangleNormal(int triangle, OfTriangle& known) const {
   if (known.shape == shape_) return known.normal;
-  known.normal = doubleArea(vertices_, corners_[at(triangle)]).stableNormalized();
+  known.normal = doubleArea(vertices_, cornersOf(triangle)).stableNormalized();
   known.shape = shape_;
   return known.normal;
 }
@@ -89,14 +88,14 @@ Vec3 CurvedSurface::cornerNormal(int triangle, std::size_t corner) const {
 
 // Of the triangles around the corner that no sharp edge parts from its own.
 Vec3 CurvedSurface::findCornerNormal(int triangle, std::size_t corner) const {
-  const int vertex = corners_[at(triangle)][corner];
+  const int vertex = cornersOf(triangle)[corner];
   const Vec3 own = ofTriangle(triangle).rest_normal;
   Vec3 sum = Vec3::Zero();
   for (int i = first_[at(vertex)]; i < first_[at(vertex) + 1]; ++i) {
     const int other = triangles_[at(i)];
     OfTriangle& of_other = ofTriangle(other);
     if (own.dot(of_other.rest_normal) < kSharpFold) continue;
-    const MeshTriangle& corners = corners_[at(other)];
+    const MeshTriangle& corners = cornersOf(other);
     const auto k = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
     sum += of_other.corner_weights[k] * triangleNormal(other, of_other);
   }
@@ -114,7 +113,7 @@ Vec3 CurvedSurface::normalAt(const SurfacePoint& point) const {
 // Of the normal that goes evenly from corner to corner: N = sum of u_k N_k, dN/dx = sum of N_k
 // times the gradient of u_k in the triangle.
 Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point) const {
-  const MeshTriangle& corners = corners_[at(point.triangle)];
+  const MeshTriangle& corners = cornersOf(point.triangle);
   const Vec3 area = doubleArea(vertices_, corners);
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -167,7 +166,7 @@ Eigen::Matrix3d CurvedSurface::bulgeSlopesAt(const SurfacePoint& point) const {
 
 // w_ij, within kMostRise.
 double CurvedSurface::riseOf(int triangle, int corner, int other) const {
-  const MeshTriangle& corners = corners_[at(triangle)];
+  const MeshTriangle& corners = cornersOf(triangle);
   const Vec3 way = vertices_[at(corners[at(other)])] - vertices_[at(corners[at(corner)])];
   const double most = kMostRise * way.norm();
   return std::min(most, std::max(-most, cornerNormal(triangle, at(corner)).dot(way)));
