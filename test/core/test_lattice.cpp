@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <set>
 
 #include "block_fixtures.h"
+#include "mesh_fixtures.h"
 
 namespace robot_tissue::test_lattice {
 namespace {
@@ -66,6 +68,34 @@ TEST(Lattice, NeighborsSeeEachOtherThroughTheSameSpring) {
     }
   }
   EXPECT_EQ(seen, 2 * static_cast<int>(lattice.springs().size()));
+}
+
+TissueConfig ballOf(double radius) {
+  TissueConfig config = blockOf(1, 1, 1);
+  config.model = "elastic";
+  config.mesh = std::make_shared<const TriangleMesh>(sphereMesh(radius, 2));
+  return config;
+}
+
+// A grid that is whole has no tables of its points, a ball's has.
+TEST(Lattice, SpringsAreTheSameByNumberInTurnAndFromTheirNodes) {
+  for (const TissueConfig& config : {blockOf(3, 2, 4), ballOf(0.03)}) {
+    const Lattice lattice(config);
+    int number = 0;
+    for (const Spring spring : lattice.springs()) {
+      EXPECT_EQ(spring.number, number++);
+      const Spring again = lattice.springs()[at(spring.number)];
+      EXPECT_EQ(again.a, spring.a);
+      EXPECT_EQ(again.b, spring.b);
+      EXPECT_EQ(again.axis, spring.axis);
+      EXPECT_EQ(lattice.springOf(spring.a, 2 * spring.axis + 1), spring.number);
+      EXPECT_EQ(lattice.springOf(spring.b, 2 * spring.axis), spring.number);
+      EXPECT_EQ(lattice.neighbor(spring.a, 2 * spring.axis + 1), spring.b);
+      EXPECT_EQ(lattice.neighbor(spring.b, 2 * spring.axis), spring.a);
+    }
+    EXPECT_EQ(number, static_cast<int>(lattice.springs().size()));
+    EXPECT_GT(number, 0);
+  }
 }
 
 // Slices of springs in series; parallel springs of a slice add up.

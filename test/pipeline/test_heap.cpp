@@ -60,5 +60,26 @@ TEST(Heap, HoldsNoMoreAfterAsMuchUseAgain) {
   EXPECT_LT(leastHeld(pipeline, kUses) - before, kKept * kUses);
 }
 
+// 159 and 411 as this was written: what no tool comes to is not there.
+TEST(Heap, HoldsLittleOfTissueThatNoToolComesTo) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer has a heap of its own";
+#endif
+  if (compat::heapInUse() == 0.0) GTEST_SKIP() << "this heap does not tell";
+  TissueConfig tissue = block("elastic", 0.0025);
+  tissue.shape.max() = Vec3(0.1, 0.1, 0.05);
+  const double before = compat::heapInUse();
+  Pipeline pipeline(tissue, methodOf("elastic"), {probe()});
+  const double nodes = pipeline.tissue().lattice().nodeCount();
+  EXPECT_EQ(nodes, 35301.0);
+  EXPECT_LT(compat::heapInUse() - before, 180.0 * nodes);
+  const auto pressedBy = [](double depth) {
+    return at({Vec3(0.05, 0.05, 0.05 + kRadius - depth)});
+  };
+  for (double depth = -0.001; depth < 0.003; depth += 0.0005) pipeline.step(pressedBy(depth));
+  EXPECT_GT(pipeline.report().tools.front().contacts, 0);
+  EXPECT_LT(compat::heapInUse() - before, 450.0 * nodes);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_heap
