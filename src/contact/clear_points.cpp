@@ -12,7 +12,7 @@ namespace robot_tissue {
 void ClearPoints::beginLook(const PlacedShape& placed, std::uint64_t tree,
                             const std::vector<Vec3>& vertices, std::size_t points) {
   const bool is_other = tree != tree_ || vertices.size() != vertices_.size();
-  vertices_.resize(vertices.size());
+  vertices_.resize(vertices.size(), Vec3::Zero());
   double longest = 0.0;
   bool is_finite = true;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
