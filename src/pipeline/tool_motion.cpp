@@ -54,7 +54,7 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
     return pose;
   }
   if (goes_back) forgetUnfinished();
-  if (!moves && !goes_back && !finishes(start, pose)) return start;
+  if (!moves && !finishes(start, pose)) return start;
   if (!moves && leadsNowhere(start, pose)) {
     world_.report.lost = true;
     return start;
