@@ -51,6 +51,8 @@ struct Found {
 struct ContactFinder::Kept {
   Found found;
   std::vector<std::vector<KeptFacePairs>> face_pairs;  // per link
+  std::vector<std::vector<KnownMinima>> known_minima;  // likewise
+  std::uint64_t known_minima_of = 0;
   bool is_found_of_tree = false;
 };
 
@@ -111,7 +113,7 @@ struct ContactFinder::Impl {
   // Kept from call to call, to spare allocations and to answer the same question once.
   LinkContacts link_contacts;
   SurfaceTree surface_tree;
-  bool in_step = false;
+  bool follows_places = false;
   std::uint64_t known_minima_of = 0;  // SurfaceTree::trees()
   Found found;
 };
@@ -142,7 +144,11 @@ std::shared_ptr<const ContactFinder::Kept> ContactFinder::kept() const {
   auto kept = std::make_shared<Kept>();
   kept->found = impl_->found;
   kept->is_found_of_tree = impl_->found.move == impl_->surface_tree.moves();
-  for (const TouchingLink& link : impl_->links) kept->face_pairs.push_back(link.face_pairs);
+  kept->known_minima_of = impl_->known_minima_of;
+  for (const TouchingLink& link : impl_->links) {
+    kept->face_pairs.push_back(link.face_pairs);
+    kept->known_minima.push_back(link.known_minima);
+  }
   return kept;
 }
 
@@ -150,16 +156,15 @@ void ContactFinder::restore(const Kept& kept, const TissueSurface& surface,
                             const std::vector<Vec3>& vertices) const {
   for (std::size_t link = 0; link < impl_->links.size(); ++link) {
     impl_->links[link].face_pairs = kept.face_pairs[link];
+    impl_->links[link].known_minima = kept.known_minima[link];
   }
+  impl_->known_minima_of = kept.known_minima_of;
   if (impl_->surface_tree.exists()) impl_->surface_tree.of(surface, vertices);
   impl_->found = kept.found;
   if (kept.is_found_of_tree) impl_->found.move = impl_->surface_tree.moves();
 }
 
-void ContactFinder::beginStep() const {
-  impl_->in_step = true;
-  impl_->forgetMinima();
-}
+void ContactFinder::followPlaces() { impl_->follows_places = true; }
 
 ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& surface,
                                     const std::vector<Vec3>& vertices, double margin,
@@ -251,6 +256,9 @@ void ContactFinder::Impl::addContacts(const PlacedLink& here, std::size_t link,
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
   }
   if (known_minima_of != surface_tree.trees()) forgetMinima();
+  if (places == Places::kFollowed) {
+    for (KnownMinima& minima : links[link].known_minima) minima.beginSearch();
+  }
   const LinkContacts::Asked asked{here,
                                   links[link].tool,
                                   static_cast<int>(link),
@@ -276,7 +284,7 @@ ContactSet ContactFinder::find(const RobotPose& pose, const TissueSurface& surfa
   for (std::size_t link = 0; link < links.size(); ++link) {
     if (near_shapes[link].empty()) continue;
     impl_->addContacts(links[link], link, near_shapes[link], surface, vertices, margin,
-                       impl_->in_step ? Places::kFollowed : Places::kAnew, found);
+                       impl_->follows_places ? Places::kFollowed : Places::kAnew, found);
   }
   impl_->found = {impl_->surface_tree.moves(), pose, margin, found};
   return found;

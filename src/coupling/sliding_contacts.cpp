@@ -14,14 +14,12 @@
 namespace robot_tissue {
 
 SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
-                                 std::vector<double> thickness)
-    : friction_(std::move(friction)),
-      thickness_(std::move(thickness)),
-      pressed_(friction_.size()) {}
+                                 std::vector<LinkForm> links)
+    : friction_(std::move(friction)), forms_(std::move(links)), pressed_(friction_.size()) {}
 
 // The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
 double SlidingContacts::fineness(int link, double spacing) const {
-  return std::min(spacing, thickness_[at(link)]);
+  return std::min(spacing, forms_[at(link)].thickness);
 }
 
 void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
@@ -61,6 +59,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
                            const Held& held, const Tracked& wandering) {
   for (ContactConstraint& touch : touches_) {
     touch.found = true;  // nothing was looked for yet: its plane has come with the link
+    touch.left.reset();
     if (!tissue.goesInTime()) touch.entry = 0.0;
     touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
     touch.firm_stiffness = touch.spring.stiffness;
@@ -148,7 +147,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
 bool SlidingContacts::driftsEvenly(const ContactConstraint& touch, const Tissue& tissue) const {
   const double thick = tuning::kThickForDrift * tissue.lattice().spacing();
   return touch.vertex < 0 && !touch.contact.wanders && touch.contact.rim.edges.empty() &&
-         thickness_[at(touch.contact.link)] >= thick && !tissue.hasTime();
+         forms_[at(touch.contact.link)].thickness >= thick && !tissue.hasTime();
 }
 
 // The depth or gap that counts as none (m): closing it at all of the tool's n touches would change
@@ -185,6 +184,11 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     add(contact, pose, tissue, held);
     return false;
   }
+  if (hopsBack(*touch, contact, tissue)) {
+    add(contact, pose, tissue, held);
+    return contact.depth_m <= slackOf(touches_.back(), tissue);
+  }
+  touch->left = touch->contact.place.barycentric;
   const Vec3 normal = touch->spring.normal, foot = touch->tool_point;
   const Vec3 since_normal = touch->since_normal;
   put(contact, pose, tissue, held, *touch);
@@ -196,6 +200,17 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     anchor(pose, *touch);
   }
   return contact.depth_m <= slackOf(*touch, tissue);
+}
+
+// Whether the touch came from there in this load step: pushed at either place alone, the triangle
+// goes into the tool at the other one. So a touch of each stays. Not in time, where forces of
+// touches that come and go would be noise.
+bool SlidingContacts::hopsBack(const ContactConstraint& touch, const Contact& contact,
+                               const Tissue& tissue) const {
+  if (!touch.left || !forms_[at(contact.link)].is_uneven || tissue.hasTime()) return false;
+  const Vec3 off = *touch.left - contact.place.barycentric;
+  const Vec3 gone = *touch.left - touch.contact.place.barycentric;
+  return off.cwiseAbs().maxCoeff() < 0.5 * gone.cwiseAbs().maxCoeff();
 }
 
 // Uzawa's step: each multiplier becomes the normal force of the solve, each bound of friction the

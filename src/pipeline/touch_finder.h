@@ -40,10 +40,7 @@ class TouchFinder {
   std::vector<double> penetrations(const std::vector<std::size_t>& links, const RobotPose& pose);
   bool wouldTouchAtRest(const RobotPose& pose);
 
-  void beginStep() {
-    rims_.beginStep();
-    world_.finder.beginStep();
-  }
+  void beginStep() { rims_.beginStep(); }
   const ToolRims& rims() const { return rims_; }  // of the last touchesAt
 
   // In each link, of the deepest point of the last touchesAt, by the nearest way out (m).

@@ -35,6 +35,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   const std::vector<ToolGeometry> all = tools.withSupports();
   finder = ContactFinder(
       shapesOf(withEdges(all), [](const ToolRole& role) { return !role.drills && !role.shears; }));
+  finder.followPlaces();
   drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
   edges = ContactFinder(edgesOf(all));
   in_wound_.assign(tools.linkCount(), false);
@@ -46,11 +47,11 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
     const bool sticks = tool.patch == ToolConfig::Patch::kRigid;
     friction.push_back(sticks ? std::nullopt : std::optional<double>(tool.friction));
   }
-  std::vector<double> thickness;
+  std::vector<SlidingContacts::LinkForm> forms;
   for (std::size_t link = 0; link < finder.linkCount(); ++link) {
-    thickness.push_back(finder.thickness(link));
+    forms.push_back({finder.thickness(link), finder.hasMesh(link)});
   }
-  sliding = SlidingContacts(friction, thickness);
+  sliding = SlidingContacts(friction, forms);
   pose = tools.complete({});
   sliding.commit(pose, tissue);
   unfinished = false;

@@ -134,20 +134,20 @@ double deepestAround(const Contact& place, const ContactSet& found) {
   return deepest;
 }
 
-// Within a step the deepest places are followed: as deep as a new search finds them, but for twice
-// its accuracy, and none is missed that touches.
-TEST(MovedSurface, WithinAStepPlacesAreAsDeepAsOfANewSearch) {
+// As the surface and the mesh move, the deepest places are followed: as deep as a new search finds
+// them, but for twice its accuracy, and none is missed that touches.
+TEST(MovedSurface, FollowedPlacesAreAsDeepAsOfANewSearch) {
   constexpr double kMargin = 0.00125, kAccuracy = 0.005 * 0.0071;  // m: of the longest edge
   const Sheet block = makeBlock(kCells, kSpacing);
   const ToolGeometry tool =
       makeTool({mesh(writeStl("followed.stl", ballTriangles(12, 0.008)))}, 0.0);
-  const ContactFinder finder({tool});
+  ContactFinder finder({tool});
+  finder.followPlaces();
   Walk walk(block);
   int met = 0;
   for (int step = 0; step < kSteps; ++step) {
     const std::vector<Vec3> vertices = walk.next();
     const RobotPose pose = at(walk.place());
-    finder.beginStep();
     finder.find(pose, block.surface, vertices, kMargin);
     std::vector<Vec3> little = vertices;
     double angle = 0.0;

@@ -31,7 +31,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
 
   // No friction: the tissue sticks to it.
   void make(std::optional<double> friction) {
-    contacts_ = SlidingContacts({friction}, {kThick});
+    contacts_ = SlidingContacts({friction}, {{kThick, is_uneven_}});
     SolverConfig solver;
     solver.method = "newton";
     tissue_ = std::make_unique<Tissue>(softBlock(), solver);
@@ -56,7 +56,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
   }
 
   // Of vertices, each found once.
-  ContactSet contacts() const {
+  virtual ContactSet contacts() const {
     ContactSet set;
     const TissueSurface& surface = tissue_->surface();
     std::vector<char> seen(surface.rest.size(), 0);
@@ -141,6 +141,33 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
   std::vector<std::uint8_t> held_;
   SolveReport report_;
   int rounds_ = 0;
+  bool is_uneven_ = false;
+};
+
+// The link presses one triangle by two points at the plane's height; found is the deeper one.
+class TwoBumpsOnABlock : public PlaneOnABlock {
+ protected:
+  TwoBumpsOnABlock() { make(0.0); }
+
+  ContactSet contacts() const override {
+    const Contact a = bump(Vec3(0.45, 0.35, 0.2)), b = bump(Vec3(0.25, 0.35, 0.4));
+    return {{a.depth_m > b.depth_m ? a : b}};
+  }
+  Contact bump(const Vec3& weights) const {
+    const TissueSurface& surface = tissue_->surface();
+    int top = 0;
+    while (middleAtRest(surface.triangles[at(top)]).z() < 0.03 - 1e-9) ++top;
+    const SurfacePoint place{top, weights};
+    const Corners corners = cornersOf(surface.triangles[at(top)], tissue_->vertices());
+    const Vec3 point = pointOf(corners, weights);
+    return {0, 0, place, point, normal(), depthOf(point), {}};
+  }
+  Vec3 middleAtRest(const MeshTriangle& triangle) const {
+    return pointOf(cornersOf(triangle, tissue_->surface().rest), Vec3::Constant(1.0 / 3.0));
+  }
+  static Corners cornersOf(const MeshTriangle& triangle, const std::vector<Vec3>& vertices) {
+    return {vertices[at(triangle[0])], vertices[at(triangle[1])], vertices[at(triangle[2])]};
+  }
 };
 
 TEST_F(PlaneOnABlock, FarAwayItTouchesNothing) {
@@ -364,6 +391,19 @@ TEST_F(PlaneOnABlock, SettledTouchesNeedNoFurtherRound) {
   press(1e-3);
   for (int time = 0; time < 3; ++time) follow();
   EXPECT_EQ(rounds_, 1);
+}
+
+// With one touch, which goes to the deeper one, rounds would go on to the last.
+TEST_F(TwoBumpsOnABlock, ATriangleThatLiesOnTwoPlacesHasATouchAtEach) {
+  press(1.5e-3);
+  EXPECT_EQ(contacts_.touches().size(), 1u);
+  EXPECT_EQ(rounds_, 16);
+  is_uneven_ = true;
+  make(0.0);
+  press(1.5e-3);
+  EXPECT_EQ(contacts_.touches().size(), 2u);
+  EXPECT_LT(rounds_, 6);
+  EXPECT_LT(contacts().contacts.front().depth_m, kSettled);
 }
 
 }  // namespace

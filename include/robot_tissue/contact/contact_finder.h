@@ -61,9 +61,9 @@ class ContactFinder {
   // One line each.
   const std::vector<std::string>& warnings() const;
 
-  // A load step begins: from here to the next one, find() follows the deepest places of triangles
-  // that go only a little beside a mesh; it does not look for them anew.
-  void beginStep() const;
+  // From here on find() follows the deepest places of triangles that went only a little beside a
+  // mesh since it looked for them; it does not look for these anew.
+  void followPlaces();
 
   // What is kept of the last searches: the next answers hang on it by less than their accuracy.
   struct Kept;

@@ -66,12 +66,19 @@ class SlidingContacts {
     double stiffening = 1.0;             // of the tissue, in the time step under way
     double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
     bool found = false;                  // in the last update
+    std::optional<Vec3> left;  // where in its triangle it went from in this load step, by weights
+  };
+
+  // What is to be known of a link.
+  struct LinkForm {
+    double thickness = 0.0;  // m
+    bool is_uneven = false;  // a mesh: a triangle may lie on it at several places
   };
 
   SlidingContacts() = default;  // of no tools
   // Coulomb's friction of each tool (none: tissue sticks to it, see StickingContacts), thickness of
   // each link (m).
-  SlidingContacts(std::vector<std::optional<double>> friction, std::vector<double> thickness);
+  SlidingContacts(std::vector<std::optional<double>> friction, std::vector<LinkForm> links);
 
   // Whether a point with these carriers, or of the surface, can be pushed; `held` as in meet().
   static bool givesWay(const std::vector<NodeWeight>& carriers,
@@ -154,6 +161,7 @@ class SlidingContacts {
               ContactConstraint& touch);
   bool handOn(const ContactConstraint& lost, double reach, const Tissue& tissue);
   bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
+  bool hopsBack(const ContactConstraint& touch, const Contact& contact, const Tissue& tissue) const;
   std::vector<PressGrowth::Press> presses(std::size_t links) const;
   void takeMeans(const Tissue& tissue);
   bool updateMultipliers(const Tissue& tissue);
@@ -165,7 +173,7 @@ class SlidingContacts {
   Vec3 frictionRatioAround(const ContactConstraint& touch) const;
 
   std::vector<std::optional<double>> friction_;
-  std::vector<double> thickness_;
+  std::vector<LinkForm> forms_;
   std::vector<Pressed> pressed_;  // per tool
   PressGrowth growth_;
   bool is_settled_ = false;                   // since the last update
