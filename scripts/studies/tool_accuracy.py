@@ -2,8 +2,9 @@
 
 A sphere of 10 mm and a box on its edge go 8 mm into a block of 100 x 100 x 50 mm and 20 mm along it, 0.5 mm an update,
 friction 0.3. Forces at the updates, and the last shape at nodes 10 mm apart, are held against those of a lattice of
-5/3 mm, for the edge of 2 mm (`layered` at 1e-2).
-What takes more than half a second an update is left out. Out: doc/data/tool_accuracy.csv, doc/images/tool_accuracy.png.
+5/3 mm, for the edge of 2 mm (`layered` at 1e-2). With Bullet's deformable solver, where bullet_tool is built: a way of
+0.5 mm takes a sixtieth of a second, in more or fewer steps (column `steps`).
+What takes more than half a second an update, Bullet's more than five, is left out. Out: doc/data/tool_accuracy.csv, doc/images/tool_accuracy.png.
 """
 
 import math
@@ -24,12 +25,13 @@ FINE = {"sphere": 0.005 / 3.0, "edge": 0.002}
 COARSEST = 0.01                # nodes of all lattices
 METHODS = {"layered": [0.1, 0.01, 0.001], "vbd": [0.1, 0.01, 0.001], "xpbd": [0.1, 0.01],
            "explicit": [0.1, 0.01], "newton": [None]}
+BULLET = {"bullet": [32, 64, 128], "bullet_implicit": [16, 64]}    # steps an update
 TOOLS = {"sphere": ({"type": "sphere", "radius": 0.01}, 0.01),
          "edge": ({"type": "box", "size": [0.02, 0.02, 0.02], "rpy": [0, math.pi / 4, 0]},
                   0.01 * math.sqrt(2.0))}
-LIMIT = 30                     # s, of a run: half a second an update
+LIMIT, BULLETS_LIMIT = 30, 280    # s, of a run: half a second, and five, an update
 COLORS = {"layered": "tab:red", "newton": "tab:blue", "vbd": "tab:green", "xpbd": "tab:orange",
-          "explicit": "tab:purple"}
+          "explicit": "tab:purple", "bullet": "tab:gray", "bullet_implicit": "black"}
 
 
 def scene(tool, spacing, method, tolerance):
@@ -54,13 +56,13 @@ def scene(tool, spacing, method, tolerance):
 class Run:
     """Forces (N) per update, displacement at the common nodes (m), ms per update."""
 
-    def __init__(self, simulate, tool, spacing, method, tolerance, limit=LIMIT):
+    def __init__(self, command, tool_scene, limit=LIMIT):
         self.ok = False
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.yaml"
-            file.write_text(yaml.safe_dump(scene(tool, spacing, method, tolerance)))
+            file.write_text(yaml.safe_dump(tool_scene))
             try:
-                done = subprocess.run([simulate, file, "--out", folder, "--quiet"], timeout=limit,
+                done = subprocess.run([*command, file, "--out", folder, "--quiet"], timeout=limit,
                                       capture_output=True, text=True, check=False)
             except subprocess.TimeoutExpired:
                 self.status = "TIMED_OUT"
@@ -71,6 +73,8 @@ class Run:
             self.ms = numbers(rows, "update_ms")
             self.not_ok = np.mean([row["status"] != "OK" for row in rows])
             self.status = worst(rows)
+            if not rows_of(Path(folder) / "nodes.csv"):    # flown apart
+                return
             self.forces = np.array([[float(row[axis]) for axis in ("fx", "fy", "fz")]
                                     for row in rows_of(Path(folder) / "tools.csv")])
             self.shape = common_nodes(rows_of(Path(folder) / "nodes.csv"))
@@ -86,29 +90,52 @@ def common_nodes(rows):
     return moved[common][order]
 
 
-def measure(simulate):
-    table = []
-    jobs = [(tool, spacing, method, tolerance) for tool in TOOLS for spacing in SPACINGS
+def compared(row, done, right):
+    """The row with how far a run that ended is off the fine one."""
+    row["status"] = done.status
+    if not done.ok:
+        return row
+    off = np.linalg.norm(done.forces - right.forces, axis=1)
+    greatest = np.linalg.norm(right.forces, axis=1).max()
+    shape_off = np.linalg.norm(done.shape - right.shape) / np.linalg.norm(right.shape)
+    row.update({"not_ok_percent": f"{100.0 * done.not_ok:.3g}",
+                "median_ms": f"{percentile(done.ms[1:], 50):.3g}",
+                "mean_ms": f"{np.mean(done.ms[1:]):.3g}",
+                "force_off_percent": f"{100.0 * np.sqrt((off ** 2).mean()) / greatest:.3g}",
+                "shape_off_percent": f"{100.0 * shape_off:.3g}"})
+    return row
+
+
+def measure(options):
+    simulate = program("simulate", options.programs)
+    peer = simulate.parent / "bullet_tool"
+    if not peer.exists():
+        peer = None
+        print("tool_accuracy: bullet_tool is not built; Bullet is left out", file=sys.stderr)
+    jobs = [(tool, spacing, method, tolerance, None) for tool in TOOLS for spacing in SPACINGS
             for method, tolerances in METHODS.items() for tolerance in tolerances]
-    fine = {tool: Run(simulate, tool, FINE[tool], "layered", 0.01, None) for tool in TOOLS}
+    if peer is not None:
+        jobs += [(tool, spacing, method, None, steps) for tool in TOOLS for spacing in SPACINGS
+                 for method, all_steps in BULLET.items() for steps in all_steps]
+    if options.only is not None:
+        jobs = [job for job in jobs if options.only in " ".join(map(str, job))]
+    fine = {tool: Run([simulate], scene(tool, FINE[tool], "layered", 0.01), None)
+            for tool in {job[0] for job in jobs}}
     if any(run.status != "OK" for run in fine.values()):
         sys.exit("tool_accuracy: the fine lattice finds no shape on all of the way")
-    for tool, spacing, method, tolerance in progress(jobs, lambda job: " ".join(map(str, job))):
+    table = [] if options.only is None else rows_of(TABLE)
+    for tool, spacing, method, tolerance, steps in progress(jobs, lambda job: " ".join(map(str, job))):
         row = {"tool": tool, "spacing_m": spacing, "method": method,
-               "tolerance": "" if tolerance is None else tolerance}
-        done, right = Run(simulate, tool, spacing, method, tolerance), fine[tool]
-        row["status"] = done.status
-        if done.ok:
-            off = np.linalg.norm(done.forces - right.forces, axis=1)
-            greatest = np.linalg.norm(right.forces, axis=1).max()
-            shape_off = np.linalg.norm(done.shape - right.shape) / np.linalg.norm(right.shape)
-            row.update({"not_ok_percent": f"{100.0 * done.not_ok:.3g}",
-                        "median_ms": f"{percentile(done.ms[1:], 50):.3g}",
-                        "mean_ms": f"{np.mean(done.ms[1:]):.3g}",
-                        "force_off_percent": f"{100.0 * np.sqrt((off ** 2).mean()) / greatest:.3g}",
-                        "shape_off_percent": f"{100.0 * shape_off:.3g}"})
-        table.append(row)
-        write_rows(TABLE, ["tool", "spacing_m", "method", "tolerance", "status", "not_ok_percent",
+               "tolerance": "" if tolerance is None else tolerance, "steps": "" if steps is None else steps}
+        if steps is None:
+            done = Run([simulate], scene(tool, spacing, method, tolerance))
+        else:
+            how = ["--steps", str(steps), *(["--implicit"] if method == "bullet_implicit" else [])]
+            done = Run([peer, *how], scene(tool, spacing, "layered", None), BULLETS_LIMIT)
+        key = ("tool", "spacing_m", "method", "tolerance", "steps")
+        table = [other for other in table if any(str(other[part]) != str(row[part]) for part in key)]
+        table.append(compared(row, done, fine[tool]))
+        write_rows(TABLE, ["tool", "spacing_m", "method", "tolerance", "steps", "status", "not_ok_percent",
                            "median_ms", "mean_ms", "force_off_percent", "shape_off_percent"], table)
 
 
@@ -140,12 +167,14 @@ def draw():
 
 
 def add_arguments(parser):
+    parser.add_argument("--only", metavar="TEXT", help="runs whose name has this, in place of their rows: "
+                        "tool, spacing in m, method, tolerance, steps")
     add_programs(parser)
     add_plot(parser)
 
 
 def run(options):
     if not options.plot:
-        measure(program("simulate", options.programs))
+        measure(options)
     draw()
     print_rows(rows_of(TABLE))

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "bullet_elasticity.h"
 #include "bullet_nodes.h"
 
 namespace robot_tissue {
@@ -61,7 +62,7 @@ class BulletDeformable : public BulletBody {
     body_->m_tetraScratches.resize(body_->m_tetras.size());
     body_->m_tetraScratchesTn.resize(body_->m_tetras.size());
     world_.addSoftBody(body_.get());
-    setStiffness(material);
+    setModuli(material, stiffness_);
     world_.addForce(body_.get(), &stiffness_);
   }
   ~BulletDeformable() override { world_.removeSoftBody(body_.get()); }
@@ -87,18 +88,6 @@ class BulletDeformable : public BulletBody {
   }
 
  private:
-  // Bullet's energy is that of Smith, de Goes and Kim 2018 (equation 14); its two moduli are not
-  // Lame's: theirs follow from those as in section 3.4 of the paper, so that small strains are
-  // right.
-  void setStiffness(const Material& material) {
-    const double nu = material.poisson_ratio;
-    const double mu = material.young_modulus / (2.0 * (1.0 + nu));
-    const double lambda = 2.0 * mu * nu / (1.0 - 2.0 * nu);
-    stiffness_.setLameParameters(static_cast<btScalar>(4.0 / 3.0 * mu),
-                                 static_cast<btScalar>(lambda + 5.0 / 6.0 * mu));
-    stiffness_.setDamping(0);
-  }
-
   BulletNodes nodes_;
   btSoftBodyRigidBodyCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
