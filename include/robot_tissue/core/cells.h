@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -101,14 +102,34 @@ class CellSet {
     std::uint32_t corner : 5;
   };
 
+  // The cells around a node, in ascending order: a range.
+  class Meetings {
+   public:
+    Meetings() = default;
+    Meetings(const Meeting* first, const Meeting* last) : listed_(first), count_(last - first) {}
+    void add(const Meeting& meeting) { found_[at(static_cast<int>(count_++))] = meeting; }
+
+    const Meeting* begin() const { return listed_ != nullptr ? listed_ : found_.data(); }
+    const Meeting* end() const { return begin() + count_; }
+    bool isEmpty() const { return count_ == 0; }
+
+   private:
+    const Meeting* listed_ = nullptr;  // null: those found
+    std::array<Meeting, kCorners> found_;
+    std::ptrdiff_t count_ = 0;
+  };
+
   CellSet() = default;
   // Cells in ascending order of their places, and how many nodes the lattice has.
   CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> ghosts = {});
+  // All cells of a grid with so many points along each axis, x running fastest: who meets at a node
+  // is found by arithmetic, as the lists would be half as large as the cells.
+  CellSet(std::vector<Cell> cells, const std::array<int, 3>& points);
 
   const std::vector<Cell>& all() const { return cells_; }
   const std::vector<Ghost>& ghosts() const { return ghosts_; }
   // With the ghosts, which come after the lattice's.
-  int nodeCount() const { return static_cast<int>(first_.size()) - 1; }
+  int nodeCount() const { return node_count_; }
   int latticeNodeCount() const { return nodeCount() - static_cast<int>(ghosts_.size()); }
   bool isGhost(int node) const { return node >= latticeNodeCount(); }
   // The lattice's node at the same grid point: the node itself, or the ghost's original.
@@ -119,27 +140,32 @@ class CellSet {
   const Cell* owner(int place, int corner) const;
   // The one that has that side (CellReach) of the cell in common with it; null: none.
   const Cell* across(const Cell& cell, int side) const;
-  // The cells that have the node as a corner, first .. last - 1; at most 8 that own it.
-  const Meeting* first(int node) const { return meetings_.data() + first_[at(node)]; }
-  const Meeting* last(int node) const { return meetings_.data() + first_[at(node) + 1]; }
-  // Those that reach it beyond a face, likewise.
-  const Meeting* firstReaching(int node) const {
-    return reaching_.data() + (reaching_.empty() ? 0 : first_reaching_[at(node)]);
+  // The cells that have the node as a corner; at most 8 that own it.
+  Meetings meetings(int node) const {
+    if (points_[0] > 0) return meetingsOnGrid(node);
+    return {meetings_.data() + first_[at(node)], meetings_.data() + first_[at(node) + 1]};
   }
-  const Meeting* lastReaching(int node) const {
-    return reaching_.data() + (reaching_.empty() ? 0 : first_reaching_[at(node) + 1]);
+  // Those that reach it beyond a face.
+  Meetings reaching(int node) const {
+    if (reaching_.empty()) return {};
+    return {reaching_.data() + first_reaching_[at(node)],
+            reaching_.data() + first_reaching_[at(node) + 1]};
   }
   // Calls visit(meeting) for all cells that have the node or reach it, in ascending order.
   template <typename Visit>
   void visitAround(int node, Visit visit) const;
 
  private:
+  Meetings meetingsOnGrid(int node) const;
+  void listMeetings();
   void findReaches();
   void listReaching();
 
   std::vector<Cell> cells_;
   std::vector<Ghost> ghosts_;
-  std::vector<int> first_ = {0};  // per node, index into meetings_
+  int node_count_ = 0;
+  std::array<int, 3> points_{};  // of the grid that the cells are all of; 0: they are listed
+  std::vector<int> first_;       // per node, index into meetings_
   std::vector<Meeting> meetings_;
   std::vector<int> first_reaching_;  // per node, index into reaching_; empty as that is
   std::vector<Meeting> reaching_;
@@ -147,12 +173,13 @@ class CellSet {
 
 template <typename Visit>
 void CellSet::visitAround(int node, Visit visit) const {
-  const Meeting *met = first(node), *const end = last(node);
-  for (const Meeting* beyond = firstReaching(node); beyond != lastReaching(node); ++beyond) {
-    for (; met != end && met->cell < beyond->cell; ++met) visit(*met);
-    visit(*beyond);
+  const Meetings own = meetings(node);
+  const Meeting* met = own.begin();
+  for (const Meeting& beyond : reaching(node)) {
+    for (; met != own.end() && met->cell < beyond.cell; ++met) visit(*met);
+    visit(beyond);
   }
-  for (; met != end; ++met) visit(*met);
+  for (; met != own.end(); ++met) visit(*met);
 }
 
 // The corners of a cell with `nodes` and `reach`, then the nodes that it reaches; -1: none.

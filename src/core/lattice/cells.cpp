@@ -13,8 +13,33 @@ namespace robot_tissue {
 CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> ghosts)
     : cells_(std::move(cells)),
       ghosts_(std::move(ghosts)),
-      first_(at(lattice_nodes) + ghosts_.size() + 1, 0),
-      meetings_(kCorners * cells_.size()) {
+      node_count_(lattice_nodes + static_cast<int>(ghosts_.size())) {
+  listMeetings();
+  findReaches();
+}
+
+CellSet::CellSet(std::vector<Cell> cells, const std::array<int, 3>& points)
+    : cells_(std::move(cells)), node_count_(points[0] * points[1] * points[2]), points_(points) {
+  findReaches();
+}
+
+// The higher its corner that is the node, the lower is a cell's number.
+CellSet::Meetings CellSet::meetingsOnGrid(int node) const {
+  const int i = node % points_[0], row = node / points_[0];
+  const int j = row % points_[1], k = row / points_[1];
+  Meetings around;
+  for (int corner = kCorners - 1; corner >= 0; --corner) {
+    const int x = i - (corner & 1), y = j - (corner >> 1 & 1), z = k - (corner >> 2 & 1);
+    if (x < 0 || y < 0 || z < 0) continue;
+    if (x + 1 == points_[0] || y + 1 == points_[1] || z + 1 == points_[2]) continue;
+    around.add({x + (points_[0] - 1) * (y + (points_[1] - 1) * z), corner});
+  }
+  return around;
+}
+
+void CellSet::listMeetings() {
+  first_.assign(at(node_count_) + 1, 0);
+  meetings_.resize(kCorners * cells_.size());
   for (const Cell& cell : cells_) {
     for (const int node : cell.nodes) ++first_[at(node) + 1];
   }
@@ -26,7 +51,6 @@ CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> 
       meetings_[at(next[at(node)]++)] = {static_cast<int>(cell), corner};
     }
   }
-  findReaches();
 }
 
 void CellSet::findReaches() {
@@ -50,7 +74,7 @@ void CellSet::findReaches() {
 }
 
 void CellSet::listReaching() {
-  first_reaching_.assign(first_.size(), 0);
+  first_reaching_.assign(at(node_count_) + 1, 0);
   const auto visit = [this](auto met) {
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
       if (cells_[cell].reach == nullptr) continue;
@@ -61,7 +85,7 @@ void CellSet::listReaching() {
     }
   };
   visit([this](int node, const Meeting&) { ++first_reaching_[at(node) + 1]; });
-  for (std::size_t node = 1; node < first_.size(); ++node) {
+  for (std::size_t node = 1; node < first_reaching_.size(); ++node) {
     first_reaching_[node] += first_reaching_[node - 1];
   }
   reaching_.resize(at(first_reaching_.back()));
@@ -106,8 +130,8 @@ const Cell* CellSet::owner(int place, int corner) const {
 
 const Cell* CellSet::across(const Cell& cell, int side) const {
   const int node = cell.nodes[at(faceCorner(side, 0))];
-  for (const Meeting* met = first(node); met != last(node); ++met) {
-    const Cell& other = cells_[met->cell];
+  for (const Meeting& met : meetings(node)) {
+    const Cell& other = cells_[met.cell];
     if (haveInCommon(cell.nodes, side, other.nodes)) return &other;
   }
   return nullptr;
@@ -163,8 +187,8 @@ int countInvertedCells(const Lattice& lattice, const LatticeState& state, const 
   const CellSet& cells = *state.cells;
   int inverted = 0;
   const auto count_at = [&](int lowest) {
-    for (const auto* met = cells.first(lowest); met != cells.last(lowest); ++met) {
-      if (met->corner == 0 && isInverted(cells.all()[met->cell], state, share)) ++inverted;
+    for (const CellSet::Meeting& met : cells.meetings(lowest)) {
+      if (met.corner == 0 && isInverted(cells.all()[met.cell], state, share)) ++inverted;
     }
   };
   for (int k = points.low[2] - 1; k <= points.high[2]; ++k) {

@@ -127,7 +127,9 @@ void Lattice::placeCells(const FilledGrid& tissue) {
   }
   cells.shrink_to_fit();
   stiffenSlivers(cells, nodeCount());
-  cells_ = std::make_shared<const CellSet>(std::move(cells), nodeCount());
+  const bool are_all = hasAllPoints() && static_cast<int>(cells.size()) == grid_.cellCount();
+  cells_ = are_all ? std::make_shared<const CellSet>(std::move(cells), size())
+                   : std::make_shared<const CellSet>(std::move(cells), nodeCount());
 }
 
 void Lattice::placeEighths(const TissueConfig& config) {
@@ -148,8 +150,9 @@ void Lattice::placeSprings() {
   springs_up_.reserve(at(nodeCount()));
   for (int node = 0; node < nodeCount(); ++node) {
     std::uint32_t up = 8U * static_cast<std::uint32_t>(spring_count_);
+    const CellSet::Meetings around = cells_->meetings(node);
     for (int axis = 0; axis < 3; ++axis) {
-      const bool has = std::any_of(cells_->first(node), cells_->last(node),
+      const bool has = std::any_of(around.begin(), around.end(),
                                    [axis](auto met) { return (met.corner >> axis & 1U) == 0; });
       if (!has) continue;
       up |= 1U << axis;
@@ -183,21 +186,21 @@ void Lattice::weigh(const TissueConfig& config) {
 double Lattice::mass(int node) const {
   const double volume = std::pow(spacing(), 3), corner_volume = volume / kCorners;
   double mass = 0.0;
-  for (auto met = cells_->first(node); met != cells_->last(node); ++met) {
-    const Cell& cell = cells()[at(met->cell)];
+  for (const CellSet::Meeting& met : cells_->meetings(node)) {
+    const Cell& cell = cells()[at(met.cell)];
     const double density = substanceOf(cell).density;
     mass += cell.fill == nullptr
                 ? density * corner_volume
-                : cell.share() * density * volume * cell.fill->cornerShare(met->corner);
+                : cell.share() * density * volume * cell.fill->cornerShare(met.corner);
   }
   return mass;
 }
 
 double Lattice::springStiffness(const Spring& spring) const {
   SpringStiffness stiffness;
-  for (auto met = cells_->first(spring.a); met != cells_->last(spring.a); ++met) {
-    if (met->corner >> spring.axis & 1) continue;
-    const Cell& cell = cells()[at(met->cell)];
+  for (const CellSet::Meeting& met : cells_->meetings(spring.a)) {
+    if (met.corner >> spring.axis & 1) continue;
+    const Cell& cell = cells()[at(met.cell)];
     const Substance& here = substanceOf(cell);
     if (here.has_spring_constants) {
       stiffness.add(here.spring_stiffness);
@@ -227,9 +230,10 @@ Vec3 Lattice::restPosition(int node) const {
 int Lattice::cellAt(const std::array<int, 3>& index) const {
   const int lowest = node(index[0], index[1], index[2]);
   if (lowest < 0) return -1;
-  const auto* found = std::find_if(cells_->first(lowest), cells_->last(lowest),
-                                   [](const auto& cell) { return cell.corner == 0; });
-  return found == cells_->last(lowest) ? -1 : found->cell;
+  const CellSet::Meetings around = cells_->meetings(lowest);
+  const auto* found =
+      std::find_if(around.begin(), around.end(), [](const auto& cell) { return cell.corner == 0; });
+  return found == around.end() ? -1 : static_cast<int>(found->cell);
 }
 
 Vec3 Lattice::cellCenter(const Cell& cell) const {

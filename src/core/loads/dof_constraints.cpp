@@ -6,7 +6,7 @@
 namespace robot_tissue {
 namespace {
 
-bool isLoose(const CellSet& cells, int node) { return cells.first(node) == cells.last(node); }
+bool isLoose(const CellSet& cells, int node) { return cells.meetings(node).isEmpty(); }
 
 }  // namespace
 

@@ -75,9 +75,9 @@ class RimBuilder {
   bool isOnSurface(int node, int axis) const {
     bool below = false, above = false;
     const CellSet& cells = *state_.cells;
-    for (auto met = cells.first(node); met != cells.last(node); ++met) {
-      if (lattice_.cells()[at(cells.all()[at(met->cell)].place)].share() < 1.0) return false;
-      ((met->corner >> axis & 1) != 0 ? below : above) = true;
+    for (const CellSet::Meeting& met : cells.meetings(node)) {
+      if (lattice_.cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0) return false;
+      ((met.corner >> axis & 1) != 0 ? below : above) = true;
     }
     return below != above;
   }

@@ -224,10 +224,10 @@ Vec3 ElasticModel::nodeStiffness(const LatticeState& state, int node) const {
 Moduli ElasticModel::moduliAt(const LatticeState& state, int node) const {
   const CellSet& cells = *state.cells;
   Moduli sum;
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    const Cell& cell = cells.all()[at(met->cell)];
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    const Cell& cell = cells.all()[at(met.cell)];
     const Moduli& full = substanceOf(cell).moduli;
-    const double eighths = cell.eighthsAt(static_cast<int>(met->corner));
+    const double eighths = cell.eighthsAt(static_cast<int>(met.corner));
     sum.shear += eighths * full.shear / 4.0;
     sum.bulk += eighths * full.bulk / 4.0;
   }
@@ -295,8 +295,9 @@ NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const
   const CellSet& cells = *state.cells;
   NodeBalance balance;
   balance.force = inertialForce(node);
-  for (auto first = cells.first(node); first != cells.last(node);) {
-    const auto end = std::min(cells.last(node), first + CellModes::kMost);
+  const CellSet::Meetings around = cells.meetings(node);
+  for (auto first = around.begin(); first != around.end();) {
+    const auto end = std::min(around.end(), first + CellModes::kMost);
     CellModes modes(lattice_.spacing());
     for (auto met = first; met != end; ++met) {
       const Cell& cell = cells.all()[at(met->cell)];
@@ -314,8 +315,8 @@ NodeBalance ElasticModel::nodeBalance(const LatticeState& state, int node) const
     }
     first = end;
   }
-  for (auto met = cells.firstReaching(node); met != cells.lastReaching(node); ++met) {
-    addShaped(state, *met, balance);
+  for (const CellSet::Meeting& met : cells.reaching(node)) {
+    addShaped(state, met, balance);
   }
   return balance;
 }

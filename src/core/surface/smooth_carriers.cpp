@@ -26,9 +26,9 @@ struct CellEdge {
 double shareAround(const CellSet& cells, const Cell& cell, const CellEdge& edge) {
   const int lower = cell.nodes[at(edge.lower)], upper = cell.nodes[at(edge.upper)];
   double share = 0.0;
-  for (const auto* met = cells.first(lower); met != cells.last(lower); ++met) {
-    const Cell& other = cells.all()[met->cell];
-    const int corner = static_cast<int>(met->corner), end = corner | 1 << edge.axis;
+  for (const CellSet::Meeting& met : cells.meetings(lower)) {
+    const Cell& other = cells.all()[met.cell];
+    const int corner = static_cast<int>(met.corner), end = corner | 1 << edge.axis;
     if (corner != end && other.nodes[at(end)] == upper) share += other.share();
   }
   return share;
@@ -40,9 +40,9 @@ std::vector<NodeWeight> beyond(const CellSet& cells, const Cell& cell, const Cel
                                bool is_lower) {
   const int end = cell.nodes[at(is_lower ? edge.lower : edge.upper)], bit = 1 << edge.axis;
   std::vector<NodeWeight> found;
-  for (const auto* met = cells.first(end); met != cells.last(end); ++met) {
-    const Cell& other = cells.all()[met->cell];
-    const int corner = static_cast<int>(met->corner);
+  for (const CellSet::Meeting& met : cells.meetings(end)) {
+    const Cell& other = cells.all()[met.cell];
+    const int corner = static_cast<int>(met.corner);
     if (((corner & bit) != 0) != is_lower) continue;
     found.push_back({other.nodes[at(corner ^ bit)], other.share()});
   }

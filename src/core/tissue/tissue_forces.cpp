@@ -54,8 +54,8 @@ double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(stat
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
   const CellSet& cells = *state_.cells;
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    if (lattice_.cells()[at(cells.all()[at(met->cell)].place)].share() < 1.0) return std::nullopt;
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    if (lattice_.cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0) return std::nullopt;
   }
   const Moduli moduli = model_->moduliAt(state_, node);
   if (moduli.shear <= 0.0) return std::nullopt;

@@ -30,8 +30,8 @@ void RelaxationMethod::findDepth() {
   for (depth_ = 0.0; !layer.empty(); layer.swap(next)) {
     next.clear();
     for (const int node : layer) {
-      for (auto met = cells.first(node); met != cells.last(node); ++met) {
-        for (const int other : cells.all()[at(met->cell)].nodes) {
+      for (const CellSet::Meeting& met : cells.meetings(node)) {
+        for (const int other : cells.all()[at(met.cell)].nodes) {
           if (seen[at(other)] != 0) continue;
           seen[at(other)] = 1;
           next.push_back(other);

@@ -10,8 +10,8 @@ constexpr double kRounding = 1e-9;
 
 double volumeAt(const CellSet& cells, int node) {
   double eighths = 0.0;
-  for (auto met = cells.first(node); met != cells.last(node); ++met) {
-    eighths += cells.all()[at(met->cell)].eighthsAt(static_cast<int>(met->corner));
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    eighths += cells.all()[at(met.cell)].eighthsAt(static_cast<int>(met.corner));
   }
   return eighths / kCorners;
 }
