@@ -4,7 +4,8 @@ A sphere of 10 mm and a box on its edge go 8 mm into a block of 100 x 100 x 50 m
 friction 0.3. Forces at the updates, and the last shape at nodes 10 mm apart, are held against those of a lattice of
 5/3 mm, for the edge of 2 mm (`layered` at 1e-2). With Bullet's deformable solver, where bullet_tool is built: a way of
 0.5 mm takes a sixtieth of a second, in more or fewer steps (column `steps`).
-What takes more than half a second an update, Bullet's more than five, is left out. Out: doc/data/tool_accuracy.csv, doc/images/tool_accuracy.png.
+What takes more than half a second an update, Bullet's more than five, is left out.
+Out: doc/data/tool_accuracy.csv, doc/images/tool_accuracy.png.
 """
 
 import math
@@ -73,11 +74,12 @@ class Run:
             self.ms = numbers(rows, "update_ms")
             self.not_ok = np.mean([row["status"] != "OK" for row in rows])
             self.status = worst(rows)
-            if not rows_of(Path(folder) / "nodes.csv"):    # flown apart
+            nodes = rows_of(Path(folder) / "nodes.csv")
+            if not nodes:    # flown apart
                 return
             self.forces = np.array([[float(row[axis]) for axis in ("fx", "fy", "fz")]
                                     for row in rows_of(Path(folder) / "tools.csv")])
-            self.shape = common_nodes(rows_of(Path(folder) / "nodes.csv"))
+            self.shape = common_nodes(nodes)
         self.ok = True
 
 

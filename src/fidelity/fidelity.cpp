@@ -109,18 +109,12 @@ int run(const FidelityArguments& arguments, std::ostream& out, std::ostream& err
 
 int fidelity(const std::vector<std::string>& words, std::ostream& out, std::ostream& err,
              bool terminal) {
-  try {
+  return exitCodeOf("fidelity", err, [&] {
     const FidelityArguments arguments = parseFidelityArguments(words);
     if (!arguments.help) return run(arguments, out, err, terminal);
     out << fidelityHelp();
     return kExitOk;
-  } catch (const InputError& error) {
-    err << "fidelity: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    err << "fidelity: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace robot_tissue

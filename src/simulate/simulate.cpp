@@ -111,20 +111,26 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
 
 }  // namespace
 
+int exitCodeOf(const std::string& program, std::ostream& err, const std::function<int()>& run) {
+  try {
+    return run();
+  } catch (const InputError& error) {
+    err << program << ": " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    err << program << ": " << error.what() << '\n';
+    return kExitFailure;
+  }
+}
+
 int simulate(const std::vector<std::string>& words, std::ostream& out, std::ostream& err,
              bool terminal) {
-  try {
+  return exitCodeOf("simulate", err, [&] {
     const Arguments arguments = parseArguments(words);
     if (!arguments.onlyPrints()) return run(arguments, err, terminal);
     print(arguments, out);
     return kExitOk;
-  } catch (const InputError& error) {
-    err << "simulate: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    err << "simulate: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace robot_tissue

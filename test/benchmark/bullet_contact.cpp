@@ -167,10 +167,9 @@ BulletContact::~BulletContact() = default;
 const Lattice& BulletContact::lattice() const { return impl_->lattice; }
 
 void BulletContact::goTo(const Pose& tissue_T_tool) {
-  const Vec3 from = impl_->place.translation(), way = tissue_T_tool.translation() - from;
-  Pose there = tissue_T_tool;
   for (int step = 1; step <= impl_->pace.steps; ++step) {
-    there.translation() = from + way * step / impl_->pace.steps;
+    const Pose there =
+        onTheWay(impl_->place, tissue_T_tool, static_cast<double>(step) / impl_->pace.steps);
     impl_->motion.setWorldTransform(transformOf(impl_->shapePose(there)));
     impl_->world.stepSimulation(static_cast<btScalar>(impl_->pace.duration / impl_->pace.steps), 0);
   }

@@ -16,6 +16,13 @@ struct BulletPace {
   bool implicit = false;         // elastic forces, too, not damping alone
 };
 
+// On the straight way between two places of a tool, turned as at its end.
+inline Pose onTheWay(const Pose& from, const Pose& to, double share) {
+  Pose place = to;
+  place.translation() = from.translation() + share * (to.translation() - from.translation());
+  return place;
+}
+
 class BulletContact {
  public:
   // The tool has one shape, a ball or a box, in its frame. Throws InputError on others.

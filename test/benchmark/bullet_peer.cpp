@@ -17,6 +17,7 @@
 #include <iostream>
 
 #include "bullet_body.h"
+#include "bullet_options.h"
 #include "command_line.h"
 #include "output_folder.h"
 #include "result_text.h"
@@ -40,25 +41,11 @@ double processorMs() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-double numberOf(const CommandLine& line, const std::string& option, double otherwise) {
-  const auto text = line.value(option);
-  if (!text) return otherwise;
-  char* end = nullptr;
-  const double number = std::strtod(text->c_str(), &end);
-  if (end == text->c_str() || *end != '\0' || !(number > 0.0) || !std::isfinite(number)) {
-    throw InputError(option + ": is " + *text + ", must be a number > 0");
-  }
-  return number;
-}
-
 BulletSettings settingsOf(const CommandLine& line, const Lattice& lattice) {
   BulletSettings settings = bestSettings(line.value("--method").value_or(""), lattice);
-  const auto whole = [&line](const std::string& option, int otherwise) {
-    return static_cast<int>(std::ceil(numberOf(line, option, otherwise)));
-  };
   settings.time_step = numberOf(line, "--time-step", settings.time_step);
-  settings.iterations = whole("--iterations", settings.iterations);
-  settings.ramp = whole("--ramp", settings.ramp);
+  settings.iterations = wholeNumberOf(line, "--iterations", settings.iterations);
+  settings.ramp = wholeNumberOf(line, "--ramp", settings.ramp);
   settings.damping = numberOf(line, "--damping", settings.damping);
   settings.stiffness = numberOf(line, "--stiffness", settings.stiffness);
   return settings;
@@ -263,7 +250,7 @@ int solve(const CommandLine& line) {
 }
 
 int run(const std::vector<std::string>& words) {
-  try {
+  return exitCodeOf("bullet_peer", std::cerr, [&words] {
     const CommandLine line =
         readCommandLine(words, {{"--out", "--method", "--tolerance", "--steps", "--time-step",
                                  "--iterations", "--ramp", "--damping", "--stiffness"},
@@ -271,13 +258,7 @@ int run(const std::vector<std::string>& words) {
     if (!line.has("--list-methods")) return solve(line);
     for (const std::string& method : bulletMethods()) std::cout << method << '\n';
     return kExitOk;
-  } catch (const InputError& error) {
-    std::cerr << "bullet_peer: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "bullet_peer: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace

@@ -6,17 +6,17 @@
 //
 // An increment is gone in N steps (32). A row is UNCONVERGED where a node is deeper in the tool
 // than half a spacing: the tool went through; what has flown apart ends the run, so too.
-#include <chrono>
-#include <cstdlib>
 #include <iostream>
 
 #include "bullet_contact.h"
+#include "bullet_options.h"
 #include "command_line.h"
 #include "output_folder.h"
 #include "result_text.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "run_scene.h"
 #include "simulate.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -29,23 +29,27 @@ const MoveStep& moveOf(const Step& step) {
   return *move;
 }
 
-Pose placeBetween(const Pose& from, const Pose& to, double share) {
-  Pose place = to;
-  place.translation() = from.translation() + share * (to.translation() - from.translation());
-  return place;
-}
-
-void addRow(const BulletContact& bullet, const std::string& tool, const IncrementRow& increment,
-            RunResult& result) {
-  ToolRow row;
-  row.step = increment.step;
-  row.increment = increment.increment;
-  row.tool = tool;
-  row.force = bullet.forceOnTool();
-  row.contacts = bullet.contacts();
-  row.max_penetration = bullet.penetration();
-  result.increments.push_back(increment);
-  result.tools.push_back(row);
+// The increment that ends there. False: the tissue has flown apart.
+bool advance(BulletContact& bullet, const Pose& there, const std::string& tool, IncrementRow row,
+             RunResult& result) {
+  const auto began = Clock::now();
+  bullet.goTo(there);
+  row.update_ms = millisecondsSince(began);
+  const bool is_whole = bullet.isWhole();
+  const double through = 0.5 * bullet.lattice().spacing();
+  const bool is_ok = is_whole && bullet.penetration() <= through;
+  row.report.status = is_ok ? SolveStatus::kOk : SolveStatus::kUnconverged;
+  result.increments.push_back(row);
+  if (!is_whole) return false;
+  ToolRow of_tool;
+  of_tool.step = row.step;
+  of_tool.increment = row.increment;
+  of_tool.tool = tool;
+  of_tool.force = bullet.forceOnTool();
+  of_tool.contacts = bullet.contacts();
+  of_tool.max_penetration = bullet.penetration();
+  result.tools.push_back(of_tool);
+  return true;
 }
 
 void keepShape(const BulletContact& bullet, RunResult& result) {
@@ -61,36 +65,21 @@ RunResult runTool(const Scene& scene, const BulletPace& pace) {
   }
   const auto& start = moveOf(scene.steps.front()).from;
   if (!start) throw InputError("steps[0].move.from: must be given");
-  Pose at = start->pose;
-  BulletContact bullet(scene.tissue, scene.tools.front(), at, pace);
-  const double through = 0.5 * bullet.lattice().spacing();
+  Pose from = start->pose;
+  BulletContact bullet(scene.tissue, scene.tools.front(), from, pace);
   RunResult result;
   for (int step = 0; step < static_cast<int>(scene.steps.size()); ++step) {
-    const MoveStep& move = moveOf(scene.steps[robot_tissue::at(step)]);
-    const Pose from = at;
-    for (int i = 1; i <= *move.increments; ++i) {
-      IncrementRow row;
-      row.step = step;
-      row.increment = i;
-      const auto began = std::chrono::steady_clock::now();
-      at = placeBetween(from, move.to.pose, static_cast<double>(i) / *move.increments);
-      bullet.goTo(at);
-      row.update_ms =
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began)
-              .count();
-      row.report.iterations = pace.steps;
-      row.report.status = SolveStatus::kOk;
-      const bool is_whole = bullet.isWhole();
-      if (!is_whole || bullet.penetration() > through) {
-        row.report.status = SolveStatus::kUnconverged;
-      }
-      if (!is_whole) {
-        result.increments.push_back(row);
-        result.remarks.push_back("the tissue has flown apart");
-        return result;
-      }
-      addRow(bullet, move.tool, row, result);
+    const MoveStep& move = moveOf(scene.steps[at(step)]);
+    IncrementRow row;
+    row.step = step;
+    row.report.iterations = pace.steps;
+    for (int& i = row.increment; i <= *move.increments; ++i) {
+      const Pose there = onTheWay(from, move.to.pose, static_cast<double>(i) / *move.increments);
+      if (advance(bullet, there, move.tool, row, result)) continue;
+      result.remarks.push_back("the tissue has flown apart");
+      return result;
     }
+    from = move.to.pose;
   }
   keepShape(bullet, result);
   return result;
@@ -102,8 +91,7 @@ int solve(const CommandLine& line) {
   }
   BulletPace pace;
   pace.implicit = line.has("--implicit");
-  if (const auto steps = line.value("--steps")) pace.steps = std::atoi(steps->c_str());
-  if (pace.steps < 1) throw InputError("--steps: must be a whole number of 1 and more");
+  pace.steps = wholeNumberOf(line, "--steps", pace.steps);
   const Scene scene = loadScene(line.scene);
   OutputFolder folder(*line.value("--out"), {"nodes.csv", "increments.csv", "tools.csv"});
   const RunResult result = runTool(scene, pace);
@@ -118,15 +106,9 @@ int solve(const CommandLine& line) {
 }
 
 int run(const std::vector<std::string>& words) {
-  try {
+  return exitCodeOf("bullet_tool", std::cerr, [&words] {
     return solve(readCommandLine(words, {{"--out", "--steps"}, {"--implicit", "--quiet"}}));
-  } catch (const InputError& error) {
-    std::cerr << "bullet_tool: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "bullet_tool: " << error.what() << '\n';
-    return kExitFailure;
-  }
+  });
 }
 
 }  // namespace

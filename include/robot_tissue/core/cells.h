@@ -106,8 +106,9 @@ class CellSet {
   class Meetings {
    public:
     Meetings() = default;
-    Meetings(const Meeting* first, const Meeting* last) : listed_(first), count_(last - first) {}
-    void add(const Meeting& meeting) { found_[at(static_cast<int>(count_++))] = meeting; }
+    Meetings(const Meeting* first, const Meeting* last)
+        : listed_(first), count_(static_cast<std::size_t>(last - first)) {}
+    void add(const Meeting& meeting) { found_[count_++] = meeting; }
 
     const Meeting* begin() const { return listed_ != nullptr ? listed_ : found_.data(); }
     const Meeting* end() const { return begin() + count_; }
@@ -116,7 +117,7 @@ class CellSet {
    private:
     const Meeting* listed_ = nullptr;  // null: those found
     std::array<Meeting, kCorners> found_;
-    std::ptrdiff_t count_ = 0;
+    std::size_t count_ = 0;
   };
 
   CellSet() = default;

@@ -76,8 +76,8 @@ class SlidingContacts {
   };
 
   SlidingContacts() = default;  // of no tools
-  // Coulomb's friction of each tool (none: tissue sticks to it, see StickingContacts), thickness of
-  // each link (m).
+  // Coulomb's friction of each tool (none: tissue sticks to it, see StickingContacts), and the
+  // links.
   SlidingContacts(std::vector<std::optional<double>> friction, std::vector<LinkForm> links);
 
   // Whether a point with these carriers, or of the surface, can be pushed; `held` as in meet().
