@@ -307,7 +307,10 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
   double deepest = 0.0;
   for (const Contact& contact : (is_known ? found.contacts : asked).contacts) {
     if (at(contact.link) != link) continue;
-    deepest = std::max(deepest, contact.depth_m - of_link(contact.place).dot(contact.normal));
+    const Vec3 off_triangle = of_link(contact.place);
+    if (contact.depth_m + off_triangle.norm() <= deepest) continue;
+    const auto out = links[link].wayOutAt(tissue_T_link, contact.point + off_triangle, 0.0);
+    if (out) deepest = std::max(deepest, out->depth_m);
   }
   for (std::size_t i = 0; i < here.size(); ++i) {
     const std::vector<Vec3>& points = links[link].surface_points[i];

@@ -59,13 +59,30 @@ TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
   return sum;
 }
 
+// What is beside the face is drawn in its plane at the edge alone.
+void drawEdge(SlidingContacts::ContactConstraint& touch) {
+  const Rim& rim = touch.contact.rim;
+  const bool is_off_edge = rim.is_beyond && rim.drawn_aside.isZero(0.0);
+  touch.spring.drawn_compliance = is_off_edge ? 0.0 : touch.compliance.shown;
+  touch.spring.drawn_aside = rim.drawn_aside;
+  touch.spring.drawn_at = rim.drawn_at;
+}
+
 }  // namespace
 
 void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch) {
   touch.compliance = complianceOf(touch, tissue);
   touch.spring.stiffness = softened(touch.firm_stiffness, touch.compliance.normal);
   touch.spring.shown_compliance = touch.compliance.shown;
+  drawEdge(touch);
   putPlane(touch);
+}
+
+void rideEdge(const Pose& moved, SlidingContacts::ContactConstraint& touch) {
+  Rim& rim = touch.contact.rim;
+  rim.drawn_at = moved * rim.drawn_at;
+  rim.drawn_aside = moved.linear() * rim.drawn_aside * moved.linear().transpose();
+  drawEdge(touch);
 }
 
 void putPlane(SlidingContacts::ContactConstraint& touch) {

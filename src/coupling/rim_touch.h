@@ -12,6 +12,9 @@ namespace robot_tissue {
 // stiffness and friction.
 void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch);
 
+// The edge that the surface is drawn at goes with the tool.
+void rideEdge(const Pose& moved, SlidingContacts::ContactConstraint& touch);
+
 // The spring's plane: below the tool's by what the multiplier presses the rim together.
 void putPlane(SlidingContacts::ContactConstraint& touch);
 

@@ -38,6 +38,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     const double drift = touch.drift.foresee(growth_.shareOfLastWay(link, pose.links[link]));
     touch.tool_point = moved * touch.tool_point + drift * touch.spring.normal;
     touch.spring.turned_from = moved * touch.spring.turned_from;
+    rideEdge(moved, touch);
     putPlane(touch);
     anchor(pose, touch);
   }

@@ -29,10 +29,9 @@ double widthOf(const FlatFace& face) {
   return width;
 }
 
-double leastDepth(const FlatFace& face) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const FaceEdge& edge : face.edges) least = std::min(least, edge.depth_m);
-  return least;
+// What pushes beside the face pushes the tool's side.
+bool isOfFace(const Vec3& normal, const Vec3& face_normal) {
+  return normal.dot(face_normal) > tuning::kOfFace;
 }
 
 }  // namespace
@@ -65,6 +64,7 @@ void ToolRims::takeSurface() {
 void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
                     const ContactSet& contacts) {
   at_rims_.clear();
+  drawn_.clear();
   std::map<int, Link> links;
   for (const Contact& contact : contacts.contacts) {
     const std::size_t number = at(contact.link);
@@ -86,6 +86,36 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
     if (!findTurn(vertices, link)) continue;
     lookAround(vertices, link);
     steadyShares(number);
+    drawEdges(vertices, link);
+  }
+}
+
+// As much as the rims bear: where triangles touch, they bring the surface to the edge themselves.
+// What is beside the face and not pushed is not drawn in its plane, so not at its edge.
+void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
+  const TissueSurface& surface = world_.tissue.surface();
+  const double spacing = world_.tissue.lattice().spacing();
+  std::set<int> touching;
+  for (const int vertex : link.firm) {
+    if (surface.carriers[at(vertex)].size() == 1) touching.insert(vertex);
+  }
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    const auto at_rim = at_rims_.find({link.number, touch.vertex});
+    if (touch.contact.link != link.number || at_rim == at_rims_.end()) continue;
+    const bool pushes = isOfFace(touch.spring.normal, at_rim->second.normal) &&
+                        normalForceOf(touch.spring, world_.tissue.state().displacement) > 0.0;
+    if (pushes || !at_rim->second.rim.is_beyond) touching.insert(touch.vertex);
+  }
+  const FaceUnder face_under = [&](int vertex) {
+    return world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,
+                                  vertices[at(vertex)], tuning::kRimReach * spacing);
+  };
+  for (auto& [vertex, drawn] : drawnAtEdges(touching, neighbors_, vertices, face_under, spacing)) {
+    const auto at_rim = at_rims_.find({link.number, vertex});
+    const double share =
+        at_rim != at_rims_.end() ? at_rim->second.rim.share : shareAt(*face_under(vertex), link);
+    drawn.aside *= fade(share, 0.0, tuning::kSomeOfIt);
+    drawn_[{link.number, vertex}] = drawn;
   }
 }
 
@@ -284,11 +314,24 @@ void ToolRims::mark(Contact& contact) const {
     return;
   }
   const auto found = at_rims_.find({contact.link, vertex});
-  if (found == at_rims_.end() || found->second.rim.is_beyond) return;
-  if (found->second.rim.share <= 0.0) return;
-  contact.rim = found->second.rim;
-  contact.normal = found->second.normal;
-  contact.depth_m = -found->second.height;
+  if (found != at_rims_.end()) {
+    const AtRim& at_rim = found->second;
+    const bool is_on_face = !at_rim.rim.is_beyond && at_rim.rim.share > 0.0;
+    if (!is_on_face && !isOfFace(contact.normal, at_rim.normal)) return;
+    if (is_on_face) {
+      contact.rim = at_rim.rim;
+      contact.normal = at_rim.normal;
+      contact.depth_m = -at_rim.height;
+    }
+  }
+  markDrawn(vertex, contact);
+}
+
+void ToolRims::markDrawn(int vertex, Contact& contact) const {
+  const auto drawn = drawn_.find({contact.link, vertex});
+  if (drawn == drawn_.end()) return;
+  contact.rim.drawn_at = drawn->second.place;
+  contact.rim.drawn_aside = drawn->second.aside;
 }
 
 double ToolRims::shareOf(const Contact& contact) const {
@@ -324,6 +367,7 @@ Contact ToolRims::contactOf(int link, int vertex, const AtRim& at_rim,
   contact.normal = at_rim.normal;
   contact.depth_m = -at_rim.height;
   contact.rim = at_rim.rim;
+  markDrawn(vertex, contact);
   return contact;
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "drawn_edges.h"
 #include "world.h"
 
 namespace robot_tissue {
@@ -73,12 +74,15 @@ class ToolRims {
   void put(int vertex, const Vec3& place, const std::vector<Vec3>& vertices, const Link& link);
   double shareAt(const FlatFace& face, const Link& link) const;
   void steadyShares(int link);
+  void drawEdges(const std::vector<Vec3>& vertices, const Link& link);
+  void markDrawn(int vertex, Contact& contact) const;
   bool hasTissueBeyond(int vertex, const FaceEdge& edge, const Link& link) const;
   Contact contactOf(int link, int vertex, const AtRim& at_rim,
                     const std::vector<Vec3>& vertices) const;
 
   const World& world_;
   std::map<std::pair<int, int>, AtRim> at_rims_;       // of link and vertex
+  std::map<std::pair<int, int>, DrawnAt> drawn_;       // likewise
   std::map<std::pair<int, int>, double> shares_;       // likewise, of the load step
   std::map<std::pair<int, int>, double> last_shares_;  // of the touches when it began
   std::set<std::pair<int, int>> firm_;                 // likewise: stood firmly in the load step

@@ -148,6 +148,8 @@ constexpr double kRimReach = 2.5;
 constexpr double kFirmDepth = 0.3;
 // Of the spacing (1): a vertex so near to a face's plane is on it. Chosen.
 constexpr double kOnFace = 0.3;
+// Cosine of a touch's normal and a face's: it is that face's. Chosen.
+constexpr double kOfFace = 0.9;
 // Of a length at rest (1): less of it along a face is none. Chosen.
 constexpr double kLevel = 0.3;
 // Cosine of the angle between a face and the surface around its link: rims of a face are left out
@@ -165,6 +167,20 @@ constexpr double kStraightPush = 0.94;
 // Of the spacing (1): the same of a face's width. Chosen: two columns of nodes in any place.
 constexpr double kNarrowFace = 1.0;
 constexpr double kWideFace = 2.0;
+// Of the way to an edge (1) by which a vertex beside it is drawn aside. Less: the edge stands in
+// what is drawn; all of it: triangles between two that are drawn there may have no area. Chosen.
+constexpr double kDrawnAside = 0.98;
+// Cosine of the outward normals of an edge, as seen from two vertices a spacing apart: that of a
+// round end turns. More: ends of few spacings are cut off by what is drawn. Chosen.
+constexpr double kSameEdge = 0.5;
+// Of the spacing (1): two that are drawn on a round edge leave out what is farther from the line
+// between them. More: the edge stands in what is drawn. Chosen.
+constexpr double kLeftOut = 0.1;
+// Of the spacing (1): what is farther from an edge is not drawn there. Less: where tissue is
+// stretched the edge stands in what is drawn; more: triangles beside are drawn out. Chosen.
+constexpr double kFarthestDrawn = 1.0;
+// Cosine of the outward normals of two edges, also of opposite ones, that have no corner. Chosen.
+constexpr double kParallelEdges = 0.9;
 // Spacings inside an edge: from here on, a vertex beside a face comes to be shown in its plane, and
 // is so in full. Of the law a vertex has a push from -1 on; the edge would stand in what is drawn
 // where the last vertex is a little inside it and the next one not yet shown. Chosen.

@@ -50,6 +50,23 @@ TEST(Penetration, CornerAndFaceOfABox) {
   EXPECT_NEAR(penetrationOf(cube, on_corner), 0.002, 1e-9);
 }
 
+// Points of a top that is drawn below the box are out of it, also those beside one of its sides,
+// to which the way is shorter from the triangles.
+TEST(Penetration, CountsWhereTheSurfaceIsDrawn) {
+  const Sheet block = makeBlock(kCells, kSpacing);
+  const ContactFinder finder({makeTool({box(Vec3::Constant(0.01))})});
+  const Pose pose = makePose(Vec3(0.0202, 0.019, 0.005 - 0.0006));  // a side at x = 25.2 mm
+  const auto depthBelow = [&](double bulge) {
+    const auto of_all = [&](std::size_t, const SurfacePoint&) -> Vec3 {
+      return -bulge * Vec3::UnitZ();
+    };
+    return finder.penetrations({0}, at(pose), block.surface, block.vertices, of_all)[0];
+  };
+  EXPECT_NEAR(depthBelow(0.0), 0.0006, 1e-9);
+  EXPECT_NEAR(depthBelow(0.0004), 0.0002, 1e-9);
+  EXPECT_EQ(depthBelow(0.0007), 0.0);
+}
+
 TEST(Penetration, ToolWhollyBeneathTheSurfaceCounts) {
   const Pose pose = makePose(Vec3(0.02, 0.02, -0.015));
   EXPECT_NEAR(penetrationOf(sphere(0.002), pose), 0.015 + 0.0, 0.002);

@@ -1,6 +1,9 @@
 // Flat tools with sharp edges, that stand anywhere between the nodes (doc/contact.md, "The rim").
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_flat_tools {
@@ -92,6 +95,45 @@ TEST(FlatTools, ForceIsSmoothAsEdgesPassNodes) {
     EXPECT_NEAR(last, start, 0.08 * start) << step;
   }
   EXPECT_LT(greatest_jump, 0.02 * start);
+}
+
+// What is drawn has the tool's edges in it, also while they pass columns of vertices: no point of
+// the tool stands in it. Nodes are shown where they are.
+TEST(FlatTools, EdgesAreDrawnAnywhere) {
+  ToolShape rod;
+  rod.type = ToolShape::Type::kCylinder;
+  rod.radius = 0.01;
+  rod.length = kTool.z();
+  for (const auto& [shape, most] : {std::pair(boxOf(kTool), 0.02), std::pair(rod, 0.06)}) {
+    Pipeline pipeline(block(), SolverConfig(), {withFriction(0.0, toolOf(shape))});
+    walk(pipeline, {placeOf(-0.0005, 0.0)}, {placeOf(0.004, 0.0)});
+    for (int step = 0; step <= 20; ++step) {
+      pipeline.step(at({placeOf(0.004, 0.05 * kSpacing * step)}));
+      EXPECT_LT(pipeline.report().tools[0].max_penetration, most * kSpacing) << step;
+    }
+    const std::vector<Vec3> shown = pipeline.tissue().shownDisplacement();
+    const std::vector<Vec3>& own = pipeline.tissue().state().displacement;
+    for (std::size_t node = 0; node < own.size(); ++node) {
+      ASSERT_LT((shown[node] - own[node]).head<2>().norm(), 1e-3 * kSpacing) << node;
+    }
+  }
+}
+
+TEST(FlatTools, CornersAreDrawn) {
+  for (const double shift : {0.0, 0.1, 0.3, 0.5, 0.7}) {
+    Pipeline pipeline(block(), SolverConfig(), {withFriction(0.0, toolOf(boxOf(kTool)))});
+    walk(pipeline, {placeOf(-0.0005, shift * kSpacing)}, {placeOf(0.003, shift * kSpacing)});
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) {
+        const Vec3 corner = placeOf(0.003, shift * kSpacing) + kTool.cwiseProduct(Vec3(x, y, -0.5));
+        double nearest = kSpacing;
+        for (const Vec3& vertex : pipeline.tissue().vertices()) {
+          nearest = std::min(nearest, (vertex - corner).norm());
+        }
+        EXPECT_LT(nearest, 0.03 * kSpacing) << shift;
+      }
+    }
+  }
 }
 
 // Without friction the way to a place does not count.

@@ -20,6 +20,10 @@ struct Rim {
   bool is_beyond = false;       // the point is beside the face
   double shown = 0.0;           // of its way to the face's plane on which it is shown
   std::vector<FaceEdge> edges;  // near the point; none: others bear what it would
+  // The surface is drawn with the face's edges in it: the point is drawn at the edge or corner that
+  // is there (m), aside by this part of the way to it; zero: at none.
+  Vec3 drawn_at = Vec3::Zero();
+  Eigen::Matrix3d drawn_aside = Eigen::Matrix3d::Zero();
 };
 
 // A point of the surface that is inside a tool, or near it: the one form of what was found. What

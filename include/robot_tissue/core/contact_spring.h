@@ -51,6 +51,10 @@ struct ContactSpring {
   // At a tool's rim the surface is shown where the tool has it: off the spring's point by so much
   // times the normal force, along the normal (m/N).
   double shown_compliance = 0.0;
+  // Likewise the surface that is drawn, and aside by a part of the way to an edge of the tool (m).
+  double drawn_compliance = 0.0;
+  Eigen::Matrix3d drawn_aside = Eigen::Matrix3d::Zero();
+  Vec3 drawn_at = Vec3::Zero();
   bool is_thread = false;    // has carriers, rest, stiffness and, besides:
   double rest_length = 0.0;  // L (m)
 };
@@ -81,6 +85,10 @@ Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement)
 double gapOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // m
 
 double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
+
+// Off the point (m): where its displacement is shown, and where the surface is drawn.
+Vec3 shownOff(const ContactSpring& spring, const std::vector<Vec3>& displacement);
+Vec3 drawnOff(const ContactSpring& spring, const std::vector<Vec3>& displacement);
 
 Vec3 turningForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement);  // N
 

@@ -335,7 +335,8 @@ class Tissue {
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
   void deformSurface();
-  std::vector<std::pair<int, Vec3>> shownAsTheirOwn() const;
+  using OffPoint = Vec3 (*)(const ContactSpring&, const std::vector<Vec3>&);
+  std::vector<std::pair<int, Vec3>> shownAsTheirOwn(OffPoint of_tools) const;
   LoadingPatch makePatch(const PatchConfig& config) const;
   std::size_t place(const LoadingPatch& patch);
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;

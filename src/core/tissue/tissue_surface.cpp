@@ -30,8 +30,9 @@ void shrinkToFit(TissueSurface& surface) {
 
 double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
 
-// Nodes at rims, and their displacements as patches and tools have them (m).
-std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn() const {
+// Nodes at rims, and their displacements as patches and tools have them (m); of_tools: where a
+// tool's spring is shown off its point.
+std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn(OffPoint of_tools) const {
   std::vector<std::pair<int, Vec3>> own;
   for (const LoadingPatch& patch : patches_) {
     if (!patch.rim.empty()) {
@@ -39,10 +40,10 @@ std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn() const {
       for (std::size_t i = 0; i < shown.size(); ++i) own.emplace_back(patch.nodes[i], shown[i]);
     }
     for (const ContactSpring& spring : patch.contacts) {
-      if (spring.shown_compliance <= 0.0) continue;
-      const double off = spring.shown_compliance * normalForceOf(spring, state_.displacement);
+      const Vec3 off = of_tools(spring, state_.displacement);
+      if (off.isZero(0.0)) continue;
       for (const NodeWeight& carrier : spring.carriers) {
-        own.emplace_back(carrier.node, state_.displacement[at(carrier.node)] + off * spring.normal);
+        own.emplace_back(carrier.node, state_.displacement[at(carrier.node)] + off);
       }
     }
   }
@@ -51,12 +52,12 @@ std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn() const {
 
 std::vector<Vec3> Tissue::shownDisplacement() const {
   std::vector<Vec3> shown = state_.displacement;
-  for (const auto& [node, own] : shownAsTheirOwn()) shown[at(node)] = own;
+  for (const auto& [node, own] : shownAsTheirOwn(shownOff)) shown[at(node)] = own;
   return shown;
 }
 
 void Tissue::deformSurface() {
-  std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn();
+  std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn(drawnOff);
   const auto exchange = [&](std::pair<int, Vec3>& of_node) {
     std::swap(state_.displacement[at(of_node.first)], of_node.second);
   };
