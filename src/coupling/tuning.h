@@ -8,7 +8,9 @@ namespace robot_tissue::tuning {
 
 // Springs in contact.
 // Stiffness of a contact spring over the tissue's at its point (1). More: fewer updates of the
-// multipliers, harder solves. Chosen.
+// multipliers, harder solves. 3, 6, 10, 20, from four starts: a sphere takes 1,709, 1,796, 1,825,
+// 2,435 cycles, a box on its edge 5,515, 4,190, 3,489, 4,715, a lying cylinder 2,931, 2,960, 2,783,
+// 3,380.
 constexpr double kContactStiffness = 10.0;
 // The same of friction's spring, at most (1). More: sticking gives way less. Chosen.
 constexpr double kFrictionStiffness = 2.0;

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -27,12 +26,6 @@ constexpr double kPress = 0.005, kRound = 0.010;  // m: depth, and radius of its
 constexpr double kPeriod = 1.0 / 200.0;           // s
 constexpr double kLongestUpdate = 0.1;            // s, as the node's
 constexpr int kMostSettling = 400;                // updates
-
-double processorSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 RobotPose poseAt(double gone) {
   const double down = std::min(gone, 2.0 * kPress);
@@ -83,9 +76,9 @@ Run follow(double max_ms, double speed, int poses, bool misses) {
   for (int pose = 0; pose < poses;) {
     const double came = pose * kPeriod;
     now = std::max(now, came);
-    const double start = processorSeconds();
+    const double start = 1e-3 * processorMs();
     const StepReport& report = pipeline.step(poseAt(speed * came));
-    const double took = processorSeconds() - start;
+    const double took = 1e-3 * processorMs() - start;
     now += took;
     const auto index = static_cast<std::size_t>(pose);
     run.force[index] = report.tools.front().force_on_tool;

@@ -11,7 +11,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -25,6 +24,7 @@
 #include "robot_tissue/scene/value_text.h"
 #include "run_scene.h"
 #include "simulate.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -34,12 +34,6 @@ struct Rest {
   double tolerance = 0.01;
   int most_steps = 2000;
 };
-
-double processorMs() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 BulletSettings settingsOf(const CommandLine& line, const Lattice& lattice) {
   BulletSettings settings = bestSettings(line.value("--method").value_or(""), lattice);
@@ -150,7 +144,7 @@ class Peer {
   SolveReport advance(int increment) {
     SolveReport report;
     const double still = rest_.tolerance * wayOfIncrement();
-    const auto began = std::chrono::steady_clock::now();
+    const Clock::time_point began = Clock::now();
     const double processor_began = robot_tissue::processorMs();
     report.status = SolveStatus::kUnconverged;
     while (report.iterations < rest_.most_steps && report.status != SolveStatus::kOk) {
@@ -162,8 +156,7 @@ class Peer {
       if (look() < still && to_come == 0) report.status = SolveStatus::kOk;
     }
     processor_ms_ += robot_tissue::processorMs() - processor_began;
-    report.wall_ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+    report.wall_ms = millisecondsSince(began);
     const Volume volume = measureVolume();
     report.volume_ratio = volume.total / rest_volume_;
     report.inverted_cells = volume.inverted;

@@ -6,9 +6,9 @@
 // unbalanced_n,ms,status,sliding_normal_n,sliding_drag_n: one line an increment of the drag; ratio
 // is of the wrench, normal_n and drag_n are sums over the touches, sliding_ over those that slide.
 #include <cstdio>
-#include <ctime>
 
 #include "contact_trial.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -39,9 +39,9 @@ void slide(const Slide& trial, double friction, double spacing, const SolverConf
   const int increments = static_cast<int>(trial.drag / kIncrement + 0.5);
   for (int i = 0; i <= increments; ++i) {
     const double aside = trial.drag * i / increments;
-    const std::clock_t begin = std::clock();
+    const double begin = processorMs();
     const ToolReport& tool = pipeline.step(at_way(trial.press, aside)).tools.front();
-    const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double ms = processorMs() - begin;
     const TouchSums touches = touchesOf(pipeline.tissue(), trial.name, Vec3::Zero());
     const Vec3& force = tool.force_on_tool;
     std::printf("%s,%g,%g,%.3f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f,%.6f,%.1f,%s,%.6f,%.6f\n",

@@ -5,9 +5,9 @@
 // Writes spacing_mm,radius_mm,layer_mm,width_mm,method,tolerance,shift,depth_mm,force_n,
 // lateral_n,contact_radius_mm,touches,penetration_mm,unbalanced_n,ms,status: one line a step.
 #include <cstdio>
-#include <ctime>
 
 #include "contact_trial.h"
+#include "timing.h"
 
 int main(int argc, char** argv) {
   using namespace robot_tissue;
@@ -35,9 +35,9 @@ int main(int argc, char** argv) {
       "contact_radius_mm,touches,penetration_mm,unbalanced_n,ms,status\n");
   for (int step = 1; step <= steps; ++step) {
     const double deep = depth * step / steps;
-    const std::clock_t start = std::clock();
+    const double start = processorMs();
     const ToolReport& tool = pipeline.step(at_depth(deep)).tools.front();
-    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double ms = processorMs() - start;
     const TouchSums touches = touchesOf(pipeline.tissue(), "sphere", axis);
     std::printf("%g,%g,%g,%g,%s,%g,%g,%.4f,%.6f,%.6f,%.3f,%d,%.4f,%.6f,%.1f,%s\n", 1e3 * spacing,
                 1e3 * radius, 1e3 * layer, 1e3 * width, method.c_str(), tolerance, shift,

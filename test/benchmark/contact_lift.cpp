@@ -5,9 +5,9 @@
 // penetration_mm,unbalanced_n,ms,status: f is the sum of the jaws' forces on the tissue, sunk_mm
 // how far the block's mean is below where the jaws would carry it.
 #include <cstdio>
-#include <ctime>
 
 #include "contact_trial.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -58,9 +58,9 @@ class Lift {
     const Vec3 aside(0.5 * kExtent.x() + 0.5 * kJaw.x() - squeeze_, 0.0, 0.0);
     RobotPose pose;
     pose.links = {placedAt(middle - aside), placedAt(middle + aside)};
-    const std::clock_t begin = std::clock();
+    const double begin = processorMs();
     const StepReport& report = pipeline_->step(pose);
-    const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double ms = processorMs() - begin;
     Vec3 on_tissue = Vec3::Zero();
     double penetration = 0.0, mean = 0.0;
     for (const ToolReport& tool : report.tools) {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <map>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -147,9 +147,9 @@ class Trial {
   void update(const char* leg, const Vec3& place, double way) {
     RobotPose pose;
     pose.links.push_back(Pose(Eigen::Translation3d(place)));
-    const std::clock_t start = std::clock();
+    const double start = processorMs();
     const StepReport& report = pipeline_->step(pose);
-    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double ms = processorMs() - start;
     const ToolReport& tool = report.tools.front();
     const SolveReport& solve = pipeline_->tissue().lastReport();
     std::printf("%s,%s,%.3f,%.5f,%.5f,%.5f,%.4f,%.2f,%d,%s\n", name_.c_str(), leg, 1e3 * way,

@@ -7,9 +7,9 @@
 // tool,spacing_mm,poisson,friction,offset,depth_mm,force_n,penetration_mm,ms,status: one line a
 // step.
 #include <cstdio>
-#include <ctime>
 
 #include "contact_trial.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -49,9 +49,9 @@ template <class Press>
 void press(const Job& job, const Press& to) {
   for (int step = 1; step <= job.steps; ++step) {
     const double depth = job.depth * step / job.steps;
-    const std::clock_t start = std::clock();
+    const double start = processorMs();
     const Answer answer = to(depth);
-    const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double ms = processorMs() - start;
     std::printf("%s,%g,%g,%g,%g,%.4f,%.6f,%.4f,%.1f,%s\n", job.tool.c_str(),
                 1e3 * job.tissue.spacing, job.tissue.material.poisson_ratio, job.friction,
                 job.offset, 1e3 * depth, answer.force, 1e3 * answer.penetration, ms,

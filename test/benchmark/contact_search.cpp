@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/contact_finder.h"
+#include "timing.h"
 #include "tool_meshes.h"
 
 namespace robot_tissue {
@@ -27,12 +28,6 @@ constexpr int kSearches = 60;
 constexpr double kWay = 2.5e-4;  // of the tools from search to search (m)
 constexpr double kDent = 0.006;  // m
 constexpr double kMargin = 0.3;  // of the spacing, as the pipeline's
-
-double processorUs() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 // The closed surface of a block on the plane z = 0, outside outwards.
 TissueSurface blockSurface(const std::array<int, 3>& cells, double spacing) {
@@ -149,12 +144,12 @@ void measure(const Case& scene, const TissueSurface& surface, double spacing) {
       pose.links.back().translation() = place + origin;
     }
     const std::vector<Vec3> vertices = dented(surface, place);
-    const double begin = processorUs();
+    const double begin = 1e3 * processorMs();
     const ContactSet found = finder.find(pose, surface, vertices, kMargin * spacing);
-    const double end = processorUs();
+    const double end = 1e3 * processorMs();
     const double deepest = finder.penetrations({0}, pose, surface, vertices)[0];
     search.push_back(end - begin);
-    depth.push_back(processorUs() - end);
+    depth.push_back(1e3 * processorMs() - end);
     contacts += found.contacts.size();
     sum += summed(found) + deepest;
   }

@@ -19,7 +19,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <vector>
 
 #include "../random_polygons.h"
@@ -28,9 +27,6 @@
 
 namespace robot_tissue {
 namespace {
-
-// Of all threads (ms).
-double processorTime() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 constexpr double kWidth = 0.1, kHeight = 0.05, kRadius = 0.01;  // m
 
@@ -79,17 +75,17 @@ void cutWhilePressing(int cells_high) {
   const Vec3 over(0.051, 0.0493, kHeight + kRadius);
   Times times;
   for (int update = 0; update < 40; ++update) {
-    double start = processorTime();
+    double start = processorMs();
     pipeline.step(posesAt({over - Vec3(0.0, 0.0, 2.5e-4 * (update + 1))}));
-    if (update >= 4) times.moves.push_back(processorTime() - start);
+    if (update >= 4) times.moves.push_back(processorMs() - start);
     times.note(pipeline.tissue());
     if (update % 4 != 3) continue;
     const double turn = 0.7 * update;
     const Vec3 out(std::cos(turn), std::sin(turn), 0.0);
     const Vec3 middle = Vec3(over.x(), over.y(), kHeight) + 0.02 * out;
-    start = processorTime();
+    start = processorMs();
     pipeline.cut(slit(middle, Vec3(-out.y(), out.x(), 0.0), 0.015, 0.01));
-    times.cuts.push_back(processorTime() - start);
+    times.cuts.push_back(processorMs() - start);
     times.note(pipeline.tissue());
   }
   times.tell("pressing", pipeline.tissue().lattice().nodeCount());
@@ -107,9 +103,9 @@ RobotPose goingRound(int update, double depth) {
 void rollPieces(Pipeline& pipeline, int updates_before) {
   Times times;
   for (int update = 0; update < 600; ++update) {
-    const double start = processorTime();
+    const double start = processorMs();
     pipeline.step(goingRound(updates_before + update, 0.004 + 1e-5 * update));
-    times.moves.push_back(processorTime() - start);
+    times.moves.push_back(processorMs() - start);
     times.note(pipeline.tissue());
   }
   times.cuts.push_back(0.0);
@@ -123,15 +119,15 @@ void cutUnderTwoTools(int cuts, double budget) {
   RandomNumbers numbers;
   Times times;
   for (int cut = 0; cut < cuts; ++cut) {
-    double start = processorTime();
+    double start = processorMs();
     pipeline.step(goingRound(cut, std::min(2.5e-4 * cut, 0.004)));
-    times.moves.push_back(processorTime() - start);
+    times.moves.push_back(processorMs() - start);
     times.note(pipeline.tissue());
     const Vec3 middle(numbers.between(0.01, 0.09), numbers.between(0.01, 0.09), kHeight);
     const double way = numbers.between(0.0, 3.14159);
-    start = processorTime();
+    start = processorMs();
     pipeline.cut(slit(middle, Vec3(std::cos(way), std::sin(way), 0.0), 0.02, 0.012));
-    times.cuts.push_back(processorTime() - start);
+    times.cuts.push_back(processorMs() - start);
     times.note(pipeline.tissue());
   }
   times.tell(budget > 0.0 ? "two tools, bounded" : "two tools",

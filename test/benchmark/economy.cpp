@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "robot_tissue/pipeline/pipeline.h"
+#include "timing.h"
 
 namespace {
 long allocations = 0;
@@ -54,12 +55,6 @@ constexpr double kRadius = 0.006;             // of the tools (m)
 constexpr int kWarmUp = 100, kUpdates = 200;  // two periods of the motion
 
 using Motion = std::function<double(int update)>;  // height of the tools' lowest points (m)
-
-double processorMs() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 double heapBytes() {
   const struct mallinfo2 info = mallinfo2();

@@ -7,7 +7,6 @@
 //
 // With `error` the greatest one against the same lattice at a tolerance of 1e-5 is told (L2 over
 // all nodes), and times and memory are not.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -67,13 +66,11 @@ void tellTimes(const Job& job) {
   int active = 0, not_ok = 0;
   for (int repeat = 0; repeat < job.repeats; ++repeat) {
     for (const Vec3& place : wayOf()) {
-      const double before = processorMs();
-      const auto start = std::chrono::steady_clock::now();
+      const double before = threadMs();
+      const Clock::time_point start = Clock::now();
       tissue.load(stepTo(job, place));
-      const std::chrono::duration<double, std::milli> passed =
-          std::chrono::steady_clock::now() - start;
-      processor.push_back(processorMs() - before);
-      wall.push_back(passed.count());
+      processor.push_back(threadMs() - before);
+      wall.push_back(millisecondsSince(start));
       active = std::max(active, tissue.lastReport().active_nodes);
       if (tissue.lastReport().status != SolveStatus::kOk) ++not_ok;
     }

@@ -6,13 +6,13 @@
 // the displacement (L2) against the load in 400 increments.
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contact_trial.h"
 #include "robot_tissue/core/tissue.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -33,8 +33,6 @@ struct Outcome {
   SolveStatus worst = SolveStatus::kOk;
   std::vector<Vec3> displacement;
 };
-
-double processorMs() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 Outcome bring(const Case& job, std::optional<int> increments) {
   TissueConfig block = blockOf({0.1, 0.1, kTop}, job.spacing);

@@ -86,9 +86,9 @@ double medianMs(const Case& each, const PatchJob& job, int& not_ok) {
   std::vector<double> all;
   not_ok = 0;
   for (const Vec3& place : each.way) {
-    const double before = processorMs();
+    const double before = threadMs();
     tissue.load(stepTo(job, place));
-    all.push_back(processorMs() - before);
+    all.push_back(threadMs() - before);
     if (tissue.lastReport().status != SolveStatus::kOk) ++not_ok;
   }
   return quantile(all, 0.5);

@@ -6,7 +6,6 @@
 //   paper_choices modes      one row for each block: eigenvalues of its stiffness matrix
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>

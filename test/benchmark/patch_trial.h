@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <vector>
 
 #include "robot_tissue/core/tissue.h"
@@ -52,12 +51,6 @@ inline LoadStep stepTo(const PatchJob& job, const Vec3& place) {
 }
 
 // Of the calling thread: the linear algebra library has one of its own that waits busily at first.
-inline double processorMs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
 inline double errorOf(const Tissue& tissue, const Tissue& exact) {
   double missed = 0.0, moved = 0.0;
   for (std::size_t node = 0; node < exact.state().displacement.size(); ++node) {

@@ -6,12 +6,12 @@
 // Method `paper` solves model six_spring, the others `elastic`.
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <iostream>
 #include <random>
 
 #include "random_visits.h"
 #include "stability_rungs.h"
+#include "timing.h"
 
 namespace robot_tissue {
 namespace {
@@ -185,9 +185,7 @@ void list(const std::vector<Rung>& rungs) {
 }
 
 int run(const std::string& name, const std::string& method, int updates) {
-  const auto seconds = [] {  // of the processor
-    return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
-  };
+  const auto seconds = [] { return 1e-3 * processorMs(); };
   if (name == "random_patch") {
     const Row row = runRandomPatch(method, updates);
     print(row, seconds());

@@ -10,13 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "contact_trial.h"
 #include "robot_tissue/pipeline/pipeline.h"
+#include "timing.h"
 #include "tool_meshes.h"
 
 namespace robot_tissue {
@@ -25,12 +25,6 @@ namespace {
 constexpr double kTop = 0.05;     // m
 constexpr double kPress = 0.005;  // m
 constexpr double kRound = 0.010;  // m: radius of the way
-
-double processorMs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 struct Way {
   Vec3 center;
@@ -95,9 +89,9 @@ int run(int argc, char** argv) {
   for (int update = 0; update < updates; ++update) {
     RobotPose pose;
     for (const Way& way : ways) pose.links.push_back(placedAt(placeOn(way, update * speed / rate)));
-    const double start = processorMs();
+    const double start = threadMs();
     const StepReport& report = pipeline.step(pose);
-    const double update_ms = processorMs() - start;
+    const double update_ms = threadMs() - start;
     double force = 0.0, penetration = 0.0;
     int touches = 0;
     for (const ToolReport& tool : report.tools) {
