@@ -25,6 +25,11 @@ class Faces {
     return known_.emplace(vertex, face_under_(vertex)).first->second;
   }
 
+  bool isOnFace(int vertex) {
+    const std::optional<FlatFace>& face = under(vertex);
+    return face && leastDepth(*face) > 0.0;
+  }
+
   // Inside the edge that another point of the face has, as this vertex sees it; where it sees none
   // that runs alike, it is far inside, or beyond.
   double depthIn(const FaceEdge& of_other, int vertex) {
@@ -47,13 +52,13 @@ class Faces {
   std::map<int, std::optional<FlatFace>> known_;
 };
 
-// Than a neighbor on the other side of it, or that is not touched; of two as near the one with the
-// lower number.
+// Than a neighbor on the other side of it, or than any that is not touched; of two as near the one
+// with the lower number. Beyond a corner neither is on the face.
 bool isNearest(int vertex, const FaceEdge& edge, const std::vector<int>& neighbors, Faces& faces) {
   return std::any_of(neighbors.begin(), neighbors.end(), [&](int other) {
     const double depth = faces.depthIn(edge, other);
     if ((depth > 0.0) == (edge.depth_m > 0.0)) return false;
-    if (!faces.isTouched(other)) return true;
+    if (!faces.isTouched(other)) return edge.depth_m > 0.0 || faces.isOnFace(other);
     const double nearer = std::abs(depth) - std::abs(edge.depth_m);
     return nearer > 0.0 || (nearer == 0.0 && vertex < other);
   });

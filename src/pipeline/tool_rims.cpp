@@ -91,7 +91,7 @@ void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
 }
 
 // As much as the rims bear: where triangles touch, they bring the surface to the edge themselves.
-// What is beside the face and not pushed is not drawn in its plane, so not at its edge.
+// What such a touch does not push is off the face's plane.
 void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
   const TissueSurface& surface = world_.tissue.surface();
   const double spacing = world_.tissue.lattice().spacing();
@@ -102,9 +102,7 @@ void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     const auto at_rim = at_rims_.find({link.number, touch.vertex});
     if (touch.contact.link != link.number || at_rim == at_rims_.end()) continue;
-    const bool pushes = isOfFace(touch.spring.normal, at_rim->second.normal) &&
-                        normalForceOf(touch.spring, world_.tissue.state().displacement) > 0.0;
-    if (pushes || !at_rim->second.rim.is_beyond) touching.insert(touch.vertex);
+    if (isOfFace(touch.spring.normal, at_rim->second.normal)) touching.insert(touch.vertex);
   }
   const FaceUnder face_under = [&](int vertex) {
     return world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,

@@ -57,6 +57,21 @@ class SpringInContact : public ::testing::TestWithParam<Case> {
   std::vector<Vec3> displacement_;
 };
 
+// Shown in the tool's plane and drawn at its edge: that moves no node and pushes nothing.
+TEST_P(SpringInContact, IsDrawnAside) {
+  const Vec3 force = forceOf(spring_, displacement_);
+  EXPECT_TRUE(drawnOff(spring_, displacement_).isZero(0.0));
+  spring_.shown_compliance = spring_.drawn_compliance = 0.01;
+  const Vec3 pressed = 0.01 * normalForceOf(spring_, displacement_) * spring_.normal;
+  EXPECT_LT((shownOff(spring_, displacement_) - pressed).norm(), 1e-15);
+  const Vec3 along(0.0, 1.0, 0.0), edge = pointOf(spring_, displacement_) + 0.002 * along;
+  spring_.drawn_aside = along * along.transpose();
+  spring_.drawn_at = edge + 0.001 * spring_.normal;  // along the normal it stays
+  EXPECT_LT((drawnOff(spring_, displacement_) - pressed - 0.002 * along).norm(), 1e-15);
+  EXPECT_LT((shownOff(spring_, displacement_) - pressed).norm(), 1e-15);
+  EXPECT_EQ(forceOf(spring_, displacement_), force);
+}
+
 TEST_P(SpringInContact, GapIsThatOfItsPoint) {
   const Vec3 point =
       spring_.rest + 0.2 * displacement_[0] + 0.5 * displacement_[2] + 0.3 * displacement_[3];

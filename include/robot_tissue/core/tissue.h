@@ -334,8 +334,8 @@ class Tissue {
   void rebindThreads();
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
-  void deformSurface();
   using OffPoint = Vec3 (*)(const ContactSpring&, const std::vector<Vec3>&);
+  void deformSurface(OffPoint of_tools = drawnOff);
   std::vector<std::pair<int, Vec3>> shownAsTheirOwn(OffPoint of_tools) const;
   LoadingPatch makePatch(const PatchConfig& config) const;
   std::size_t place(const LoadingPatch& patch);

@@ -69,9 +69,8 @@ Vec3 shownOff(const ContactSpring& spring, const std::vector<Vec3>& displacement
 
 Vec3 drawnOff(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
   const Vec3 point = pointOf(spring, displacement);
-  const double inside = spring.drawn_compliance * pressAt(spring, point);
-  if (inside <= 0.0 && spring.drawn_compliance > 0.0) return Vec3::Zero();
-  return inside * spring.normal + spring.drawn_aside * (spring.drawn_at - point);
+  return spring.drawn_compliance * pressAt(spring, point) * spring.normal +
+         spring.drawn_aside * (spring.drawn_at - point);
 }
 
 Vec3 turningForceOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {

@@ -56,8 +56,8 @@ std::vector<Vec3> Tissue::shownDisplacement() const {
   return shown;
 }
 
-void Tissue::deformSurface() {
-  std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn(drawnOff);
+void Tissue::deformSurface(OffPoint of_tools) {
+  std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn(of_tools);
   const auto exchange = [&](std::pair<int, Vec3>& of_node) {
     std::swap(state_.displacement[at(of_node.first)], of_node.second);
   };

@@ -74,12 +74,14 @@ std::vector<LoadingPatch> Tissue::namedLoads() const {
   return {patches_.begin(), patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)};
 }
 
-// Balances what other cells and springs leave.
+// Balances what other cells and springs leave. Until contacts are renewed, tools' springs are of
+// the nodes that there were.
 SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
   kept_.reset();
   rebuildSurface();
-  deformSurface();
+  deformSurface(
+      [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
   const std::vector<LoadingPatch> earlier = patches_;
   renewContacts();
   if (takesNoTime()) return asItIs();
