@@ -29,11 +29,6 @@ double widthOf(const FlatFace& face) {
   return width;
 }
 
-// What pushes beside the face pushes the tool's side.
-bool isOfFace(const Vec3& normal, const Vec3& face_normal) {
-  return normal.dot(face_normal) > tuning::kOfFace;
-}
-
 }  // namespace
 
 void ToolRims::beginStep() {
@@ -102,7 +97,9 @@ void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     const auto at_rim = at_rims_.find({link.number, touch.vertex});
     if (touch.contact.link != link.number || at_rim == at_rims_.end()) continue;
-    if (isOfFace(touch.spring.normal, at_rim->second.normal)) touching.insert(touch.vertex);
+    if (!touch.contact.rim.edges.empty() || !at_rim->second.rim.is_beyond) {
+      touching.insert(touch.vertex);
+    }
   }
   const FaceUnder face_under = [&](int vertex) {
     return world_.finder.flatFace(at(link.number), link.tissue_T_link, link.facing,
@@ -314,13 +311,10 @@ void ToolRims::mark(Contact& contact) const {
   const auto found = at_rims_.find({contact.link, vertex});
   if (found != at_rims_.end()) {
     const AtRim& at_rim = found->second;
-    const bool is_on_face = !at_rim.rim.is_beyond && at_rim.rim.share > 0.0;
-    if (!is_on_face && !isOfFace(contact.normal, at_rim.normal)) return;
-    if (is_on_face) {
-      contact.rim = at_rim.rim;
-      contact.normal = at_rim.normal;
-      contact.depth_m = -at_rim.height;
-    }
+    if (at_rim.rim.is_beyond || at_rim.rim.share <= 0.0) return;
+    contact.rim = at_rim.rim;
+    contact.normal = at_rim.normal;
+    contact.depth_m = -at_rim.height;
   }
   markDrawn(vertex, contact);
 }

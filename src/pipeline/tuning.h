@@ -148,8 +148,6 @@ constexpr double kRimReach = 2.5;
 constexpr double kFirmDepth = 0.3;
 // Of the spacing (1): a vertex so near to a face's plane is on it. Chosen.
 constexpr double kOnFace = 0.3;
-// Cosine of a touch's normal and a face's: it is that face's. Chosen.
-constexpr double kOfFace = 0.9;
 // Of a length at rest (1): less of it along a face is none. Chosen.
 constexpr double kLevel = 0.3;
 // Cosine of the angle between a face and the surface around its link: rims of a face are left out
