@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "tuning.h"
 
@@ -15,7 +17,9 @@ constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 class Faces {
  public:
   Faces(const std::set<int>& touching, const FaceUnder& face_under)
-      : touching_(touching), face_under_(face_under) {}
+      : touching_(touching), face_under_(face_under) {
+    known_.reserve(4 * touching.size());
+  }
 
   bool isTouched(int vertex) const { return touching_.count(vertex) != 0; }
 
@@ -49,7 +53,7 @@ class Faces {
  private:
   const std::set<int>& touching_;
   const FaceUnder& face_under_;
-  std::map<int, std::optional<FlatFace>> known_;
+  std::unordered_map<int, std::optional<FlatFace>> known_;
 };
 
 // Than a neighbor on the other side of it, or than any that is not touched; of two as near the one
@@ -108,14 +112,16 @@ double offLine(const Vec3& point, const Vec3& from, const Vec3& to) {
 // that is next to the vertex.
 bool isLeftOut(int vertex, const Vec3& on_edge, const std::vector<std::vector<int>>& neighbors,
                const std::map<int, DrawnAt>& drawn, double least) {
-  const std::vector<int>& around = neighbors[at(vertex)];
-  const auto of = [&](int other) { return drawn.find(other); };
-  for (const int a : around) {
-    if (of(a) == drawn.end()) continue;
-    for (const int b : neighbors[at(a)]) {
-      if (b < a || of(b) == drawn.end()) continue;
-      if (std::find(around.begin(), around.end(), b) == around.end()) continue;
-      if (offLine(on_edge, of(a)->second.place, of(b)->second.place) > least) return true;
+  std::vector<std::pair<int, Vec3>> around;
+  for (const int other : neighbors[at(vertex)]) {
+    const auto there = drawn.find(other);
+    if (there != drawn.end()) around.emplace_back(other, there->second.place);
+  }
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const std::vector<int>& beside = neighbors[at(around[i].first)];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (std::find(beside.begin(), beside.end(), around[j].first) == beside.end()) continue;
+      if (offLine(on_edge, around[i].second, around[j].second) > least) return true;
     }
   }
   return false;
