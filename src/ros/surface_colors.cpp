@@ -33,11 +33,19 @@ Corners cornersOf(const std::vector<Vec3>& vertices, const MeshTriangle& triangl
   return {vertices[at(triangle[0])], vertices[at(triangle[1])], vertices[at(triangle[2])]};
 }
 
+// Where nodes have them (m): what is drawn at tools' edges is aside of that.
+std::vector<Vec3> verticesOfNodes(const Tissue& tissue) {
+  std::vector<Vec3> vertices;
+  deform(tissue.surface(), tissue.shownDisplacement(), vertices);
+  return vertices;
+}
+
 std::vector<double> displacements(const Tissue& tissue) {
+  const std::vector<Vec3> vertices = verticesOfNodes(tissue);
   std::vector<double> values;
-  values.reserve(tissue.vertices().size());
-  for (std::size_t vertex = 0; vertex < tissue.vertices().size(); ++vertex) {
-    const Vec3 way = tissue.vertices()[vertex] - tissue.surface().rest[vertex];
+  values.reserve(vertices.size());
+  for (std::size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+    const Vec3 way = vertices[vertex] - tissue.surface().rest[vertex];
     values.push_back(kMillimeters * way.norm());
   }
   return values;
@@ -62,12 +70,12 @@ double greatestStretch(const Corners& rest, const Corners& now) {
 
 std::vector<double> strains(const Tissue& tissue) {
   const TissueSurface& surface = tissue.surface();
+  const std::vector<Vec3> vertices = verticesOfNodes(tissue);
   std::vector<double> values(surface.rest.size(), 0.0), areas(surface.rest.size(), 0.0);
   for (const MeshTriangle& triangle : surface.triangles) {
     const double area = doubleArea(surface.rest, triangle).norm();
     const double strain =
-        greatestStretch(cornersOf(surface.rest, triangle), cornersOf(tissue.vertices(), triangle)) -
-        1.0;
+        greatestStretch(cornersOf(surface.rest, triangle), cornersOf(vertices, triangle)) - 1.0;
     for (const int vertex : triangle) {
       values[at(vertex)] += kPercent * area * strain;
       areas[at(vertex)] += area;
