@@ -1,5 +1,5 @@
 // Which points of the surface are drawn at the edges of a tool's flat face (own; doc/contact.md,
-// "The rim").
+// "Edges are drawn").
 //
 // An edge runs anywhere between two columns of vertices; a triangle from one to the other would cut
 // it off, by up to a third of the spacing. Of two neighbors on both its sides the nearer one is
@@ -31,8 +31,7 @@ using FaceUnder = std::function<std::optional<FlatFace>(int vertex)>;
 // Depth inside the nearest edge, or beyond all (m); less than zero: outside.
 double leastDepth(const FlatFace& face);
 
-// Of those that touch the face; `neighbors`: of every vertex, along edges; places and
-// spacing in m.
+// Of those that touch the face; `neighbors`: of every vertex, along edges; places and spacing in m.
 std::map<int, DrawnAt> drawnAtEdges(const std::set<int>& touching,
                                     const std::vector<std::vector<int>>& neighbors,
                                     const std::vector<Vec3>& places, const FaceUnder& face_under,
