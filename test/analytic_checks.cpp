@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/material.h"
+#include "deform_by.h"
 #include "material/elastic_model.h"
 #include "robot_tissue/core/tissue.h"
 #include "tissue/registry.h"
@@ -44,14 +45,6 @@ SolveReport loaded(Tissue& tissue, const LoadStep& step) {
   tissue.load(step, [&](int, int, const SolveReport& report) { last = report; });
   if (last.status != SolveStatus::kOk) throw std::runtime_error("no equilibrium was found");
   return last;
-}
-
-// Moves every node to where the deformation gradient takes it.
-void deformBy(const Lattice& lattice, const Eigen::Matrix3d& gradient, LatticeState& state) {
-  for (int node = 0; node < lattice.nodeCount(); ++node) {
-    const Vec3 rest = lattice.restPosition(node);
-    state.displacement[at(node)] = gradient * rest - rest;
-  }
 }
 
 // An inextensible bar clamped level at s = 0 under its own weight, load * L^3 / EI = `weight`:

@@ -321,9 +321,9 @@ Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const 
   Vec3 ratio = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
   for (const ContactConstraint& other : touches_) {
+    if (other.spring.multiplier <= 0.0 || other.contact.link != touch.contact.link) continue;
     const double off = (other.tool_point - touch.tool_point).norm();
-    if (other.contact.link != touch.contact.link || other.spring.multiplier <= 0.0 || off >= least)
-      continue;
+    if (off >= least) continue;
     least = off;
     ratio = other.friction_ratio;
   }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "block_fixtures.h"
+#include "deform_by.h"
 #include "material/elastic_model.h"
 #include "solvers/newton/newton_method.h"
 
@@ -68,14 +69,6 @@ inline Eigen::MatrixXd hessianOf(const ElasticBlock& block) {
     }
   });
   return matrix;
-}
-
-// Moves every node to where the deformation gradient takes it.
-inline void deformBy(const Lattice& lattice, const Eigen::Matrix3d& gradient, LatticeState& state) {
-  for (int node = 0; node < lattice.nodeCount(); ++node) {
-    const Vec3 rest = lattice.restPosition(node);
-    state.displacement[at(node)] = gradient * rest - rest;
-  }
 }
 
 inline double greatestForce(const std::vector<Vec3>& forces) {

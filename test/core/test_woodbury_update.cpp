@@ -8,7 +8,7 @@
 namespace robot_tissue::test_woodbury_update {
 namespace {
 
-using Springs = std::vector<WoodburyUpdate::Spring>;
+using Springs = WoodburyUpdate::Springs;
 
 class RandomSprings {
  public:
@@ -27,11 +27,12 @@ class RandomSprings {
   Springs springs(int nodes, int count) {
     Springs all;
     for (int i = 0; i < count; ++i) {
-      all.emplace_back();
-      all.back().stiffness = 10.0 * (1.5 + number());
+      const double stiffness = 10.0 * (1.5 + number());
       const int first = static_cast<int>(random_() % static_cast<unsigned>(nodes - 2));
-      for (int node = first + 2; node >= first + i % 3; --node) {
-        all.back().parts.push_back({node, Vec3(number(), number(), number())});
+      const int parts = 3 - i % 3;
+      all.add(stiffness, at(parts));
+      for (int part = 0; part < parts; ++part) {
+        all.partOfLast(at(part)) = {first + 2 - part, Vec3(number(), number(), number())};
       }
     }
     return all;
@@ -59,11 +60,12 @@ Eigen::VectorXd exactMotion(const std::vector<Eigen::Matrix3d>& stiffness, const
     whole.block<3, 3>(row, row) = stiffness[node];
     force.segment<3>(row) = forces[node];
   }
-  for (const WoodburyUpdate::Spring& spring : springs) {
+  for (std::size_t spring = 0; spring < springs.size(); ++spring) {
     Eigen::VectorXd along = Eigen::VectorXd::Zero(size);
-    for (const WoodburyUpdate::Part& part : spring.parts)
-      along.segment<3>(3 * part.node) = part.along;
-    whole += spring.stiffness * along * along.transpose();
+    for (std::size_t i = springs.first(spring); i < springs.first(spring + 1); ++i) {
+      along.segment<3>(3 * springs.part(i).node) = springs.part(i).along;
+    }
+    whole += springs.stiffness(spring) * along * along.transpose();
   }
   return whole.llt().solve(force);
 }

@@ -20,6 +20,7 @@ namespace tuning = level_tuning;
 
 template <typename Real>
 const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
+  if (!are_inverses_known_) findInverses();
   if (coupling_ != nullptr) {
     balancing_ = balancingTogether();
   } else {
@@ -27,6 +28,13 @@ const std::vector<Vec3>& ConstrainedNodes<Real>::balancing() const {
     divide(balancing_);
   }
   return balancing_;
+}
+
+template <typename Real>
+void ConstrainedNodes<Real>::findInverses() const {
+  for (std::size_t i = 0; i < all_.size(); ++i) inverses_[i] = all_[i].stiffness.inverse();
+  joined_.join(joining_, inverses_);
+  are_inverses_known_ = true;
 }
 
 template <typename Real>
@@ -104,6 +112,7 @@ void ConstrainedNodes<Real>::shortenTogether(double longest) {
 }
 
 template const std::vector<Vec3>& ConstrainedNodes<float>::balancing() const;
+template void ConstrainedNodes<float>::findInverses() const;
 template void ConstrainedNodes<float>::takeFreeForces(std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::divide(std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::couple(std::shared_ptr<const LevelMembrane<float>>, double);
@@ -111,6 +120,7 @@ template std::vector<Vec3> ConstrainedNodes<float>::balancingTogether() const;
 template std::vector<Vec3> ConstrainedNodes<float>::timesTogether(const std::vector<Vec3>&) const;
 template void ConstrainedNodes<float>::shortenTogether(double);
 template const std::vector<Vec3>& ConstrainedNodes<double>::balancing() const;
+template void ConstrainedNodes<double>::findInverses() const;
 template void ConstrainedNodes<double>::takeFreeForces(std::vector<Vec3>&) const;
 template void ConstrainedNodes<double>::divide(std::vector<Vec3>&) const;
 template void ConstrainedNodes<double>::couple(std::shared_ptr<const LevelMembrane<double>>,

@@ -96,7 +96,11 @@ void ConstrainedNodes<Real>::bind(const std::vector<std::uint8_t>& held,
   findIndices(held.size(), partly_held);
   for (ConstrainedNode& constrained : all_) constrained.held = held[at(constrained.node)];
   for (auto* vectors : {&places_, &forces_}) vectors->assign(all_.size(), Vec3::Zero());
+  // Nothing moves until forces are found.
   inverses_.assign(all_.size(), Eigen::Matrix3d::Zero());
+  joining_.clear();
+  joined_.join(joining_, inverses_);
+  are_inverses_known_ = true;
   for (LevelSpring& spring : springs) {
     for (LevelSpring::Carrier& carrier : spring.carriers) {
       carrier.constrained = index_of_[at(carrier.node)];
@@ -226,14 +230,14 @@ void ConstrainedNodes<Real>::join(const LevelSpring& spring, const Vec3& point) 
 template <typename Real>
 void ConstrainedNodes<Real>::joinAlong(const LevelSpring& spring, const Vec3& direction,
                                        double stiffness) {
-  joining_.emplace_back();
-  joining_.back().stiffness = stiffness;
-  for (const LevelSpring::Carrier& carrier : spring.carriers) {
+  joining_.add(stiffness, spring.carriers.size());
+  for (std::size_t i = 0; i < spring.carriers.size(); ++i) {
+    const LevelSpring::Carrier& carrier = spring.carriers[i];
     Vec3 along = carrier.weight * direction;
     for (int axis = 0; axis < 3; ++axis) {
       if ((all_[at(carrier.constrained)].held >> axis & 1U) != 0) along[axis] = 0.0;
     }
-    joining_.back().parts.push_back({carrier.constrained, along});
+    joining_.partOfLast(i) = {carrier.constrained, along};
   }
 }
 
@@ -273,23 +277,21 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
       forces[at(axis)][at(constrained.node)] =
           is_held ? Real(0) : static_cast<Real>(forces_[i][axis]);
     }
-    if (what != Find::kForces) invert(i);
+    if (what != Find::kForces) holdInStiffness(all_[i]);
   }
   if (what == Find::kForces) return;
   invertGroups();
-  joined_.join(std::move(joining_), inverses_);
+  are_inverses_known_ = false;
 }
 
 template <typename Real>
-void ConstrainedNodes<Real>::invert(std::size_t index) {
-  ConstrainedNode& constrained = all_[index];
+void ConstrainedNodes<Real>::holdInStiffness(ConstrainedNode& constrained) {
   for (int axis = 0; axis < 3; ++axis) {
     if ((constrained.held >> axis & 1U) == 0) continue;
     constrained.stiffness.row(axis).setZero();
     constrained.stiffness.col(axis).setZero();
     constrained.stiffness(axis, axis) = 1.0;
   }
-  inverses_[index] = constrained.stiffness.inverse();
 }
 
 template <typename Real>

@@ -156,20 +156,23 @@ class ConstrainedNodes {
   std::vector<Vec3> balancingTogether() const;
   std::vector<Vec3> timesTogether(const std::vector<Vec3>& motions) const;
   void shortenTogether(double longest);
-  void invert(std::size_t index);
+  static void holdInStiffness(ConstrainedNode& constrained);
+  void findInverses() const;
   void invertGroups();
 
   double spacing_ = 1.0, modulus_ = 1.0;
   Vec3 contact_force_ = Vec3::Zero();
   bool has_new_push_ = false;
-  std::vector<ConstrainedNode> all_;             // by node, ascending
-  std::vector<int> index_of_;                    // per node of the level: in all_, or none
-  std::vector<int> acting_;                      // of the springs
-  std::vector<Vec3> places_;                     // displacement, per entry of all_
-  std::vector<Vec3> forces_;                     // likewise
-  std::vector<Eigen::Matrix3d> inverses_;        // of the stiffness, likewise
-  std::vector<WoodburyUpdate::Spring> joining_;  // of springs in contact, one a direction
-  WoodburyUpdate joined_;
+  std::vector<ConstrainedNode> all_;  // by node, ascending
+  std::vector<int> index_of_;         // per node of the level: in all_, or none
+  std::vector<int> acting_;           // of the springs
+  std::vector<Vec3> places_;          // displacement, per entry of all_
+  std::vector<Vec3> forces_;          // likewise
+  WoodburyUpdate::Springs joining_;   // of springs in contact, one a direction
+  // Found when D^-1 is asked for: forces alone are told of many a place.
+  mutable bool are_inverses_known_ = false;
+  mutable std::vector<Eigen::Matrix3d> inverses_;  // of the stiffness, per entry of all_
+  mutable WoodburyUpdate joined_;
   mutable std::vector<Vec3> balancing_;
   std::shared_ptr<const LevelMembrane<Real>> coupling_;  // null: each node alone
   double greatest_ = 1.0;

@@ -28,36 +28,61 @@ class WoodburyUpdate {
     int node = 0;               // entry of `motions`
     Vec3 along = Vec3::Zero();  // direction times weight
   };
-  struct Spring {
-    std::vector<Part> parts;
-    double stiffness = 0.0;
+  // One after the other in common memory, which stays when they are others.
+  class Springs {
+   public:
+    void clear();
+    void add(double stiffness, std::size_t parts);  // room for its parts, which are to be set
+    std::size_t size() const { return stiffness_.size(); }
+    double stiffness(std::size_t spring) const { return stiffness_[spring]; }
+    // Numbers of its parts, from first(spring) on and before first(spring + 1).
+    std::size_t first(std::size_t spring) const { return first_[spring]; }
+    const Part& part(std::size_t number) const { return parts_[number]; }
+    Part& partOfLast(std::size_t i) { return parts_[first_[size() - 1] + i]; }
+    std::size_t partCount() const { return parts_.size(); }
+    int leastNode(std::size_t spring) const;
+
+   private:
+    std::vector<Part> parts_;
+    std::vector<std::size_t> first_ = {0};  // and the end
+    std::vector<double> stiffness_;
   };
 
   // `inverses`: D^-1 of the nodes, per node (one over E0 h).
-  void join(std::vector<Spring> springs, const std::vector<Eigen::Matrix3d>& inverses);
+  void join(const Springs& springs, const std::vector<Eigen::Matrix3d>& inverses);
   // In place, from D^-1 f to (D + W K W^T)^-1 f.
   void apply(std::vector<Vec3>& motions) const;
   // forces += W K W^T motions.
   void addForces(const std::vector<Vec3>& motions, std::vector<Vec3>& forces) const;
 
  private:
+  void sortByNodes(const Springs& springs);
+  void findSpringsOfNodes(std::size_t nodes);
   std::vector<int> envelopeOfSprings() const;
   std::vector<int> envelopeOfNodes();
   void fillForSprings(const std::vector<Eigen::Matrix3d>& inverses);
   void fillForNodes(const std::vector<Eigen::Matrix3d>& inverses);
-  double lengthening(const Spring& spring, const std::vector<Vec3>& motions) const;
+  double lengthening(std::size_t spring, const std::vector<Vec3>& motions) const;
   void applyBySprings(std::vector<Vec3>& motions) const;
   void applyByNodes(std::vector<Vec3>& motions) const;
 
-  std::vector<Spring> springs_;
-  std::vector<std::vector<int>> springs_at_;  // per node
-  std::vector<int> joined_;                   // nodes with springs
-  std::vector<int> row_of_;                   // per node: its first row, where nodes are solved for
+  // A spring at a node, and which of its parts is.
+  struct Joint {
+    int spring = 0;
+    std::size_t part = 0;
+  };
+
+  Springs springs_;                       // by their least node
+  std::vector<std::size_t> order_;        // of those that were given
+  std::vector<std::size_t> first_joint_;  // per node: of its joints, in the springs' order; the end
+  std::vector<Joint> joints_;
+  std::vector<int> joined_;  // nodes with springs
+  std::vector<int> row_of_;  // per node: its first row, where nodes are solved for
   bool by_nodes_ = false;
-  std::vector<std::vector<Vec3>> columns_;  // D^-1 W; by nodes B: per spring and part
-  std::vector<Eigen::Matrix3d> roots_;      // L, per joined node
-  SkylineCholesky matrix_;                  // K^-1 + W^T D^-1 W; by nodes I + B K B^T
-  mutable Eigen::VectorXd unknowns_;        // room that `apply` needs
+  std::vector<Vec3> columns_;           // D^-1 W; by nodes B: per part
+  std::vector<Eigen::Matrix3d> roots_;  // L, per joined node
+  SkylineCholesky matrix_;              // K^-1 + W^T D^-1 W; by nodes I + B K B^T
+  mutable Eigen::VectorXd unknowns_;    // room that `apply` needs
 };
 
 }  // namespace robot_tissue
