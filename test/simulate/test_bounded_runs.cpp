@@ -247,12 +247,11 @@ TEST_F(BoundedRun, EndsForScenesThatOnceDidNot) {
   EXPECT_GE(scenes, 14);
 }
 
-// Cases of a seed, as many as half a minute has time for: a failed one can be run again by its
-// number.
+// Cases of a seed, as many as a minute has time for: a failed one can be run again by its number.
 TEST_F(BoundedRun, EndsForMutatedScenes) {
   const std::string command =
       "/usr/bin/python3 " ROBOT_TISSUE_SOURCE_DIR "/scripts/mutate_scenes --simulate " SIMULATE_PATH
-      " --seed 1 --cases 225 --seconds 30 --max-seconds 4";
+      " --seed 1 --cases 450 --seconds 60 --max-seconds 4";
   const int status = std::system(command.c_str());
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }

@@ -169,7 +169,8 @@ class ConstrainedNodes {
   std::vector<Vec3> places_;          // displacement, per entry of all_
   std::vector<Vec3> forces_;          // likewise
   WoodburyUpdate::Springs joining_;   // of springs in contact, one a direction
-  // Found when D^-1 is asked for: forces alone are told of many a place.
+  // Found when D^-1 is asked for: of a quarter of the places with springs (a sphere, a box's edge)
+  // forces alone are told.
   mutable bool are_inverses_known_ = false;
   mutable std::vector<Eigen::Matrix3d> inverses_;  // of the stiffness, per entry of all_
   mutable WoodburyUpdate joined_;

@@ -44,17 +44,14 @@ void WoodburyUpdate::join(const Springs& springs, const std::vector<Eigen::Matri
 }
 
 void WoodburyUpdate::sortByNodes(const Springs& springs) {
-  std::vector<int> least(springs.size());
+  std::vector<std::pair<int, std::size_t>> order;  // least node, spring
+  order.reserve(springs.size());
   for (std::size_t spring = 0; spring < springs.size(); ++spring) {
-    least[spring] = springs.leastNode(spring);
+    order.emplace_back(springs.leastNode(spring), spring);
   }
-  order_.resize(springs.size());
-  std::iota(order_.begin(), order_.end(), std::size_t{0});
-  std::sort(order_.begin(), order_.end(), [&least](std::size_t a, std::size_t b) {
-    return std::make_pair(least[a], a) < std::make_pair(least[b], b);
-  });
+  std::sort(order.begin(), order.end());
   springs_.clear();
-  for (const std::size_t spring : order_) {
+  for (const auto& [least, spring] : order) {
     const std::size_t first = springs.first(spring), parts = springs.first(spring + 1) - first;
     springs_.add(springs.stiffness(spring), parts);
     for (std::size_t i = 0; i < parts; ++i) springs_.partOfLast(i) = springs.part(first + i);
@@ -122,9 +119,9 @@ void WoodburyUpdate::fillForSprings(const std::vector<Eigen::Matrix3d>& inverses
     }
     for (std::size_t i = springs_.first(spring); i < springs_.first(spring + 1); ++i) {
       const Part& part = springs_.part(i);
-      for (std::size_t j = first_joint_[at(part.node)]; joints_[j].spring <= row; ++j) {
+      const std::size_t end = first_joint_[at(part.node) + 1];
+      for (std::size_t j = first_joint_[at(part.node)]; j < end && joints_[j].spring <= row; ++j) {
         values[joints_[j].spring] += part.along.dot(columns_[joints_[j].part]);
-        if (j + 1 == first_joint_[at(part.node) + 1]) break;
       }
     }
   }

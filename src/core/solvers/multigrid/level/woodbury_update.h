@@ -73,7 +73,6 @@ class WoodburyUpdate {
   };
 
   Springs springs_;                       // by their least node
-  std::vector<std::size_t> order_;        // of those that were given
   std::vector<std::size_t> first_joint_;  // per node: of its joints, in the springs' order; the end
   std::vector<Joint> joints_;
   std::vector<int> joined_;  // nodes with springs
