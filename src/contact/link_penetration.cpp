@@ -56,7 +56,9 @@ std::vector<Vec3> cylinderPoints(double radius, double length) {
   return points;
 }
 
+// A fine mesh has vertices enough.
 std::vector<Vec3> meshPoints(const ToolMesh& mesh, double padding) {
+  const double apart = mesh.bounds().diagonal().maxCoeff() / tuning::kBoxSteps;
   std::vector<Vec3> points;
   const auto& vertices = mesh.vertices();
   const auto& normals = mesh.vertexNormals();
@@ -65,6 +67,7 @@ std::vector<Vec3> meshPoints(const ToolMesh& mesh, double padding) {
   }
   for (const ToolMesh::Edge& edge : mesh.edges()) {
     const auto [a, b] = edge.ends;
+    if ((vertices[at(a)] - vertices[at(b)]).norm() <= apart) continue;
     const Vec3 normal = (normals[at(a)] + normals[at(b)]).stableNormalized();
     points.push_back(0.5 * (vertices[at(a)] + vertices[at(b)]) + padding * normal);
   }

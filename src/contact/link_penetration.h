@@ -11,8 +11,8 @@
 namespace robot_tissue {
 
 // Points of the padded surface in the shape's own frame (m): corners, edges and faces of a box,
-// rims, caps and sides of a cylinder, evenly spread points of a sphere, vertices and middles of the
-// edges of a mesh. None for a plane.
+// rims, caps and sides of a cylinder, evenly spread points of a sphere, vertices of a mesh and
+// middles of its long edges. None for a plane.
 std::vector<Vec3> surfacePoints(const CollisionShape& shape);
 
 // Of the points (shape's frame), the depth of the deepest inside the surface (m), or `known` when
