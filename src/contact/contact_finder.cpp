@@ -187,39 +187,14 @@ ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& 
   return again;
 }
 
-double ContactFinder::reach(std::size_t link) const {
-  double farthest = 0.0;
-  const TouchingLink& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.shapesInUse(); ++i) {
-    const CollisionShape& shape = of.shapes[i];
-    if (shape.isPlane()) continue;
-    const Box& box = shape.bounds();
-    const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min() + box.max()));
-    const Vec3 half = 0.5 * (box.max() - box.min());
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
-                       (corner & 4) != 0 ? 1.0 : -1.0);
-      const Vec3 away = middle + shape.poseInLink().linear() * half.cwiseProduct(signs);
-      farthest = std::max(farthest, away.norm());
-    }
-  }
-  return farthest;
-}
+double ContactFinder::reach(std::size_t link) const { return impl_->links[link].reach(); }
 
-Vec3 ContactFinder::center(std::size_t link) const {
-  Vec3 sum = Vec3::Zero();
-  const TouchingLink& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.shapesInUse(); ++i) sum += of.shapes[i].poseInLink().translation();
-  return of.shapesInUse() == 0 ? sum : Vec3(sum / static_cast<double>(of.shapesInUse()));
-}
+Vec3 ContactFinder::center(std::size_t link) const { return impl_->links[link].center(); }
 
-double ContactFinder::thickness(std::size_t link) const {
-  double thinnest = std::numeric_limits<double>::infinity();
-  const TouchingLink& of = impl_->links[link];
-  for (std::size_t i = 0; i < of.shapesInUse(); ++i) {
-    thinnest = std::min(thinnest, of.shapes[i].thickness());
-  }
-  return thinnest;
+double ContactFinder::thickness(std::size_t link) const { return impl_->links[link].thickness(); }
+
+std::optional<Ball> ContactFinder::ball(std::size_t link) const {
+  return impl_->links[link].ball();
 }
 
 Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {

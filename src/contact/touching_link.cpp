@@ -1,6 +1,7 @@
 #include "touching_link.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -74,6 +75,45 @@ double TouchingLink::longestWay(const Pose& from, const Pose& to) const {
     }
   }
   return longest;
+}
+
+double TouchingLink::reach() const {
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    const CollisionShape& shape = shapes[i];
+    if (shape.isPlane()) continue;
+    const Box& box = shape.bounds();
+    const Vec3 middle = shape.poseInLink() * Vec3(0.5 * (box.min() + box.max()));
+    const Vec3 half = 0.5 * (box.max() - box.min());
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                       (corner & 4) != 0 ? 1.0 : -1.0);
+      const Vec3 away = middle + shape.poseInLink().linear() * half.cwiseProduct(signs);
+      farthest = std::max(farthest, away.norm());
+    }
+  }
+  return farthest;
+}
+
+Vec3 TouchingLink::center() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < in_use_; ++i) sum += shapes[i].poseInLink().translation();
+  return in_use_ == 0 ? sum : Vec3(sum / static_cast<double>(in_use_));
+}
+
+double TouchingLink::thickness() const {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    thinnest = std::min(thinnest, shapes[i].thickness());
+  }
+  return thinnest;
+}
+
+std::optional<Ball> TouchingLink::ball() const {
+  if (in_use_ != 1) return std::nullopt;
+  const CollisionShape& shape = shapes.front();
+  if (shape.measures().type != ToolShape::Type::kSphere) return std::nullopt;
+  return Ball{shape.poseInLink().translation(), shape.measures().radius + shape.padding()};
 }
 
 }  // namespace robot_tissue

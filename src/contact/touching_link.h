@@ -26,6 +26,11 @@ class TouchingLink {
 
   // Of the shapes in use. Kept until it is asked for at another pose: many ask point by point.
   const PlacedLink& placedAt(const Pose& tissue_T_link) const;
+  // As ContactFinder has them.
+  double reach() const;
+  Vec3 center() const;
+  double thickness() const;
+  std::optional<Ball> ball() const;
   // As ContactFinder::wayOut. Of the same point again, as where a way out along a direction begins,
   // it is known.
   std::optional<WayOut> wayOutAt(const Pose& tissue_T_link, const Vec3& point, double reach) const;

@@ -59,10 +59,12 @@ TouchCompliance complianceOf(const SlidingContacts::ContactConstraint& touch,
   return sum;
 }
 
-// What is beside the face is drawn in its plane at the edge alone.
-void drawEdge(SlidingContacts::ContactConstraint& touch) {
+// Where the tool has it; what is beside the face is drawn in its plane at the edge alone.
+void showOnTool(SlidingContacts::ContactConstraint& touch) {
   const Rim& rim = touch.contact.rim;
   const bool is_off_edge = rim.is_beyond && rim.drawn_aside.isZero(0.0);
+  touch.spring.recess = touch.recess;
+  touch.spring.shown_compliance = touch.compliance.shown;
   touch.spring.drawn_compliance = is_off_edge ? 0.0 : touch.compliance.shown;
   touch.spring.drawn_aside = rim.drawn_aside;
   touch.spring.drawn_at = rim.drawn_at;
@@ -73,8 +75,6 @@ void drawEdge(SlidingContacts::ContactConstraint& touch) {
 void soften(const Tissue& tissue, SlidingContacts::ContactConstraint& touch) {
   touch.compliance = complianceOf(touch, tissue);
   touch.spring.stiffness = softened(touch.firm_stiffness, touch.compliance.normal);
-  touch.spring.shown_compliance = touch.compliance.shown;
-  drawEdge(touch);
   putPlane(touch);
 }
 
@@ -82,14 +82,15 @@ void rideEdge(const Pose& moved, SlidingContacts::ContactConstraint& touch) {
   Rim& rim = touch.contact.rim;
   rim.drawn_at = moved * rim.drawn_at;
   rim.drawn_aside = moved.linear() * rim.drawn_aside * moved.linear().transpose();
-  drawEdge(touch);
+  showOnTool(touch);
 }
 
 void putPlane(SlidingContacts::ContactConstraint& touch) {
   ContactSpring& spring = touch.spring;
-  const double inside = touch.entry + touch.compliance.normal * spring.multiplier;
+  const double inside = touch.entry + touch.recess + touch.compliance.normal * spring.multiplier;
   spring.plane_point = touch.tool_point - inside * spring.normal;
   spring.turning = spring.multiplier * touch.contact.turn;
+  showOnTool(touch);
 }
 
 void goHalfWay(const Rim& before, Rim& rim) {

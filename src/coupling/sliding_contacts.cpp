@@ -15,7 +15,10 @@ namespace robot_tissue {
 
 SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
                                  std::vector<LinkForm> links)
-    : friction_(std::move(friction)), forms_(std::move(links)), pressed_(friction_.size()) {}
+    : friction_(std::move(friction)),
+      forms_(std::move(links)),
+      pressed_(friction_.size()),
+      recesses_(forms_.size()) {}
 
 // The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
 double SlidingContacts::fineness(int link, double spacing) const {
@@ -28,6 +31,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     commit(pose, tissue);
   }
   is_settled_ = false;
+  for (LinkRecess& recess : recesses_) recess = {recess.depth, 0.0, 1.0};
   for (ContactConstraint& touch : touches_) {
     const std::size_t link = at(touch.contact.link);
     const Pose moved = pose.links[link] * since_links_[link].inverse();
@@ -72,6 +76,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   }
   wander(contacts, wandering, pose, tissue, held);
   forgetLost(held);
+  guessRecesses(tissue);
   stickFirst(tissue);
 }
 
@@ -102,6 +107,7 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   if (tissue.goesThroughTime()) takeMeans(tissue);
   for (ContactConstraint& touch : touches_) noteSolved(touch);
   is_settled_ = whole && updateMultipliers(tissue);
+  if (whole) renewRecesses(pose, tissue);
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     if (touches_[i].contact.wanders) continue;
@@ -172,22 +178,23 @@ double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& ti
 // slack.
 bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                            const Held& held) {
+  const double depth = contact.depth_m - recessOf(contact.link);
   ContactConstraint* touch = find(contact, tissue.surface());
   if (touch == nullptr) {
     add(contact, pose, tissue, held);
-    return contact.depth_m <= slackOf(touches_.back(), tissue);
+    return depth <= slackOf(touches_.back(), tissue);
   }
   const double deeper = tuning::kDeeperThanTouch * tissue.lattice().spacing();
   if (touch->vertex >= 0 || contact.depth_m <= touch->contact.depth_m + deeper) return true;
   const bool same_side = touch->spring.normal.dot(contact.normal) >= tuning::kSameSideOfTool;
-  const bool deep = contact.depth_m > tuning::kMostSlack * tissue.lattice().spacing();
+  const bool deep = depth > tuning::kMostSlack * tissue.lattice().spacing();
   if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
     add(contact, pose, tissue, held);
     return false;
   }
   if (hopsBack(*touch, contact, tissue)) {
     add(contact, pose, tissue, held);
-    return contact.depth_m <= slackOf(touches_.back(), tissue);
+    return depth <= slackOf(touches_.back(), tissue);
   }
   touch->left = touch->contact.place.barycentric;
   const Vec3 normal = touch->spring.normal, foot = touch->tool_point;
@@ -200,7 +207,7 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     putPlane(*touch);
     anchor(pose, *touch);
   }
-  return contact.depth_m <= slackOf(*touch, tissue);
+  return depth <= slackOf(*touch, tissue);
 }
 
 // Whether the touch came from there in this load step: pushed at either place alone, the triangle
@@ -212,48 +219,6 @@ bool SlidingContacts::hopsBack(const ContactConstraint& touch, const Contact& co
   const Vec3 off = *touch.left - contact.place.barycentric;
   const Vec3 gone = *touch.left - touch.contact.place.barycentric;
   return off.cwiseAbs().maxCoeff() < 0.5 * gone.cwiseAbs().maxCoeff();
-}
-
-// Uzawa's step: each multiplier becomes the normal force of the solve, each bound of friction the
-// coefficient times that. Friction's stiffness lets a point that sticks give way by kElasticSlip to
-// kMostElasticSlip of the fineness. True: the bounds' sum has changed by less than kSameFriction.
-bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
-  const double spacing = tissue.lattice().spacing();
-  double drag_before = 0.0, drag_now = 0.0;
-  pressed_.assign(friction_.size(), {});
-  for (ContactConstraint& touch : touches_) {
-    touch.found = false;
-    ContactSpring& spring = touch.spring;
-    const double force = normalForceOf(spring, tissue.state().displacement);
-    const double friction_bound = friction_[at(touch.contact.tool)].value_or(0.0) * force;
-    Pressed& pressed = pressed_[at(touch.contact.tool)];
-    pressed.force += force;
-    pressed.touches += force > 0.0 ? 1 : 0;
-    drag_before += spring.friction_bound;
-    drag_now += friction_bound;
-    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
-    spring.friction_bound = friction_bound;
-    const double fine = fineness(touch.contact.link, spacing);
-    const double soft = frictionStiffness(touch.firm_stiffness);
-    const double stiffness =
-        std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
-                 friction_bound / (tuning::kElasticSlip * fine));
-    spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
-    putPlane(touch);
-  }
-  return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
-}
-
-// Of a shape on its way to balance forces say nothing, so multipliers stay; but those of points
-// deeper than the slack take the spring's force, so that what went into a link comes out of it.
-void SlidingContacts::pressHarder(const Tissue& tissue) {
-  for (ContactConstraint& touch : touches_) {
-    ContactSpring& spring = touch.spring;
-    if (gapOf(spring, tissue.state().displacement) >= -slackOf(touch, tissue)) continue;
-    const double force = normalForceOf(spring, tissue.state().displacement);
-    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
-    putPlane(touch);
-  }
 }
 
 bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
@@ -333,6 +298,7 @@ Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const 
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
+  touch.recess = recessOf(contact.link);
   putContact(contact, tissue.surface(), touch);
   touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
   touch.firm_stiffness = touch.spring.stiffness;
@@ -384,6 +350,7 @@ void SlidingContacts::pass(const RobotPose& pose) {
 
 void SlidingContacts::clear() {
   touches_.clear();
+  recesses_.assign(forms_.size(), {});
   since_links_.clear();
 }
 

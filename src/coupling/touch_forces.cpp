@@ -1,9 +1,12 @@
 // What touches press with: by links and by tools.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "rim_touch.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
 #include "touch_spring.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 
@@ -63,6 +66,48 @@ bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
            (touch.spring.multiplier > 0.0 ||
             normalForceOf(touch.spring, tissue.state().displacement) > 0.0);
   });
+}
+
+// Uzawa's step: each multiplier becomes the normal force of the solve, each bound of friction the
+// coefficient times that. Friction's stiffness lets a point that sticks give way by kElasticSlip to
+// kMostElasticSlip of the fineness. True: the bounds' sum has changed by less than kSameFriction.
+bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
+  const double spacing = tissue.lattice().spacing();
+  double drag_before = 0.0, drag_now = 0.0;
+  pressed_.assign(friction_.size(), {});
+  for (ContactConstraint& touch : touches_) {
+    touch.found = false;
+    ContactSpring& spring = touch.spring;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    const double friction_bound = friction_[at(touch.contact.tool)].value_or(0.0) * force;
+    Pressed& pressed = pressed_[at(touch.contact.tool)];
+    pressed.force += force;
+    pressed.touches += force > 0.0 ? 1 : 0;
+    drag_before += spring.friction_bound;
+    drag_now += friction_bound;
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+    spring.friction_bound = friction_bound;
+    const double fine = fineness(touch.contact.link, spacing);
+    const double soft = frictionStiffness(touch.firm_stiffness);
+    const double stiffness =
+        std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),
+                 friction_bound / (tuning::kElasticSlip * fine));
+    spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
+    putPlane(touch);
+  }
+  return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
+}
+
+// Of a shape on its way to balance forces say nothing, so multipliers stay; but those of points
+// deeper than the slack take the spring's force, so that what went into a link comes out of it.
+void SlidingContacts::pressHarder(const Tissue& tissue) {
+  for (ContactConstraint& touch : touches_) {
+    ContactSpring& spring = touch.spring;
+    if (gapOf(spring, tissue.state().displacement) >= -slackOf(touch, tissue)) continue;
+    const double force = normalForceOf(spring, tissue.state().displacement);
+    spring.multiplier = std::min(force, mostForceOf(spring, tissue));
+    putPlane(touch);
+  }
 }
 
 }  // namespace robot_tissue

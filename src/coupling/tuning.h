@@ -82,6 +82,10 @@ constexpr double kLeastFree = 0.4;
 constexpr double kMostEntry = 0.035;
 constexpr double kEntryTime = 0.05;
 
+// Of a step towards another recess of a narrow contact (1), once that goes to and fro. More: more
+// rounds where touches come and go with it. Chosen.
+constexpr double kLessToAndFro = 0.5;
+
 // Rims of flat faces.
 // Cosine of the outward normals of an edge in two rounds. Chosen.
 constexpr double kSameEdge = 0.9;

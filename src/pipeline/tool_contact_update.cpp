@@ -119,7 +119,7 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
     if (world_.isInWound(at(contact.link))) continue;
     if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;
-    const double depth = (1.0 - touch_finder_.rims().partOfDepth(contact)) * contact.depth_m;
+    const double depth = touch_finder_.ownDepth(contact, contact.depth_m);
     depths[at(contact.link)] = std::max(depths[at(contact.link)], depth);
   }
   return depths;
@@ -137,8 +137,11 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
   left_inside_ = 0.0;
   for (const Contact& contact : contacts.contacts) {
-    const double part = contact.rim.share > 0.0 ? touch_finder_.rims().partOfDepth(contact) : 0.0;
-    left_inside_ = std::max(left_inside_, (1.0 - part) * contact.depth_m);
+    const bool is_at_rim = contact.rim.share > 0.0;
+    const double recess = std::max(0.0, world_.sliding.recessOf(contact.link));
+    const double depth =
+        is_at_rim ? touch_finder_.ownDepth(contact, contact.depth_m) : contact.depth_m - recess;
+    left_inside_ = std::max(left_inside_, depth);
   }
   if (new_surface && !goes_on) {
     world_.sliding.ride(world_.pose, world_.tissue);

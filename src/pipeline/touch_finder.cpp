@@ -254,11 +254,16 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   depths_.assign(pose.links.size(), 0.0);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (world_.isInWound(at(all[i].link))) continue;
-    const double depth = (1.0 - rims_.partOfDepth(all[i])) * nearest[i];
+    const double depth = ownDepth(all[i], nearest[i]);
     depths_[at(all[i].link)] = std::max(depths_[at(all[i].link)], depth);
   }
   takeRims(held, contacts);
   return contacts;
+}
+
+double TouchFinder::ownDepth(const Contact& contact, double depth) const {
+  const double recess = std::max(0.0, world_.sliding.recessOf(contact.link));
+  return (1.0 - rims_.partOfDepth(contact)) * depth - recess;
 }
 
 // What is at the rim of a flat face is pushed as the rim has it, and what is beside the face, too.

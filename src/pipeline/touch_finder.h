@@ -42,6 +42,9 @@ class TouchFinder {
 
   void beginStep() { rims_.beginStep(); }
   const ToolRims& rims() const { return rims_; }  // of the last touchesAt
+  // Of a contact that is so deep (m): without what the laws of rims and of narrow contacts, as they
+  // are taken now, leave it.
+  double ownDepth(const Contact& contact, double depth) const;
 
   // In each link, of the deepest point of the last touchesAt, by the nearest way out (m).
   const std::vector<double>& depths() const { return depths_; }

@@ -16,6 +16,7 @@
 
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/core/contact_set.h"
+#include "robot_tissue/core/narrow_contact.h"
 #include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/surface.h"
 
@@ -54,6 +55,8 @@ class ContactFinder {
   Vec3 center(std::size_t link) const;
   // Smallest width of the link's thinnest shape (m); infinite without shapes.
   double thickness(std::size_t link) const;
+  // Where the link is one ball, padding included; link's frame.
+  std::optional<Ball> ball(std::size_t link) const;
   // Axis-aligned box around the link's shapes in the tissue's frame (m); empty (min > max) without,
   // infinite with a plane.
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;

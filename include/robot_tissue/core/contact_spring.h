@@ -55,6 +55,8 @@ struct ContactSpring {
   double drawn_compliance = 0.0;
   Eigen::Matrix3d drawn_aside = Eigen::Matrix3d::Zero();
   Vec3 drawn_at = Vec3::Zero();
+  // Both likewise by so much, as long as it pushes (m): the plane is so deep in the tool.
+  double recess = 0.0;
   bool is_thread = false;    // has carriers, rest, stiffness and, besides:
   double rest_length = 0.0;  // L (m)
 };

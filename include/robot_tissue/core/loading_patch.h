@@ -23,6 +23,13 @@ struct RimSpring {
                                   // hard (m)
 };
 
+// Of the spring between a bonded flat plate and a node at its edge (m/N); infinite: free.
+struct RimCompliance {
+  double across = 0.0;  // in the surface, across the edge
+  double along = 0.0;
+  double normal = 0.0;
+};
+
 // Where a patch stands that a force moves: its center moved, then it turned about that.
 struct PatchPlace {
   Vec3 displacement = Vec3::Zero();  // from where the patch was put on (m)

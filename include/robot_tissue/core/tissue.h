@@ -15,6 +15,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/narrow_contact.h"
 #include "robot_tissue/core/patience.h"
 #include "robot_tissue/core/removed_space.h"
 #include "robot_tissue/core/scene.h"
@@ -75,13 +76,6 @@ using CutTriangle = std::array<Vec3, 3>;
 struct SutureResult {
   SutureReport suture;
   SolveReport solve;  // balance after it
-};
-
-// Of the spring between a bonded flat plate and a node at its edge (m/N); infinite: free.
-struct RimCompliance {
-  double across = 0.0;  // in the surface, across the edge
-  double along = 0.0;
-  double normal = 0.0;
 };
 
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
@@ -157,6 +151,8 @@ class Tissue {
   // (doc/model.md, "The rim"). None where cells at the node are filled in part, and where method or
   // model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
+  // None where a node is not in a flat surface of whole cells, and for such methods and models.
+  std::optional<Recess> recessUnder(const BallPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
   void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }

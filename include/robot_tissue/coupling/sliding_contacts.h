@@ -16,6 +16,9 @@
 // its plane is in the tool by `entry`, which goes to zero. At once it would have a speed that it
 // never had, and viscosity would answer to that.
 //
+// Under a ball whose contact is narrower than the lattice tells apart the planes are inside it by a
+// recess (NarrowContact), which hangs on what it presses with; the surface is shown where it is.
+//
 // At the rim of a flat face a touch gives way, by a compliance c: its plane is c times the
 // multiplier below the tool's, its spring k in series with 1 / c. Then the gap goes to -c f. (With
 // f = multiplier - k' (g + c multiplier), k' = k / (1 + k c), f is the multiplier for g = -c f.)
@@ -65,14 +68,16 @@ class SlidingContacts {
     PlaneDrift drift;                    // of its plane
     double stiffening = 1.0;             // of the tissue, in the time step under way
     double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
+    double recess = 0.0;                 // m: of its link
     bool found = false;                  // in the last update
     std::optional<Vec3> left;  // where in its triangle it went from in this load step, by weights
   };
 
   // What is to be known of a link.
   struct LinkForm {
-    double thickness = 0.0;  // m
-    bool is_uneven = false;  // a mesh: a triangle may lie on it at several places
+    double thickness = 0.0;    // m
+    bool is_uneven = false;    // a mesh: a triangle may lie on it at several places
+    std::optional<Ball> ball;  // that is all of it; link's frame
   };
 
   SlidingContacts() = default;  // of no tools
@@ -125,6 +130,8 @@ class SlidingContacts {
   // node's stiffness times kMostForce spacings.
   static bool pushesAbsurdly(const Tissue& tissue);
   const std::vector<ContactConstraint>& touches() const { return touches_; }
+  // How deep a point that touches the link is in it, where the contact is narrow (m): Recess.
+  double recessOf(int link) const;
   // Whether the tool pushes, did at the last commit, or would in a solve.
   bool pushes(int tool, const Tissue& tissue) const;
   // Where the link pressed to at the last commit, friction included (unit, tissue frame); zero when
@@ -140,6 +147,13 @@ class SlidingContacts {
   struct Pressed {
     double force = 0.0;  // N: their normal forces
     int touches = 0;
+  };
+
+  // How a link is recessed: as it is taken, and in the rounds of a load step.
+  struct LinkRecess {
+    double depth = 0.0;     // m
+    double last_way = 0.0;  // m: of the last round
+    double gain = 1.0;      // of the steps that are asked for
   };
 
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
@@ -166,6 +180,10 @@ class SlidingContacts {
   void takeMeans(const Tissue& tissue);
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
+  void guessRecesses(const Tissue& tissue);
+  void setRecess(int link, double depth);
+  void renewRecesses(const RobotPose& pose, const Tissue& tissue);
+  Recess recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const;
   void forgetLost(const Held& held);
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
@@ -174,7 +192,8 @@ class SlidingContacts {
 
   std::vector<std::optional<double>> friction_;
   std::vector<LinkForm> forms_;
-  std::vector<Pressed> pressed_;  // per tool
+  std::vector<Pressed> pressed_;      // per tool
+  std::vector<LinkRecess> recesses_;  // per link
   PressGrowth growth_;
   bool is_settled_ = false;                   // since the last update
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance

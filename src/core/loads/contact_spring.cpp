@@ -49,6 +49,12 @@ Eigen::Matrix3d threadStiffnessAt(const ContactSpring& thread, const Vec3& way) 
          (thread.stiffness - across) * along * along.transpose();
 }
 
+// From the point to the tool's surface (m).
+Vec3 offTool(const ContactSpring& spring, double compliance, double force) {
+  const double recess = force > 0.0 ? spring.recess : 0.0;
+  return (compliance * force + recess) * spring.normal;
+}
+
 }  // namespace
 
 Vec3 pointOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
@@ -64,12 +70,13 @@ double normalForceOf(const ContactSpring& spring, const std::vector<Vec3>& displ
 }
 
 Vec3 shownOff(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
-  return spring.shown_compliance * normalForceOf(spring, displacement) * spring.normal;
+  const double force = normalForceOf(spring, displacement);
+  return offTool(spring, spring.shown_compliance, force);
 }
 
 Vec3 drawnOff(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
   const Vec3 point = pointOf(spring, displacement);
-  return spring.drawn_compliance * pressAt(spring, point) * spring.normal +
+  return offTool(spring, spring.drawn_compliance, pressAt(spring, point)) +
          spring.drawn_aside * (spring.drawn_at - point);
 }
 

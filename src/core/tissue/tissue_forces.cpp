@@ -1,4 +1,5 @@
 // Tissue: forces on it.
+#include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
 #include "material/tissue_model.h"
 #include "robot_tissue/core/tissue.h"
@@ -14,6 +15,9 @@ Vec3 forceOfPatches(const SolveReport& report) {
   for (const PatchAnswer& answer : report.patches) force += answer.force;
   return force;
 }
+
+// Cells that a node within a flat surface of them has.
+constexpr int kCellsBelowNode = 4;
 
 }  // namespace
 
@@ -65,6 +69,23 @@ std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const
     return 1.0 / (unit * rimStiffness(mode, depth));
   };
   return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
+}
+
+std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
+  if (!method_->findsEquilibrium()) return std::nullopt;
+  const CellSet& cells = *state_.cells;
+  for (const NodeWeight& share : press.shares) {
+    int below = 0;
+    for (const CellSet::Meeting& met : cells.meetings(share.node)) {
+      const auto& cell = lattice_.cells()[at(cells.all()[at(met.cell)].place)];
+      if (cell.share() < 1.0) return std::nullopt;
+      ++below;
+    }
+    if (below != kCellsBelowNode) return std::nullopt;
+  }
+  const Moduli moduli = model_->moduliAt(state_, press.shares.front().node);
+  if (moduli.shear <= 0.0) return std::nullopt;
+  return robot_tissue::recessUnder(press, lattice_, {moduli.shear, poissonRatio(moduli)});
 }
 
 double Tissue::stiffening(int node) const {

@@ -1,0 +1,51 @@
+#include "loads/narrow_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "loads/point_loads.h"
+
+namespace robot_tissue {
+namespace {
+
+// Spacings: a contact of that radius, by Hertz, is narrow, and one of the other is wide. At 1.5 the
+// lattice is right to 2 %. More: more rounds, for less.
+constexpr double kNarrow = 1.25;
+constexpr double kWide = 1.5;
+
+// Of the force of 1 N that nodes share (m/N).
+double sharedCompliance(const Lattice& lattice, const SurfaceModuli& moduli,
+                        const std::vector<NodeWeight>& shares) {
+  const double spacing = lattice.spacing();
+  double sum = 0.0;
+  for (const NodeWeight& one : shares) {
+    const Vec3 place = lattice.restPosition(one.node);
+    for (const NodeWeight& other : shares) {
+      const double squared = (lattice.restPosition(other.node) - place).squaredNorm();
+      sum += one.weight * other.weight *
+             pointCompliance(moduli.poisson_ratio, squared / (spacing * spacing));
+    }
+  }
+  return sum / (moduli.shear * spacing);
+}
+
+}  // namespace
+
+Recess recessUnder(const BallPress& press, const Lattice& lattice, const SurfaceModuli& moduli) {
+  const double plane_modulus = 2.0 * moduli.shear / (1.0 - moduli.poisson_ratio);
+  const double contact = press.force > 0.0
+                             ? std::cbrt(0.75 * press.force * press.radius / plane_modulus)
+                             : std::sqrt(std::max(0.0, press.depth) * press.radius);
+  const double force = 4.0 / 3.0 * plane_modulus * contact * contact * contact / press.radius;
+  const double width = contact / lattice.spacing();
+  if (!(force > 0.0) || width >= kWide) return {};
+  const double share = std::min(1.0, (kWide - width) / (kWide - kNarrow));
+  const double of_half_space = contact * contact / press.radius;
+  const double of_lattice = force * sharedCompliance(lattice, moduli, press.shares);
+  Recess recess;
+  recess.depth = share * (of_half_space - of_lattice - press.height);
+  recess.step = std::max(0.0, std::min(2.0, 1.5 * of_lattice / of_half_space));
+  return recess;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,87 @@
+// Touches of balls whose contact is narrower than the lattice tells apart.
+#include <map>
+
+#include "rim_touch.h"
+#include "robot_tissue/coupling/sliding_contacts.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+
+double SlidingContacts::recessOf(int link) const {
+  return at(link) < recesses_.size() ? recesses_[at(link)].depth : 0.0;
+}
+
+void SlidingContacts::setRecess(int link, double depth) {
+  recesses_[at(link)].depth = depth;
+  for (ContactConstraint& touch : touches_) {
+    if (touch.contact.link != link) continue;
+    touch.recess = depth;
+    putPlane(touch);
+  }
+}
+
+// By what the link's multipliers are. Heights of planes are above where the ball is lowest, as seen
+// along the way it presses; the curved surface is off what nodes carry by a bulge.
+Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const {
+  std::vector<const ContactConstraint*> pushing;
+  Vec3 axis = Vec3::Zero();
+  BallPress press;
+  for (const ContactConstraint& touch : touches_) {
+    if (touch.contact.link != link || touch.spring.multiplier <= 0.0) continue;
+    pushing.push_back(&touch);
+    press.force += touch.spring.multiplier;
+    axis += touch.spring.multiplier * touch.spring.normal;
+  }
+  if (pushing.empty()) return {};
+  axis.normalize();
+  const Ball& ball = *forms_[at(link)].ball;
+  press.radius = ball.radius;
+  const Vec3 lowest = pose.links[at(link)] * ball.center + ball.radius * axis;
+  std::map<int, double> shares;
+  for (const ContactConstraint* touch : pushing) {
+    const double share = touch->spring.multiplier / press.force;
+    press.height += share * (lowest - touch->tool_point + touch->contact.bulge).dot(axis);
+    for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
+  }
+  for (const auto& [node, share] : shares) press.shares.push_back({node, share});
+  return tissue.recessUnder(press).value_or(Recess());
+}
+
+// After a solve: by less once it goes to and fro, as touches come and go with it. A solve that was
+// cut short tells no forces to go by. Not in time, where forces swing,
+// and a recess that follows them would drive them.
+void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
+  if (tissue.hasTime() || tissue.lastReport().status != SolveStatus::kOk) return;
+  for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
+    if (!forms_[at(link)].ball) continue;
+    const Recess asked = recessAsked(link, pose, tissue);
+    LinkRecess& recess = recesses_[at(link)];
+    const double way = asked.depth - recess.depth;
+    if (way * recess.last_way < 0.0) recess.gain *= tuning::kLessToAndFro;
+    recess.last_way = way;
+    setRecess(link, recess.depth + recess.gain * asked.step * way);
+  }
+}
+
+// Of balls that have only just met the tissue, by how deep they are in it: there is no force yet.
+void SlidingContacts::guessRecesses(const Tissue& tissue) {
+  if (tissue.hasTime()) return;
+  for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
+    if (!forms_[at(link)].ball) continue;
+    const ContactConstraint* deepest = nullptr;
+    bool pushes = false;
+    for (const ContactConstraint& touch : touches_) {
+      if (touch.contact.link != link) continue;
+      pushes = pushes || touch.spring.multiplier > 0.0;
+      if (deepest == nullptr || touch.contact.depth_m > deepest->contact.depth_m) deepest = &touch;
+    }
+    if (pushes || deepest == nullptr) continue;
+    BallPress press;
+    press.radius = forms_[at(link)].ball->radius;
+    press.depth = deepest->contact.depth_m;
+    press.shares = deepest->spring.carriers;
+    setRecess(link, tissue.recessUnder(press).value_or(Recess()).depth);
+  }
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,72 @@
+// Balls that touch less than a spacing's width: they feel a half-space, wherever between the nodes.
+#include <array>
+#include <cmath>
+
+#include "pipeline_fixtures.h"
+
+namespace robot_tissue::test_narrow_contacts {
+namespace {
+
+constexpr double kBall = 0.02;    // m
+constexpr double kModulus = 1e4;  // Pa
+constexpr double kPoisson = 0.45;
+constexpr double kStep = 0.00025;  // m
+
+// Of a half-space, and of a layer as deep as the block to first order (Dimitriadis et al. 2002).
+double forceAt(double depth) {
+  const double a = -(1.2876 - 1.4678 * kPoisson + 1.3442 * kPoisson * kPoisson) / (1.0 - kPoisson);
+  const double of_layer = 1.0 - 2.0 * a / M_PI * std::sqrt(kBall * depth) / kTop;
+  return 4.0 / 3.0 * kModulus / (1.0 - kPoisson * kPoisson) * std::sqrt(kBall) *
+         std::pow(depth, 1.5) * of_layer;
+}
+
+class NarrowBall : public testing::TestWithParam<std::array<double, 2>> {
+ protected:
+  NarrowBall() {
+    TissueConfig tissue = block();
+    tissue.material.poisson_ratio = kPoisson;
+    ToolShape ball;
+    ball.type = ToolShape::Type::kSphere;
+    ball.radius = kBall;
+    pipeline_ =
+        std::make_unique<Pipeline>(tissue, SolverConfig(), std::vector<ToolGeometry>{toolOf(ball)});
+    goTo(-kStep);
+  }
+
+  const ToolReport& goTo(double depth) {
+    const Vec3 off = kSpacing * Vec3(GetParam()[0], GetParam()[1], 0.0);
+    return pipeline_->step(at({Vec3(kMiddle, kMiddle, kTop + kBall - depth) + off})).tools.front();
+  }
+
+  std::unique_ptr<Pipeline> pipeline_;
+};
+
+// Without the law a quarter too little over a node and half too much elsewhere, half a millimeter
+// deep.
+TEST_P(NarrowBall, FeelsWhatAHalfSpacePresses) {
+  for (int step = 1; step <= 6; ++step) {
+    const double depth = kStep * step;
+    const ToolReport& tool = goTo(depth);
+    if (step == 1) continue;
+    EXPECT_NEAR(tool.force_on_tool.z() / forceAt(depth), 1.0, 0.12) << depth << " m";
+    EXPECT_LT(tool.max_penetration, 0.01 * kSpacing) << "shown where the ball is";
+    EXPECT_EQ(pipeline_->tissue().lastReport().status, SolveStatus::kOk);
+  }
+}
+
+TEST_P(NarrowBall, LeavesNothingBehind) {
+  for (int step = 1; step <= 4; ++step) goTo(kStep * step);
+  for (int step = 3; step >= -4; --step) goTo(kStep * step);
+  EXPECT_EQ(pipeline_->report().tools.front().force_on_tool.norm(), 0.0);
+  EXPECT_EQ(greatestDisplacement(pipeline_->tissue()), 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, NarrowBall,
+                         testing::Values(std::array<double, 2>{0.0, 0.0},
+                                         std::array<double, 2>{0.5, 0.5},
+                                         std::array<double, 2>{0.5, 0.0},
+                                         std::array<double, 2>{0.33, 0.67},
+                                         std::array<double, 2>{0.25, 0.1}));
+
+}  // namespace
+}  // namespace robot_tissue::test_narrow_contacts
