@@ -27,6 +27,8 @@ YOUNG, POISSON = 1e4, 0.45                            # Pa, of all blocks
 PRESS = ["tool", "leg", "way_mm", "fx", "fz", "penetration_mm", "ms", "status"]
 HERTZ = ["spacing_mm", "radius_mm", "layer_mm", "depth_mm", "force_n", "lateral_n", "touches",
          "penetration_mm", "unbalanced_n", "ms", "status"]
+NARROW = HERTZ + ["shift"]
+SHIFTS = ["0", "0.1", "0.25", "0.33", "0.5"]          # spacings, along x and y: a ball off a node
 FRICTION = ["tool", "friction", "spacing_mm", "way_mm", "fx", "fz", "ratio", "normal_n", "drag_n",
             "steepest", "penetration_mm", "unbalanced_n", "ms", "status", "sliding_normal_n",
             "sliding_drag_n"]
@@ -51,6 +53,9 @@ STUDIES += [Study(f"bounded_{bound}_{tool}", f"bounded_{bound}", PRESS, "contact
 STUDIES += [Study(f"hertz_{spacing}", "hertz", HERTZ, "contact_hertz",
                   [spacing, "40", "50", "160", "4", "8"], ("spacing_mm", spacing), 110)
             for spacing in ("2.5", "5")]
+STUDIES += [Study(f"narrow_{shift}", "narrow", NARROW, "contact_hertz",
+                  ["5", "20", "50", "100", "2", "8", "layered", "0.01", shift], ("shift", shift), 60)
+            for shift in SHIFTS]
 STUDIES += [Study(f"friction_{tool}", "friction", FRICTION, "contact_friction", [tool, "0.3", "5"],
                   ("tool", tool), 40) for tool in ("plate", "box", "sphere")]
 STUDIES += [Study("lift", "lift", LIFT, "contact_lift", ["grasp", "0.5", "10"], ("way", "grasp"),
@@ -264,6 +269,23 @@ def tell_hertz():
               f"| {row['penetration_mm']} | {1e-3 * float(row['ms']):.2f} | {row['status']} |")
 
 
+def tell_narrow():
+    """Of balls that touch less than a spacing or so: the force off the layer's, over all places."""
+    rows = table_of("narrow")
+    print("| depth (mm) | contact's radius / spacing | layer (N) | off: least to greatest (%) | "
+          "shown deeper than (mm) |")
+    print("|---|---|---|---|---|")
+    for depth in dict.fromkeys(row["depth_mm"] for row in rows):
+        own = [row for row in rows if row["depth_mm"] == depth]
+        radius, layer, spacing = (1e-3 * float(own[0][key])
+                                  for key in ("radius_mm", "layer_mm", "spacing_mm"))
+        exact = dimitriadis(1e-3 * float(depth), radius, layer)
+        off = [100.0 * (float(row["force_n"]) / exact - 1.0) for row in own]
+        width = math.sqrt(radius * 1e-3 * float(depth)) / spacing
+        print(f"| {depth} | {width:.2f} | {exact:.4f} | {min(off):+.0f} to {max(off):+.0f} "
+              f"| {max(numbers(own, 'penetration_mm')):.3f} |")
+
+
 def tell_friction():
     for tool in ("plate", "box", "sphere"):
         rows = [row for row in table_of("friction") if row["tool"] == tool]
@@ -349,5 +371,5 @@ def run(options):
         measure(options.programs, options.only)
     draw_press()
     draw_hertz()
-    for tell in (tell_press, tell_bounded, tell_slide, tell_hertz, tell_friction, tell_lift, tell_rim, tell_random):
+    for tell in (tell_press, tell_bounded, tell_slide, tell_hertz, tell_narrow, tell_friction, tell_lift, tell_rim, tell_random):
         tell()
