@@ -114,7 +114,7 @@ TEST(NarrowContact, WideOnesHaveNone) {
 }
 
 TEST(NarrowContact, ATissueTellsItOfItsFlatSurfaceAlone) {
-  const Tissue tissue(cube(), exact());
+  Tissue tissue(cube(), exact());
   const auto under = [&](int i, int j, int k) {
     BallPress press;
     press.radius = 0.02;
@@ -126,6 +126,11 @@ TEST(NarrowContact, ATissueTellsItOfItsFlatSurfaceAlone) {
   EXPECT_TRUE(under(0, kMiddle, kMiddle / 2)) << "a side";
   EXPECT_FALSE(under(0, kMiddle, kMiddle)) << "an edge";
   EXPECT_FALSE(under(kMiddle, kMiddle, 3)) << "inside";
+  const double x = topAt(0.5, 0.0).x(), low = topAt(0, 0).z() - 2.2 * kSpacing;
+  EXPECT_GT(tissue.cut({{x, -1.0, low}, {x, 1.0, low}, {x, 1.0, 1.0}, {x, -1.0, 1.0}}).springs_cut,
+            0);
+  EXPECT_FALSE(under(kMiddle, kMiddle, kMiddle)) << "beside a cut";
+  EXPECT_TRUE(under(kMiddle - 1, kMiddle, kMiddle));
 }
 
 }  // namespace

@@ -86,8 +86,7 @@ enum class Touched { kByNone, kByTools };
 
 class Tissue {
  public:
-  // Called after each increment of a load: 1-based increment, how many there are as far as is
-  // foreseen, what was solved.
+  // Called after each increment of a load: 1-based increment, how many there are, what was solved.
   using OnIncrement = std::function<void(int increment, int increments, const SolveReport&)>;
 
   // Throws InputError: unknown model or method, a box without a node, ...
@@ -147,11 +146,10 @@ class Tissue {
   double nodeStiffness(int node) const;
   double stiffening(int node) const;
   Vec3 nodePosition(int node) const;  // deformed (m)
-  // Of a node of the surface that is so many spacings inside the plate's edge, < 0: beyond it
-  // (doc/model.md, "The rim"). None where cells at the node are filled in part, and where method or
-  // model have no rims.
+  // Of a node so many spacings inside the plate's edge, < 0: beyond it (doc/model.md, "The rim").
+  // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
-  // None where a node is not in a flat surface of whole cells, and for such methods and models.
+  // None where a node is not in a flat surface of whole cells; likewise.
   std::optional<Recess> recessUnder(const BallPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.

@@ -16,8 +16,16 @@ Vec3 forceOfPatches(const SolveReport& report) {
   return force;
 }
 
-// Cells that a node within a flat surface of them has.
-constexpr int kCellsBelowNode = 4;
+// A node with four cells, none of which is filled, or left by cuts, in part alone.
+bool isInFlatSurface(const CellSet& cells, int node) {
+  if (cells.isGhost(node)) return false;
+  int whole = 0;
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    if (cells.all()[at(met.cell)].share() < 1.0) return false;
+    ++whole;
+  }
+  return whole == 4;
+}
 
 }  // namespace
 
@@ -75,13 +83,7 @@ std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
   const CellSet& cells = *state_.cells;
   for (const NodeWeight& share : press.shares) {
-    int below = 0;
-    for (const CellSet::Meeting& met : cells.meetings(share.node)) {
-      const auto& cell = lattice_.cells()[at(cells.all()[at(met.cell)].place)];
-      if (cell.share() < 1.0) return std::nullopt;
-      ++below;
-    }
-    if (below != kCellsBelowNode) return std::nullopt;
+    if (!isInFlatSurface(cells, share.node)) return std::nullopt;
   }
   const Moduli moduli = model_->moduliAt(state_, press.shares.front().node);
   if (moduli.shear <= 0.0) return std::nullopt;
