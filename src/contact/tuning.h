@@ -78,8 +78,8 @@ constexpr double kRigidSlack = 1e-6;
 // How deep a shape is in the tissue: points of its surface, measured one by one.
 // Points of a sphere, steps of a box's edge (edges of a mesh that are no longer than such a step of
 // its longest side have no point in their middle), points around a cylinder, rings along its side
-// and from the middle of its ends to their rim. More: deep places between them are found, for as many
-// distances more at each look. Chosen.
+// and from the middle of its ends to their rim. More: deep places between them are found, for as
+// many distances more at each look. Chosen.
 constexpr int kSpherePoints = 200;
 constexpr int kBoxSteps = 8;
 constexpr int kRimPoints = 16;
@@ -104,8 +104,8 @@ constexpr int kParts = 256;
 
 // Beside a mesh.
 // Of the margin of a search (1): so much farther pairs of triangles are kept for the next ones.
-// More: they serve for more searches, and each looks at more of them. 0.5, 1, 2: three fingers, 0.25
-// mm an update, take 1, 0.96, 0.96 of the time, two of them 1, 0.99, 1.01.
+// More: they serve for more searches, and each looks at more of them. 0.5, 1, 2: three fingers,
+// 0.25 mm an update, take 1, 0.96, 0.96 of the time, two of them 1, 0.99, 1.01.
 constexpr double kPairsAhead = 1.0;
 
 // Flat faces.
