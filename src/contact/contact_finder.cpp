@@ -193,8 +193,8 @@ Vec3 ContactFinder::center(std::size_t link) const { return impl_->links[link].c
 
 double ContactFinder::thickness(std::size_t link) const { return impl_->links[link].thickness(); }
 
-std::optional<Ball> ContactFinder::ball(std::size_t link) const {
-  return impl_->links[link].ball();
+std::vector<Ball> ContactFinder::balls(std::size_t link) const {
+  return impl_->links[link].balls();
 }
 
 Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {

@@ -109,11 +109,14 @@ double TouchingLink::thickness() const {
   return thinnest;
 }
 
-std::optional<Ball> TouchingLink::ball() const {
-  if (in_use_ != 1) return std::nullopt;
-  const CollisionShape& shape = shapes.front();
-  if (shape.measures().type != ToolShape::Type::kSphere) return std::nullopt;
-  return Ball{shape.poseInLink().translation(), shape.measures().radius + shape.padding()};
+std::vector<Ball> TouchingLink::balls() const {
+  std::vector<Ball> balls;
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    const CollisionShape& shape = shapes[i];
+    if (shape.measures().type != ToolShape::Type::kSphere) continue;
+    balls.push_back({shape.poseInLink().translation(), shape.measures().radius + shape.padding()});
+  }
+  return balls;
 }
 
 }  // namespace robot_tissue

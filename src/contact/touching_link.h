@@ -30,7 +30,7 @@ class TouchingLink {
   double reach() const;
   Vec3 center() const;
   double thickness() const;
-  std::optional<Ball> ball() const;
+  std::vector<Ball> balls() const;
   // As ContactFinder::wayOut. Of the same point again, as where a way out along a direction begins,
   // it is known.
   std::optional<WayOut> wayOutAt(const Pose& tissue_T_link, const Vec3& point, double reach) const;

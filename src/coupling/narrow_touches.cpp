@@ -1,4 +1,6 @@
 // Touches of balls whose contact is narrower than the lattice tells apart.
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "rim_touch.h"
@@ -20,10 +22,25 @@ void SlidingContacts::setRecess(int link, double depth) {
   }
 }
 
+// The link's ball that all of these touch, as a stylus does with its tip.
+const Ball* SlidingContacts::ballUnder(const Touches& touches, const Pose& tissue_T_link,
+                                       const Tissue& tissue) const {
+  if (touches.empty()) return nullptr;
+  const double off = tuning::kOffBall * tissue.lattice().spacing();
+  for (const Ball& ball : forms_[at(touches.front()->contact.link)].balls) {
+    const Vec3 center = tissue_T_link * ball.center;
+    const auto is_on_it = [&](const ContactConstraint* touch) {
+      return std::abs((touch->tool_point - center).norm() - ball.radius) <= off;
+    };
+    if (std::all_of(touches.begin(), touches.end(), is_on_it)) return &ball;
+  }
+  return nullptr;
+}
+
 // By what the link's multipliers are. Heights of planes are above where the ball is lowest, as seen
 // along the way it presses; the curved surface is off what nodes carry by a bulge.
 Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const {
-  std::vector<const ContactConstraint*> pushing;
+  Touches pushing;
   Vec3 axis = Vec3::Zero();
   BallPress press;
   for (const ContactConstraint& touch : touches_) {
@@ -32,11 +49,11 @@ Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissu
     press.force += touch.spring.multiplier;
     axis += touch.spring.multiplier * touch.spring.normal;
   }
-  if (pushing.empty()) return {};
+  const Ball* const ball = ballUnder(pushing, pose.links[at(link)], tissue);
+  if (ball == nullptr) return {};
   axis.normalize();
-  const Ball& ball = *forms_[at(link)].ball;
-  press.radius = ball.radius;
-  const Vec3 lowest = pose.links[at(link)] * ball.center + ball.radius * axis;
+  press.radius = ball->radius;
+  const Vec3 lowest = pose.links[at(link)] * ball->center + ball->radius * axis;
   std::map<int, double> shares;
   for (const ContactConstraint* touch : pushing) {
     const double share = touch->spring.multiplier / press.force;
@@ -53,7 +70,7 @@ Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissu
 void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (tissue.hasTime() || tissue.lastReport().status != SolveStatus::kOk) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
-    if (!forms_[at(link)].ball) continue;
+    if (forms_[at(link)].balls.empty()) continue;
     const Recess asked = recessAsked(link, pose, tissue);
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
@@ -64,10 +81,10 @@ void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
 }
 
 // Of balls that have only just met the tissue, by how deep they are in it: there is no force yet.
-void SlidingContacts::guessRecesses(const Tissue& tissue) {
+void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (tissue.hasTime()) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
-    if (!forms_[at(link)].ball) continue;
+    if (forms_[at(link)].balls.empty()) continue;
     const ContactConstraint* deepest = nullptr;
     bool pushes = false;
     for (const ContactConstraint& touch : touches_) {
@@ -76,11 +93,13 @@ void SlidingContacts::guessRecesses(const Tissue& tissue) {
       if (deepest == nullptr || touch.contact.depth_m > deepest->contact.depth_m) deepest = &touch;
     }
     if (pushes || deepest == nullptr) continue;
+    const Ball* const ball = ballUnder({deepest}, pose.links[at(link)], tissue);
     BallPress press;
-    press.radius = forms_[at(link)].ball->radius;
+    press.radius = ball == nullptr ? 0.0 : ball->radius;
     press.depth = deepest->contact.depth_m;
     press.shares = deepest->spring.carriers;
-    setRecess(link, tissue.recessUnder(press).value_or(Recess()).depth);
+    const auto guess = ball == nullptr ? std::nullopt : tissue.recessUnder(press);
+    setRecess(link, guess.value_or(Recess()).depth);
   }
 }
 

@@ -76,7 +76,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   }
   wander(contacts, wandering, pose, tissue, held);
   forgetLost(held);
-  guessRecesses(tissue);
+  guessRecesses(pose, tissue);
   stickFirst(tissue);
 }
 

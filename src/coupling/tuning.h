@@ -82,6 +82,9 @@ constexpr double kLeastFree = 0.4;
 constexpr double kMostEntry = 0.035;
 constexpr double kEntryTime = 0.05;
 
+// Of the spacing (1): how far from a ball a touch of its may be taken to be, as planes are of where
+// a way out ends. More: what touches beside a ball counts as on it. Chosen.
+constexpr double kOffBall = 0.05;
 // Of a step towards another recess of a narrow contact (1), once that goes to and fro. More: more
 // rounds where touches come and go with it. Chosen.
 constexpr double kLessToAndFro = 0.5;

@@ -49,7 +49,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   }
   std::vector<SlidingContacts::LinkForm> forms;
   for (std::size_t link = 0; link < finder.linkCount(); ++link) {
-    forms.push_back({finder.thickness(link), finder.hasMesh(link), finder.ball(link)});
+    forms.push_back({finder.thickness(link), finder.hasMesh(link), finder.balls(link)});
   }
   sliding = SlidingContacts(friction, forms);
   pose = tools.complete({});

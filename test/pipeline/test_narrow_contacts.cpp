@@ -54,6 +54,29 @@ TEST_P(NarrowBall, FeelsWhatAHalfSpacePresses) {
   }
 }
 
+// As on the tip of a stylus.
+TEST_P(NarrowBall, WithAShaftFeelsAsMuch) {
+  TissueConfig tissue = block();
+  tissue.material.poisson_ratio = kPoisson;
+  ToolShape ball, shaft;
+  ball.type = ToolShape::Type::kSphere;
+  ball.radius = kBall;
+  shaft.type = ToolShape::Type::kCylinder;
+  shaft.radius = 0.25 * kBall;
+  shaft.length = 0.1;
+  shaft.pose.translation().z() = 0.05;
+  ToolGeometry stylus = toolOf(ball);
+  stylus.links.front().shapes.push_back(shaft);
+  Pipeline pipeline(tissue, SolverConfig(), {stylus});
+  const Vec3 off = kSpacing * Vec3(GetParam()[0], GetParam()[1], 0.0);
+  for (int step = -1; step <= 4; ++step) {
+    const double depth = kStep * step;
+    const double alone = goTo(depth).force_on_tool.z();
+    pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + kBall - depth) + off}));
+    EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), alone, 0.01 * alone) << depth;
+  }
+}
+
 TEST_P(NarrowBall, LeavesNothingBehind) {
   for (int step = 1; step <= 4; ++step) goTo(kStep * step);
   for (int step = 3; step >= -4; --step) goTo(kStep * step);

@@ -55,8 +55,8 @@ class ContactFinder {
   Vec3 center(std::size_t link) const;
   // Smallest width of the link's thinnest shape (m); infinite without shapes.
   double thickness(std::size_t link) const;
-  // Where the link is one ball, padding included; link's frame.
-  std::optional<Ball> ball(std::size_t link) const;
+  // Of its shapes those that are balls, padding included; link's frame.
+  std::vector<Ball> balls(std::size_t link) const;
   // Axis-aligned box around the link's shapes in the tissue's frame (m); empty (min > max) without,
   // infinite with a plane.
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;

@@ -75,9 +75,9 @@ class SlidingContacts {
 
   // What is to be known of a link.
   struct LinkForm {
-    double thickness = 0.0;    // m
-    bool is_uneven = false;    // a mesh: a triangle may lie on it at several places
-    std::optional<Ball> ball;  // that is all of it; link's frame
+    double thickness = 0.0;   // m
+    bool is_uneven = false;   // a mesh: a triangle may lie on it at several places
+    std::vector<Ball> balls;  // among its shapes; link's frame
   };
 
   SlidingContacts() = default;  // of no tools
@@ -180,10 +180,13 @@ class SlidingContacts {
   void takeMeans(const Tissue& tissue);
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
-  void guessRecesses(const Tissue& tissue);
+  void guessRecesses(const RobotPose& pose, const Tissue& tissue);
   void setRecess(int link, double depth);
   void renewRecesses(const RobotPose& pose, const Tissue& tissue);
   Recess recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const;
+  using Touches = std::vector<const ContactConstraint*>;
+  const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
+                        const Tissue& tissue) const;
   void forgetLost(const Held& held);
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
