@@ -113,6 +113,17 @@ TEST(NarrowContact, WideOnesHaveNone) {
   EXPECT_EQ(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
 }
 
+TEST(NarrowContact, BallsThinnerThanASpacingHaveNone) {
+  const Lattice lattice(cube());
+  BallPress press;
+  press.depth = 1e-4;
+  press.shares = {{lattice.node(kMiddle, kMiddle, kMiddle), 1.0}};
+  press.radius = 0.51 * kSpacing;
+  EXPECT_NE(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
+  press.radius = 0.49 * kSpacing;
+  EXPECT_EQ(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
+}
+
 TEST(NarrowContact, ATissueTellsItOfItsFlatSurfaceAlone) {
   Tissue tissue(cube(), exact());
   const auto under = [&](int i, int j, int k) {

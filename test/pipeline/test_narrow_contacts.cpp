@@ -77,6 +77,22 @@ TEST_P(NarrowBall, WithAShaftFeelsAsMuch) {
   }
 }
 
+// Down to a ball's own size and beyond.
+TEST_P(NarrowBall, IsNotLetThroughHoweverSmall) {
+  for (const double radius : {0.1 * kSpacing, 0.3 * kSpacing, 0.51 * kSpacing, 0.8 * kSpacing}) {
+    ToolShape ball;
+    ball.type = ToolShape::Type::kSphere;
+    ball.radius = radius;
+    Pipeline pipeline(block(), SolverConfig(), {toolOf(ball)});
+    const Vec3 off = kSpacing * Vec3(GetParam()[0], GetParam()[1], 0.0);
+    for (int step = -1; step <= 24; ++step) {
+      pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + radius - kStep * step) + off}));
+      EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.1 * kSpacing) << radius;
+    }
+    EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), 0.05) << radius;
+  }
+}
+
 TEST_P(NarrowBall, LeavesNothingBehind) {
   for (int step = 1; step <= 4; ++step) goTo(kStep * step);
   for (int step = 3; step >= -4; --step) goTo(kStep * step);
