@@ -50,7 +50,7 @@ robot_tissue_room(loads
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
     dof_constraints.h loading_patch.cpp narrow_contact.cpp narrow_contact.h patch_rim.cpp
-    patch_rim.h point_loads.cpp point_loads.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
+    patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base lattice cutting loads
   FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_pieces.cpp

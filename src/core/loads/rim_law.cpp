@@ -1,8 +1,8 @@
 #include "loads/rim_law.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <limits>
+
+#include "loads/ratio_table.h"
 
 namespace robot_tissue {
 namespace {
@@ -38,24 +38,6 @@ constexpr Sliding kSliding[] = {
 RimMode between(const RimMode& low, const RimMode& high, double share) {
   return {low.shift + share * (high.shift - low.shift),
           low.stiffness + share * (high.stiffness - low.stiffness)};
-}
-
-// Rows of a table between which a ratio is, and its share of the way; the outermost row beyond it.
-template <typename Row>
-struct Place {
-  const Row& low;
-  const Row& high;
-  double share;
-};
-
-template <typename Row, std::size_t kRows>
-Place<Row> placeIn(const Row (&table)[kRows], double poisson_ratio) {
-  std::size_t high = 0;
-  while (high + 1 < kRows && poisson_ratio > table[high].poisson_ratio) ++high;
-  const Row& low = table[high == 0 ? 0 : high - 1];
-  const double width = table[high].poisson_ratio - low.poisson_ratio;
-  const double share = width > 0.0 ? (poisson_ratio - low.poisson_ratio) / width : 0.0;
-  return {low, table[high], std::min(share, 1.0)};
 }
 
 }  // namespace
