@@ -34,13 +34,13 @@ SymmetricPointers<const Real> pointersTo(const SymmetricField<Real>& field, int 
 }
 
 template <typename Real>
-VectorPointers<Real> pointersTo(std::array<Numbers<Real>, 3>& field) {
-  return {field[0].data(), field[1].data(), field[2].data()};
+VectorPointers<Real> pointersTo(std::array<Numbers<Real>, 3>& field, int first = 0) {
+  return {field[0].data() + first, field[1].data() + first, field[2].data() + first};
 }
 
 template <typename Real>
-VectorPointers<const Real> pointersTo(const std::array<Numbers<Real>, 3>& field) {
-  return {field[0].data(), field[1].data(), field[2].data()};
+VectorPointers<const Real> pointersTo(const std::array<Numbers<Real>, 3>& field, int first = 0) {
+  return {field[0].data() + first, field[1].data() + first, field[2].data() + first};
 }
 
 // D = below + lower.

@@ -63,8 +63,18 @@ void CompositeShape<Real>::reset(std::unique_ptr<GridHierarchy<Real>> levels) {
 }
 
 template <typename Real>
+void CompositeShape<Real>::copy(const Field<Real>& from, Field<Real>& to) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) to[axis].resize(from[axis].size());
+  finest().forParts([&](int first, int count) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::copy_n(from[axis].begin() + first, count, to[axis].begin() + first);
+    }
+  });
+}
+
+template <typename Real>
 void CompositeShape<Real>::keepPlaces(Vector& places) const {
-  places.nodes = finest().displacement;
+  copy(finest().displacement, places.nodes);
   places.groups = finest().constrained.motion;
   places.uncovered = levels_->uncovered().places();
 }
@@ -77,14 +87,14 @@ void CompositeShape<Real>::keepForces(Vector& forces) {
 
 template <typename Real>
 void CompositeShape<Real>::keepForcesInPart(Vector& forces) const {
-  forces.nodes = finest().force;
+  copy(finest().force, forces.nodes);
   forces.groups = finest().constrained.force;
 }
 
 template <typename Real>
 void CompositeShape<Real>::placeAt(const Vector& places) {
   finest().constrained.motion = places.groups;
-  finest().displacement = places.nodes;
+  copy(places.nodes, finest().displacement);
   levels_->uncovered().placeAt(places.uncovered);
 }
 

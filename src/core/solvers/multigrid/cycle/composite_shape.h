@@ -76,6 +76,7 @@ class CompositeShape {
 
  private:
   void placeAt(const Vector& places);
+  void copy(const Field<Real>& from, Field<Real>& to) const;  // of the finest level
 
   std::unique_ptr<GridHierarchy<Real>> levels_;
   Vector spare_;

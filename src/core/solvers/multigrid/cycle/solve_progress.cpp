@@ -9,16 +9,19 @@ namespace robot_tissue {
 template <typename Real>
 void SolveProgress<Real>::begin() {
   least_left_ = std::numeric_limits<double>::infinity();
+  has_best_ = false;
   farthest_ = 0.0;
 }
 
-// A gain is a smaller |x|, or a shape farther from the start: on a long way |x| may grow before it
-// falls. Not so in contact: what goes far there slips, and a smaller load step follows it better.
+// The first shape is the best one so far, whatever is left there, as that may be no number. A gain
+// is a smaller |x|, or a shape farther from the start: on a long way |x| may grow before it falls.
+// Not so in contact: what goes far there slips, and a smaller load step follows it better.
 template <typename Real>
 void SolveProgress<Real>::note(const SolveContext& solve, const ErrorEstimator<Real>& estimator,
                                const CompositeShape<Real>& shape) {
-  if (estimator.left().now < least_left_) {
-    least_left_ = estimator.left().now;
+  if (!has_best_ || estimator.left().now < least_left_) {
+    has_best_ = true;
+    if (estimator.left().now < least_left_) least_left_ = estimator.left().now;
     shape.keepPlaces(best_);
     best_error_ = estimator.error();
     last_gain_ = solve.cycles;

@@ -22,6 +22,7 @@ class SolveProgress {
 
  private:
   CompositeVector<Real> best_;
+  bool has_best_ = false;  // of these cycles
   double best_error_ = 1.0;
   double least_left_ = 0.0;  // |x|, there
   double farthest_ = 0.0;    // from where the cycles began, in spacings

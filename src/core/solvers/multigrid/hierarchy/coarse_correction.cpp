@@ -121,7 +121,9 @@ template <typename Real>
 bool CoarseCorrection<Real>::isFinite() const {
   double sum = squaredUncovered();
   for (const auto& values : motions_.front()) {
-    sum += dotOf(values.data(), values.data(), static_cast<int>(values.size()));
+    sum += grid_.finest().sumOfSpans([&values](int first, int count) {
+      return dotOf(values.data() + first, values.data() + first, count);
+    });
   }
   for (const GroupVector& vector : group_motion_) sum += vector.squaredNorm();
   return std::isfinite(sum);

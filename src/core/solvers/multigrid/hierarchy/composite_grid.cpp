@@ -184,7 +184,7 @@ void CompositeGrid<Real>::openParts(const std::vector<GridBox>& free) {
         from(free_[level], points.low),
         level == 0 ? kCoversNothing
                    : from(coveredBy(free_[level - 1], sources_[level - 1].whole()), points.low)};
-    if (level > 0) transfers_.push_back(transferTo(level, grid));
+    if (level > 0) addTransfer(transferTo(level, grid));
     addLevel(grid, source.listed.beside, source.cellsIn(points, grid), part,
              source.greatest_stiffness);
   }
@@ -271,7 +271,7 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
     findReaches(level_cells);
     beside = to.nodes_beside;
     const LevelGrid coarse = to.grid;
-    transfers_.push_back({grid, std::move(to)});
+    addTransfer({grid, std::move(to)});
     grid = coarse;
   }
   finest().constrained.setUnits(spacing_, modulus_);
@@ -301,6 +301,12 @@ void CompositeGrid<Real>::addLevel(const LevelGrid& grid, int beside,
                                    double greatest_stiffness) {
   levels_.emplace_back(grid, beside, cells, part, greatest_stiffness);
   if (workers_ != nullptr) levels_.back().share(*workers_);
+}
+
+template <typename Real>
+void CompositeGrid<Real>::addTransfer(GridTransfer<Real> transfer) {
+  transfers_.push_back(std::move(transfer));
+  if (workers_ != nullptr) transfers_.back().share(*workers_);
 }
 
 // Full blocks go without: there each weight is 1.

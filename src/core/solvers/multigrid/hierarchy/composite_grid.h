@@ -128,6 +128,7 @@ class CompositeGrid {
   GridBox whole() const { return from(between_, between_.low); }  // points of the finest level
   std::vector<GridBox> partsAround(const GridBox& box, int layers) const;
   void openParts(const std::vector<GridBox>& free);
+  void addTransfer(GridTransfer<Real> transfer);
   GridTransfer<Real> transferTo(std::size_t level, const LevelGrid& grid) const;
   void addListed(std::size_t level, const LevelGrid& grid, Coarsening& to) const;
   void openAll(const ElasticModel& model, const CellSet& cells);

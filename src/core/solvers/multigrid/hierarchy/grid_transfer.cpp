@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "simd/field_kernel.h"
+#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -46,24 +47,46 @@ std::array<int, 3> GridTransfer<Real>::placeOnCoarse(int fine_node) const {
 }
 
 template <typename Real>
-void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& coarse) const {
+template <typename Visit>
+void GridTransfer<Real>::forPlanes(int planes, Visit visit) const {
+  if (workers_ == nullptr || fine_.plane * fine_.size[2] < level_tuning::kWorthSharing) {
+    return visit(0, planes);
+  }
+  workers_->run([&](int thread) {
+    visit(workers_->firstOf(planes, thread), workers_->firstOf(planes, thread + 1));
+  });
+}
+
+// On the coarse nodes of some planes, along an axis, by what the grid's fine nodes have.
+template <typename Real>
+void GridTransfer<Real>::restrictPlanes(const Numbers<Real>& fine, int first, int end,
+                                        Numbers<Real>& coarse) const {
   const auto& size = fine_.size;
   Numbers<Real> line(at(2 * countAlongX() + 1), Real(0));
+  for (int k = first; k < end; ++k) {
+    for (int j = 0; j <= size[1] / 2; ++j) {
+      std::fill(line.begin(), line.end(), Real(0));
+      for (int z = std::max(0, 2 * k - 1); z <= std::min(size[2] - 1, 2 * k + 1); ++z) {
+        for (int y = std::max(0, 2 * j - 1); y <= std::min(size[1] - 1, 2 * j + 1); ++y) {
+          const Real weight = Real(z == 2 * k ? 1.0 : 0.5) * Real(y == 2 * j ? 0.25 : 0.125);
+          addShare(fine.data() + fine_.index(0, y, z), weight, line.data() + 1, size[0]);
+        }
+      }
+      restrictRow(line.data(), coarse.data() + coarseRow(j, k), countAlongX());
+    }
+  }
+}
+
+template <typename Real>
+void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& coarse) const {
+  forPlanes(fine_.size[2] / 2 + 1, [&](int first, int end) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      restrictPlanes(fine[axis], first, end, coarse[axis]);
+    }
+  });
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Real* to = coarse[axis].data();
     std::fill(coarse[axis].begin() + to_.grid.beside, coarse[axis].end(), Real(0));
-    for (int k = 0; k <= size[2] / 2; ++k) {
-      for (int j = 0; j <= size[1] / 2; ++j) {
-        std::fill(line.begin(), line.end(), Real(0));
-        for (int z = std::max(0, 2 * k - 1); z <= std::min(size[2] - 1, 2 * k + 1); ++z) {
-          for (int y = std::max(0, 2 * j - 1); y <= std::min(size[1] - 1, 2 * j + 1); ++y) {
-            const Real weight = Real(z == 2 * k ? 1.0 : 0.5) * Real(y == 2 * j ? 0.25 : 0.125);
-            addShare(fine[axis].data() + fine_.index(0, y, z), weight, line.data() + 1, size[0]);
-          }
-        }
-        restrictRow(line.data(), to + coarseRow(j, k), countAlongX());
-      }
-    }
     for (const auto& [node, carriers] : to_.carried) {
       const Real quarter = Real(0.25) * fine[axis][at(node)];
       if (node < fine_.beside) {
@@ -110,9 +133,12 @@ void GridTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& star
   for (std::size_t axis = 0; axis < 3; ++axis) {
     subtract(now[axis].data(), start[axis].data(), static_cast<Real>(kTwice), motion_.data(),
              static_cast<int>(motion_.size()));
-    for (int k = 0; k < fine_.size[2]; ++k) {
-      prolongPlane(motion_, k, between_, fine[axis].data() + fine_.index(0, 0, k));
-    }
+    forPlanes(fine_.size[2], [&](int first, int end) {
+      Numbers<Real> between;
+      for (int k = first; k < end; ++k) {
+        prolongPlane(motion_, k, between, fine[axis].data() + fine_.index(0, 0, k));
+      }
+    });
     for (const auto& [node, carriers] : to_.carried) {
       double mean = 0.0;
       for (const NodeShare& share : carriers) {

@@ -17,6 +17,9 @@ class GridTransfer {
   // The fine grid's lowest point stands at the coarse grid's point `at`.
   GridTransfer(const LevelGrid& fine, Coarsening to, const std::array<int, 3>& at = {});
 
+  // In these threads from now on, where the fine grid is worth it.
+  void share(Workers& workers) { workers_ = &workers; }
+
   // The coarse nodes that carry a fine one.
   NodeShares carriersOf(int fine_node) const;
 
@@ -32,14 +35,19 @@ class GridTransfer {
   void place(const Field<Real>& coarse, const std::vector<int>& nodes, Field<Real>& fine) const;
 
  private:
+  // Calls visit(first, end) for planes, of so many, each in a thread.
+  template <typename Visit>
+  void forPlanes(int planes, Visit visit) const;
   std::array<int, 3> placeOnCoarse(int fine_node) const;
+  void restrictPlanes(const Numbers<Real>& fine, int first, int end, Numbers<Real>& coarse) const;
   int coarseRow(int j, int k) const;  // entry at the lowest fine point's x
   int countAlongX() const { return fine_.size[0] / 2 + 1; }
 
   LevelGrid fine_;
   Coarsening to_;
   std::array<int, 3> at_;
-  Numbers<Real> motion_, between_;  // of coarse nodes
+  Numbers<Real> motion_;  // of coarse nodes
+  Workers* workers_ = nullptr;
 };
 
 extern template class GridTransfer<float>;

@@ -1,11 +1,13 @@
 #include "solvers/multigrid/hierarchy/node_displacements.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "solvers/multigrid/hierarchy/free_ends.h"
 #include "solvers/multigrid/hierarchy/tuning.h"
+#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 
@@ -17,22 +19,40 @@ bool NodeDisplacements<Real>::take(const std::vector<Vec3>& displacement,
                                    const std::vector<std::uint8_t>& held) {
   const double unit = 1.0 / grid_.spacing();
   const std::vector<int>&nodes = grid_.nodes(), &entries = grid_.entries();
-  bool moved = false, others_moved = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    Real* to = grid_.finest().displacement[at(axis)].data();
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const std::size_t node = at(nodes[i]);
-      Real& here = to[entries[i]];
-      const Real now = static_cast<Real>(displacement[node][axis] * unit);
-      const bool same = std::abs(now - here) <= tuning::kSame * std::abs(here);
-      if (same) continue;
-      here = now;
-      moved = true;
-      others_moved = others_moved || held[node] == 0;
+  std::atomic<bool> moved{false}, others_moved{false};
+  forNodes([&](std::size_t first, std::size_t end) {
+    bool moved_here = false, others_moved_here = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      Real* to = grid_.finest().displacement[at(axis)].data();
+      for (std::size_t i = first; i < end; ++i) {
+        const std::size_t node = at(nodes[i]);
+        Real& here = to[entries[i]];
+        const Real now = static_cast<Real>(displacement[node][axis] * unit);
+        const bool same = std::abs(now - here) <= tuning::kSame * std::abs(here);
+        if (same) continue;
+        here = now;
+        moved_here = true;
+        others_moved_here = others_moved_here || held[node] == 0;
+      }
     }
-  }
+    if (moved_here) moved = true;
+    if (others_moved_here) others_moved = true;
+  });
   if (others_moved) takeCoarse(displacement);
   return moved;
+}
+
+// Calls visit(first, end) for parts of the grid's nodes, each in a thread.
+template <typename Real>
+template <typename Visit>
+void NodeDisplacements<Real>::forNodes(Visit visit) const {
+  const std::size_t count = grid_.nodes().size();
+  Workers* const workers = grid_.workers();
+  if (workers == nullptr || count < at(level_tuning::kWorthSharing)) return visit(0, count);
+  const int all = static_cast<int>(count);
+  workers->run([&](int thread) {
+    visit(at(workers->firstOf(all, thread)), at(workers->firstOf(all, thread + 1)));
+  });
 }
 
 template <typename Real>
@@ -93,14 +113,16 @@ template <typename Real>
 void NodeDisplacements<Real>::writeTo(std::vector<Vec3>& displacement,
                                       const std::vector<std::uint8_t>& held) const {
   const Field<Real>& from = grid_.finest().displacement;
-  for (std::size_t i = 0; i < grid_.nodes().size(); ++i) {
-    const std::size_t node = at(grid_.nodes()[i]);
-    if (held[node] == kAllAxes) continue;
-    const Vec3 moved = grid_.spacing() * vectorAt(from, grid_.entries()[i]);
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((held[node] >> axis & 1) == 0) displacement[node][axis] = moved[axis];
+  forNodes([&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const std::size_t node = at(grid_.nodes()[i]);
+      if (held[node] == kAllAxes) continue;
+      const Vec3 moved = grid_.spacing() * vectorAt(from, grid_.entries()[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((held[node] >> axis & 1) == 0) displacement[node][axis] = moved[axis];
+      }
     }
-  }
+  });
   if (!grid_.isWhole()) writeInterpolated(displacement);
   if (grid_.hasEnds()) moveEnds(grid_.lattice(), grid_.between(), displacement);
 }
@@ -162,10 +184,9 @@ void NodeDisplacements<Real>::writePlanes(const GridTransfer<Real>& transfer,
   const int planes = grid_.lattice().size()[2];
   Workers* const workers = grid_.workers();
   if (workers == nullptr) return writePlanes(transfer, coarse, 0, planes, displacement);
-  const int threads = workers->count();
-  workers->run([&](int part) {
-    writePlanes(transfer, coarse, planes * part / threads, planes * (part + 1) / threads,
-                displacement);
+  workers->run([&](int thread) {
+    writePlanes(transfer, coarse, workers->firstOf(planes, thread),
+                workers->firstOf(planes, thread + 1), displacement);
   });
 }
 

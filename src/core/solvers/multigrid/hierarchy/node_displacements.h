@@ -26,6 +26,8 @@ class NodeDisplacements {
   void writeTo(std::vector<Vec3>& displacement, const std::vector<std::uint8_t>& held) const;
 
  private:
+  template <typename Visit>
+  void forNodes(Visit visit) const;
   Vec3 valueAt(std::size_t level, const std::array<int, 3>& place) const;
   void writeInterpolated(std::vector<Vec3>& displacement) const;
   void putOpenPart(std::size_t level, const LevelGrid& grid, Field<Real>& all) const;

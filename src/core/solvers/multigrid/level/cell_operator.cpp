@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "simd/field_kernel.h"
-#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -169,6 +168,11 @@ void CellOperator<Real>::share(Workers& workers) {
 }
 
 template <typename Real>
+bool CellOperator<Real>::isShared() const {
+  return workers_ != nullptr && grid_.plane * grid_.size[2] >= level_tuning::kWorthSharing;
+}
+
+template <typename Real>
 void CellOperator<Real>::findForces(const Loads& loads, Find what) {
   findForces(loads, what, blocks_);
 }
@@ -191,14 +195,11 @@ void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
 // computed by both.
 template <typename Real>
 void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks& blocks) {
-  const int planes = grid_.size[2];
-  if (workers_ == nullptr || grid_.plane * planes < level_tuning::kWorthSharing) {
-    findPlanes(loads, what, blocks, 0, planes, sums_.front());
+  if (!isShared()) {
+    findPlanes(loads, what, blocks, 0, grid_.size[2], sums_.front());
   } else {
-    const int threads = workers_->count();
-    workers_->run([&](int part) {
-      findPlanes(loads, what, blocks, planes * part / threads, planes * (part + 1) / threads,
-                 sums_[at(part)]);
+    workers_->runParts(grid_.size[2], [&](int thread, int first, int end) {
+      findPlanes(loads, what, blocks, first, end, sums_[at(thread)]);
     });
   }
   finishBeside(loads, what);

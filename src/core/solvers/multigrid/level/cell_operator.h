@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "simd/workers.h"
 #include "solvers/multigrid/level/cell_kernel.h"
 #include "solvers/multigrid/level/lattice_coarsening.h"
+#include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
 
@@ -71,6 +73,13 @@ class CellOperator {
   void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.
   void share(Workers& workers);
+  // Calls visit(first, count) for parts of all entries, each in the thread that finds the forces
+  // there, as what they are found from is in its cache.
+  template <typename Visit>
+  void forParts(Visit visit) const;
+  // Sum of sumOf(first, count) over spans of the entries: the same bits in any number of threads.
+  template <typename SumOf>
+  double sumOfSpans(SumOf sumOf) const;
   Field<Real> whole;
   SymmetricField<Real> stiffness;
   // 1 over the greatest stiffness of any motion at rest, in the nodes' own; 1 until that is known.
@@ -90,6 +99,7 @@ class CellOperator {
 
   using Blocks = std::vector<std::vector<CellBlock>>;  // per plane of cells
 
+  bool isShared() const;
   void place(const std::vector<LevelCell>& cells);
   void placeSums(std::vector<int> sum_of);
   void findBlocks();
@@ -119,6 +129,40 @@ class CellOperator {
   Workers* workers_ = nullptr;
   std::vector<Sums> sums_;  // per thread
 };
+
+template <typename Real>
+template <typename SumOf>
+double CellOperator<Real>::sumOfSpans(SumOf sumOf) const {
+  const int spans = (count_ + level_tuning::kSpan - 1) / level_tuning::kSpan;
+  if (spans == 1) return sumOf(0, count_);
+  std::vector<double> sums(at(spans));
+  const auto find = [&](int first, int end) {
+    for (int span = first; span < end; ++span) {
+      const int start = span * level_tuning::kSpan;
+      sums[at(span)] = sumOf(start, std::min(level_tuning::kSpan, count_ - start));
+    }
+  };
+  if (isShared()) {
+    workers_->run([&](int thread) {
+      find(workers_->firstOf(spans, thread), workers_->firstOf(spans, thread + 1));
+    });
+  } else {
+    find(0, spans);
+  }
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+template <typename Real>
+template <typename Visit>
+void CellOperator<Real>::forParts(Visit visit) const {
+  if (!isShared()) return visit(0, count_);
+  workers_->run([&](int thread) {
+    const bool is_last = thread + 1 == workers_->count();
+    const int first = grid_.plane * workers_->firstOf(grid_.size[2], thread);
+    const int end = is_last ? count_ : grid_.plane * workers_->firstOf(grid_.size[2], thread + 1);
+    if (first < end) visit(first, end - first);
+  });
+}
 
 extern template class CellOperator<float>;
 extern template class CellOperator<double>;

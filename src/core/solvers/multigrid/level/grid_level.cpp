@@ -197,8 +197,10 @@ void GridLevel<Real>::smooth(int steps) {
     const double share = (8.0 * k - 4.0) / (2.0 * k + 1.0) * step_;
     const StepAlong<Real> step = {static_cast<Real>(keep), static_cast<Real>(share),
                                   static_cast<Real>(tuning::kLongestStep)};
-    stepAlong(pointersTo(std::as_const(inverse_)), pointersTo(std::as_const(force)), step,
-              pointersTo(last_step_), pointersTo(displacement), count());
+    cells_.forParts([&](int first, int length) {
+      stepAlong(pointersTo(std::as_const(inverse_), first), pointersTo(std::as_const(force), first),
+                step, pointersTo(last_step_, first), pointersTo(displacement, first), length);
+    });
     constrained.step(keep, share, tuning::kLongestStep, displacement);
     if (k == steps) break;
     findForces(Find::kForces);
@@ -218,7 +220,9 @@ void GridLevel<Real>::smoothAndFindForces(int steps) {
 
 template <typename Real>
 void GridLevel<Real>::clearStep() {
-  for (auto& values : last_step_) std::fill(values.begin(), values.end(), Real(0));
+  cells_.forParts([this](int first, int length) {
+    for (auto& values : last_step_) std::fill_n(values.begin() + first, length, Real(0));
+  });
   constrained.clearStep();
 }
 
@@ -298,10 +302,12 @@ void GridLevel<Real>::setFasRightHandSideOfConstrained(
 template <typename Real>
 void GridLevel<Real>::moveBy(const Field<Real>& motion, const std::vector<GroupVector>& of_groups,
                              double alpha) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    addWhereFree(motion[axis].data(), free_.data(), static_cast<Real>(alpha),
-                 displacement[axis].data(), count());
-  }
+  cells_.forParts([&](int first, int length) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      addWhereFree(motion[axis].data() + first, free_.data() + first, static_cast<Real>(alpha),
+                   displacement[axis].data() + first, length);
+    }
+  });
   constrained.moveBy(motion, of_groups, alpha, displacement);
 }
 
@@ -321,7 +327,9 @@ template <typename Real>
 double GridLevel<Real>::squaredLocalMotion() const {
   const double squared = constrained.squaredLocalMotion(weight_roots_);
   if (weight_roots_.empty()) {
-    return squared + squaredProduct(pointersTo(inverse_), pointersTo(force), count());
+    return squared + sumOfSpans([this](int first, int length) {
+             return squaredProduct(pointersTo(inverse_, first), pointersTo(force, first), length);
+           });
   }
   return squared + weightedSquares([this](int node) -> Vec3 {
            return matrixAt(inverse_, node) * vectorAt(force, node);
@@ -334,7 +342,11 @@ double GridLevel<Real>::squaredLength(const Field<Real>& motion) const {
     return weightedSquares([&motion](int node) { return vectorAt(motion, node); });
   }
   double squared = 0.0;
-  for (const auto& values : motion) squared += dotOf(values.data(), values.data(), count());
+  for (const auto& values : motion) {
+    squared += sumOfSpans([&values](int first, int length) {
+      return dotOf(values.data() + first, values.data() + first, length);
+    });
+  }
   return squared;
 }
 
@@ -347,7 +359,9 @@ double GridLevel<Real>::squaredDistanceFrom(const Field<Real>& other) const {
   }
   double squared = 0.0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    squared += squaredDistance(displacement[axis].data(), other[axis].data(), count());
+    squared += sumOfSpans([&](int first, int length) {
+      return squaredDistance(displacement[axis].data() + first, other[axis].data() + first, length);
+    });
   }
   return squared;
 }

@@ -67,6 +67,15 @@ class GridLevel {
   void hideInterface();
 
   void share(Workers& workers) { cells_.share(workers); }
+  // As CellOperator, of the entries of a field.
+  template <typename Visit>
+  void forParts(Visit visit) const {
+    cells_.forParts(visit);
+  }
+  template <typename SumOf>
+  double sumOfSpans(SumOf sumOf) const {
+    return cells_.sumOfSpans(sumOf);
+  }
 
   // Per entry, stiffness of the nodes' inertia in a time step; empty: none. Forces are stale then.
   void setInertia(Numbers<Real> stiffness) { cells_.inertia = std::move(stiffness); }

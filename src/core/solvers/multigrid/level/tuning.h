@@ -46,5 +46,8 @@ constexpr int kMostTogether = 12;
 // Nodes of a level: with fewer, threads wait more than they work (chosen). Up: more levels in one
 // thread. Results are the same.
 constexpr int kWorthSharing = 8000;
+// Entries of a field that are summed at once, in one thread (chosen; it decides the last bits of
+// sums over longer fields). Up: threads have less even parts.
+constexpr int kSpan = 1 << 14;
 
 }  // namespace robot_tissue::level_tuning
