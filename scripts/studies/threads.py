@@ -5,11 +5,14 @@ the load disturbs is visited (tolerance 1e-2) and where all nodes are (4e-3); in
 threads as there are processors, and in 2 and 4. Wall time, so that what else the machine does
 matters: a job is run for all numbers of threads in turn, which makes a round, until there are
 enough rounds in which other programs took less than QUIET of a processor; where there are not, the
-quietest count. Medians of the ratios in each round. Writes doc/data/threads.csv, draws
+quietest count. Medians of the ratios in each round. What the machine itself could give at most is
+measured beside it: as many processes at once as there are processors, each with a job of its own in
+one thread; time over the number of jobs, of one job alone. Writes doc/data/threads.csv, draws
 doc/images/threads.png, prints a table. What the table has of quiet rounds stays, but with --anew.
 --plot draws and prints only.
 """
 
+import concurrent.futures
 import os
 import resource
 import statistics
@@ -44,9 +47,21 @@ def round_of(built, job, repeats):
     """A row for each number of threads; how many processors other programs had meanwhile."""
     start, (busy, own) = time.monotonic(), processor_seconds()
     rows = [growth.run_once(built, (*job, threads), RATIO, repeats) for threads in THREADS]
+    at_once = wall_at_once(built, (*job, 1), repeats) / float(rows[0]["wall_ms"])
+    for row in rows:
+        row["machine"] = at_once
     busy_now, own_now = processor_seconds()
     passed = time.monotonic() - start
     return max(0.0, (busy_now - busy) - (own_now - own)) / passed, rows
+
+
+def wall_at_once(built, job, repeats):
+    """Of processes that do not wait for each other: time over the number of jobs that are done."""
+    processors = len(os.sched_getaffinity(0))
+    with concurrent.futures.ThreadPoolExecutor(processors) as pool:
+        runs = [pool.submit(growth.run_once, built, job, RATIO, repeats)
+                for _ in range(processors)]
+    return 1.0 / sum(1.0 / float(run.result()["wall_ms"]) for run in runs)
 
 
 def quiet_rounds(built, job, repeats, wanted):
@@ -70,6 +85,7 @@ def rows_of_rounds(job, rounds):
                "wall_ms": f"{statistics.median(float(row['wall_ms']) for row in each):.4g}",
                "of_one": f"{statistics.median(shares):.3f}",
                "of_one_least": f"{min(shares):.3f}", "of_one_most": f"{max(shares):.3f}",
+               "machine": f"{statistics.median(rows[number]['machine'] for _, rows in rounds):.3f}",
                "not_ok": max(int(row["not_ok"]) for row in each)}
 
 
@@ -123,14 +139,16 @@ def draw():
 
 
 def tell():
-    print("| nodes | | nodes visited | threads | ms | of one thread: median (least to most) |")
-    print("|---|---|---|---|---|---|")
+    print("| nodes | | nodes visited | threads | ms | of one thread: median (least to most) "
+          "| jobs at once |")
+    print("|---|---|---|---|---|---|---|")
     for name, job in jobs_of_table():
         for row in job:
             spread = f" ({float(row['of_one_least']):.2f} to {float(row['of_one_most']):.2f})"
             print(f"| {int(row['nodes']):,} | {name} | {int(row['active_nodes']):,} "
                   f"| {row['threads']} | {float(row['wall_ms']):.3g} | "
-                  + ("1 |" if row["threads"] == "1" else f"{float(row['of_one']):.2f}{spread} |"))
+                  + ("1 " if row["threads"] == "1" else f"{float(row['of_one']):.2f}{spread} ")
+                  + f"| {float(row['machine']):.2f} |")
 
 
 def add_arguments(parser):

@@ -29,14 +29,14 @@ void pauseShortly() {
 }
 
 template <typename Condition>
-bool waitBriefly(int looks, Condition holds) {
-  for (int look = 0; look < looks; ++look) {
+bool waitBriefly(int quick_looks, Condition holds) {
+  for (int look = 0; look < quick_looks; ++look) {
     if (holds()) return true;
-    if (look < kQuickLooks) {
-      pauseShortly();
-    } else {
-      std::this_thread::yield();
-    }
+    pauseShortly();
+  }
+  for (int look = 0; look < kLooks; ++look) {
+    if (holds()) return true;
+    std::this_thread::yield();
   }
   return holds();
 }
@@ -71,7 +71,12 @@ void WorkShares::learn(int items, const std::vector<double>& seconds) {
   for (double& share : of_thread_) share /= sum;
 }
 
-Workers::Workers(int threads) : shares_(threads), seconds_(static_cast<std::size_t>(threads), 0.0) {
+// Threads without a processor of their own let others work at once.
+Workers::Workers(int threads)
+    : quick_looks_(threads <= static_cast<int>(std::thread::hardware_concurrency()) ? kQuickLooks
+                                                                                    : 0),
+      shares_(threads),
+      seconds_(static_cast<std::size_t>(threads), 0.0) {
   for (int number = 1; number < threads; ++number) {
     threads_.emplace_back([this, number] { wait(number); });
   }
@@ -97,8 +102,8 @@ void Workers::run(const std::function<void(int)>& part) {
   }
   begins_.notify_all();
   part(0);
-  while (!waitBriefly(kQuickLooks + kLooks,
-                      [this] { return open_.load(std::memory_order_acquire) == 0; })) {
+  while (
+      !waitBriefly(quick_looks_, [this] { return open_.load(std::memory_order_acquire) == 0; })) {
   }
 }
 
@@ -116,8 +121,7 @@ void Workers::runParts(int items, const std::function<void(int, int, int)>& part
 void Workers::wait(int number) {
   unsigned done = 0;
   while (true) {
-    if (!waitBriefly(kQuickLooks + kLooks,
-                     [&] { return job_.load(std::memory_order_acquire) != done; })) {
+    if (!waitBriefly(quick_looks_, [&] { return job_.load(std::memory_order_acquire) != done; })) {
       std::unique_lock<std::mutex> lock(mutex_);
       begins_.wait(lock, [&] { return job_.load() != done; });
     }

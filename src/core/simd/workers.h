@@ -45,6 +45,7 @@ class Workers {
  private:
   void wait(int number);
 
+  const int quick_looks_;  // kQuickLooks, or none
   WorkShares shares_;
   std::vector<double> seconds_;  // that the last job's parts took
   const std::function<void(int)>* part_ = nullptr;

@@ -49,9 +49,7 @@ std::array<int, 3> GridTransfer<Real>::placeOnCoarse(int fine_node) const {
 template <typename Real>
 template <typename Visit>
 void GridTransfer<Real>::forPlanes(int planes, Visit visit) const {
-  if (workers_ == nullptr || fine_.plane * fine_.size[2] < level_tuning::kWorthSharing) {
-    return visit(0, planes);
-  }
+  if (workers_ == nullptr || fine_.beside <= level_tuning::kSpan) return visit(0, planes);
   workers_->run([&](int thread) {
     visit(workers_->firstOf(planes, thread), workers_->firstOf(planes, thread + 1));
   });

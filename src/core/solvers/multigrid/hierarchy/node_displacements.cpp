@@ -48,7 +48,7 @@ template <typename Visit>
 void NodeDisplacements<Real>::forNodes(Visit visit) const {
   const std::size_t count = grid_.nodes().size();
   Workers* const workers = grid_.workers();
-  if (workers == nullptr || count < at(level_tuning::kWorthSharing)) return visit(0, count);
+  if (workers == nullptr || count <= at(level_tuning::kSpan)) return visit(0, count);
   const int all = static_cast<int>(count);
   workers->run([&](int thread) {
     visit(at(workers->firstOf(all, thread)), at(workers->firstOf(all, thread + 1)));

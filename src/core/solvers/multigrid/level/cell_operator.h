@@ -155,7 +155,7 @@ double CellOperator<Real>::sumOfSpans(SumOf sumOf) const {
 template <typename Real>
 template <typename Visit>
 void CellOperator<Real>::forParts(Visit visit) const {
-  if (!isShared()) return visit(0, count_);
+  if (!isShared() || count_ <= level_tuning::kSpan) return visit(0, count_);
   workers_->run([&](int thread) {
     const bool is_last = thread + 1 == workers_->count();
     const int first = grid_.plane * workers_->firstOf(grid_.size[2], thread);
