@@ -1,10 +1,11 @@
 // Tools of every shape pressed into a block and dragged along it: how deep they are in the surface
 // that is shown, how smooth the force is, how long a millimeter takes.
-//   contact_press [TOOL|all] [SPEED in m/s at 100 updates a second, 0 = increments of 0.25 mm]
+//   contact_press [TOOL|all|ball:RADIUS in mm] [SPEED in m/s at 100 updates a second, 0 =
+//   increments of 0.25 mm]
 //                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE] [PRESS in mm]
-//                 [MAX_MS of an update, 0 = none]
-// Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status: one line an update, ms of
-// processor; status of the solve, or LATE, TOO_FAST, LOST as the report has it.
+//                 [MAX_MS of an update, 0 = none] [X Y in mm: start off the usual one]
+// Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status,start: one line an update, ms
+// of processor; status of the solve, or LATE, TOO_FAST, LOST as the report has it; start X Y.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -67,8 +68,8 @@ std::string writeCup() {
   return "file://" + path;
 }
 
-// The lowest point of each tool is at the origin of its frame.
-std::map<std::string, ToolShape> toolShapes() {
+// The lowest point of each tool is at the origin of its frame. `wanted`: a ball, too.
+std::map<std::string, ToolShape> toolShapes(const std::string& wanted) {
   using Type = ToolShape::Type;
   const auto turned = [](const Eigen::Quaterniond& turn, double up) {
     Pose pose = Pose::Identity();
@@ -101,6 +102,10 @@ std::map<std::string, ToolShape> toolShapes() {
       turned(Eigen::Quaterniond::FromTwoVectors(Vec3::Ones(), Vec3::UnitZ()),
              0.01 * std::sqrt(3.0)));
   add("needle", Type::kCylinder, 0.0005, 0.05, none, turned(upright, 0.025));
+  if (wanted.rfind("ball:", 0) == 0) {
+    const double radius = 1e-3 * std::stod(wanted.substr(5));
+    add(wanted, Type::kSphere, radius, 0.0, none, turned(upright, radius));
+  }
   add("cup", Type::kMesh, 0.0, 0.0, none, Pose::Identity());
   shapes["cup"].resource = writeCup();
   return shapes;
@@ -120,8 +125,8 @@ std::string statusOf(const StepReport& report, const SolveReport& solve) {
 class Trial {
  public:
   Trial(const std::string& name, const ToolShape& shape, double spacing, double friction,
-        const std::string& method, double tolerance, double max_ms)
-      : name_(name) {
+        const std::string& method, double tolerance, double max_ms, const std::string& start)
+      : name_(name), start_(start) {
     ToolGeometry tool;
     tool.name = name;
     tool.friction = friction;
@@ -152,9 +157,10 @@ class Trial {
     const double ms = processorMs() - start;
     const ToolReport& tool = report.tools.front();
     const SolveReport& solve = pipeline_->tissue().lastReport();
-    std::printf("%s,%s,%.3f,%.5f,%.5f,%.5f,%.4f,%.2f,%d,%s\n", name_.c_str(), leg, 1e3 * way,
+    std::printf("%s,%s,%.3f,%.5f,%.5f,%.5f,%.4f,%.2f,%d,%s,%s\n", name_.c_str(), leg, 1e3 * way,
                 tool.force_on_tool.x(), tool.force_on_tool.y(), tool.force_on_tool.z(),
-                1e3 * tool.max_penetration, ms, report.substeps, statusOf(report, solve).c_str());
+                1e3 * tool.max_penetration, ms, report.substeps, statusOf(report, solve).c_str(),
+                start_.c_str());
     worst_.penetration = std::max(worst_.penetration, tool.max_penetration);
     worst_.jump = std::max(worst_.jump, (tool.force_on_tool - last_).norm());
     worst_.force = std::max(worst_.force, tool.force_on_tool.norm());
@@ -164,7 +170,7 @@ class Trial {
     last_ = tool.force_on_tool;
   }
 
-  std::string name_;
+  std::string name_, start_;
   std::unique_ptr<Pipeline> pipeline_;
   Vec3 last_ = Vec3::Zero();
   Worst worst_;
@@ -183,13 +189,15 @@ int main(int argc, char** argv) {
   const double tolerance = argc > 6 ? std::atof(argv[6]) : 0.01;
   const double press = 1e-3 * (argc > 7 ? std::atof(argv[7]) : 15.0);
   const double max_ms = argc > 8 ? std::atof(argv[8]) : 0.0;
+  const std::string x = argc > 9 ? argv[9] : "0", y = argc > 10 ? argv[10] : "0";
   const double increment = speed > 0.0 ? 0.01 * speed : 0.00025;
-  std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status\n");
-  for (const auto& [name, shape] : toolShapes()) {
+  std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status,start\n");
+  for (const auto& [name, shape] : toolShapes(wanted)) {
     if (wanted != "all" && wanted != name) continue;
-    Trial trial(name, shape, spacing, friction, method, tolerance, max_ms);
+    Trial trial(name, shape, spacing, friction, method, tolerance, max_ms, x + " " + y);
     // Off the nodes, and off the middle between them.
-    const Vec3 above(0.0363, 0.0511, kTop + kClear), pressed = above - Vec3(0, 0, press + kClear);
+    const Vec3 above(0.0363 + 1e-3 * std::stod(x), 0.0511 + 1e-3 * std::stod(y), kTop + kClear);
+    const Vec3 pressed = above - Vec3(0, 0, press + kClear);
     trial.go("appear", above, above, 1.0);
     trial.go("press", above, pressed, increment);
     trial.go("drag", pressed, pressed + Vec3(kDrag, 0, 0), increment);
