@@ -27,13 +27,14 @@ TEST(Workers, PartsAreAllItemsOnce) {
     for (const int items : {0, 1, 2, 41, 1000}) {
       std::vector<std::atomic<int>> done(static_cast<std::size_t>(items));
       for (int job = 0; job < 20; ++job) {
-        workers.runParts(items, [&done](int /*thread*/, int first, int end) {
+        const auto take = [&done](int first, int end) {
           for (int i = first; i < end; ++i) ++done[static_cast<std::size_t>(i)];
-        });
+        };
+        workers.shareAndLearn(items,
+                              [&take](int /*thread*/, int first, int end) { take(first, end); });
+        workers.share(items, take);
       }
-      for (const std::atomic<int>& times : done) EXPECT_EQ(times, 20) << threads << ' ' << items;
-      EXPECT_EQ(workers.firstOf(items, 0), 0);
-      EXPECT_EQ(workers.firstOf(items, threads), items);
+      for (const std::atomic<int>& times : done) EXPECT_EQ(times, 40) << threads << ' ' << items;
     }
   }
 }

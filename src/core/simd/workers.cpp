@@ -107,11 +107,17 @@ void Workers::run(const std::function<void(int)>& part) {
   }
 }
 
-void Workers::runParts(int items, const std::function<void(int, int, int)>& part) {
+void Workers::share(int items, const std::function<void(int, int)>& part) {
+  run([&](int thread) {
+    part(shares_.firstOf(items, thread), shares_.firstOf(items, thread + 1));
+  });
+}
+
+void Workers::shareAndLearn(int items, const std::function<void(int, int, int)>& part) {
   using Clock = std::chrono::steady_clock;
   run([&](int thread) {
     const Clock::time_point start = Clock::now();
-    part(thread, firstOf(items, thread), firstOf(items, thread + 1));
+    part(thread, shares_.firstOf(items, thread), shares_.firstOf(items, thread + 1));
     seconds_[static_cast<std::size_t>(thread)] =
         std::chrono::duration<double>(Clock::now() - start).count();
   });

@@ -37,10 +37,10 @@ class Workers {
   int count() const { return static_cast<int>(threads_.size()) + 1; }
   // Calls `part` with 0 .. count() - 1, each in a thread; returns when all are done.
   void run(const std::function<void(int)>& part);
-  // Calls part(thread, first, end) for all of 0 .. items - 1, and learns how fast the threads are.
-  void runParts(int items, const std::function<void(int, int, int)>& part);
-  // As WorkShares.
-  int firstOf(int items, int thread) const { return shares_.firstOf(items, thread); }
+  // Calls part(first, end) for all of 0 .. items - 1, each in the thread that has that share.
+  void share(int items, const std::function<void(int, int)>& part);
+  // Likewise part(thread, first, end), and learns how fast the threads are.
+  void shareAndLearn(int items, const std::function<void(int, int, int)>& part);
 
  private:
   void wait(int number);

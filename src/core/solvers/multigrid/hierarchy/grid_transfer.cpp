@@ -50,9 +50,7 @@ template <typename Real>
 template <typename Visit>
 void GridTransfer<Real>::forPlanes(int planes, Visit visit) const {
   if (workers_ == nullptr || fine_.beside <= level_tuning::kSpan) return visit(0, planes);
-  workers_->run([&](int thread) {
-    visit(workers_->firstOf(planes, thread), workers_->firstOf(planes, thread + 1));
-  });
+  workers_->share(planes, visit);
 }
 
 // On the coarse nodes of some planes, along an axis, by what the grid's fine nodes have.

@@ -49,10 +49,8 @@ void NodeDisplacements<Real>::forNodes(Visit visit) const {
   const std::size_t count = grid_.nodes().size();
   Workers* const workers = grid_.workers();
   if (workers == nullptr || count <= at(level_tuning::kSpan)) return visit(0, count);
-  const int all = static_cast<int>(count);
-  workers->run([&](int thread) {
-    visit(at(workers->firstOf(all, thread)), at(workers->firstOf(all, thread + 1)));
-  });
+  workers->share(static_cast<int>(count),
+                 [&visit](int first, int end) { visit(at(first), at(end)); });
 }
 
 template <typename Real>
@@ -184,10 +182,8 @@ void NodeDisplacements<Real>::writePlanes(const GridTransfer<Real>& transfer,
   const int planes = grid_.lattice().size()[2];
   Workers* const workers = grid_.workers();
   if (workers == nullptr) return writePlanes(transfer, coarse, 0, planes, displacement);
-  workers->run([&](int thread) {
-    writePlanes(transfer, coarse, workers->firstOf(planes, thread),
-                workers->firstOf(planes, thread + 1), displacement);
-  });
+  workers->share(
+      planes, [&](int first, int end) { writePlanes(transfer, coarse, first, end, displacement); });
 }
 
 template <typename Real>

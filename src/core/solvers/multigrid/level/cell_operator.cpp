@@ -198,7 +198,7 @@ void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks&
   if (!isShared()) {
     findPlanes(loads, what, blocks, 0, grid_.size[2], sums_.front());
   } else {
-    workers_->runParts(grid_.size[2], [&](int thread, int first, int end) {
+    workers_->shareAndLearn(grid_.size[2], [&](int thread, int first, int end) {
       findPlanes(loads, what, blocks, first, end, sums_[at(thread)]);
     });
   }

@@ -143,9 +143,7 @@ double CellOperator<Real>::sumOfSpans(SumOf sumOf) const {
     }
   };
   if (isShared()) {
-    workers_->run([&](int thread) {
-      find(workers_->firstOf(spans, thread), workers_->firstOf(spans, thread + 1));
-    });
+    workers_->share(spans, find);
   } else {
     find(0, spans);
   }
@@ -156,11 +154,11 @@ template <typename Real>
 template <typename Visit>
 void CellOperator<Real>::forParts(Visit visit) const {
   if (!isShared() || count_ <= level_tuning::kSpan) return visit(0, count_);
-  workers_->run([&](int thread) {
-    const bool is_last = thread + 1 == workers_->count();
-    const int first = grid_.plane * workers_->firstOf(grid_.size[2], thread);
-    const int end = is_last ? count_ : grid_.plane * workers_->firstOf(grid_.size[2], thread + 1);
-    if (first < end) visit(first, end - first);
+  workers_->share(grid_.size[2], [&](int first_plane, int end_plane) {
+    if (first_plane == end_plane) return;
+    const int first = grid_.plane * first_plane;
+    const int end = end_plane == grid_.size[2] ? count_ : grid_.plane * end_plane;
+    visit(first, end - first);
   });
 }
 
