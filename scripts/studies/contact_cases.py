@@ -12,6 +12,7 @@ LEG_MM = {"press": 16.0, "drag": 30.0, "lift": 16.0}  # of contact_press
 CLEAR_MM = 1.0                                        # its tools start so far above the block
 BOUNDS = ["10", "5"]                                  # ms: max_ms of an update
 YOUNG, POISSON = 1e4, 0.45                            # Pa, of all blocks
+THICK = 0.05                                          # m, of contact_press's block
 PRESS = ["tool", "leg", "way_mm", "fx", "fz", "penetration_mm", "ms", "status"]
 HERTZ = ["spacing_mm", "radius_mm", "layer_mm", "depth_mm", "force_n", "lateral_n", "touches",
          "penetration_mm", "unbalanced_n", "ms", "status"]

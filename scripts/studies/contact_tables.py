@@ -3,7 +3,7 @@
 import math
 
 from studies.common import numbers, percentile
-from studies.contact_cases import (BALLS, BOUNDS, CLEAR_MM, FEM_SPHERE, LEGS, TOOLS, dimitriadis, greatest_force,
+from studies.contact_cases import (BALLS, BOUNDS, CLEAR_MM, FEM_SPHERE, LEGS, THICK, TOOLS, dimitriadis, greatest_force,
                                    press_rows, table_of)
 
 
@@ -135,7 +135,7 @@ def tell_balls():
             continue
         off = []
         for depth in (0.25, 0.5):
-            exact = dimitriadis(1e-3 * depth, 1e-3 * float(radius), 0.05)
+            exact = dimitriadis(1e-3 * depth, 1e-3 * float(radius), THICK)
             each = [100.0 * (float(row["fz"]) / exact - 1.0) for rows in ways["press"] for row in rows
                     if float(row["way_mm"]) == CLEAR_MM + depth]
             off.append(f"{min(each):+.0f} to {max(each):+.0f}")
