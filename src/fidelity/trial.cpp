@@ -20,6 +20,7 @@ Scene sceneAt(const Scene& scene, const Rung& rung) {
   at_rung.solver.method = rung.method;
   at_rung.solver.tolerance = rung.tolerance;
   at_rung.solver.max_ms = 0.0;  // what a budget cuts short has no error of its own
+  at_rung.solver.max_iterations.reset();
   return at_rung;
 }
 

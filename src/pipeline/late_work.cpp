@@ -21,6 +21,7 @@ Pipeline::Bounded::~Bounded() { pipeline_.world_.tissue.setDeadline(pipeline_.en
 const StepReport& Pipeline::carryOn() {
   beginReport();
   if (!isLate()) return world_.report;
+  world_.tools_move = false;
   const Bounded bounded(*this);
   if (world_.tissue.isLoading()) loadOn();
   finish();
@@ -36,12 +37,18 @@ void Pipeline::countLate() {
   gave_up_ = late_iterations_ > tuning::kMostLateIterations;
 }
 
-bool Pipeline::isLate() const {
+void Pipeline::setMostIterations(int iterations) { world_.most_iterations = iterations; }
+
+bool Pipeline::isBehind() const {
   return world_.tissue.isLoading() || (!gave_up_ && (world_.unfinished || world_.tissue.isLate()));
 }
 
+bool Pipeline::isLate() const {
+  return isBehind() || (!gave_up_ && !world_.tissue.areContactsSettled());
+}
+
 bool Pipeline::hasArrived() const {
-  return world_.last_pose && !isLate() && !world_.report.lost &&
+  return world_.last_pose && !isBehind() && !world_.report.lost &&
          parts_->motion.toolsBehind().empty();
 }
 

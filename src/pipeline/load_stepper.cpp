@@ -18,21 +18,40 @@ Bedding beddingOf(const World& world) {
 
 }  // namespace
 
+// While one lives, the load step is bounded (Pipeline::setMostIterations). A rigid patch is pushed
+// from node to node, and half a time step is no shape: these go on to their end.
+class LoadStepper::Bound {
+ public:
+  explicit Bound(World& world)
+      : scope_(world.tissue.patience().bound(), isBounded(world) ? world.most_iterations : 0) {}
+
+ private:
+  static bool isBounded(const World& world) {
+    return world.areToolsFollowed() && !world.tools.anyRigid() && !world.tissue.hasTime();
+  }
+
+  LoadStepBound::Scope scope_;
+};
+
 // One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   under_way_.reset();
   world_.unfinished = false;
   ++world_.report.substeps;
+  if (!takesShapeOrLeaves(pose, otherwise)) return false;
+  arrive();
+  return true;
+}
+
+bool LoadStepper::takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherwise) {
+  const Bound bound(world_);
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   world_.pose = pose;
   grasping_.openJaws();
   world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  if (!takesShape(pose, good, otherwise)) {
-    leave(good, otherwise, 0);
-    return false;
-  }
-  arrive();
-  return true;
+  if (takesShape(pose, good, otherwise)) return true;
+  leave(good, otherwise, 0);
+  return false;
 }
 
 void LoadStepper::arrive() {
@@ -67,6 +86,13 @@ bool LoadStepper::isUnderWay() const {
 
 bool LoadStepper::goOn() {
   ++world_.report.substeps;
+  if (!goesOnOrLeaves()) return false;
+  arrive();
+  return true;
+}
+
+bool LoadStepper::goesOnOrLeaves() {
+  const Bound bound(world_);
   const Checkpoint good = checkpoint();
   const UnderWay step = std::move(*under_way_);
   under_way_.reset();
@@ -74,17 +100,14 @@ bool LoadStepper::goOn() {
   Patience& patience = world_.tissue.patience();
   const Patience::LoadStep load_step(patience);
   solveOn();
-  if (!settlesFrom(good, step.otherwise)) {
-    patience.noteLost();
-    leave(good, step.otherwise, step.iterations);
-    if (!under_way_ && step.otherwise == IfUnconverged::kTake) {
-      world_.report.lost = true;
-      world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
-    }
-    return false;
+  if (settlesFrom(good, step.otherwise)) return true;
+  patience.noteLost();
+  leave(good, step.otherwise, step.iterations);
+  if (!under_way_ && step.otherwise == IfUnconverged::kTake) {
+    world_.report.lost = true;
+    world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
   }
-  arrive();
-  return true;
+  return false;
 }
 
 void LoadStepper::solveOn() {
@@ -160,6 +183,11 @@ bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
     if (isLost(good) || isRefused(otherwise)) return false;
     const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
     if (is_last || !isUnsettled()) return true;
+    const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
+    if (converged && world_.tissue.mayShowUnsettled()) {
+      world_.tissue.noteUnsettled();
+      return true;
+    }
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
     solveOn();
@@ -231,7 +259,7 @@ double LoadStepper::throughAt(std::size_t link) const {
 // Whether the solve ended before it was done, as where tissue slips far: a point is left too deep
 // or, unconverged, the forces on the tissue do not add up to zero.
 bool LoadStepper::isUnsettled() const {
-  if (world_.tissue.goesThroughTime()) return false;
+  if (world_.tissue.goesThroughTime() || !world_.tissue.areContactsSettled()) return false;
   if (contact_update_.leftInside() > tuning::kTooDeep * world_.tissue.lattice().spacing()) {
     return true;
   }
@@ -240,8 +268,9 @@ bool LoadStepper::isUnsettled() const {
   return forces.unbalanced().norm() > tuning::kMostUnbalanced * forces.tools.norm();
 }
 
-// Also where there was none for another solve.
+// Or out of iterations. Also where there was none for another solve.
 bool LoadStepper::isOutOfTime() const {
+  if (world_.tissue.patience().bound().isSpent()) return true;
   const bool is_bounded = std::isfinite(world_.deadline.leftMs());
   return is_bounded && (world_.deadline.isOver() || world_.tissue.isLate());
 }

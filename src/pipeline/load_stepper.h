@@ -58,6 +58,7 @@ class LoadStepper {
   double throughAt(std::size_t link) const;
 
  private:
+  class Bound;
   // A load step that time ran out in.
   struct UnderWay {
     Checkpoint came_to;
@@ -68,6 +69,8 @@ class LoadStepper {
   };
 
   bool goOn();
+  bool takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherwise);
+  bool goesOnOrLeaves();
   void arrive();
   void leave(const Checkpoint& good, IfUnconverged otherwise, int iterations);
   void solveOn();

@@ -76,6 +76,7 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
     return world_.report;
   }
   const Bounded bounded(*this);
+  world_.tools_move = !stands && !parts_->drive.drivesAny();
   if (world_.tissue.isLoading()) loadOn();
   if (stands && !world_.tissue.isMoving()) {
     finish();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "robot_tissue/core/part_of_way.h"
 #include "stopwatch.h"
+#include "tool_reports.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -156,6 +158,13 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   if (round == Round::kLast) return true;
   of_tools = patchesOfTools(world_);
   return !of_tools.empty();
+}
+
+double ToolContactUpdate::deepestShown() {
+  const Stopwatch watch(world_.report.contact_ms);
+  const std::vector<double> depths = deepestPoints(world_, touch_finder_);
+  return std::accumulate(depths.begin(), depths.end(), left_inside_,
+                         [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace robot_tissue

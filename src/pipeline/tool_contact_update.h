@@ -20,6 +20,8 @@ class ToolContactUpdate : public ContactUpdate {
   double shareOfWay(const std::vector<Vec3>& before) override;
   bool renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) override;
 
+  double deepestShown() override;
+
   double leftInside() const { return left_inside_; }
 
  private:

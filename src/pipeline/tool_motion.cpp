@@ -113,12 +113,18 @@ double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const Robo
   return std::ceil(std::max(load_steps, duration / longest) - tuning::kTimeRounding);
 }
 
+// Whether an update leaves what a load step has no iterations for to the next one.
+bool ToolMotion::isBounded() const {
+  return world_.most_iterations > 0 && world_.areToolsFollowed();
+}
+
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double load_steps = ways_.stepsBetween(start, pose);
   const double steps = stepsOf(load_steps, start, pose);
   // Rigid patches find the shapes that they left by the steps of their ways, as these were.
   const double end = world_.tools.anyRigid() ? steps : steps - tuning::kWayRounding;
   double gone = 0.0, longest = std::exchange(begins_short_, false) ? tuning::kShortestStep : 1.0;
+  int in_short_ones = 0;  // iterations
   Patience& patience = world_.tissue.patience();
   patience.forgetWay();
   const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
@@ -135,9 +141,12 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
       if (longest == 1.0) patience.forgetWay();
       gone = there;
+      if (longest < 1.0) in_short_ones += world_.tissue.lastReport().iterations;
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
-      if (is_last || !(isShort(world_.deadline, before_ms) || patience.cutsOff())) continue;
+      const bool is_over = isShort(world_.deadline, before_ms) ||
+                           (isBounded() && in_short_ones >= world_.most_iterations);
+      if (is_last || !(is_over || patience.cutsOff())) continue;
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
@@ -152,7 +161,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       return came();
     }
     longest = tuning::kShortestStep;
-    if (!load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
+    if (!isBounded() && !load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
     begins_short_ = world_.report.too_fast = true;
     return came();
   }

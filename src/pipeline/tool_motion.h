@@ -49,6 +49,7 @@ class ToolMotion {
   bool finishes(RobotPose& start, const RobotPose& pose);
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
+  bool isBounded() const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);

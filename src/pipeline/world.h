@@ -51,6 +51,9 @@ struct World {
   // not have come back when what it dented is cut.
   bool mayEdgeTouch(std::size_t tool) const;
 
+  // Else there is time to settle: they stand, a force drives them, or what is done is undone.
+  bool areToolsFollowed() const { return tools_move && !is_trial; }
+
   Tissue tissue;  // [LoadStepper]
   ToolSet tools;
   ContactFinder finder;               // of tools and supports that touch
@@ -75,6 +78,8 @@ struct World {
   bool is_trial = false;        // what is done is undone, so nothing may sever
   bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
   Deadline deadline;            // of the call under way
+  int most_iterations = 0;      // of a load step; 0: of any number [Pipeline]
+  bool tools_move = false;      // of themselves, in the call under way [Pipeline]
   StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
   bool depths_are_due = false;  // of the tools' reports [Pipeline]
 

@@ -27,6 +27,7 @@ BagFollower::BagFollower(const NodeParameters& parameters, const std::vector<Too
       pick_(poses_, parameters.rate_hz),
       intake_(buffer_, [] { return false; }),
       follower_(parameters, pipeline_) {
+  pipeline_.setMostIterations(parameters.scene.solver.max_iterations.value_or(0));
   poses_.setLinks(linkFrames(tools));
   for (const ToolGeometry& tool : tools) tool_frames_.push_back(linkFrames(tool).front());
   follower_.settleFromRest();

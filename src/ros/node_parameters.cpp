@@ -149,6 +149,11 @@ double updateBudget(const NodeParameters& parameters) {
   return budget_ms > 0.0 ? 1e-3 * budget_ms : tuning::kLongestUpdate;
 }
 
+int mostIterations(const NodeParameters& parameters) {
+  const SolverConfig& solver = parameters.scene.solver;
+  return solver.max_iterations.value_or(solver.method == "layered" ? tuning::kMostIterations : 0);
+}
+
 NodeParameters parseNodeParameters(const YAML::Node& root, SceneSource source) {
   source.user = SceneUser::kNode;
   source.other_keys = namesOf(kOwnKeys);

@@ -35,6 +35,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
   grace_end_ = ros::WallTime::now() + kGrace;
   pipeline_.setBudget(updateBudget(parameters_));
+  pipeline_.setMostIterations(mostIterations(parameters_));
   pipeline_.leaveDepths();
   robotIsKnown();
   follower_.settleFromRest();
@@ -87,6 +88,7 @@ void TissueNode::retune(const NodeParameters& wanted) {
   watch_.setRate(parameters_.rate_hz);
   timer_.setPeriod(period());
   pipeline_.setBudget(updateBudget(parameters_));
+  pipeline_.setMostIterations(mostIterations(parameters_));
   if (other_friction) pipeline_.setFriction(*frictionOf(parameters_));
   pipeline_.retune(parameters_.scene.tissue, parameters_.scene.solver);
   publisher_.retune(parameters_);

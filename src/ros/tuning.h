@@ -11,6 +11,9 @@ namespace robot_tissue::tuning {
 // s: of one update, where the scene gives the solver no budget. More: fewer LATE, and services wait
 // longer. Chosen.
 constexpr double kLongestUpdate = 0.1;
+// Iterations of `layered` in a load step, where the scene says nothing (doc/contact_measured.md has
+// others). More: longer updates where tissue slips; less: more of them are LATE.
+constexpr int kMostIterations = 36;
 // s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
 // lost is told of later. Chosen.
 constexpr double kWatchPeriod = 0.1;

@@ -68,6 +68,11 @@ const KeyTable<SolverReading> kSolverKeys = {
      [](const Entry& entry, SolverReading& reading) {
        reading.solver.max_ms = entry.numberOr(reading.solver.max_ms, ranges::budget());
      }},
+    {"max_iterations",
+     [](const Entry& entry, SolverReading& reading) {
+       if (!entry.given()) return;
+       reading.solver.max_iterations = entry.integer(0, ranges::kMostIterations);
+     }},
     {"threads", readThreads},
 };
 

@@ -61,6 +61,7 @@ Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
   pipeline_.startClock(time_);
   if (std::isfinite(deadline.leftMs())) pipeline_.setEnd(deadline);
   pipeline_.limitPatience();
+  pipeline_.setMostIterations(scene.solver.max_iterations.value_or(0));
 }
 
 RunResult Runner::run() {

@@ -83,10 +83,12 @@ TEST(GoodScene, SpringStiffnessTakesThePlaceOfTheModulus) {
 }
 
 TEST(GoodScene, SolverHasEveryField) {
-  const Scene scene = parseText(kRunnerScene, SceneUser::kRunner);
+  const Scene scene = parseText(
+      replaced(kRunnerScene, "max_ms: 8", "max_ms: 8, max_iterations: 24"), SceneUser::kRunner);
   EXPECT_EQ(scene.solver.method, "paper");
   EXPECT_EQ(scene.solver.tolerance, 0.02);
   EXPECT_EQ(scene.solver.max_ms, 8.0);
+  EXPECT_EQ(scene.solver.max_iterations.value_or(0), 24);
   EXPECT_EQ(scene.solver.threads, 1);
   EXPECT_TRUE(scene.remarks.empty()) << scene.remarks.front();
 }
@@ -137,6 +139,7 @@ TEST(GoodScene, OnlyTheTissueIsNeeded) {
   EXPECT_EQ(scene.solver.method, "layered");
   EXPECT_EQ(scene.solver.tolerance, 0.01);
   EXPECT_EQ(scene.solver.max_ms, 0.0);
+  EXPECT_FALSE(scene.solver.max_iterations.has_value());
   EXPECT_EQ(scene.solver.threads, 1);
   EXPECT_TRUE(scene.tools.empty());
   EXPECT_TRUE(scene.steps.empty());

@@ -25,6 +25,8 @@ class ContactUpdate {
   // When the contacts are no longer those that the shape was solved for, puts the tools' new
   // patches in (but in the last round) and returns true: it is solved again.
   virtual bool renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) = 0;
+  // After renew: how deep a tool or support stands in what is shown (m).
+  virtual double deepestShown() { return 0.0; }
 };
 
 }  // namespace robot_tissue

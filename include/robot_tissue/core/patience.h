@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "robot_tissue/core/load_step_bound.h"
+
 namespace robot_tissue {
 
 // Counts the work of load steps beyond what is usual: little where it led to balance, but for time
@@ -62,6 +64,10 @@ class Patience {
   // It is over, and load steps have the usual iterations alone.
   bool cutsOff() const { return is_for_scene_ && isOver(); }
 
+  // Of the load step under way, however patient the scene is.
+  LoadStepBound& bound() { return bound_; }
+  const LoadStepBound& bound() const { return bound_; }
+
   // Of trials, which spend nothing of what is counted but may have none left: goes on with what
   // they have spent, and back.
   void beginTrial();
@@ -74,6 +80,7 @@ class Patience {
   void endSolve();
   void endLoadStep();
 
+  LoadStepBound bound_;
   int usual_;               // iterations
   double usual_when_over_;  // work, of a load step
   double most_;             // work, spent over a scene

@@ -83,6 +83,8 @@ struct SolverConfig {
   std::string method = "layered";
   double tolerance = 0.01;  // relative, 0 < tolerance < 1
   double max_ms = 0.0;      // budget of one update; 0 = none
+  // Of a load step of the tools (Pipeline::setMostIterations); empty: as who follows them wants.
+  std::optional<int> max_iterations;
   int threads = 1;
 };
 

@@ -192,6 +192,11 @@ class Tissue {
   // There was no time to come to balance, whatever else is to be said of the shape, or to bring
   // named patches to their loads.
   bool isLate() const { return is_late_ || isLoading(); }
+  // Else the shape is in balance, but was shown before its contacts were settled (LoadStepBound).
+  bool areContactsSettled() const { return are_contacts_settled_; }
+  // Whether that may be, with the contacts as they are.
+  bool mayShowUnsettled() const;
+  void noteUnsettled();
   bool isLoading() const { return !due_.empty(); }
   // Brings those patches on.
   void loadOn(const OnIncrement& on_increment = {});
@@ -212,6 +217,7 @@ class Tissue {
     std::size_t named_patches = 0;
     SolveReport report;
     bool is_late = false;
+    bool are_contacts_settled = true;
     std::shared_ptr<const NodeMotion> motion;  // null: at rest
     bool in_time = false;
     std::vector<std::string> whole_sutures;  // that have not broken
@@ -384,6 +390,7 @@ class Tissue {
   std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
   bool is_late_ = false;  // likewise
+  bool are_contacts_settled_ = true;
   Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;

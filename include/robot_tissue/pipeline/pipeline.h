@@ -76,7 +76,12 @@ class Pipeline {
   // rest of the way and of the loads is left to the next step, and so is a tool that would have to
   // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
-  // Whether a solve or a load was left for want of time.
+  // Iterations that a load step may make while tools are followed; 0, or in time: any number. From a
+  // third of them on, shapes in balance are shown while contacts still settle, as where tissue
+  // slips, and told as late; they settle in the load steps that follow, or where the tools stand.
+  // What is in no balance at the last is gone on with in the next step, as where time runs out.
+  void setMostIterations(int iterations);
+  // Whether a solve, a load or contacts that still settle were left for want of time.
   bool isLate() const;
   // Goes on with what was left, while the tools have no pose: they stay where they are.
   const StepReport& carryOn();
@@ -164,6 +169,7 @@ class Pipeline {
   void loadOn();
   void finish();
   void countLate();
+  bool isBehind() const;  // the shape shown is not yet the one of the tools' pose, in balance
 
   std::unique_ptr<Parts> parts_;
   World& world_;

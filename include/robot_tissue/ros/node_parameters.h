@@ -25,6 +25,8 @@ struct NodeParameters {
 
 // Of an update, and of a service's call (s).
 double updateBudget(const NodeParameters& parameters);
+// Of a load step (solver.max_iterations); 0: any number.
+int mostIterations(const NodeParameters& parameters);
 
 // Of a scene's text, which may hold the node's own parameters, too. Throws InputError.
 NodeParameters parseNodeParameters(const YAML::Node& root, SceneSource source);

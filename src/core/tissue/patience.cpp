@@ -32,6 +32,7 @@ int Patience::mostOfLoadStep() const {
 
 void Patience::note(int iterations, bool converged, Of what, double cost) {
   const double work = cost * (iterations + tuning::kEndsOfSolve * usual_) / timesOf(what);
+  if (what == Of::kLoadStep) bound_.note(iterations);
   taken_ += work;
   unsettled_ += work;
   in_time_ = what == Of::kTimeStep;

@@ -27,7 +27,18 @@ void Tissue::noteLook(double ms) { look_ms_ = std::max(ms, tuning::kLooksFade * 
 
 // Of the next solve.
 int Tissue::mostIterations() const {
-  return std::max(1, patience_.left(solved(), costOfIteration()));
+  const int left = patience_.left(solved(), costOfIteration());
+  return std::max(1, in_time_step_ ? left : std::min(left, patience_.bound().left()));
+}
+
+bool Tissue::mayShowUnsettled() const {
+  const double bearable = patience_.bound().bearableDepth() * lattice_.spacing();
+  return bearable > 0.0 && contact_update_->deepestShown() <= bearable;
+}
+
+void Tissue::noteUnsettled() {
+  are_contacts_settled_ = false;
+  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
 }
 
 // Over that of an iteration with few touches, on a lattice that is whole. Where there are more

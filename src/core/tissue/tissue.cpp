@@ -113,6 +113,7 @@ Tissue::Shape Tissue::shape() const {
           named_patches_,
           last_report_,
           is_late_,
+          are_contacts_settled_,
           time_ ? time_->motion() : nullptr,
           in_time_,
           threads_->whole()};
@@ -129,6 +130,7 @@ void Tissue::restore(const Shape& shape) {
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
   is_late_ = shape.is_late;
+  are_contacts_settled_ = shape.are_contacts_settled;
   threads_->mend(shape.whole_sutures);
   deformSurface();
 }
@@ -168,6 +170,7 @@ void Tissue::reset() {
   disturbed_.clear();
   last_report_ = SolveReport();
   is_late_ = false;
+  are_contacts_settled_ = true;
   springs_torn_ = 0;
   history_->clear();
   if (was_cut) {
@@ -244,7 +247,8 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
     const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-    const bool late = isBounded() && left_ms <= 2.0 * look_ms_ + shortestMs(of_round);
+    const bool late = patience_.bound().isSpent() ||
+                      (isBounded() && left_ms <= 2.0 * look_ms_ + shortestMs(of_round));
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = (goesThroughTime() || !goBack(*before)) && solved;
@@ -259,11 +263,17 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
         last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
     if (isBounded()) noteLook(left_ms - deadline_->leftMs());
     if (!renewed && (last || !hurried)) break;
+    if (whole && mayShowUnsettled()) {
+      noteUnsettled();
+      report.status = last_report_.status;
+      break;
+    }
     if (late) {
       is_late_ = true;
       last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
     }
-    if (last && renewed && spent) {
+    // What time ran out in is told; what is on its way to another place is no shape to show.
+    if (last && renewed && (spent || (!whole && patience_.bound().isSpent()))) {
       last_report_.status = report.status = std::max(report.status, SolveStatus::kUnconverged);
     }
     if (last) break;
@@ -327,6 +337,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
     report.patches.resize(patches_.size());
   }
   is_late_ = report.status == SolveStatus::kLate;
+  are_contacts_settled_ = true;
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.
   if (converged && isUntouched()) {

@@ -50,6 +50,15 @@ constexpr double kNearer = 0.7;
 // Less: creeping counts as gain. Chosen.
 constexpr double kFarther = 1.1;
 
+// A bound on the iterations of a load step.
+// Of that bound (1): with less made, contacts are settled before the shape is shown. More: fewer
+// updates are late, and longer ones. Chosen (doc/contact_measured.md has others).
+constexpr double kUnhurried = 1.0 / 3.0;
+// Of the spacing (1): how deep tools may stand in a shape that is shown before that, from then on,
+// and at the bound. More: shorter updates, deeper tools. Chosen: likewise.
+constexpr double kBearableFirst = 0.05;
+constexpr double kBearableLast = 0.1;
+
 // Patience.
 // What a solve of any length begins and ends with, over the usual iterations of a load step (1): 2
 // by `layered`, as kIterationsOfEnds. More: contacts that change from round to round are given up
