@@ -42,7 +42,7 @@ COLORS = {"sphere": "tab:blue", "hand": "tab:orange", "fingers": "tab:green"}
 def node_of(tool, folder, options, wrench_rate=0):
     robot = {} if tool == "sphere" else {"description": hand.write(folder)}
     return moved_node.tissue_node(rate=options.rate, marker_rate=options.marker_rate, wrench_rate=wrench_rate,
-                                  max_ms=options.max_ms, tools=moved_node.LAUNCH_FILE.with_name(TOOLS[tool][1]),
+                                  max_ms=options.max_ms, max_iterations=options.max_iterations, tools=moved_node.LAUNCH_FILE.with_name(TOOLS[tool][1]),
                                   **robot)
 
 
@@ -132,6 +132,7 @@ def add_arguments(parser):
     parser.add_argument("--marker-rate", type=float, default=30.0, metavar="HZ")
     parser.add_argument("--speed", type=float, default=0.02, metavar="M/S")
     parser.add_argument("--max-ms", type=float, default=0.0, metavar="MS")
+    parser.add_argument("--max-iterations", default="", metavar="N", help="of a load step; the node's own")
     parser.add_argument("--dry", action="store_true", help="write and draw nothing")
     add_programs(parser)
     add_plot(parser)

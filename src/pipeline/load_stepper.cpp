@@ -67,7 +67,7 @@ void LoadStepper::arrive() {
 // All is as it was before the load step. What it came to is kept where more time may help: a slip
 // takes many updates' time, and begun anew it would never be through.
 void LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, int iterations) {
-  ran_out_of_time_ = isOutOfTime();
+  ran_out_of_time_ = std::exchange(waits_for_call_, false) || isOutOfTime();
   iterations += std::max(1, world_.tissue.lastReport().iterations);
   const bool is_late = ran_out_of_time_ && iterations <= tuning::kMostUnderWay;
   std::optional<Checkpoint> came_to;
@@ -120,7 +120,7 @@ bool LoadStepper::takesShape(const RobotPose& pose, Checkpoint& good, IfUnconver
   Patience& patience = world_.tissue.patience();
   const Patience::LoadStep load_step(patience);
   const bool follows = followTools(pose, good, otherwise);
-  if (!follows) patience.noteLost();
+  if (!follows && !waits_for_call_) patience.noteLost();
   return follows;
 }
 
@@ -145,6 +145,7 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
       beginTimeStep(durationOf(good.pose, pose),
                     patches.empty() ? Touched::kByNone : Touched::kByTools);
     }
+    if (round == 1 && leavesToNextCall()) return false;
     follow(std::move(patches));  // loading patches -> solve
     if (!settlesFrom(good, otherwise)) return false;
     if (!world_.tools.anyRigid() || world_.unfinished) return true;
@@ -155,6 +156,14 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
   }
+}
+
+// Finding the contacts, as of a mesh, may take so much of a call's time that solving for them would
+// end after it: they are solved for first of all in the next one.
+bool LoadStepper::leavesToNextCall() {
+  waits_for_call_ = !world_.tools.anyRigid() && !world_.is_trial &&
+                    !world_.tissue.isInTimeStep() && world_.tissue.isRoundForNextCall();
+  return waits_for_call_;
 }
 
 // s: time between the poses. A robot that jumps would throw the tissue away: a tool that goes

@@ -85,6 +85,7 @@ class LoadStepper {
   void follow(std::vector<LoadingPatch> patches);
   bool takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   bool followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
+  bool leavesToNextCall();
   bool settlesFrom(const Checkpoint& good, IfUnconverged otherwise);
   bool isRefused(IfUnconverged otherwise) const;
   bool isLost(const Checkpoint& good) const;
@@ -102,6 +103,7 @@ class LoadStepper {
   ToolContactUpdate& contact_update_;
   Grasping& grasping_;
   bool ran_out_of_time_ = false;
+  bool waits_for_call_ = false;  // the load step under way, before its first solve
   std::optional<UnderWay> under_way_;
 };
 

@@ -95,8 +95,9 @@ double ToolContactUpdate::shareOutside(double share, int strides,
   return share;
 }
 
+// Another look at the way takes about as long as the contacts do, which are found after it.
 bool ToolContactUpdate::hasTimeForContactsOnly() const {
-  return world_.deadline.leftMs() < contacts_ms_;
+  return world_.deadline.leftMs() < 2.0 * contacts_ms_;
 }
 
 // depthsIn of the shape at that share of the way from `start`: where Tissue goes back to it, what

@@ -15,6 +15,7 @@ class Deadline {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
     return 1e3 * (seconds_ - elapsed.count());
   }
+  double wholeMs() const { return 1e3 * seconds_; }
   bool isOver() const { return leftMs() < 0.0; }
 
  private:

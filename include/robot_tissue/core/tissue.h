@@ -160,6 +160,9 @@ class Tissue {
   // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
   // solver.max_ms bounds each solve.
   void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
+  // Whether a solve and a look at the contacts, as short as the last ones, would end after it, but
+  // not if they were the first that a call does.
+  bool isRoundForNextCall() const;
 
   // Something comes near, but does not touch yet: the solver makes what its first solve needs,
   // where nothing was solved for since the tissue, or its cells, are as they are.
@@ -318,6 +321,7 @@ class Tissue {
   bool goBack(const std::vector<Vec3>& before);
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   bool isBounded() const;
+  bool isLookForNextCall() const;
   double mostMs() const;
   void noteLook(double ms);
   int mostIterations() const;
@@ -394,7 +398,8 @@ class Tissue {
   Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;
-  double look_ms_ = 0.0;  // that looks at the contacts took lately
+  double look_ms_ = 0.0;      // that looks at the contacts took lately
+  double shortest_ms_ = 0.0;  // that the last solve would have taken with one iteration, about
   ContactUpdate* contact_update_ = nullptr;
   std::unique_ptr<TimeIntegrator> time_;  // null: there is none
   // Nodes of each piece that no fixed node holds, and the cells that they were found for.

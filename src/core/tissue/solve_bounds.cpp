@@ -25,6 +25,18 @@ double Tissue::mostMs() const {
 // How long a look at the contacts took.
 void Tissue::noteLook(double ms) { look_ms_ = std::max(ms, tuning::kLooksFade * look_ms_); }
 
+bool Tissue::isRoundForNextCall() const {
+  if (!isBounded()) return false;
+  const double round = shortest_ms_ + look_ms_;
+  return deadline_->leftMs() < round && round <= deadline_->wholeMs();
+}
+
+// As of a mesh, after a solve that took longer than it was to. What it came to is no shape to show.
+bool Tissue::isLookForNextCall() const {
+  return isBounded() && deadline_->leftMs() < look_ms_ - tuning::kMostOverstepMs &&
+         shortest_ms_ + look_ms_ <= deadline_->wholeMs();
+}
+
 // Of the next solve.
 int Tissue::mostIterations() const {
   const int left = patience_.left(solved(), costOfIteration());

@@ -247,8 +247,14 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   std::vector<LoadingPatch> of_tools;
   for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
     const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
+    shortest_ms_ = shortestMs(of_round);
     const bool late = patience_.bound().isSpent() ||
-                      (isBounded() && left_ms <= 2.0 * look_ms_ + shortestMs(of_round));
+                      (isBounded() && left_ms <= 2.0 * look_ms_ + shortest_ms_);
+    if (rounds > 1 && isLookForNextCall()) {
+      is_late_ = true;
+      last_report_.status = report.status = SolveStatus::kUnconverged;
+      break;
+    }
     const bool hurried = isBounded() && report.status == SolveStatus::kLate;
     const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
     const bool whole = (goesThroughTime() || !goBack(*before)) && solved;

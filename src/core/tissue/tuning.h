@@ -112,7 +112,10 @@ constexpr int kMostTearRounds = 500;
 constexpr double kShareOfTime = 0.5;
 // Of the time that a look at the contacts took (1): the next one is taken to need as much at least.
 // Less: what was longer once is forgotten sooner, and calls end later. Chosen.
-constexpr double kLooksFade = 0.7;
+constexpr double kLooksFade = 0.9;
+// ms: a look at the contacts that would end so much after the time is left to the next call. Less:
+// more shapes are not shown where time ran out in them. Chosen.
+constexpr double kMostOverstepMs = 0.3;
 // ms: a solve has so much at least; one cycle, however short. Chosen.
 constexpr double kLeastMs = 1e-6;
 // Iterations that take as long as what a solve of any length begins and ends with (1): by
