@@ -30,7 +30,7 @@ def is_kept(study, row):
     """Of a program's output: what the tables do not tell is not kept."""
     if study.table == "fem":
         return f"{float(row['depth_mm']):g}" in FEM_SPHERE
-    return row["leg"] == "drag" if study.table == "starts" else True
+    return row["leg"] == "drag" if study.table in ("starts", "iterations") else True
 
 
 def store(study, lines):

@@ -27,6 +27,7 @@ PLACES = [("0", "0"), ("0.5", "0.5"), ("0.5", "0"), ("0.25", "0.1"), ("0.3", "0.
 BALLS = ["2.5", "3", "5", "8"]                        # mm: radius
 BALL_PRESS_MM = "3"
 STARTS = ["0 0", "1.3 -0.7", "2.1 1.6", "3.7 2.9"]    # mm: off contact_press's usual one
+MOST_ITERATIONS = ["18", "36"]                        # max_iterations of a load step
 STARTED = ["tool", "start", "leg", "way_mm", "fx", "fz", "penetration_mm", "ms", "status"]
 # Force (N) on a frictionless sphere of 20 mm by its depth (mm) in a disc of the area of 100 x 100 mm, 50 mm thick, nu
 # 0.49, neo-Hookean: axisymmetric quadratic finite elements of our own.
@@ -65,9 +66,16 @@ STUDIES += [Study(f"ball_{radius}_{x}_{y}", "balls", STARTED, "contact_press",
                   ("tool", f"ball:{radius}", "start", start), 60)
             for radius in BALLS for x, y in PLACES
             for start in [f"{3.7 + 5 * float(x):g} {-1.1 + 5 * float(y):g}"]]
-STUDIES += [Study(f"start_{tool}_{start.replace(' ', '_')}", "starts", STARTED, "contact_press",
-                  [tool, "0", "5", "0.3", "layered", "0.01", "15", "0", *start.split()],
-                  ("tool", tool, "start", start), 60) for tool in TOOLS for start in STARTS]
+# In turns: their times are compared.
+for tool in TOOLS:
+    for start in STARTS:
+        way = [tool, "0", "5", "0.3", "layered", "0.01", "15", "0", *start.split()]
+        name = f"{tool}_{start.replace(' ', '_')}"
+        STUDIES.append(Study(f"start_{name}", "starts", STARTED, "contact_press", way, ("tool", tool, "start", start),
+                             60))
+        STUDIES += [Study(f"start_of_{most}_{name}", "iterations", STARTED + ["max_iterations"], "contact_press",
+                          way + [most], ("tool", tool, "start", start, "max_iterations", most), 60)
+                    for most in MOST_ITERATIONS]
 STUDIES += [Study(f"friction_{tool}", "friction", FRICTION, "contact_friction", [tool, "0.3", "5"],
                   ("tool", tool), 40) for tool in ("plate", "box", "sphere")]
 STUDIES += [Study("lift", "lift", LIFT, "contact_lift", ["grasp", "0.5", "10"], ("way", "grasp"),

@@ -3,8 +3,8 @@
 import math
 
 from studies.common import numbers, percentile
-from studies.contact_cases import (BALLS, BOUNDS, CLEAR_MM, FEM_SPHERE, LEGS, THICK, TOOLS, dimitriadis, greatest_force,
-                                   press_rows, table_of)
+from studies.contact_cases import (BALLS, BOUNDS, CLEAR_MM, FEM_SPHERE, LEGS, MOST_ITERATIONS, THICK, TOOLS,
+                                   dimitriadis, greatest_force, press_rows, table_of)
 
 
 def jumps_of(rows, leg, most):
@@ -116,13 +116,17 @@ def tell_fem():
             print(f"| {spacing} | {cells} | {sum(row['status'] != 'OK' for row in rows)} |")
 
 
-def started_rows(table, tool, leg):
-    """Of a tool, by start."""
-    rows = {}
-    for row in table_of(table):
+def by_start(rows, tool, leg):
+    """Of a tool's leg."""
+    ways = {}
+    for row in rows:
         if row["tool"] == tool and row["leg"] == leg:
-            rows.setdefault(row["start"], []).append(row)
-    return list(rows.values())
+            ways.setdefault(row["start"], []).append(row)
+    return list(ways.values())
+
+
+def started_rows(table, tool, leg):
+    return by_start(table_of(table), tool, leg)
 
 
 def tell_balls():
@@ -164,6 +168,28 @@ def tell_starts():
               f"| {percentile(jumps, 50):.1f}, {max(jumps):.1f} "
               f"| {percentile(ms, 50):.1f}, {percentile(ms, 99):.0f}, {sum(ms) / len(ms):.1f} "
               f"| {sum(row['status'] != 'OK' for row in rows)} of {len(rows)} |")
+
+
+def tell_iterations():
+    """Dragged with load steps of so many iterations at most, beside any number."""
+    print("| tool | max_iterations | ms an update: median, 99 %, greatest | LATE, TOO_FAST (%) | penetration: 99 %, "
+          "greatest (mm) | jump: median of the starts' greatest, greatest (%) |")
+    print("|---|---|---|---|---|---|")
+    bounded = table_of("iterations")
+    for tool in TOOLS:
+        for most in ["0"] + MOST_ITERATIONS:
+            rows = [row for row in bounded if row["max_iterations"] == most] if most != "0" else table_of("starts")
+            ways = by_start(rows, tool, "drag")
+            if not ways:
+                continue
+            rows = [row for way in ways for row in way]
+            deep, ms = numbers(rows, "penetration_mm"), numbers(rows, "ms")
+            jumps = [jumps_of(way, "drag", greatest_force(way)) for way in ways]
+            late, fast = (100.0 * sum(row["status"] == status for row in rows) / len(rows)
+                          for status in ("LATE", "TOO_FAST"))
+            print(f"| {tool.replace('_', ' ')} | {most} | {percentile(ms, 50):.1f}, {percentile(ms, 99):.0f}, {max(ms):.0f} "
+                  f"| {late:.1f}, {fast:.1f} | {percentile(deep, 99):.2f}, {max(deep):.2f} "
+                  f"| {percentile(jumps, 50):.1f}, {max(jumps):.1f} |")
 
 
 def tell_friction():
@@ -238,5 +264,6 @@ def tell_random():
 
 def tell_all():
     for tell in (tell_press, tell_bounded, tell_slide, tell_hertz, tell_narrow, tell_fem, tell_balls, tell_starts,
+                 tell_iterations,
                  tell_friction, tell_lift, tell_rim, tell_random):
         tell()

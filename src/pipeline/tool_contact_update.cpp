@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "robot_tissue/core/part_of_way.h"
 #include "stopwatch.h"
@@ -69,15 +70,21 @@ double ToolContactUpdate::shareOfWay(const std::vector<Vec3>& before) {
 // point came in is no longer known.
 double ToolContactUpdate::shareOutside(double share, int strides,
                                        const std::vector<Vec3>& start) const {
-  const std::vector<double> before = touch_finder_.depths();
+  std::vector<double> before = touch_finder_.depths();
+  bool is_before_whole = false;
   const auto is_deep = [&](double part) {
     const std::vector<double> depths = depthsAt(part, start);
     for (std::size_t link = 0; link < depths.size(); ++link) {
       const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
                                    tuning::kDeepestOfThickness * world_.finder.thickness(link));
       if (depths[link] <= most) continue;
-      const double at_start = link < before.size() ? before[link] : 0.0;
-      if (depths[link] > at_start + tuning::kDepthGrowth * most) return true;
+      const auto goes_deeper = [&] {
+        const double at_start = link < before.size() ? before[link] : 0.0;
+        return depths[link] > at_start + tuning::kDepthGrowth * most;
+      };
+      if (!goes_deeper()) continue;
+      if (!std::exchange(is_before_whole, true)) before = depthsAt(0.0, start);
+      if (goes_deeper()) return true;
     }
     return false;
   };

@@ -94,11 +94,14 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   }
   const double before_ms = world_.deadline.leftMs();
   const bool arrived = load_step_.finish(start);
-  late_iterations_ += std::max(1, world_.tissue.lastReport().iterations);
+  const int made = world_.tissue.lastReport().iterations;
+  late_iterations_ += std::max(1, made);
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
   if (is_done) late_iterations_ = 0;
-  if (is_done && !isShort(world_.deadline, before_ms)) return true;
+  const bool is_short = isShort(world_.deadline, before_ms) ||
+                        (isBounded() && made > world_.most_iterations / 3);
+  if (is_done && !is_short) return true;
   begins_short_ = !arrived && !load_step_.isUnderWay();
   world_.report.too_fast = !world_.report.lost;
   return false;

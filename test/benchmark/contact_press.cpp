@@ -4,6 +4,7 @@
 //   increments of 0.25 mm]
 //                 [SPACING in mm] [FRICTION] [METHOD] [TOLERANCE] [PRESS in mm]
 //                 [MAX_MS of an update, 0 = none] [X Y in mm: start off the usual one]
+//                 [MAX_ITERATIONS of a load step, 0 = any number]
 // Writes tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status,start: one line an update, ms
 // of processor; status of the solve, or LATE, TOO_FAST, LOST as the report has it; start X Y.
 #include <cmath>
@@ -125,7 +126,8 @@ std::string statusOf(const StepReport& report, const SolveReport& solve) {
 class Trial {
  public:
   Trial(const std::string& name, const ToolShape& shape, double spacing, double friction,
-        const std::string& method, double tolerance, double max_ms, const std::string& start)
+        const std::string& method, double tolerance, double max_ms, const std::string& start,
+        int max_iterations)
       : name_(name), start_(start) {
     ToolGeometry tool;
     tool.name = name;
@@ -136,6 +138,7 @@ class Trial {
     solver.tolerance = tolerance;
     pipeline_ = std::make_unique<Pipeline>(block(spacing), solver, std::vector<ToolGeometry>{tool});
     if (max_ms > 0.0) pipeline_->setBudget(1e-3 * max_ms);
+    pipeline_->setMostIterations(max_iterations);
   }
 
   void go(const char* leg, const Vec3& from, const Vec3& to, double increment) {
@@ -190,11 +193,13 @@ int main(int argc, char** argv) {
   const double press = 1e-3 * (argc > 7 ? std::atof(argv[7]) : 15.0);
   const double max_ms = argc > 8 ? std::atof(argv[8]) : 0.0;
   const std::string x = argc > 9 ? argv[9] : "0", y = argc > 10 ? argv[10] : "0";
+  const int max_iterations = argc > 11 ? std::atoi(argv[11]) : 0;
   const double increment = speed > 0.0 ? 0.01 * speed : 0.00025;
   std::printf("tool,leg,way_mm,fx,fy,fz,penetration_mm,ms,substeps,status,start\n");
   for (const auto& [name, shape] : toolShapes(wanted)) {
     if (wanted != "all" && wanted != name) continue;
-    Trial trial(name, shape, spacing, friction, method, tolerance, max_ms, x + " " + y);
+    Trial trial(name, shape, spacing, friction, method, tolerance, max_ms, x + " " + y,
+                max_iterations);
     // Off the nodes, and off the middle between them.
     const Vec3 above(0.0363 + 1e-3 * std::stod(x), 0.0511 + 1e-3 * std::stod(y), kTop + kClear);
     const Vec3 pressed = above - Vec3(0, 0, press + kClear);
