@@ -18,21 +18,6 @@ Bedding beddingOf(const World& world) {
 
 }  // namespace
 
-// While one lives, the load step is bounded (Pipeline::setMostIterations). A rigid patch is pushed
-// from node to node, and half a time step is no shape: these go on to their end.
-class LoadStepper::Bound {
- public:
-  explicit Bound(World& world)
-      : scope_(world.tissue.patience().bound(), isBounded(world) ? world.most_iterations : 0) {}
-
- private:
-  static bool isBounded(const World& world) {
-    return world.areToolsFollowed() && !world.tools.anyRigid() && !world.tissue.hasTime();
-  }
-
-  LoadStepBound::Scope scope_;
-};
-
 // One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   under_way_.reset();
@@ -43,17 +28,6 @@ bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
   return true;
 }
 
-bool LoadStepper::takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherwise) {
-  const Bound bound(world_);
-  Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
-  world_.pose = pose;
-  grasping_.openJaws();
-  world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
-  if (takesShape(pose, good, otherwise)) return true;
-  leave(good, otherwise, 0);
-  return false;
-}
-
 void LoadStepper::arrive() {
   world_.tissue.endTimeStep();
   world_.reached_s = world_.pose.stamp_s;
@@ -62,58 +36,6 @@ void LoadStepper::arrive() {
   endOverpulled();
   tear();
   world_.dead_end.reset();
-}
-
-// All is as it was before the load step. What it came to is kept where more time may help: a slip
-// takes many updates' time, and begun anew it would never be through.
-void LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, int iterations) {
-  ran_out_of_time_ = std::exchange(waits_for_call_, false) || isOutOfTime();
-  iterations += std::max(1, world_.tissue.lastReport().iterations);
-  const bool is_late = ran_out_of_time_ && iterations <= tuning::kMostUnderWay;
-  std::optional<Checkpoint> came_to;
-  if (is_late && !world_.tools.anyRigid() && !world_.is_trial) came_to = checkpoint();
-  goBackTo(good);
-  if (!came_to) return;
-  under_way_ = UnderWay{std::move(*came_to), otherwise, iterations, world_.tissue.displacements(),
-                        world_.tissue.surface().revision};
-}
-
-// Unless something else moved or cut the tissue since.
-bool LoadStepper::isUnderWay() const {
-  return under_way_ && under_way_->from == world_.tissue.displacements() &&
-         under_way_->surface_revision == world_.tissue.surface().revision;
-}
-
-bool LoadStepper::goOn() {
-  ++world_.report.substeps;
-  if (!goesOnOrLeaves()) return false;
-  arrive();
-  return true;
-}
-
-bool LoadStepper::goesOnOrLeaves() {
-  const Bound bound(world_);
-  const Checkpoint good = checkpoint();
-  const UnderWay step = std::move(*under_way_);
-  under_way_.reset();
-  goBackTo(step.came_to);
-  Patience& patience = world_.tissue.patience();
-  const Patience::LoadStep load_step(patience);
-  solveOn();
-  if (settlesFrom(good, step.otherwise)) return true;
-  patience.noteLost();
-  leave(good, step.otherwise, step.iterations);
-  if (!under_way_ && step.otherwise == IfUnconverged::kTake) {
-    world_.report.lost = true;
-    world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
-  }
-  return false;
-}
-
-void LoadStepper::solveOn() {
-  std::vector<LoadingPatch> patches = patchesOfTools(world_);
-  if (patches.empty()) patches = touchesAtRest(world_.pose);
-  follow(std::move(patches));
 }
 
 bool LoadStepper::takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
@@ -156,14 +78,6 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
     if (world_.unfinished) return true;
   }
-}
-
-// Finding the contacts, as of a mesh, may take so much of a call's time that solving for them would
-// end after it: they are solved for first of all in the next one.
-bool LoadStepper::leavesToNextCall() {
-  waits_for_call_ = !world_.tools.anyRigid() && !world_.is_trial &&
-                    !world_.tissue.isInTimeStep() && world_.tissue.isRoundForNextCall();
-  return waits_for_call_;
 }
 
 // s: time between the poses. A robot that jumps would throw the tissue away: a tool that goes
@@ -275,13 +189,6 @@ bool LoadStepper::isUnsettled() const {
   if (world_.tissue.lastReport().status != SolveStatus::kUnconverged) return false;
   const ForceBalance forces = forceBalanceOf(world_);
   return forces.unbalanced().norm() > tuning::kMostUnbalanced * forces.tools.norm();
-}
-
-// Or out of iterations. Also where there was none for another solve.
-bool LoadStepper::isOutOfTime() const {
-  if (world_.tissue.patience().bound().isSpent()) return true;
-  const bool is_bounded = std::isfinite(world_.deadline.leftMs());
-  return is_bounded && (world_.deadline.isOver() || world_.tissue.isLate());
 }
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.

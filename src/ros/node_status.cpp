@@ -40,6 +40,11 @@ void say(const std::string& word, const std::string& message, NodeStatus& status
   status.message += (status.message.empty() ? "" : "; ") + message;
 }
 
+// The shape is that of the pose, and its wrenches are told: no fault.
+bool stillSettles(const Pipeline& pipeline) {
+  return pipeline.report().late && pipeline.hasArrived();
+}
+
 }  // namespace
 
 NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& remarks) {
@@ -49,7 +54,9 @@ NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& rem
     say(wordOf(remark.kind), remark.text, status);
   }
   const SolveReport& solve = pipeline.tissue().lastReport();
-  if (report.late) {
+  if (stillSettles(pipeline)) {
+    say("LATE", "contacts still settle (solver.max_iterations); the shape is in balance", status);
+  } else if (report.late) {
     say("LATE", "the update ran out of its time (solver.max_ms, else 0.1 s) and is carried on",
         status);
   } else if (report.gave_up || solve.status == SolveStatus::kUnconverged) {
@@ -65,7 +72,7 @@ void TissueNode::remember(const std::vector<StepRemark>& remarks) {
   for (const StepRemark& remark : remarks) {
     if (remark.kind != StepRemark::Kind::kHoldsNothing) tools_said_[remark.kind] = remark.text;
   }
-  was_late_ = was_late_ || pipeline_.report().late;
+  was_late_ = was_late_ || (pipeline_.report().late && !stillSettles(pipeline_));
 }
 
 // Poses may come as seldom as they do: `~rate` is how often they are followed at most.
@@ -125,11 +132,13 @@ void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& stat
 
 void TissueNode::diagnoseSolver(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const SolveReport& solve = pipeline_.tissue().lastReport();
-  const bool late = was_late_ || pipeline_.report().late;
-  const bool good = solve.status == SolveStatus::kOk && !late;
-  status.summary(
-      good ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
-      toString(late && solve.status == SolveStatus::kOk ? SolveStatus::kLate : solve.status));
+  const bool settles = stillSettles(pipeline_);
+  const bool late = was_late_ || (pipeline_.report().late && !settles);
+  const bool good = (solve.status == SolveStatus::kOk || settles) && !late;
+  const char* word =
+      toString(late && solve.status == SolveStatus::kOk ? SolveStatus::kLate : solve.status);
+  status.summary(good ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
+                 good && settles ? "contacts still settle" : word);
   was_late_ = false;
   status.add("solve (ms)", pipeline_.report().solve_ms);
   status.add("contact (ms)", pipeline_.report().contact_ms);

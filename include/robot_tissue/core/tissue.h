@@ -313,7 +313,10 @@ class Tissue {
   SolveReport changeTopology(const std::vector<int>& disturbed);
   bool hasTimeForLevels(double before_ms) const;
   SolveReport leaveToNextCall(const std::vector<int>& disturbed);
+  // contact_rounds.cpp
+  struct Rounds;
   SolveReport solveInRounds(const std::vector<int>& disturbed);
+  bool asksForRound(Rounds& rounds);
   double volumeRatio() const;
   void renewContacts();
   void switchAside();

@@ -16,22 +16,22 @@
 namespace robot_tissue {
 namespace {
 
-[[noreturn]] void refuse(const std::string& suture, const std::string& problem,
-                         const std::string& allowed) {
+[[noreturn]] void refuseSuture(const std::string& suture, const std::string& problem,
+                               const std::string& allowed) {
   throw InputError("suture '" + suture + "': " + problem + "; allowed: " + allowed);
 }
 
 void requireNumbers(const SutureConfig& config) {
-  if (config.name.empty()) refuse(config.name, "no name", "a name");
+  if (config.name.empty()) refuseSuture(config.name, "no name", "a name");
   const auto require_finite = [&](const Vec3& point, const char* key) {
     if (point.allFinite()) return;
-    refuse(config.name, std::string(key) + " is not finite", "finite coordinates");
+    refuseSuture(config.name, std::string(key) + " is not finite", "finite coordinates");
   };
   const auto require = [&](bool holds, double value, const char* key, const char* allowed) {
     if (holds) return;
     std::ostringstream problem;
     problem << key << " = " << value;
-    refuse(config.name, problem.str(), allowed);
+    refuseSuture(config.name, problem.str(), allowed);
   };
   require_finite(config.from, "from");
   require_finite(config.to, "to");
@@ -53,8 +53,8 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
     const auto nearest = nearestPoint(surface_, vertices_, point);
     if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
-      refuse(config.name, std::string(key) + " is nowhere at the tissue's surface",
-             "a point within a spacing of it");
+      refuseSuture(config.name, std::string(key) + " is nowhere at the tissue's surface",
+                   "a point within a spacing of it");
     }
     end.rest = restOf(surface_, nearest->on);
     end.inside = innerPlace(surface_, nearest->on.triangle, tuning::kInnerDepth * spacing);
@@ -68,7 +68,7 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
   thread.break_force = config.break_force;
   thread.bite = config.bite;
   if (springOf(thread).carriers.empty()) {
-    refuse(config.name, "from and to are one point of the surface", "two points");
+    refuseSuture(config.name, "from and to are one point of the surface", "two points");
   }
   return thread;
 }
@@ -80,10 +80,11 @@ SutureResult Tissue::suture(const SutureConfig& config) {
     for (const std::string& name : methodsFor("elastic")) {
       allowed += (allowed.empty() ? "solver.method " : ", ") + name;
     }
-    refuse(config.name, "this method finds no equilibrium that a thread could pull to", allowed);
+    refuseSuture(config.name, "this method finds no equilibrium that a thread could pull to",
+                 allowed);
   }
   if (threads_->has(config.name)) {
-    refuse(config.name, "a suture of this name is there", "another name");
+    refuseSuture(config.name, "a suture of this name is there", "another name");
   }
   SutureThread thread = threadOf(config);
   const TopologyChange change(*this, History::Kind::kByItself);

@@ -11,12 +11,10 @@
 #include "membrane/membrane_plan.h"
 #include "robot_tissue/core/body_load.h"
 #include "robot_tissue/core/cells.h"
-#include "robot_tissue/core/part_of_way.h"
 #include "surface/mesh_surface.h"
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
-#include "tissue/round_gain.h"
 #include "tissue/threads.h"
 #include "tissue/time_integrator.h"
 #include "tissue/tissue_state.h"
@@ -32,12 +30,6 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
          std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
            return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
          });
-}
-
-// The least that another solve would take, of one iteration, about.
-double shortestMs(const SolveReport& solve) {
-  const double ends = tuning::kIterationsOfEnds;
-  return solve.wall_ms * (1.0 + ends) / (std::max(1, solve.iterations) + ends);
 }
 
 }  // namespace
@@ -235,88 +227,6 @@ void Tissue::disturb(const std::vector<int>& nodes) {
 // For the next solve: ghosts may go meanwhile.
 void Tissue::rememberDisturbed() {
   for (int& node : disturbed_) node = state_.cells->original(node);
-}
-
-SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
-  method_->beginStep(state_);
-  if (contact_update_ == nullptr) return solveOnce(disturbed);
-  Displacements before = displacements();
-  RoundGain gain(before);
-  SolveReport report = solveOnce(disturbed);
-  SolveReport of_round = report;
-  std::vector<LoadingPatch> of_tools;
-  for (int whole_rounds = 0, rounds = 1; rounds <= tuning::kMostRounds; ++rounds) {
-    const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-    shortest_ms_ = shortestMs(of_round);
-    const bool late = patience_.bound().isSpent() ||
-                      (isBounded() && left_ms <= 2.0 * look_ms_ + shortest_ms_);
-    if (rounds > 1 && isLookForNextCall()) {
-      is_late_ = true;
-      last_report_.status = report.status = SolveStatus::kUnconverged;
-      break;
-    }
-    const bool hurried = isBounded() && report.status == SolveStatus::kLate;
-    const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-    const bool whole = (goesThroughTime() || !goBack(*before)) && solved;
-    if (whole) ++whole_rounds;
-    gain.note(of_round, state_.displacement, whole);
-    const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
-    const bool last = late || whole_rounds == tuning::kContactRounds ||
-                      rounds == tuning::kMostRounds || spent || gain.isOver() ||
-                      (!solved && !hurried && rounds > 1 && state_.displacement == *before);
-    const bool renewed = contact_update_->renew(
-        of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
-        last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
-    if (isBounded()) noteLook(left_ms - deadline_->leftMs());
-    if (!renewed && (last || !hurried)) break;
-    if (whole && mayShowUnsettled()) {
-      noteUnsettled();
-      report.status = last_report_.status;
-      break;
-    }
-    if (late) {
-      is_late_ = true;
-      last_report_.status = report.status = std::max(report.status, SolveStatus::kLate);
-    }
-    // What time ran out in is told; what is on its way to another place is no shape to show.
-    if (last && renewed && (spent || (!whole && patience_.bound().isSpent()))) {
-      last_report_.status = report.status = std::max(report.status, SolveStatus::kUnconverged);
-    }
-    if (last) break;
-    if (renewed) putToolPatches(std::move(of_tools));
-    before.reset();  // so that the next line's copy can take its memory
-    before = displacements();
-    const SolveReport earlier = report;
-    report = of_round = solveOnce({});
-    report.wall_ms += earlier.wall_ms;
-    report.iterations += earlier.iterations;
-    last_report_ = report;
-  }
-  return report;
-}
-
-// Of the surface's vertices: a ghost that carries little of one may go farther than it.
-void Tissue::limitWays() {
-  std::vector<WayLimit> limits;
-  if (contact_update_ != nullptr) {
-    const std::vector<double> longest = contact_update_->longestWays();
-    for (std::size_t vertex = 0; vertex < longest.size(); ++vertex) {
-      if (!std::isfinite(longest[vertex])) continue;
-      limits.push_back({surface_.carriers[vertex], longest[vertex]});
-    }
-  }
-  method_->limitWays(std::move(limits));
-}
-
-// Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).
-// False: all of it is allowed.
-bool Tissue::goBack(const std::vector<Vec3>& before) {
-  const double share = contact_update_->shareOfWay(before);
-  if (share >= 1.0) return false;
-  kept_.reset();
-  takeBack(before, share, state_.displacement);
-  deformSurface();
-  return true;
 }
 
 SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {

@@ -15,8 +15,8 @@
 namespace robot_tissue {
 namespace {
 
-[[noreturn]] void refuse(const std::string& patch, const std::string& problem,
-                         const std::string& allowed) {
+[[noreturn]] void refusePatch(const std::string& patch, const std::string& problem,
+                              const std::string& allowed) {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
 }
 
@@ -28,8 +28,8 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     for (const int node : patch.nodes) {
       const LoadingPatch*& owner = owners[node];
       if (owner != nullptr && owner->name != patch.name) {
-        refuse(patch.name, "it shares nodes with patch '" + owner->name + "'",
-               "patches without a common node");
+        refusePatch(patch.name, "it shares nodes with patch '" + owner->name + "'",
+                    "patches without a common node");
       }
       owner = &patch;
     }
@@ -40,14 +40,14 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     if (replaced == patches.end()) {
       claim(patch);
     } else if (replaced->nodes != patch.nodes) {
-      refuse(patch.name, "a patch of this name stands on other nodes",
-             "the same box, or a release");
+      refusePatch(patch.name, "a patch of this name stands on other nodes",
+                  "the same box, or a release");
     }
   }
   std::set<std::string> names;
   for (const LoadingPatch& patch : patches) {
     if (!names.insert(patch.name).second) {
-      refuse(patch.name, "two patches of this load have this name", "a name for each patch");
+      refusePatch(patch.name, "two patches of this load have this name", "a name for each patch");
     }
     claim(patch);
   }
@@ -86,8 +86,9 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   }
   const int increments = step.increments.value_or(wholeParts(foreseenSteps(ramps)));
   if (increments > most_increments) {
-    refuse(targets.front().name, "the load needs " + std::to_string(increments) + " increments",
-           "at most " + std::to_string(most_increments) + ", so a smaller load");
+    refusePatch(targets.front().name,
+                "the load needs " + std::to_string(increments) + " increments",
+                "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
   for (LoadRamp& ramp : ramps) {
     dropNamed(ramp.target.name, due_);
@@ -122,7 +123,7 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
   };
   for (const std::string& name : names) {
     if (named(name) == patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)) {
-      refuse(name, "no standing patch has this name", "the name of a patch that was loaded");
+      refusePatch(name, "no standing patch has this name", "the name of a patch that was loaded");
     }
   }
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
@@ -154,10 +155,11 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
   patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
                                    [this](int node) { return isRemoved(state_, node); }),
                     patch.nodes.end());
-  if (patch.nodes.empty()) refuse(config.name, "no node in its box", "a box that holds a node");
+  if (patch.nodes.empty())
+    refusePatch(config.name, "no node in its box", "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
                   [this](int node) { return lattice_.isFixed(node); })) {
-    refuse(config.name, "its box holds fixed nodes", "a box of free nodes");
+    refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
   if (method_->findsEquilibrium()) {
     patch.rim = rimOf(lattice_, *model_, state_, config.box, patch.nodes);
@@ -166,8 +168,8 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
     if (config.turns && !method_->findsEquilibrium()) {
-      refuse(config.name, "turns: this method moves patches without turning them",
-             "turns false, or another method");
+      refusePatch(config.name, "turns: this method moves patches without turning them",
+                  "turns false, or another method");
     }
     patch.turns = config.turns;
     for (const int node : patch.nodes) {
