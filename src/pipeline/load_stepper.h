@@ -58,7 +58,6 @@ class LoadStepper {
   double throughAt(std::size_t link) const;
 
  private:
-  class Bound;
   // A load step that time ran out in.
   struct UnderWay {
     Checkpoint came_to;

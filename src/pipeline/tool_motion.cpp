@@ -99,8 +99,8 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
   if (is_done) late_iterations_ = 0;
-  const bool is_short = isShort(world_.deadline, before_ms) ||
-                        (isBounded() && made > world_.most_iterations / 3);
+  const bool is_short =
+      isShort(world_.deadline, before_ms) || (isBounded() && made > world_.mostIterations() / 3);
   if (is_done && !is_short) return true;
   begins_short_ = !arrived && !load_step_.isUnderWay();
   world_.report.too_fast = !world_.report.lost;
@@ -117,9 +117,7 @@ double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const Robo
 }
 
 // Whether an update leaves what a load step has no iterations for to the next one.
-bool ToolMotion::isBounded() const {
-  return world_.most_iterations > 0 && world_.areToolsFollowed();
-}
+bool ToolMotion::isBounded() const { return world_.mostIterations() > 0; }
 
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double load_steps = ways_.stepsBetween(start, pose);
@@ -148,7 +146,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       longest = std::min(1.0, 2.0 * longest);
       if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
       const bool is_over = isShort(world_.deadline, before_ms) ||
-                           (isBounded() && in_short_ones >= world_.most_iterations);
+                           (isBounded() && in_short_ones >= world_.mostIterations());
       if (is_last || !(is_over || patience.cutsOff())) continue;
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
@@ -164,7 +162,8 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       return came();
     }
     longest = tuning::kShortestStep;
-    if (!isBounded() && !load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms)) continue;
+    if (!isBounded() && !load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms))
+      continue;
     begins_short_ = world_.report.too_fast = true;
     return came();
   }

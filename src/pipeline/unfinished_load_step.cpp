@@ -8,23 +8,8 @@
 
 namespace robot_tissue {
 
-// While one lives, the load step is bounded (Pipeline::setMostIterations). A rigid patch is pushed
-// from node to node, and half a time step is no shape: these go on to their end.
-class LoadStepper::Bound {
- public:
-  explicit Bound(World& world)
-      : scope_(world.tissue.patience().bound(), isBounded(world) ? world.most_iterations : 0) {}
-
- private:
-  static bool isBounded(const World& world) {
-    return world.areToolsFollowed() && !world.tools.anyRigid() && !world.tissue.hasTime();
-  }
-
-  LoadStepBound::Scope scope_;
-};
-
 bool LoadStepper::takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherwise) {
-  const Bound bound(world_);
+  const LoadStepBound::Scope bound(world_.tissue.patience().bound(), world_.mostIterations());
   Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
   world_.pose = pose;
   grasping_.openJaws();
@@ -62,7 +47,7 @@ bool LoadStepper::goOn() {
 }
 
 bool LoadStepper::goesOnOrLeaves() {
-  const Bound bound(world_);
+  const LoadStepBound::Scope bound(world_.tissue.patience().bound(), world_.mostIterations());
   const Checkpoint good = checkpoint();
   const UnderWay step = std::move(*under_way_);
   under_way_.reset();

@@ -51,8 +51,13 @@ struct World {
   // not have come back when what it dented is cut.
   bool mayEdgeTouch(std::size_t tool) const;
 
-  // Else there is time to settle: they stand, a force drives them, or what is done is undone.
-  bool areToolsFollowed() const { return tools_move && !is_trial; }
+  // Of a load step; 0: any number, as where there is time to settle: tools stand, a force drives
+  // them, or what is done is undone. Rigid patches are pushed from node to node, and half a time
+  // step is no shape: these go on to their end, too.
+  int mostIterations() const {
+    const bool is_bounded = tools_move && !is_trial && !tools.anyRigid() && !tissue.hasTime();
+    return is_bounded ? most_iterations : 0;
+  }
 
   Tissue tissue;  // [LoadStepper]
   ToolSet tools;
@@ -78,7 +83,7 @@ struct World {
   bool is_trial = false;        // what is done is undone, so nothing may sever
   bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
   Deadline deadline;            // of the call under way
-  int most_iterations = 0;      // of a load step; 0: of any number [Pipeline]
+  int most_iterations = 0;      // of a load step while tools are followed; 0: any number [Pipeline]
   bool tools_move = false;      // of themselves, in the call under way [Pipeline]
   StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
   bool depths_are_due = false;  // of the tools' reports [Pipeline]

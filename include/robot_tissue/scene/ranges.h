@@ -37,9 +37,8 @@ inline Range resistance() { return {0.0, 1e9, "J/m^2"}; }
 inline Range tearStretch() { return {0.0, 1e3, ""}; }  // 0: never
 
 inline Range tolerance() { return {1e-9, 0.5, ""}; }
-constexpr int kMostIterations = 1000000;
-
 inline Range budget() { return {0.0, 1e9, "ms"}; }  // 0: none
+constexpr int kMostIterations = 1000000;            // of a load step; from 0: any number
 
 constexpr double kLeastTearStretch = 1.001;  // of one that is not 0
 
