@@ -187,7 +187,8 @@ def tell_iterations():
             jumps = [jumps_of(way, "drag", greatest_force(way)) for way in ways]
             late, fast = (100.0 * sum(row["status"] == status for row in rows) / len(rows)
                           for status in ("LATE", "TOO_FAST"))
-            print(f"| {tool.replace('_', ' ')} | {most} | {percentile(ms, 50):.1f}, {percentile(ms, 99):.0f}, {max(ms):.0f} "
+            print(f"| {tool.replace('_', ' ')} | {most} "
+                  f"| {percentile(ms, 50):.1f}, {percentile(ms, 99):.0f}, {max(ms):.0f} "
                   f"| {late:.1f}, {fast:.1f} | {percentile(deep, 99):.2f}, {max(deep):.2f} "
                   f"| {percentile(jumps, 50):.1f}, {max(jumps):.1f} |")
 
@@ -264,6 +265,5 @@ def tell_random():
 
 def tell_all():
     for tell in (tell_press, tell_bounded, tell_slide, tell_hertz, tell_narrow, tell_fem, tell_balls, tell_starts,
-                 tell_iterations,
-                 tell_friction, tell_lift, tell_rim, tell_random):
+                 tell_iterations, tell_friction, tell_lift, tell_rim, tell_random):
         tell()

@@ -42,8 +42,8 @@ COLORS = {"sphere": "tab:blue", "hand": "tab:orange", "fingers": "tab:green"}
 def node_of(tool, folder, options, wrench_rate=0):
     robot = {} if tool == "sphere" else {"description": hand.write(folder)}
     return moved_node.tissue_node(rate=options.rate, marker_rate=options.marker_rate, wrench_rate=wrench_rate,
-                                  max_ms=options.max_ms, max_iterations=options.max_iterations, tools=moved_node.LAUNCH_FILE.with_name(TOOLS[tool][1]),
-                                  **robot)
+                                  max_ms=options.max_ms, max_iterations=options.max_iterations,
+                                  tools=moved_node.LAUNCH_FILE.with_name(TOOLS[tool][1]), **robot)
 
 
 def poses_of(tool, options):

@@ -56,8 +56,7 @@ TEST(MaxIterations, NoLoadStepMakesMore) {
   Dragged one(0), other(kMost);
   Pipeline &free = one.pipeline, &bounded = other.pipeline;
   int longest = 0;
-  pressAndDrag(free,
-               [&] { longest = std::max(longest, free.tissue().lastReport().iterations); });
+  pressAndDrag(free, [&] { longest = std::max(longest, free.tissue().lastReport().iterations); });
   ASSERT_GT(longest, kMost) << "nothing slips that would have to be bounded";
   pressAndDrag(bounded, [&] { EXPECT_LE(bounded.tissue().lastReport().iterations, kMost); });
 }
@@ -86,8 +85,7 @@ TEST(MaxIterations, ToolThatStandsSettles) {
   bool any = false;
   for (int step = -4; step <= 112; ++step) {
     const double gone = 0.00025 * step;
-    const RobotPose pose =
-        edgeAt(0.0213 + std::max(0.0, gone - kDepth), std::min(gone, kDepth));
+    const RobotPose pose = edgeAt(0.0213 + std::max(0.0, gone - kDepth), std::min(gone, kDepth));
     pipeline.step(pose);
     if (!pipeline.report().late) continue;
     any = true;

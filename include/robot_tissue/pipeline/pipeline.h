@@ -76,8 +76,8 @@ class Pipeline {
   // rest of the way and of the loads is left to the next step, and so is a tool that would have to
   // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
-  // Iterations that a load step may make while tools are followed; 0, or in time: any number. From a
-  // third of them on, shapes in balance are shown while contacts still settle, as where tissue
+  // Iterations that a load step may make while tools are followed; 0, or in time: any number. From
+  // a third of them on, shapes in balance are shown while contacts still settle, as where tissue
   // slips, and told as late; they settle in the load steps that follow, or where the tools stand.
   // What is in no balance at the last is gone on with in the next step, as where time runs out.
   void setMostIterations(int iterations);
