@@ -99,8 +99,8 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
   if (is_done) late_iterations_ = 0;
-  const bool is_short =
-      isShort(world_.deadline, before_ms) || (isBounded() && made > world_.mostIterations() / 3);
+  const bool is_short = isShort(world_.deadline, before_ms) ||
+                        (isBounded() && made > tuning::kShortToGoOn * world_.mostIterations());
   if (is_done && !is_short) return true;
   begins_short_ = !arrived && !load_step_.isUnderWay();
   world_.report.too_fast = !world_.report.lost;

@@ -35,6 +35,10 @@ constexpr double kStandsStill = 1e-3;
 // Iterations of the method where the tools stand, over all updates: then what is late is given up.
 // As many as one load step takes at most (Tissue). More: a scene without balance works longer.
 constexpr int kMostLateIterations = 1500;
+// Of the bound on a load step's iterations (1): where one that is gone on with took no more, the
+// next one begins in the same update. More: updates of two long load steps; less: tools are
+// followed later. Chosen.
+constexpr double kShortToGoOn = 1.0 / 3.0;
 // Iterations of a load step that updates without time go on with, in all: then no shape follows it.
 // More: jams are told later; less: long slips are given up. A needle that tissue snaps off takes
 // some 470.

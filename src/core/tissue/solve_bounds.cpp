@@ -33,8 +33,7 @@ bool Tissue::isRoundForNextCall() const {
 
 // As of a mesh, after a solve that took longer than it was to. What it came to is no shape to show.
 bool Tissue::isLookForNextCall() const {
-  return isBounded() && deadline_->leftMs() < look_ms_ - tuning::kMostOverstepMs &&
-         shortest_ms_ + look_ms_ <= deadline_->wholeMs();
+  return isRoundForNextCall() && deadline_->leftMs() < look_ms_ - tuning::kMostOverstepMs;
 }
 
 // Of the next solve.
