@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+namespace robot_tissue::test_bad_parameters {
 namespace {
 
 struct Ended {
@@ -70,10 +71,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const ::testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
 
 }  // namespace
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_bad_parameters");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_bad_parameters

@@ -10,7 +10,7 @@
 
 #include "documents.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_documented {
 namespace {
 
 using Names = std::set<std::string>;
@@ -105,11 +105,4 @@ TEST(Documented, Services) {
 TEST(Documented, Parameters) { EXPECT_EQ(parameters(), documented("parameter")); }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_documented");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_documented

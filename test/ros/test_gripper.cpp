@@ -3,7 +3,7 @@
 
 #include "forceps_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_gripper {
 namespace {
 
 constexpr double kWallTop = 0.03;  // m
@@ -109,11 +109,4 @@ TEST_F(Gripper, SupportsAreShown) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_gripper");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_gripper

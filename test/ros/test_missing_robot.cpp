@@ -1,7 +1,7 @@
 // A node that is started before its robot: it says what it waits for, and goes on when it is there.
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_missing_robot {
 namespace {
 
 class MissingRobot : public NodeTest {};
@@ -30,11 +30,4 @@ TEST_F(MissingRobot, DescriptionThenFrameAreReportedAndWaitedFor) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_missing_robot");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_missing_robot

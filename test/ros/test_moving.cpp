@@ -2,7 +2,7 @@
 #include "node_fixture.h"
 #include "robot_tissue/ros/tissue_clock.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_moving {
 namespace {
 
 const ros::WallDuration kSilence(0.3);
@@ -79,11 +79,4 @@ TEST_F(MovingTissue, IsPressedThroughASilenceAndLetGo) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_moving");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_moving

@@ -4,7 +4,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_node {
 namespace {
 
 const std::vector<std::vector<double>> kCut = {
@@ -281,11 +281,4 @@ TEST_F(RunningNode, DiagnosticsTellRateTransformsAndSolver) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_node");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_node

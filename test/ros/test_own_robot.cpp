@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+namespace robot_tissue::test_own_robot {
 namespace {
 
 constexpr double kDeadline = 60.0;  // s, wall time; reached only when something is wrong
@@ -61,9 +62,4 @@ TEST_F(OwnRobot, TissueStandsWhereItWasPutAndFollowsTheRobot) {
 }
 
 }  // namespace
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_own_robot");
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_own_robot

@@ -10,7 +10,7 @@
 #include "documents.h"
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_reconfigure {
 namespace {
 
 using dynamic_reconfigure::Config;
@@ -266,11 +266,4 @@ TEST_F(Reconfigure, ToleranceHoldsFromTheNextSolveOn) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_reconfigure");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_reconfigure

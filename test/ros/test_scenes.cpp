@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+namespace robot_tissue::test_scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,9 +76,4 @@ TEST(Scenes, OfConfigAllRunInTheNode) {
 }
 
 }  // namespace
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_scenes");
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_scenes

@@ -10,7 +10,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_shape {
 namespace {
 
 // All the way through.
@@ -159,11 +159,4 @@ TEST_F(Shape, IsSentToWhoComesAndWhereItChanged) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_shape");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_shape

@@ -8,7 +8,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_sim_time {
 namespace {
 
 constexpr int kNoPose = std::numeric_limits<int>::max();
@@ -211,11 +211,4 @@ TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_sim_time");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_sim_time

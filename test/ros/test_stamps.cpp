@@ -2,7 +2,7 @@
 // pose is of that pose.
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_stamps {
 namespace {
 
 constexpr double kClear = 0.01, kDeep = 0.006;  // of the probe's lowest point above, beneath (m)
@@ -97,11 +97,4 @@ TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_stamps");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_stamps

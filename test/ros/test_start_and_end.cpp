@@ -8,7 +8,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_start_and_end {
 namespace {
 
 class NodeProcess {
@@ -99,11 +99,4 @@ TEST_F(Start, ARobotThatDoesNotComeIsWarnedAbout) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_start_and_end");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_start_and_end

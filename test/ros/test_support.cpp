@@ -1,7 +1,7 @@
 // Tissue that lies on a table by its weight alone, and a grasper too weak to lift it.
 #include "forceps_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_support {
 namespace {
 
 constexpr double kWeight = 2000.0 * 9.81 * 0.04 * 0.02 * 0.02;  // N
@@ -61,11 +61,4 @@ TEST_F(Support, GrasperTooWeakToLiftItIsTornOff) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_support");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_support

@@ -10,7 +10,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_surgery {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,10 +177,4 @@ TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "surgery_test");
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_surgery

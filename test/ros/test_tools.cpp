@@ -4,7 +4,7 @@
 
 #include "node_fixture.h"
 
-namespace robot_tissue {
+namespace robot_tissue::test_tools {
 namespace {
 
 constexpr double kBlockTop = 0.03;  // m
@@ -301,11 +301,4 @@ TEST_F(Tools, ToolThatAppearsInsideIsReportedAndWalkedIn) {
 }
 
 }  // namespace
-}  // namespace robot_tissue
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "test_tools");
-  const ros::NodeHandle keep_alive;
-  return RUN_ALL_TESTS();
-}
+}  // namespace robot_tissue::test_tools
