@@ -136,7 +136,7 @@ void goFarther(const PlacedShape& placed, const TriangleBvh& surface, const Poin
     const Vec3 inwards = (deepest.place - deepest.foot.point).normalized();
     const Vec3 direction = placed.shape_T_tissue.linear() * inwards;
     const Vec3 point = placed.tissue_T_shape * placed.shape->farthest(direction);
-    const double least = deepest.depth + tuning::kLeastGain;
+    const double least = deepest.depth + tuning::kLeastGain * placed.shape->thickness();
     if (!box.contains(point)) return;
     const auto foot = surface.nearest(point, kAnywhere, least);
     if (!foot || foot->distance <= least) return;

@@ -76,9 +76,10 @@ double longestEdge(const Corners& corners) {
 }
 
 double accuracyFor(const CollisionShape& shape, const Corners& corners) {
-  const double accuracy = std::min(tuning::kAccuracyOfEdge * longestEdge(corners),
-                                   tuning::kAccuracyOfThickness * shape.thickness());
-  return std::max(tuning::kLeastAccuracy, accuracy);
+  const double edge = longestEdge(corners);
+  const double accuracy =
+      std::min(tuning::kAccuracyOfEdge * edge, tuning::kAccuracyOfThickness * shape.thickness());
+  return std::max(tuning::kFinestOfEdge * edge, accuracy);
 }
 
 // The least point of the maximum of all planes is a vertex of that polyhedron. It stays when the

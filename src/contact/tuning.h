@@ -13,8 +13,9 @@ namespace robot_tissue::tuning {
 // for. Chosen.
 constexpr double kAccuracyOfEdge = 0.005;
 constexpr double kAccuracyOfThickness = 0.02;
-// m: it is never finer. More: contacts of tiny tissues are coarse; less: more distances. Chosen.
-constexpr double kLeastAccuracy = 1e-5;
+// Of the edge (1): it is never finer. More: contacts of thin tools are coarse; less: more
+// distances. Chosen.
+constexpr double kFinestOfEdge = 0.001;
 // Of the accuracy (1): where nothing less than the limit was found, a bound so near to the best
 // ends the search. Less: more distances asked for in vain; more: contacts at the limit are missed.
 // Chosen.
@@ -92,8 +93,8 @@ constexpr int kMostMoves = 8;
 // farther, the point need not be looked at in so many looks. More: each of these looks costs more.
 // Chosen.
 constexpr double kLooksAhead = 8.0;
-// m: a move that brings less is the last. Less: more moves. Chosen.
-constexpr double kLeastGain = 1e-7;
+// Of the thickness (1): a move that brings less is the last. Less: more moves. Chosen.
+constexpr double kLeastGain = 1e-5;
 
 // The tree over the tissue's surface.
 // Triangles of one of its parts, at most the greater of these two: a number, and all over so many

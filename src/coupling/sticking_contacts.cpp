@@ -35,6 +35,27 @@ void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   }
 }
 
+void StickingContacts::takeCells(const Tissue& tissue) {
+  const std::shared_ptr<const CellSet> before = std::exchange(cells_, tissue.state().cells);
+  if (before == nullptr || before == cells_) return;
+  holdNamedLoads(tissue);
+  for (auto& attachments : attachments_) {
+    std::map<int, Attachment> taken;
+    for (const auto& [node, attachment] : attachments) {
+      const int here = cells_->nodeOf(*before, node);
+      if (here >= 0) taken.emplace(here, attachment);
+    }
+    attachments = std::move(taken);
+  }
+  std::map<int, Vec3> places;
+  for (const auto& [node, place] : places_) {
+    const int here = cells_->nodeOf(*before, node);
+    if (here >= 0) places.emplace(here, place);
+  }
+  places_ = std::move(places);
+  left_.clear();
+}
+
 void StickingContacts::keepTouching(const ContactSet& contacts, const Tissue& tissue) {
   std::vector<std::set<int>> touching(attachments_.size());
   for (const Contact& contact : contacts.contacts) {

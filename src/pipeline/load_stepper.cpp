@@ -148,7 +148,7 @@ bool LoadStepper::leaptFrom(const Checkpoint& good) const {
 // Whether the shape is none that tissue gets into from the last good one: it leapt, has more
 // inverted cells, a link went through its surface, or a touch pushes harder than any tissue does.
 bool LoadStepper::isLost(const Checkpoint& good) const {
-  return leaptFrom(good) || turnedOver(good) || wentThrough(good) ||
+  return leaptFrom(good) || turnedOver(good) || wentThrough(good) || isSwallowed(good) ||
          SlidingContacts::pushesAbsurdly(world_.tissue);
 }
 
@@ -169,6 +169,31 @@ bool LoadStepper::wentThrough(const Checkpoint& good) const {
       const double before = link < good.depths.size() ? good.depths[link] : 0.0;
       if (depths[link] > std::max(throughAt(link), before)) return true;
     }
+  }
+  return false;
+}
+
+// Whether a link that touched touches nothing any more and stands in the tissue all the same:
+// contacts are found beside the surface, so one that is all inside has none.
+bool LoadStepper::isSwallowed(const Checkpoint& good) const {
+  std::vector<std::size_t> links;
+  for (const SlidingContacts::ContactConstraint& touch : good.contacts.touches()) {
+    const auto link = at(touch.contact.link);
+    if (!world_.isInWound(link)) links.push_back(link);
+  }
+  std::sort(links.begin(), links.end());
+  links.erase(std::unique(links.begin(), links.end()), links.end());
+  const auto touches = [&](std::size_t link) {
+    const auto& all = world_.sliding.touches();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const auto& touch) -> bool { return at(touch.contact.link) == link; });
+  };
+  links.erase(std::remove_if(links.begin(), links.end(), touches), links.end());
+  if (links.empty()) return false;
+  const std::vector<double> depths = world_.finder.penetrations(
+      links, world_.pose, world_.tissue.surface(), world_.tissue.vertices());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (depths[i] > throughAt(links[i])) return true;
   }
   return false;
 }

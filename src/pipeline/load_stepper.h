@@ -91,6 +91,7 @@ class LoadStepper {
   bool leaptFrom(const Checkpoint& good) const;
   bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
+  bool isSwallowed(const Checkpoint& good) const;
   bool isUnsettled() const;
   bool isOutOfTime() const;
   void endOverpulled();

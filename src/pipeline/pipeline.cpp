@@ -63,7 +63,8 @@ void Pipeline::setEnd(const Deadline& end) {
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = parts_->drive.driven(world_.tools.complete(pose), world_.tools);
   const bool stands = parts_->motion.standsStill(goal) && !touched_;
-  const bool was_lost = stands && world_.report.lost;
+  // Not once all are where the robot has them, as where the tissue let go of them.
+  const bool was_lost = stands && world_.report.lost && !world_.report.behind.empty();
   const std::vector<std::size_t> behind = world_.report.behind;
   beginReport();
   world_.report.lost = was_lost;

@@ -142,7 +142,10 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
   surface_revision_ = world_.tissue.surface().revision;
   const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);
-  if (new_surface) touch_finder_.beginStep();
+  if (new_surface) {
+    world_.sticking.takeCells(world_.tissue);
+    touch_finder_.beginStep();
+  }
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
   left_inside_ = 0.0;

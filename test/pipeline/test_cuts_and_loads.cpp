@@ -61,6 +61,59 @@ TEST(CutUnderATool, TakenBackLeavesNothingOnNodesThatAreGone) {
   }
 }
 
+// Nodes of both sides are in a patch, or in a grasper's hold: the mended tissue stays in it.
+class HeldCut : public testing::TestWithParam<bool> {
+ protected:
+  // A rigid patch that is pressed, or jaws that close.
+  static ToolGeometry tool() {
+    ToolGeometry tool = probe();
+    if (!GetParam()) {
+      tool.patch = ToolConfig::Patch::kRigid;
+      return tool;
+    }
+    const Vec3 jaw(0.02, 0.003, 0.02);
+    tool.role = toolRole("grasper");
+    tool.links = {{"left", {boxOf(jaw)}}, {"right", {boxOf(jaw)}}};
+    tool.grasp.close_gap = 0.012;
+    tool.grasp.open_gap = 0.02;
+    return tool;
+  }
+  void hold() {
+    if (!GetParam()) return walk(pipeline_, -0.001, 0.003);
+    const Vec3 down(kMiddle, kMiddle, kTop), up(kMiddle, kMiddle, kTop + 0.03);
+    const auto jaws = [](const Vec3& at, double half) -> std::vector<Vec3> {
+      return {at - half * Vec3::UnitY(), at + half * Vec3::UnitY()};
+    };
+    walk(pipeline_, jaws(up, 0.014), jaws(down, 0.014));
+    walk(pipeline_, jaws(down, 0.014), jaws(down, 0.006));
+    ASSERT_TRUE(pipeline_.report().tools.front().grasps);
+  }
+
+  Pipeline pipeline_{block(), methodOf("elastic"), {tool()}};
+};
+
+TEST_P(HeldCut, TakenBackLeavesTheToolItsHold) {
+  ASSERT_GT(pipeline_.cut(uprightAt(0.0275)).springs_cut, 0);
+  hold();
+  const double before = pipeline_.report().tools.front().force_on_tool.norm();
+  EXPECT_GT(before, 0.01);
+  pipeline_.undo(1);
+  const Tissue& tissue = pipeline_.tissue();
+  EXPECT_EQ(static_cast<int>(tissue.state().displacement.size()), tissue.lattice().nodeCount());
+  for (const LoadingPatch& patch : tissue.patches()) {
+    EXPECT_FALSE(patch.nodes.empty());
+    for (const int node : patch.nodes) EXPECT_LT(node, tissue.lattice().nodeCount());
+  }
+  EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk);
+  EXPECT_EQ(pipeline_.report().tools.front().grasps, GetParam());
+  const double after = pipeline_.report().tools.front().force_on_tool.norm();
+  EXPECT_NEAR(after, before, 0.5 * before);
+  // All forces on the tissue add up to none.
+  EXPECT_LT(pipeline_.forceBalance().unbalanced().norm(), 0.05 * after);
+}
+
+INSTANTIATE_TEST_SUITE_P(Grasped, HeldCut, testing::Bool());
+
 // A patch beside a standing tool goes down: the tissue comes away from the tool or into it.
 TEST(LoadUnderATool, IsMetByTheToolAtEachIncrement) {
   Pipeline pipeline(block(), methodOf("elastic"), {probe()});

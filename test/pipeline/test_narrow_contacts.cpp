@@ -107,5 +107,29 @@ INSTANTIATE_TEST_SUITE_P(Places, NarrowBall,
                                          std::array<double, 2>{0.33, 0.67},
                                          std::array<double, 2>{0.25, 0.1}));
 
+// A finger on a layer as thick as a spacing, over what is ten times as stiff, beside one of half
+// that spacing: the half-space's dent would be the layer's own, and the force half as much again.
+TEST(BallOnALayer, IsNotTakenToBeOnAHalfSpace) {
+  constexpr double kFinger = 0.006;  // m
+  const auto force = [](double spacing) {
+    TissueConfig tissue = block("elastic", spacing);
+    Region stiff;
+    stiff.name = "stiff";
+    stiff.box = {Vec3::Zero(), Vec3(kWidth, kWidth, kTop - kSpacing)};
+    stiff.material = tissue.material;
+    stiff.material.young_modulus = 1e5;
+    tissue.regions.push_back(stiff);
+    ToolShape ball;
+    ball.radius = kFinger;
+    Pipeline pipeline(tissue, SolverConfig(), {toolOf(ball)});
+    for (double depth = -0.0005; depth < 0.0032; depth += 0.0005) {
+      pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + kFinger - depth)}));
+    }
+    return pipeline.report().tools.front().force_on_tool.z();
+  };
+  const double fine = force(0.5 * kSpacing);
+  EXPECT_NEAR(force(kSpacing), fine, 0.2 * fine);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_narrow_contacts

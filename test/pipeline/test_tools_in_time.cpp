@@ -240,5 +240,33 @@ TEST(AnEdgeInTime, IsDraggedWithoutJumps) {
   EXPECT_LT(jump, 0.1 * greatest);
 }
 
+// Tissue that was never in balance falls, or sags, beside tools and supports that it does not meet
+// as it does without them.
+TEST(TissueUnderGravity, MovesFromTheStartAlsoBesideToolsThatAreAway) {
+  TissueConfig falling = inTime(block("elastic", 0.01), 0.01);
+  falling.gravity = Vec3(0.0, 0.0, -kGravity);
+  TissueConfig sagging = falling;
+  falling.fixed.clear();
+  const double seconds = 0.1;
+  for (const TissueConfig& tissue : {falling, sagging}) {
+    SupportConfig table;
+    table.name = "table";
+    table.shape = planeOf(true);
+    table.shape.pose.translation() = Vec3(0.0, 0.0, -1.0);
+    Pipeline alone(tissue, methodOf("elastic"), {});
+    Pipeline over_table(tissue, methodOf("elastic"), {}, {table});
+    Pipeline beside_tool(tissue, methodOf("elastic"), {probe()});
+    beside_tool.step(pressed(-0.5));
+    for (Pipeline* pipeline : {&alone, &over_table, &beside_tool}) {
+      pipeline->startClock(0.0);
+      pipeline->wait(seconds);
+    }
+    const double way = greatestDisplacement(alone.tissue());
+    EXPECT_GT(way, 1e-4);
+    EXPECT_NEAR(greatestDisplacement(over_table.tissue()), way, 0.03 * way);
+    EXPECT_NEAR(greatestDisplacement(beside_tool.tissue()), way, 0.03 * way);
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tools_in_time

@@ -71,6 +71,11 @@ struct Cell {
 
   bool owns(int corner) const { return (own >> corner & 1) != 0; }
   bool isPart() const { return own != 0xff; }
+  int lowestOwn() const {  // of its corners: every cell owns one
+    int corner = 0;
+    while (!owns(corner)) ++corner;
+    return corner;
+  }
   double share() const { return fill == nullptr ? 1.0 : fill->share; }  // of h^3, in (0, 1]
   // What the corner carries of it, in eighths of a full cell.
   double eighthsAt(int corner) const {
@@ -139,6 +144,9 @@ class CellSet {
   }
   // The cell at the place that owns the corner; null where a cut left none.
   const Cell* owner(int place, int corner) const;
+  // The node that a node of `from`, an earlier or later set of the same lattice, is here: of a
+  // ghost the one that its part has in its place. -1: what had it is gone.
+  int nodeOf(const CellSet& from, int node) const;
   // The one that has that side (CellReach) of the cell in common with it; null: none.
   const Cell* across(const Cell& cell, int side) const;
   // The cells that have the node as a corner; at most 8 that own it.

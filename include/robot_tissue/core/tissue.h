@@ -196,7 +196,7 @@ class Tissue {
   // named patches to their loads.
   bool isLate() const { return is_late_ || isLoading(); }
   // Else the shape is in balance, but was shown before its contacts were settled (LoadStepBound).
-  bool areContactsSettled() const { return are_contacts_settled_; }
+  bool areContactsSettled() const { return are_contacts_settled_ || isUntouched(); }
   // Whether that may be, with the contacts as they are.
   bool mayShowUnsettled() const;
   void noteUnsettled();
@@ -329,6 +329,7 @@ class Tissue {
   void noteLook(double ms);
   int mostIterations() const;
   Patience::Of solved() const;
+  void wakeUnderBodyLoad();
   double costOfIteration() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
@@ -408,7 +409,8 @@ class Tissue {
   // Nodes of each piece that no fixed node holds, and the cells that they were found for.
   std::vector<std::vector<int>> free_pieces_;
   std::shared_ptr<const CellSet> free_pieces_of_;
-  bool in_time_ = false;  // since the last stopTime there was a time step
+  bool in_time_ =
+      false;  // since the last stopTime there was a time step, or there are forces for one
   bool in_time_step_ = false;
   bool expects_time_step_ = false;
 };

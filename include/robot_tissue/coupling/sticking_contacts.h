@@ -30,6 +30,8 @@ class StickingContacts {
 
   // Moves the patches with their tools; nodes that the tool has left stay behind.
   void ride(const RobotPose& pose, const Tissue& tissue);
+  // After a cut, or one was taken back: what it holds has other nodes.
+  void takeCells(const Tissue& tissue);
   // Lets go of the nodes that carry no contact.
   void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.

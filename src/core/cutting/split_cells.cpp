@@ -13,12 +13,6 @@ namespace {
 
 using Parts = std::array<int, kCorners>;
 
-int lowestOwn(const Cell& cell) {
-  int corner = 0;
-  while (!cell.owns(corner)) ++corner;
-  return corner;
-}
-
 using PartFills = std::array<FillIntegrals, kCorners>;  // by the lowest corners of parts
 
 PartFills partFills(const Lattice& lattice, const LatticeState& state, const Cell& cell,
@@ -151,7 +145,7 @@ class GhostMaker {
   // Number of the ghost for a set of lost corners: the one that an earlier cut put there, if no
   // other set has taken it; else a new one.
   int ghostFor(const Cell& part, int corner, int original) {
-    const Cell* earlier = before_.owner(part.place, lowestOwn(part));
+    const Cell* earlier = before_.owner(part.place, part.lowestOwn());
     const int node = earlier != nullptr ? earlier->nodes[at(corner)] : original;
     if (before_.isGhost(node)) {
       const int known = node - lattice_.nodeCount();
@@ -287,7 +281,7 @@ std::vector<Vec3> carriedOver(const CellSet& from, const std::vector<Vec3>& disp
   carried.resize(at(to.nodeCount()), Vec3::Zero());
   for (const Cell& part : to.all()) {
     if (!part.isPart()) continue;
-    const Cell* earlier = from.owner(part.place, lowestOwn(part));
+    const Cell* earlier = from.owner(part.place, part.lowestOwn());
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       if (!to.isGhost(part.nodes[corner]) || earlier == nullptr) continue;
       carried[at(part.nodes[corner])] = displacement[at(earlier->nodes[corner])];

@@ -128,6 +128,16 @@ const Cell* CellSet::owner(int place, int corner) const {
   return nullptr;
 }
 
+int CellSet::nodeOf(const CellSet& from, int node) const {
+  if (!from.isGhost(node)) return node;
+  for (const Meeting& met : from.meetings(node)) {
+    const Cell& part = from.cells_[met.cell];
+    const Cell* here = owner(part.place, part.lowestOwn());
+    if (here != nullptr) return here->nodes[met.corner];
+  }
+  return -1;
+}
+
 const Cell* CellSet::across(const Cell& cell, int side) const {
   const int node = cell.nodes[at(faceCorner(side, 0))];
   for (const Meeting& met : meetings(node)) {

@@ -113,6 +113,13 @@ void Tissue::stopTime() {
   model_->setInertia(nullptr);
 }
 
+// Until it was solved for, the shape at rest is not the one under gravity or a pressure.
+void Tissue::wakeUnderBodyLoad() {
+  if (!time_ || !has_body_load_) return;
+  in_time_ = true;
+  time_->wake(state_);
+}
+
 // Loads or cuts are others, the shape is not yet.
 SolveReport Tissue::asItIs() {
   in_time_ = true;

@@ -58,6 +58,7 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
   patience_ = Patience(method_->usualIterations(), lattice_.nodeCount());
   weight_ = model_->weight(state_);
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
+  wakeUnderBodyLoad();
 }
 
 Tissue::~Tissue() = default;
@@ -172,6 +173,7 @@ void Tissue::reset() {
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
   vertices_ = surface_.rest;
   bounds_ = boundsOf(vertices_);
+  wakeUnderBodyLoad();
 }
 
 void Tissue::noteUnconverged() {

@@ -1,4 +1,6 @@
 // Tissue: forces on it.
+#include <optional>
+
 #include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
 #include "material/tissue_model.h"
@@ -25,6 +27,24 @@ bool isInFlatSurface(const CellSet& cells, int node) {
     ++whole;
   }
   return whole == 4;
+}
+
+// Whether the cells at the node are of the same as those beside and below them: a ball feels a
+// layer that begins a spacing below it otherwise than a half-space.
+bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
+  std::optional<Moduli> all;
+  const auto is_other = [&](const Moduli& moduli) {
+    if (!all) all = moduli;
+    return moduli.shear != all->shear || moduli.bulk != all->bulk;
+  };
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    for (const int corner : cells.all()[at(met.cell)].nodes) {
+      for (const CellSet::Meeting& beside : cells.meetings(corner)) {
+        if (is_other(model.moduliIn(cells.all()[at(beside.cell)]))) return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -84,6 +104,7 @@ std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
   const CellSet& cells = *state_.cells;
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
+    if (!isUniformAround(cells, *model_, share.node)) return std::nullopt;
   }
   const Moduli moduli = model_->moduliAt(state_, press.shares.front().node);
   if (moduli.shear <= 0.0) return std::nullopt;
