@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "robot_checks.h"
+#include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/mesh/regular_file.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
@@ -81,7 +82,9 @@ class Teller {
 Robot robotOf(const Arguments& arguments, const Scene& scene, const LookAtRobot& look) {
   if (arguments.urdf.empty()) return look(scene);
   try {
-    return {readRegularFile(arguments.urdf, kLargestUrdf), {}};
+    const std::string urdf = readRegularFile(arguments.urdf, kLargestUrdf);
+    requireUrdf(urdf);
+    return {urdf, {}};
   } catch (const InputError& error) {
     throw InputError(onOneLine(arguments.urdf) + ": " + error.what());
   }
@@ -96,7 +99,7 @@ void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) 
   teller.tell(checkForNode(scene));
   const Robot robot = robotOf(arguments, scene, look);
   teller.tell(robot.findings);
-  teller.tell(checkTools(scene, robot.urdf.value_or("")));
+  teller.tell(checkTools(scene, robot.urdf));
   teller.tell(checkPress(scene, kMostSeconds));
 }
 

@@ -124,7 +124,9 @@ void refuseHalfReadLink(const std::vector<std::string>& errors, const std::strin
   }
 }
 
-std::string linkKey(std::size_t tool, std::size_t link) {
+std::string linkKey(const std::vector<ToolConfig>& tools, std::size_t tool, std::size_t link) {
+  const std::string& path = tools[tool].links[link].path;
+  if (!path.empty()) return path;
   return "tools[" + std::to_string(tool) + "].links[" + std::to_string(link) + "]";
 }
 
@@ -198,6 +200,8 @@ bool isFrameOnly(const ToolConfig& tool, std::size_t link) {
 
 }  // namespace
 
+void requireUrdf(const std::string& urdf_xml) { parseUrdf(urdf_xml); }
+
 LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>& configs) {
   LoadedTools loaded;
   if (configs.empty()) return loaded;
@@ -207,12 +211,12 @@ LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>
     for (std::size_t j = 0; j < configs[i].links.size(); ++j) {
       const ToolLink& link = configs[i].links[j];
       if (isFrameOnly(configs[i], j)) {
-        if (!link.link.empty()) findLink(urdf, link, tool.name, linkKey(i, j));
+        if (!link.link.empty()) findLink(urdf, link, tool.name, linkKey(configs, i, j));
         tool.links.push_back({link.link, {}});
         continue;
       }
-      tool.links.push_back(
-          loadLink(urdf, link, tool.name, linkKey(i, j), needsShapes(tool.role), loaded.warnings));
+      tool.links.push_back(loadLink(urdf, link, tool.name, linkKey(configs, i, j),
+                                    needsShapes(tool.role), loaded.warnings));
     }
     loaded.tools.push_back(std::move(tool));
   }
@@ -225,7 +229,7 @@ LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
     ToolGeometry tool = toolOf(configs[i], i);
     for (std::size_t j = 0; j < configs[i].links.size(); ++j) {
       const ToolLink& link = configs[i].links[j];
-      warnOfUselessPadding(link, linkKey(i, j), loaded.warnings);
+      warnOfUselessPadding(link, linkKey(configs, i, j), loaded.warnings);
       tool.links.push_back(linkOf(link, link.shapes));
     }
     const bool bare = std::all_of(tool.links.begin(), tool.links.end(),
@@ -233,7 +237,7 @@ LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
     if (bare && needsShapes(tool.role)) {
       loaded.warnings.push_back("tool '" + tool.name +
                                 "' touches nothing: it has no shapes; give it some under " +
-                                linkKey(i, 0) + ".shapes");
+                                linkKey(configs, i, 0) + ".shapes");
     }
     loaded.tools.push_back(std::move(tool));
   }

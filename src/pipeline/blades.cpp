@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -29,6 +30,10 @@ Vec3 nearestOf(const std::vector<Vec3>& edge, const Vec3& point) {
 void Blades::forget() {
   states_.assign(world_.tools.size(), BladeState());
   for (std::size_t tool = 0; tool < states_.size(); ++tool) setPhase(tool, EdgePhase::kOutside);
+}
+
+void Blades::endStrokes() {
+  for (BladeState& state : states_) state.since_cut = std::numeric_limits<double>::infinity();
 }
 
 void Blades::restore(const std::vector<BladeState>& states) {
@@ -105,6 +110,7 @@ void Blades::moveTo(const Pose& pose, BladeState& state) const {
   if (!(length > 0.0)) return;
   state.direction = way / length;
   const double paid = tuning::kStrideRounding * world_.tissue.lattice().spacing();
+  state.since_cut += length;
   for (CutDebt& debt : state.debts) debt.way -= length;
   state.debts.erase(std::remove_if(state.debts.begin(), state.debts.end(),
                                    [&](const CutDebt& debt) { return debt.way <= paid; }),
@@ -116,14 +122,16 @@ void Blades::cutAlongPath(std::size_t tool, BladeState& state) {
   addSwept(world_.tools[tool].blade.edge, state.path, swept);
   state.path = {state.stands()};
   const Stopwatch watch(world_.report.solve_ms);
-  const Stroke stroke = state.debts.empty() ? Stroke::kBegins : Stroke::kGoesOn;
+  const double spacing = world_.tissue.lattice().spacing();
+  const bool goes_on = state.since_cut <= tuning::kStrokeEnds * spacing;
+  const Stroke stroke = goes_on ? Stroke::kGoesOn : Stroke::kBegins;
   const CutReport cut = world_.tissue.cutAlong(swept, stroke);
   const double dent_work = std::exchange(state.dent_work, 0.0);
   if (cut.springs_cut == 0) return;
   const BladeConfig& blade = world_.tools[tool].blade;
-  const double spacing = world_.tissue.lattice().spacing();
   const double work = std::max(0.0, blade.resistance * cut.area - dent_work);
   state.debts.push_back({work / spacing, spacing});
+  state.since_cut = 0.0;
   state.point = nearestOf(blade.edge, state.stands().inverse() * cut.center);
   noteCut(world_, cut);
 }

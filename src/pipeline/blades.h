@@ -15,6 +15,7 @@
 // its work is resistance * area. What denting took is a part of it.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "load_stepper.h"
@@ -44,6 +45,8 @@ struct BladeState {
   Vec3 point = Vec3::Zero();       // where it cut last, tool frame (m)
   Vec3 direction = Vec3::Zero();   // of the point's motion, unit, tissue frame
   std::vector<CutDebt> debts;
+  // Way of the point since it cut last (m); infinite: its stroke is over.
+  double since_cut = std::numeric_limits<double>::infinity();
 
   const Pose& stands() const { return strides.stands.front(); }  // tissue_T_tool
 };
@@ -54,6 +57,8 @@ class Blades {
 
   // They stand nowhere.
   void forget();
+  // What they cut from here on is another stroke.
+  void endStrokes();
   const std::vector<BladeState>& states() const { return states_; }
   void restore(const std::vector<BladeState>& states);
 

@@ -6,6 +6,7 @@
 
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/pipeline/pipeline.h"
+#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -52,7 +53,8 @@ std::optional<Vec3> OverlapResolver::middleBeneath(const Links& links,
 }
 
 bool OverlapResolver::isInTissue(const Links& links, const RobotPose& pose) const {
-  return deepest(overlapOf(links, pose)) > 0.0 || middleBeneath(links, pose).has_value();
+  const double touches = tuning::kOverlapRounding * world_.tissue.lattice().spacing();
+  return deepest(overlapOf(links, pose)) > touches || middleBeneath(links, pose).has_value();
 }
 
 bool OverlapResolver::isInTissue(std::size_t tool, const RobotPose& pose) const {

@@ -317,6 +317,7 @@ void Pipeline::touch() {
   gave_up_ = false;
   late_iterations_ = 0;
   parts_->motion.checkInAnew();
+  parts_->blades.endStrokes();
   describeTools();
 }
 

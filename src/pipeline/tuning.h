@@ -222,10 +222,18 @@ constexpr double kOpposed = -0.5;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
 
+// Spacings: a tool that is deeper than that where it appears is in the tissue. Rounding of where it
+// touches.
+constexpr double kOverlapRounding = 1e-6;
+
 // Blades and burrs.
 // Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,
 // but what gives way as it is cut is met where it was. Chosen: no spring is passed in one.
 constexpr double kBladeStride = 0.25;
+// Spacings: a blade that cut nothing on so much of its way begins another stroke. From one layer of
+// springs to the next it is one, or little more. More: strokes near one another are one to take
+// back.
+constexpr double kStrokeEnds = 2.0;
 // Looks at what an edge presses, in a stride. More: it goes in nearer to its resistance, by more
 // solves. Chosen: a load step each.
 constexpr int kLooksInStride = 4;

@@ -138,8 +138,10 @@ const KeyTable<NodeParameters> kOwnKeys = {
      }},
     {"state_dir", [](const Entry& entry,
                      NodeParameters& parameters) { parameters.state_dir = readStateDir(entry); }},
-    {"scene_file"},         // the scene is read against it
-    {"diagnostic_period"},  // read by diagnostic_updater
+    {"scene_file"},  // the scene is read against it
+    // Read by diagnostic_updater, which takes anything.
+    {"diagnostic_period",
+     [](const Entry& entry, NodeParameters&) { entry.numberOr(1.0, ranges::diagnosticPeriod()); }},
 };
 
 }  // namespace

@@ -67,12 +67,18 @@ const KeyTable<LinkReading> kLinkKeys = {
 
 NamedLink readLink(const MapReader& map, const Surroundings& surroundings, Remarks& remarks) {
   LinkReading reading{surroundings, remarks, {}};
+  reading.link.path = map.entry().path();
   readKeys(map, kLinkKeys, reading);
   return {reading.link, map["link"]};
 }
 
 NamedLink readListedLink(const Entry& entry, const Surroundings& surroundings, Remarks& remarks) {
-  if (entry.node().IsScalar()) return {{entry.word(kLinkName), 0.0, {}, {}}, entry};
+  if (entry.node().IsScalar()) {
+    ToolLink link;
+    link.link = entry.word(kLinkName);
+    link.path = entry.path();
+    return {link, entry};
+  }
   const MapReader map(entry, namesOf(kLinkKeys));
   if (!map["link"].given() && !map["shapes"].given()) {
     entry.fail("must have link, shapes or both");

@@ -112,6 +112,11 @@ void OutputFolder::commit() {
     fs::rename(staging_ / file, path_ / file, error);
     if (error) refuse("cannot write " + file + ", " + error.message());
   }
+  for (const std::string& file : dropped_) {
+    std::error_code error;
+    if (!fs::is_regular_file(path_ / file, error)) continue;
+    if (!fs::remove(path_ / file, error)) refuse("cannot remove " + file + " of an earlier run");
+  }
   committed_ = true;
 }
 

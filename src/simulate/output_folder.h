@@ -23,6 +23,8 @@ class OutputFolder {
   void write(const std::string& file, const std::string& content);
   // On the disk before commit() puts it in place.
   void writeState(const std::string& file, const std::string& bytes);
+  // One of an earlier run, which would be taken for this one's, goes with commit().
+  void drop(const std::string& file) { dropped_.push_back(file); }
   void commit();
 
   // Takes away what those that are not committed have made; for an end by a signal.
@@ -35,6 +37,7 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::vector<std::string> files_;
+  std::vector<std::string> dropped_;
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> made_;  // outermost first
   bool committed_ = false;

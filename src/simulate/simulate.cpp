@@ -71,15 +71,20 @@ std::vector<std::string> filesOf(const Scene& scene) {
   return files;
 }
 
-// States of steps that the run was cut off before are not there, and stay as they were.
+// Where the scene asks for them; those of an earlier run are taken away. States of steps that the
+// run was cut off before are not there, and stay as they were.
 void write(const Scene& scene, const RunResult& result, OutputFolder& folder) {
   folder.write("nodes.csv", nodesCsv(result));
   folder.write("patches.csv", patchesCsv(result));
   folder.write("increments.csv", incrementsCsv(result));
   folder.write("tools.csv", toolsCsv(result));
-  if (sutures(scene)) folder.write("sutures.csv", suturesCsv(result));
+  const auto writeIf = [&folder](bool any, const std::string& file, const auto& content) {
+    if (any) return folder.write(file, content());
+    folder.drop(file);
+  };
+  writeIf(sutures(scene), "sutures.csv", [&] { return suturesCsv(result); });
   folder.write("surface.stl", surfaceStl(result));
-  if (partsTissue(scene)) folder.write("pieces.csv", piecesCsv(result));
+  writeIf(partsTissue(scene), "pieces.csv", [&] { return piecesCsv(result); });
   for (const auto& [file, state] : result.saved) folder.writeState(file, state);
   folder.commit();
 }

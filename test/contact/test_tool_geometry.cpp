@@ -227,7 +227,7 @@ TEST(ToolGeometry, EveryLinkAndEntryIsTakenOver) {
 TEST(ToolGeometry, GraspersOwnLinkIsAFrameUnlessItHasShapes) {
   ToolConfig grasper = toolOn("tip");
   grasper.role = toolRole("grasper");
-  grasper.links = {{"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}, {"tip", 0.0, {}, {}}};
+  grasper.links = std::vector<ToolLink>(3, toolOn("tip").links.front());
   LoadedTools loaded = loadTools(kRobot, {grasper});
   EXPECT_TRUE(loaded.warnings.empty());
   EXPECT_EQ(loaded.tools[0].links[0].link, "tip");
@@ -242,7 +242,8 @@ TEST(ToolGeometry, GraspersOwnLinkIsAFrameUnlessItHasShapes) {
   grasper.links[0].link = "hand";
   EXPECT_THROW(loadTools(kRobot, {grasper}), InputError);
 
-  grasper.links[0] = {"tip", 0.0, {}, {ToolShape{}}};
+  grasper.links[0].link = "tip";
+  grasper.links[0].shapes = {ToolShape{}};
   EXPECT_EQ(loadTools(kRobot, {grasper}).tools[0].links[0].shapes.size(), 1U);
 }
 

@@ -301,5 +301,37 @@ TEST(LayeredTissue, IsRefusedForTheSixSpringLattice) {
       << line;
 }
 
+// Of at most two cells along each axis: the coarse lattice is as fine there, and tells the error.
+TEST(TinyBlock, AnswersAForceOnANodeByEveryMethod) {
+  for (const int cells : {1, 2}) {
+    TissueConfig config;
+    config.spacing = 0.01;
+    config.shape = {Vec3::Zero(), Vec3::Constant(config.spacing * cells)};
+    config.material.young_modulus = 1e4;
+    config.material.poisson_ratio = 0.45;
+    config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
+    PatchConfig push;
+    push.name = "push";
+    const Vec3 place(0.01, 0.01, config.shape.max().z());
+    push.box = {place, place};
+    push.force = Vec3(0.0, 0.0, -0.01);
+    LoadStep step;
+    step.patches = {push};
+    std::optional<Vec3> exact;
+    for (const std::string method : {"newton", "layered", "vbd", "xpbd", "explicit"}) {
+      SolverConfig solver;
+      solver.method = method;
+      Tissue tissue(config, solver);
+      const SolveReport report = tissue.load(step);
+      EXPECT_EQ(report.status, SolveStatus::kOk) << method << ' ' << cells;
+      const Vec3 moved = report.patches.front().displacement;
+      if (!exact) exact = moved;
+      EXPECT_LT(moved.z(), -1e-4);
+      EXPECT_LT((moved - *exact).norm(), 0.02 * exact->norm()) << method << ' ' << cells;
+      EXPECT_NEAR(report.patches.front().force.z(), -0.01, 0.0002) << method << ' ' << cells;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_layered_method_loads

@@ -154,5 +154,28 @@ TEST(TurningPatch, IsRefusedByMethodsThatKnowNoTurns) {
   EXPECT_TRUE(mentions(line, "turns")) << line;
 }
 
+// About a line of nodes nothing would keep it from turning.
+TEST(TurningPatch, IsRefusedOnALineOfNodes) {
+  TissueConfig config;
+  config.shape = {Vec3::Zero(), Vec3(0.1, 0.04, 0.02)};
+  config.spacing = 0.01;
+  config.material.young_modulus = 1e4;
+  config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
+  Tissue tissue(config, {});
+  PatchConfig line;
+  line.name = "line";
+  line.force = Vec3(0.03, -0.006, -0.004);
+  line.turns = true;
+  for (const double end : {0.07, 0.1}) {
+    line.box = {Vec3(0.07, 0.04, 0.02), Vec3(end, 0.04, 0.02)};
+    LoadStep step;
+    step.patches = {line};
+    const std::string refused = inputErrorOf([&] { tissue.load(step); });
+    EXPECT_TRUE(isOneLine(refused));
+    EXPECT_TRUE(mentions(refused, "turns")) << refused;
+    EXPECT_TRUE(mentions(refused, "allowed")) << refused;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_turning_patch

@@ -78,6 +78,36 @@ TEST(Blade, PartsABlockAndNoForcePasses) {
   }
 }
 
+// Along an axis, aslant, and with the edge lying: layers of springs are a spacing apart.
+TEST(Blade, AStrokeIsTakenBackAsOneCut) {
+  const Vec3 aslant(0.03, 0.06, 0.0), along(kBeyond - kBefore);
+  for (const Vec3& way : {along, Vec3(along + aslant), Vec3(0.7 * along - aslant)}) {
+    for (const int updates : {10, 100}) {
+      Pipeline pipeline(block(), methodOf("elastic"), {knife(0.05)});
+      cutAlong(pipeline, straight(kBefore, kBefore + way, updates));
+      EXPECT_GT(pipeline.tissue().state().springs_cut, 20);
+      EXPECT_EQ(pipeline.tissue().undoable(), 1) << way.transpose() << " in " << updates;
+      pipeline.undo(1);
+      EXPECT_EQ(pipeline.tissue().state().springs_cut, 0);
+    }
+  }
+}
+
+// What it does after it went on through the air is another one.
+TEST(Blade, AStrokeEndsWhereNothingIsCut) {
+  Pipeline pipeline(block(), methodOf("elastic"), {knife(0.01)});
+  const Vec3 first(0.012, 0.0, 0.0), second(0.03, 0.0, 0.0), up(0.0, 0.0, 0.03);
+  std::vector<RobotPose> poses = straight(kBefore, kBefore + 2.0 * first, 20);
+  for (const auto& leg : {straight(kBefore + 2.0 * first, kBefore + 2.0 * first + up, 20),
+                          straight(kBefore + 2.0 * first + up, kBefore + second + first + up, 20),
+                          straight(kBefore + second + first + up, kBefore + second + first, 20),
+                          straight(kBefore + second + first, kBefore + second + 3.0 * first, 20)}) {
+    poses.insert(poses.end(), leg.begin(), leg.end());
+  }
+  cutAlong(pipeline, poses);
+  EXPECT_EQ(pipeline.tissue().undoable(), 2);
+}
+
 TEST(Blade, SameSpringsInOneTenAndAHundredUpdates) {
   for (const Vec3& to : {kBeyond, cutAt(0.041, 0.0467)}) {
     std::vector<Way> ways;

@@ -65,6 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"scene_file", "scene_file", "scene.yaml", "scene_file = scene.yaml"},
                       Case{"color", "color", "rainbow", "color = rainbow"},
                       Case{"timeout", "tf_timeout", -1, "tf_timeout = -1"},
+                      Case{"diagnostics", "diagnostic_period", -1, "diagnostic_period = -1"},
                       Case{"description", "robot_description_param", "/broken_description", "URDF"},
                       Case{"other_robot", "robot_description_param", "/other_description",
                            "probe"}),

@@ -48,6 +48,23 @@ TEST_F(OutputFolderTest, WithoutCommitOldFilesStay) {
   EXPECT_EQ(content(root_ / "x.csv"), "old");
 }
 
+TEST_F(OutputFolderTest, WhatAnEarlierRunLeftGoesWithCommit) {
+  std::ofstream(root_ / "old.csv") << "old";
+  {
+    OutputFolder folder(root_.string(), {"x.csv"});
+    folder.drop("old.csv");
+    folder.drop("never_there.csv");
+  }
+  EXPECT_EQ(content(root_ / "old.csv"), "old");
+  {
+    OutputFolder folder(root_.string(), {"x.csv"});
+    folder.drop("old.csv");
+    folder.drop("never_there.csv");
+    folder.commit();
+  }
+  EXPECT_FALSE(fs::exists(root_ / "old.csv"));
+}
+
 TEST_F(OutputFolderTest, CommitPutsTheFilesInPlace) {
   std::ofstream(root_ / "x.csv") << "old";
   std::ofstream(root_ / "other") << "kept";

@@ -31,6 +31,9 @@ struct LoadedTools {
   std::vector<std::string> warnings;  // one line each, e.g. a link without collision geometry
 };
 
+// Throws InputError where it does not parse, or is empty.
+void requireUrdf(const std::string& urdf_xml);
+
 // In: the URDF's text, the scene's tools. A link's overlay takes the place of its collision
 // geometry; the link has to exist all the same. Meshes are named here and loaded by ContactFinder.
 // Throws InputError: URDF that does not parse, a link or a padded collision that it does not have.

@@ -179,6 +179,7 @@ struct ToolLink {
   double padding = 0.0;  // m, added to every shape
   std::map<std::string, double> collision_padding;  // m, by the name of a collision of the URDF
   std::vector<ToolShape> shapes;  // overlay: used instead of the URDF's collision geometry
+  std::string path;               // of its entry in the scene, for messages
 };
 
 // When a grasper holds. The gap is the distance between its two jaws.

@@ -1,7 +1,7 @@
 // The surface as it is drawn. rviz shades every triangle flat, so where the surface bends it is
 // drawn finer than the lattice: as curved PN triangles (Vlachos et al. 2001), cubics through the
-// vertices, square to the vertices' normals. They are of the same vertices that tools touch, and
-// for the eye alone: contact and ~surface have the flat triangles.
+// vertices, square to the vertices' normals. It is the surface that tools touch (curved_surface.h);
+// ~surface has the flat triangles.
 //
 // Creases stay sharp: edges that are sharp at rest, as a block's, and edges between skin and what a
 // cut opened. Along a crease the cubic follows the line in which the tangent planes of its two

@@ -20,6 +20,17 @@ namespace {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
 }
 
+// Or at one place.
+bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes) {
+  const auto place = [&](int node) -> Eigen::Vector3i {
+    const auto index = lattice.gridIndex(node);
+    return {index[0], index[1], index[2]};
+  };
+  const Eigen::Vector3i first = place(nodes.front()), way = place(nodes.back()) - first;
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [&](int node) { return (place(node) - first).cross(way).isZero(); });
+}
+
 // A node obeys one patch.
 void requireOwnNodes(const std::vector<LoadingPatch>& patches,
                      const std::vector<LoadingPatch>& standing) {
@@ -170,6 +181,10 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
     if (config.turns && !method_->findsEquilibrium()) {
       refusePatch(config.name, "turns: this method moves patches without turning them",
                   "turns false, or another method");
+    }
+    if (config.turns && areOnALine(lattice_, patch.nodes)) {
+      refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
+                  "turns false, or a box of nodes on more than one line");
     }
     patch.turns = config.turns;
     for (const int node : patch.nodes) {

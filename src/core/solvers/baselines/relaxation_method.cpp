@@ -200,7 +200,8 @@ double RelaxationMethod::correctionNorm() const {
   squared *= field_->unit() * field_->unit();
   for (std::size_t patch = 0; patch < shape_.patches.size(); ++patch) {
     if (!byForce(shape_.patches[patch])) continue;
-    const double nodes = static_cast<double>(hold_.hardOf(patch).size());
+    // One of rim springs alone, as on a node, has no hard node.
+    const double nodes = static_cast<double>(std::max<std::size_t>(1, hold_.hardOf(patch).size()));
     squared += nodes * patchAnswer(patch).shift.squaredNorm();
   }
   return std::sqrt(squared);

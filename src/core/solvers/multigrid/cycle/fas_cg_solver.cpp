@@ -119,7 +119,8 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   SolveReport report;
   wants_double_ = false;
   if (part_.isEmpty()) return report;
-  for (int round = 0; round < tuning::kMostTurns; ++round) {
+  bool turned = true;  // a patch, so far that its forces are to be found anew
+  for (int round = 0; turned && round < tuning::kMostTurns; ++round) {
     report.status = balance(solve);
     wants_double_ = isForDouble(solve, report.status);
     if (wants_double_) return giveUp(solve);
@@ -129,8 +130,10 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
       return report;
     }
     writeShape(solve);
-    if (!settlePatches(solve) || report.status != SolveStatus::kOk) break;
+    turned = settlePatches(solve);
+    if (report.status != SolveStatus::kOk) break;
   }
+  if (turned && report.status == SolveStatus::kOk) report.status = SolveStatus::kUnconverged;
   warm_start_.noteEnd(report.status);
   const double error = iteration_.error();
   report.error_estimate = std::isfinite(error) ? std::hypot(error, part_.missed()) : 1.0;

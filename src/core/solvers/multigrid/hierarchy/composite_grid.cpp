@@ -265,7 +265,8 @@ void CompositeGrid<Real>::openAll(const ElasticModel& model, const CellSet& cell
     const GridBox all = grid.whole();
     addLevel(grid, beside, level_cells, {all, levels_.empty() ? kCoversNothing : all}, 0.0);
     free_.push_back(all);
-    if (*std::max_element(grid.size.begin(), grid.size.end()) <= tuning::kFewestPoints) break;
+    const int longest = *std::max_element(grid.size.begin(), grid.size.end());
+    if (levels_.size() > 1 && longest <= tuning::kFewestPoints) break;
     Coarsening to = coarsened(grid, level_cells, levels_.back().count());
     level_cells = std::move(to.cells);
     findReaches(level_cells);

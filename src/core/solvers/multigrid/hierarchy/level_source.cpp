@@ -244,7 +244,11 @@ std::vector<LevelSource> levelSources(const Lattice& lattice, const ElasticModel
   for (int node = 0; node < lattice.nodeCount(); ++node) {
     if (between.has(lattice.gridIndex(node))) held.push_back(lattice.isFixed(node));
   }
-  while (*std::max_element(sources.back().size.begin(), sources.back().size.end()) > fewest) {
+  const auto isCoarsest = [&] {
+    const auto& size = sources.back().size;
+    return sources.size() > 1 && *std::max_element(size.begin(), size.end()) <= fewest;
+  };
+  while (!isCoarsest()) {
     LevelSource coarse = coarser(sources.back());
     coarse.rough = kNowhere;
     held = heldOn(coarse, sources.back(), held);

@@ -17,8 +17,9 @@ constexpr int kStepsCoarsest = 12;
 // again, as it may look another way now (0.1: chosen). Up: cheaper, and bars that swing take
 // longer.
 constexpr double kSameStiffness = 0.1;
-// Grid points along the longest side of the coarsest level, at most (model.md). Up: fewer levels,
-// of which the coarsest is balanced less.
+// Grid points along the longest side of the coarsest level, at most (model.md); there are two
+// levels at least, as what the coarse one would move tells the error. Up: fewer levels, of which
+// the coarsest is balanced less.
 constexpr int kFewestPoints = 3;
 
 // --- The parts that are open
