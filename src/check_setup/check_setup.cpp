@@ -99,7 +99,7 @@ void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) 
   teller.tell(checkForNode(scene));
   const Robot robot = robotOf(arguments, scene, look);
   teller.tell(robot.findings);
-  teller.tell(checkTools(scene, robot.urdf));
+  teller.tell(checkTools(scene, robot.urdf.value_or("")));
   teller.tell(checkPress(scene, kMostSeconds));
 }
 

@@ -49,12 +49,12 @@ Findings checkSizes(const Scene& scene, const std::vector<ToolGeometry>& tools) 
 
 }  // namespace
 
-Findings checkTools(const Scene& scene, const std::optional<std::string>& urdf) {
+Findings checkTools(const Scene& scene, const std::string& urdf) {
   try {
-    const LoadedTools loaded = urdf ? loadTools(*urdf, scene.tools) : toolsOf(scene.tools);
+    const LoadedTools loaded = urdf.empty() ? toolsOf(scene.tools) : loadTools(urdf, scene.tools);
     Findings findings;
     // Without a URDF it is not known what is missing. They tell their remedies themselves.
-    if (urdf) {
+    if (!urdf.empty()) {
       for (const std::string& warning : loaded.warnings) {
         findings.push_back({Finding::Level::kWarning, warning, ""});
       }

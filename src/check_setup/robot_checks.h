@@ -1,7 +1,6 @@
 // The tools against the robot's description.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@
 namespace robot_tissue {
 
 // Links, their geometry and its size beside the tissue's. No URDF: the overlays alone.
-Findings checkTools(const Scene& scene, const std::optional<std::string>& urdf);
+Findings checkTools(const Scene& scene, const std::string& urdf);
 
 // Frames that the node looks for, each once.
 std::vector<std::string> framesOf(const Scene& scene);

@@ -67,7 +67,7 @@ robot_tissue_room(solvers/multigrid/level
   FILES cell_barrier.h cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h
   filled_block.h
     conjugate_gradients.h constrained_balance.cpp constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
-    level_cell.cpp level_cell.h
+    group_inverse.cpp group_inverse.h level_cell.cpp level_cell.h
     level_membrane.cpp level_membrane.h
     skyline_cholesky.cpp skyline_cholesky.h tuning.h vectors.h woodbury_update.cpp
     woodbury_update.h)

@@ -175,6 +175,21 @@ TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_EQ(checkSetup({"--help"}, nobody, out, err), kFine);
 }
 
+// Also where no tool is of one of its links.
+TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
+  const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest);
+  const auto nobody = [](const Scene&) { return Robot(); };
+  const std::vector<std::string> texts = {"", "no XML", "<robot name='r'>"};
+  for (const std::string& text : texts) {
+    const std::vector<std::string> arguments = {scene, "--urdf", write("robot.urdf", text)};
+    std::ostringstream out, err;
+    EXPECT_EQ(checkSetup(arguments, nobody, out, err), kCannotRun) << text;
+    EXPECT_NE(err.str().find("robot.urdf"), std::string::npos) << err.str();
+    const std::string told = err.str();
+    EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
+  }
+}
+
 // Of a stiffer tissue in proportion, and the way in is what it says: Hertz is a lower bound of a
 // bonded layer of five centimeters.
 TEST(TrialPress, ForceGoesWithTheStiffness) {

@@ -1,6 +1,9 @@
 // Method `layered` under all kinds of loads, against method `newton`.
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 #include "cutting/cut.h"
 #include "layered_fixtures.h"
 #include "tissue_fixtures.h"
@@ -301,6 +304,39 @@ TEST(LayeredTissue, IsRefusedForTheSixSpringLattice) {
       << line;
 }
 
+// Its nodes on the coarse lattice are on a line, about which nothing keeps them from turning there.
+TEST(TurningStrip, AlongAnEdgeOfTheBlockFindsItsBalance) {
+  TissueConfig config;
+  config.spacing = 0.01;
+  config.shape = {Vec3::Zero(), Vec3(0.06, 0.06, 0.03)};
+  config.material.young_modulus = 1e4;
+  config.material.poisson_ratio = 0.45;
+  config.fixed.push_back({Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)});
+  PatchConfig strip;
+  strip.name = "strip";
+  strip.turns = true;
+  for (const double width : {0.01, 0.02, 0.03}) {
+    strip.box = {Vec3(-1.0, -1.0, 0.03), Vec3(width, 1.0, 1.0)};
+    for (const Vec3& force : {Vec3(0.0, 0.0, 0.05), Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.3, -0.2)}) {
+      strip.force = force;
+      LoadStep step;
+      step.patches = {strip};
+      SolverConfig newton;
+      newton.method = "newton";
+      Tissue tissue(config, {}), exact(config, newton);
+      tissue.load(step);
+      exact.load(step);
+      const SolveReport &report = tissue.lastReport(), &right = exact.lastReport();
+      ASSERT_EQ(right.status, SolveStatus::kOk);
+      EXPECT_EQ(report.status, SolveStatus::kOk) << width << ", " << force.transpose();
+      EXPECT_LT((report.patches.front().force - force).norm(), 0.03 * force.norm());
+      const Vec3 way = right.patches.front().displacement;
+      EXPECT_LT((report.patches.front().displacement - way).norm(), 0.02 * way.norm())
+          << width << ", " << force.transpose();
+    }
+  }
+}
+
 // Of at most two cells along each axis: the coarse lattice is as fine there, and tells the error.
 TEST(TinyBlock, AnswersAForceOnANodeByEveryMethod) {
   for (const int cells : {1, 2}) {
@@ -322,7 +358,8 @@ TEST(TinyBlock, AnswersAForceOnANodeByEveryMethod) {
       SolverConfig solver;
       solver.method = method;
       Tissue tissue(config, solver);
-      const SolveReport report = tissue.load(step);
+      tissue.load(step);
+      const SolveReport& report = tissue.lastReport();
       EXPECT_EQ(report.status, SolveStatus::kOk) << method << ' ' << cells;
       const Vec3 moved = report.patches.front().displacement;
       if (!exact) exact = moved;

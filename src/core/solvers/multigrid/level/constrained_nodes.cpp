@@ -1,12 +1,12 @@
 #include "solvers/multigrid/level/constrained_nodes.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "robot_tissue/core/carriers.h"
+#include "solvers/multigrid/level/group_inverse.h"
 #include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
@@ -297,14 +297,7 @@ void ConstrainedNodes<Real>::holdInStiffness(ConstrainedNode& constrained) {
 template <typename Real>
 void ConstrainedNodes<Real>::invertGroups() {
   for (std::size_t group = 0; group < groups.size(); ++group) {
-    Matrix6& stiffness = group_stiffness_[group];
-    const double scale = stiffness.diagonal().maxCoeff();
-    for (int axis = 0; axis < 6; ++axis) {
-      double& own = stiffness(axis, axis);
-      if (own <= level_tuning::kNoStiffness * scale) own = std::max(scale, 1.0);
-    }
-    group_inverse_[group] = stiffness.inverse();
-    if (!groups[group].turns) group_inverse_[group].template bottomRightCorner<3, 3>().setZero();
+    group_inverse_[group] = inverseOfGroup(group_stiffness_[group], groups[group].turns);
   }
 }
 
