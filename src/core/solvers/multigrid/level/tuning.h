@@ -35,8 +35,8 @@ constexpr double kAround = 0.5;
 // stiffness across itself that is less is none.
 constexpr double kNoStiffness = 1e-12;
 // Of the stiffness along the axes (1): a patch does not turn in directions in which it has less, as
-// about a line of its nodes. Far above rounding in single precision, and far below what nodes on more
-// than a line have.
+// about a line of its nodes. Far above rounding in single precision, and far below what nodes on
+// more than a line have.
 constexpr double kNoTurn = 1e-5;
 
 // Nodes of a membrane that are taken together (ConstrainedNodes::couple): share of r . D^-1 r that
