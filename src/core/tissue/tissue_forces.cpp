@@ -29,18 +29,20 @@ bool isInFlatSurface(const CellSet& cells, int node) {
   return whole == 4;
 }
 
-// Whether the cells at the node are of the same as those beside and below them: a ball feels a
-// layer that begins a spacing below it otherwise than a half-space.
+// Whether the full cells beside and below the node are all of the same: a ball feels a layer that
+// begins a spacing below it otherwise than a half-space.
 bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
   std::optional<Moduli> all;
-  const auto is_other = [&](const Moduli& moduli) {
+  const auto is_other = [&](const Cell& cell) {
+    if (cell.share() < 1.0) return false;
+    const Moduli moduli = model.moduliIn(cell);
     if (!all) all = moduli;
     return moduli.shear != all->shear || moduli.bulk != all->bulk;
   };
   for (const CellSet::Meeting& met : cells.meetings(node)) {
     for (const int corner : cells.all()[at(met.cell)].nodes) {
       for (const CellSet::Meeting& beside : cells.meetings(corner)) {
-        if (is_other(model.moduliIn(cells.all()[at(beside.cell)]))) return false;
+        if (is_other(cells.all()[at(beside.cell)])) return false;
       }
     }
   }
