@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <type_traits>
 #include <utility>
 
 #include "tuning.h"
@@ -39,20 +40,16 @@ void StickingContacts::takeCells(const Tissue& tissue) {
   const std::shared_ptr<const CellSet> before = std::exchange(cells_, tissue.state().cells);
   if (before == nullptr || before == cells_) return;
   holdNamedLoads(tissue);
-  for (auto& attachments : attachments_) {
-    std::map<int, Attachment> taken;
-    for (const auto& [node, attachment] : attachments) {
+  const auto renumber = [&](auto& by_node) {
+    std::decay_t<decltype(by_node)> renumbered;
+    for (const auto& [node, value] : by_node) {
       const int here = cells_->nodeOf(*before, node);
-      if (here >= 0) taken.emplace(here, attachment);
+      if (here >= 0) renumbered.emplace(here, value);
     }
-    attachments = std::move(taken);
-  }
-  std::map<int, Vec3> places;
-  for (const auto& [node, place] : places_) {
-    const int here = cells_->nodeOf(*before, node);
-    if (here >= 0) places.emplace(here, place);
-  }
-  places_ = std::move(places);
+    by_node = std::move(renumbered);
+  };
+  for (auto& attachments : attachments_) renumber(attachments);
+  renumber(places_);
   left_.clear();
 }
 

@@ -189,9 +189,12 @@ bool LoadStepper::isSwallowed(const Checkpoint& good) const {
                        [&](const auto& touch) -> bool { return at(touch.contact.link) == link; });
   };
   links.erase(std::remove_if(links.begin(), links.end(), touches), links.end());
-  if (links.empty()) return false;
-  const std::vector<double> depths = world_.finder.penetrations(
-      links, world_.pose, world_.tissue.surface(), world_.tissue.vertices());
+  return !links.empty() && isAnyThrough(links, world_.pose);
+}
+
+bool LoadStepper::isAnyThrough(const std::vector<std::size_t>& links, const RobotPose& pose) const {
+  const std::vector<double> depths =
+      world_.finder.penetrations(links, pose, world_.tissue.surface(), world_.tissue.vertices());
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (depths[i] > throughAt(links[i])) return true;
   }

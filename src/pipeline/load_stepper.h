@@ -55,7 +55,8 @@ class LoadStepper {
   // Goes on with it, to where it led; where there is none, as advance to the pose.
   bool finish(const RobotPose& pose) { return isUnderWay() ? goOn() : advance(pose); }
   void forgetUnderWay() { under_way_.reset(); }
-  double throughAt(std::size_t link) const;
+  // Whether one of these links stands deeper in the surface than tissue that gives way lets it.
+  bool isAnyThrough(const std::vector<std::size_t>& links, const RobotPose& pose) const;
 
  private:
   // A load step that time ran out in.
@@ -92,6 +93,7 @@ class LoadStepper {
   bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const Checkpoint& good) const;
   bool isSwallowed(const Checkpoint& good) const;
+  double throughAt(std::size_t link) const;
   bool isUnsettled() const;
   bool isOutOfTime() const;
   void endOverpulled();

@@ -26,7 +26,7 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
 }
 
 // Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
-// away from where the tissue is at rest, and deeper in its surface than throughAt.
+// away from where the tissue is at rest, and deeper in its surface than isAnyThrough lets it.
 bool ToolMotion::isHooked(std::size_t tool) const {
   if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
   std::vector<std::size_t> links;
@@ -38,12 +38,7 @@ bool ToolMotion::isHooked(std::size_t tool) const {
     }
     links.push_back(link);
   }
-  const std::vector<double> depths = world_.finder.penetrations(
-      links, *world_.last_pose, world_.tissue.surface(), world_.tissue.vertices());
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (depths[i] > load_step_.throughAt(links[i])) return true;
-  }
-  return false;
+  return load_step_.isAnyThrough(links, *world_.last_pose);
 }
 
 void ToolMotion::letGoOf(std::size_t tool) {
