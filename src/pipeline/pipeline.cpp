@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "landing.h"
 #include "pipeline_parts.h"
 #include "stopwatch.h"
 #include "tool_reports.h"
@@ -16,6 +17,7 @@ Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
     : parts_(std::make_unique<Parts>(tissue, solver)), world_(parts_->world), supports_(supports) {
   takeTools(tools);
   world_.tissue.setContactUpdate(&parts_->contact_update);
+  landing_ = Landing::ofScene(tissue, solver, supports_);
 }
 
 Pipeline::~Pipeline() = default;
@@ -160,14 +162,6 @@ void Pipeline::stopTime() {
   touched_ = true;
 }
 
-SolveReport Pipeline::settle() {
-  const Bounded bounded(*this);
-  world_.tissue.stopTime();
-  const SolveReport report = parts_->load_step.balance();
-  touch();
-  return report;
-}
-
 void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
                     int most_increments) {
   const Bounded bounded(*this);
@@ -220,6 +214,7 @@ SutureResult Pipeline::suture(const SutureConfig& config) {
 
 void Pipeline::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   if (!world_.tissue.retune(tissue, solver)) return;
+  landing_ = Landing::ofScene(tissue, solver, supports_);
   const Bounded bounded(*this);
   parts_->load_step.balance();
   touch();
@@ -287,6 +282,16 @@ SolveReport Pipeline::loadState(const std::string& bytes) {
   world_.sliding.commit(world_.pose, world_.tissue);
   describeTools();
   return report;
+}
+
+void Pipeline::takeOver(const Tissue& other, Tissue::Displacements displacement) {
+  forgetTools();
+  world_.tissue.takeOver(other);
+  Tissue::Shape shape = world_.tissue.shape();
+  shape.displacement = std::move(displacement);
+  world_.tissue.restore(shape);
+  world_.sliding.commit(world_.pose, world_.tissue);
+  describeTools();
 }
 
 // They hold and touch nothing, and come in from outside.

@@ -307,4 +307,17 @@ constexpr double kShortestTimeStep = 1e-3;
 // Of a time step (1): so little more than whole ones is rounding. Chosen.
 constexpr double kTimeRounding = 1e-6;
 
+// Tissue that comes to lie (Landing).
+// Iterations in which what lies is in balance: a block on a table takes 8 to 18, an organ that rolls
+// 140 to 820, to no end. More: what has to be followed waits longer. Less: what lies is followed.
+constexpr int kIterationsOfLying = 60;
+// Of the time in which a wave crosses the tissue (1): its viscosity. More: what rolls is slower;
+// less: it swings longer. Chosen.
+constexpr double kLandingDamping = 0.5;
+// s: what has not come to rest by then, as on a slope, does not. And after which it is looked at.
+constexpr double kLongestLanding = 30.0;
+constexpr double kLandingPause = 0.1;
+// Of the tissue's extent (1): likewise what goes farther on the way, as down a slope. Chosen.
+constexpr double kFarthestLanding = 20.0;
+
 }  // namespace robot_tissue::tuning

@@ -139,8 +139,11 @@ class Tissue {
   // its tool.
   Vec3 nodeForce(int node) const;
   std::vector<int> freeNodes() const;  // all that are not fixed
-  Vec3 weight() const;                 // of the whole tissue (N)
-  Vec3 forceOfFixedNodes() const;      // on the tissue (N)
+  // Of the tissue (N), but for pieces that hang: gravity pulls them and nothing bears them, so that
+  // no shape is their balance. Where no time passes they stay as they are.
+  Vec3 weight() const;
+  bool anyHangs() const { return !hangingNodes().empty(); }
+  Vec3 forceOfFixedNodes() const;  // on the tissue (N)
   // Against moving a node alone from rest, mean over the axes (N/m): of the cells, and how many
   // times that in the time step under way, where its rate and the node's mass count, too.
   double nodeStiffness(int node) const;
@@ -227,6 +230,8 @@ class Tissue {
   };
   Shape shape() const;
   void restore(const Shape& shape);
+  // Cells, shape, named loads and sutures of another tissue of the same lattice; at rest.
+  void takeOver(const Tissue& other);
   // In between, solves teach the method nothing that later ones depend on.
   void beginAside();
   void endAside();
@@ -296,6 +301,7 @@ class Tissue {
   // tissue_surgery.cpp
   class TopologyChange;
   SavedState stateNow() const;
+  void take(const SavedState& saved);
   bool mayReach(const Box& bounds) const;
   RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
   std::vector<std::string> dropLostLoads();
@@ -304,6 +310,9 @@ class Tissue {
   void renumberPieces();
   std::vector<char> heldPieces() const;
   std::vector<int> freePieces() const;
+  std::vector<int> hangingNodes() const;
+  bool holdHanging();
+  void letHangingBe(SolveReport& report);
   std::vector<int> freedPieces();
   void takeOut(const std::vector<int>& pieces);
   const std::vector<TissuePiece>& piecesAtRest() const;

@@ -27,6 +27,7 @@
 
 namespace robot_tissue {
 
+class Landing;
 struct World;
 
 class Pipeline {
@@ -93,7 +94,8 @@ class Pipeline {
   // No call begins a solve after it; what a call leaves then it tells as late.
   void setEnd(const Deadline& end);
 
-  // As Tissue's, with the tools and supports where they are.
+  // As Tissue's, with the tools and supports where they are. Where no time passes, what nothing
+  // holds falls onto supports that are below it, and comes to lie there.
   SolveReport settle();
   void load(const LoadStep& step, const Tissue::OnIncrement& on_increment = {},
             int most_increments = 100000);
@@ -108,6 +110,9 @@ class Pipeline {
   void setFriction(double friction);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
+  // The cells, loads and sutures of another tissue of the same lattice, with these displacements (m);
+  // tools as after a reset.
+  void takeOver(const Tissue& other, Tissue::Displacements displacement);
   // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a
   // reset.
   SolveReport loadState(const std::string& bytes);
@@ -169,11 +174,15 @@ class Pipeline {
   void loadOn();
   void finish();
   void countLate();
+  // settling.cpp
+  SolveReport balance();
+  SolveReport settleLoose();
   bool isBehind() const;  // the shape shown is not yet the one of the tools' pose, in balance
 
   std::unique_ptr<Parts> parts_;
   World& world_;
   std::vector<SupportConfig> supports_;
+  std::unique_ptr<const Landing> landing_;  // null: the scene needs none
   double budget_s_ = std::numeric_limits<double>::infinity();
   double reporting_ms_ = 0.0;    // that the last reports on the tools took
   std::optional<Deadline> end_;  // of all calls

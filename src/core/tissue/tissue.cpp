@@ -242,7 +242,9 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
   method_->limitTime(mostMs());
   method_->limitIterations(mostIterations());
   const double cost = costOfIteration();
+  const bool any_hangs = holdHanging();
   SolveReport report = solveWithThreads(disturbed);
+  if (any_hangs) letHangingBe(report);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
       (method_->staysFinite() ||

@@ -55,13 +55,18 @@ Vec3 Tissue::nodeForce(int node) const {
   return model_->nodeForce(state_, node) + threads_->forceOn(node, state_.displacement);
 }
 
-Vec3 Tissue::weight() const { return weight_; }
+// What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
+Vec3 Tissue::weight() const {
+  Vec3 weight = weight_;
+  for (const Vec3& force : model_->forcesOn(state_, hangingNodes())) weight -= force;
+  return weight;
+}
 
 // Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
 // them. Where the method does not visit all nodes: by the balance of all forces.
 Vec3 Tissue::forceOfFixedNodes() const {
   if (method_->visited() != nullptr)
-    return method_->forceLeft() - weight_ - forceOfPatches(last_report_);
+    return method_->forceLeft() - weight() - forceOfPatches(last_report_);
   const CellSet& cells = *state_.cells;
   std::vector<int> fixed;
   for (int node = 0; node < cells.nodeCount(); ++node) {

@@ -136,6 +136,37 @@ std::vector<int> Tissue::freePieces() const {
   return numbers;
 }
 
+// Of pieces that gravity pulls and nothing bears; ascending.
+std::vector<int> Tissue::hangingNodes() const {
+  if (gravity_.isZero(0.0) || goesInTime() || isMoving()) return {};
+  const std::vector<int> free = freePieces();
+  std::vector<int> hanging;
+  if (free.empty()) return hanging;
+  const std::vector<int>& piece_of = pieceOfNodes();
+  for (std::size_t node = 0; node < piece_of.size(); ++node) {
+    if (std::binary_search(free.begin(), free.end(), piece_of[node])) {
+      hanging.push_back(static_cast<int>(node));
+    }
+  }
+  return hanging;
+}
+
+// For one solve, as a patch that keeps them where they are. False: there are none.
+bool Tissue::holdHanging() {
+  LoadingPatch patch;
+  patch.nodes = hangingNodes();
+  if (patch.nodes.empty()) return false;
+  for (const int node : patch.nodes) patch.displacement.push_back(state_.displacement[at(node)]);
+  patches_.push_back(std::move(patch));
+  return true;
+}
+
+// What would have to hold them is no answer to a load.
+void Tissue::letHangingBe(SolveReport& report) {
+  patches_.pop_back();
+  report.patches.resize(patches_.size());
+}
+
 // Those that were held when this was asked last, or are new, and are free now. While nothing holds
 // any of the tissue it floats, and all of it stays.
 std::vector<int> Tissue::freedPieces() {

@@ -130,7 +130,7 @@ std::shared_ptr<const SavedState> Tissue::readState(const std::string& bytes) co
 }
 
 // Nothing of what was there stays, nor of what the method learned of it.
-SolveReport Tissue::loadState(const SavedState& saved) {
+void Tissue::take(const SavedState& saved) {
   stopTime();
   endAside();
   other_method_.reset();
@@ -150,8 +150,17 @@ SolveReport Tissue::loadState(const SavedState& saved) {
   threads_->take(saved.sutures);
   takePieces(std::make_shared<const PieceNumbers>(lattice_, state_, saved.pieces));
   last_report_ = saved.report;
-  if (!saved.in_balance) return solve(freeNodes());
   deformSurface();
+}
+
+void Tissue::takeOver(const Tissue& other) {
+  take(other.stateNow());
+  wakeUnderBodyLoad();
+}
+
+SolveReport Tissue::loadState(const SavedState& saved) {
+  take(saved);
+  if (!saved.in_balance) return solve(freeNodes());
   last_report_.inverted_cells = countInvertedCells(lattice_, state_);
   last_report_.volume_ratio = volumeRatio();
   return last_report_;

@@ -1,0 +1,133 @@
+#include "landing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "robot_tissue/core/carriers.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+
+// From the point along the unit direction to the support's solid side (m), kNowhere: past it; both
+// in the support's frame.
+double wayToPlane(const Vec3& point, const Vec3& direction) {
+  if (point.z() <= 0.0) return 0.0;
+  return direction.z() < 0.0 ? -point.z() / direction.z() : kNowhere;
+}
+
+// Where the line is in all three pairs of the box's planes (slabs: Kay and Kajiya 1986).
+double wayToBox(const Vec3& size, const Vec3& point, const Vec3& direction) {
+  double enters = 0.0;
+  double leaves = kNowhere;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double half = 0.5 * size[axis];
+    if (direction[axis] == 0.0) {
+      if (std::abs(point[axis]) > half) return kNowhere;
+      continue;
+    }
+    const double to_low = (-half - point[axis]) / direction[axis];
+    const double to_high = (half - point[axis]) / direction[axis];
+    enters = std::max(enters, std::min(to_low, to_high));
+    leaves = std::min(leaves, std::max(to_low, to_high));
+  }
+  return enters <= leaves ? enters : kNowhere;
+}
+
+// Of the elastic waves (s): what damps the tissue's own swings within one of them.
+double dampingTime(const TissueConfig& tissue, double extent) {
+  const double wave_speed = std::sqrt(tissue.material.young_modulus / tissue.material.density);
+  return tuning::kLandingDamping * extent / wave_speed;
+}
+
+}  // namespace
+
+std::unique_ptr<const Landing> Landing::ofScene(const TissueConfig& tissue,
+                                                const SolverConfig& solver,
+                                                const std::vector<SupportConfig>& supports) {
+  const bool may_fall = !tissue.gravity.isZero(0.0) && !tissue.time && !supports.empty();
+  return may_fall ? std::make_unique<const Landing>(tissue, solver, supports) : nullptr;
+}
+
+Landing::Landing(const TissueConfig& tissue, const SolverConfig& solver,
+                 std::vector<SupportConfig> supports)
+    : tissue_(tissue), solver_(solver), supports_(std::move(supports)) {
+  tissue_.time = TimeConfig();
+  tissue_.free_pieces = FreePieces::kStay;
+  tissue_.material.tear_stretch = 0.0;
+  for (Region& region : tissue_.regions) region.material.tear_stretch = 0.0;
+  solver_.method = "layered";
+  solver_.max_ms = 0.0;
+}
+
+Tissue::Displacements Landing::from(const Tissue& tissue,
+                                    const std::optional<Deadline>& end) const {
+  const Tissue::Displacements start = lowered(tissue);
+  if (start == nullptr) return nullptr;
+  TissueConfig config = tissue_;
+  config.time->damping_time = dampingTime(config, tissue.bounds().sizes().maxCoeff());
+  Pipeline in_time(config, solver_, {}, supports_);
+  in_time.setEnd(end.value_or(Deadline()));
+  in_time.takeOver(tissue, start);
+  const Vec3 middle = in_time.tissue().bounds().center();
+  const double farthest = tuning::kFarthestLanding * tissue.bounds().sizes().maxCoeff();
+  const auto is_near = [&] {
+    return (in_time.tissue().bounds().center() - middle).norm() < farthest;
+  };
+  for (double gone = 0.0; in_time.tissue().isMoving(); gone += tuning::kLandingPause) {
+    if (gone > tuning::kLongestLanding || !is_near() || (end && end->isOver())) return nullptr;
+    const SolveReport report = in_time.wait(tuning::kLandingPause);
+    if (report.status == SolveStatus::kUnconverged) return nullptr;
+  }
+  return in_time.tissue().displacements();
+}
+
+// Pieces that hang, down to where one of their vertices is a spacing above a support: what falls
+// from high up is fast, and soft tissue that meets a table so is crushed. Null: one has none below.
+Tissue::Displacements Landing::lowered(const Tissue& tissue) const {
+  std::map<int, double> clearances;  // by the number of the piece
+  for (const TissuePiece& piece : tissue.restingPieces()) {
+    if (!piece.held) clearances[piece.number] = kNowhere;
+  }
+  const std::vector<int>& piece_of = tissue.pieceOfNodes();
+  const TissueSurface& surface = tissue.surface();
+  for (std::size_t vertex = 0; vertex < surface.carriers.size(); ++vertex) {
+    const int node = surface.carriers[vertex].front().node;
+    const auto found = clearances.find(piece_of[at(node)]);
+    if (found == clearances.end()) continue;
+    found->second = std::min(found->second, clearance(tissue.vertices()[vertex]));
+  }
+  for (const auto& [piece, clearance] : clearances) {
+    if (clearance == kNowhere) return nullptr;
+  }
+  auto lowered = std::make_shared<std::vector<Vec3>>(*tissue.displacements());
+  const Vec3 down = tissue_.gravity.normalized();
+  for (std::size_t node = 0; node < piece_of.size(); ++node) {
+    const auto found = clearances.find(piece_of[node]);
+    if (found == clearances.end()) continue;
+    (*lowered)[node] += std::max(0.0, found->second - tissue_.spacing) * down;
+  }
+  return lowered;
+}
+
+// How far the point may fall (m).
+double Landing::clearance(const Vec3& point) const {
+  double nearest = kNowhere;
+  for (const SupportConfig& support : supports_) {
+    const Pose support_T_tissue = support.shape.pose.inverse();
+    const Vec3 from = support_T_tissue * point;
+    const Vec3 down = support_T_tissue.linear() * tissue_.gravity.normalized();
+    const double way = support.shape.type == ToolShape::Type::kPlane
+                           ? wayToPlane(from, down)
+                           : wayToBox(support.shape.size, from, down);
+    nearest = std::min(nearest, way);
+  }
+  return nearest;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,41 @@
+// How tissue that only supports bear comes to lie on them, where no time passes in the scene. A
+// piece that falls, rolls or topples on its way has no balance near its shape for a solver to find,
+// so its way is followed in time, by a pipeline of its own, until it rests.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "robot_tissue/core/deadline.h"
+#include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/tissue.h"
+#include "robot_tissue/pipeline/pipeline.h"
+
+namespace robot_tissue {
+
+class Landing {
+ public:
+  // Null: no tissue of that scene has to come to lie.
+  static std::unique_ptr<const Landing> ofScene(const TissueConfig& tissue,
+                                                const SolverConfig& solver,
+                                                const std::vector<SupportConfig>& supports);
+
+  Landing(const TissueConfig& tissue, const SolverConfig& solver,
+          std::vector<SupportConfig> supports);
+
+  // Displacements (m) in which the tissue, which no tool touches, rests, on its way from its
+  // present shape; null: it does not within kLongestLanding, or before the end, or there is nothing
+  // below it.
+  Tissue::Displacements from(const Tissue& tissue, const std::optional<Deadline>& end) const;
+
+ private:
+  Tissue::Displacements lowered(const Tissue& tissue) const;
+  double clearance(const Vec3& point) const;
+
+  TissueConfig tissue_;  // with time, and without tearing
+  SolverConfig solver_;
+  std::vector<SupportConfig> supports_;
+};
+
+}  // namespace robot_tissue
