@@ -110,8 +110,8 @@ class Pipeline {
   void setFriction(double friction);
   // Rest shape; at the next step the tools come in from outside.
   void reset();
-  // The cells, loads and sutures of another tissue of the same lattice, with these displacements (m);
-  // tools as after a reset.
+  // The cells, loads and sutures of another tissue of the same lattice, with these displacements
+  // (m); tools as after a reset.
   void takeOver(const Tissue& other, Tissue::Displacements displacement);
   // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a
   // reset.
