@@ -370,5 +370,28 @@ TEST(TinyBlock, AnswersAForceOnANodeByEveryMethod) {
   }
 }
 
+// It turns about the corner as a whole, by forces that are next to nothing.
+class HeldByACorner : public testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(HeldByACorner, IsAsExactAsItTells) {
+  const auto [cells, poisson_ratio] = GetParam();
+  TissueConfig config = elasticBlockOf(cells, 12, 6, poisson_ratio);
+  config.fixed.push_back(nodeBox(config, {0, 0, 0}, {1, 1, 1}));
+  LayeredBlock block(config, within(0.01));
+  ElasticBlock exact(config);
+  const std::vector<int> corner =
+      block.lattice.nodesIn(nodeBox(config, {cells - 2, 10, 6}, {cells, 12, 6}));
+  const LoadingPatch patch = displaced(corner, Vec3(0.003, -0.0002, -0.002));
+  const SolveReport report = block.solve({patch});
+  ASSERT_EQ(exact.solve({patch}).status, SolveStatus::kOk);
+  EXPECT_EQ(report.status, SolveStatus::kOk);
+  EXPECT_LT(
+      errorOf(block.lattice, block.patches, block.state.displacement, exact.state.displacement),
+      0.015);
+}
+
+INSTANTIATE_TEST_SUITE_P(CellsAndRatios, HeldByACorner,
+                         testing::Combine(testing::Values(6, 20), testing::Values(0.3, 0.49)));
+
 }  // namespace
 }  // namespace robot_tissue::test_layered_method_loads

@@ -166,6 +166,25 @@ constexpr double kMeasuringOverLevels = 3.0;
 constexpr double kToAndFro = 1.5;
 // Greatest factor that it may show: nu 0.49 has it. Up: more cycles there.
 constexpr double kMostAtRest = 8.0;
+// Of smooth motions. Share of them that is left in the third cycle: less, and nothing is slow
+// (blocks on the ground: 0.01 to 0.4, at nu 0.49 0.3 to 0.7; held by a corner: 0.6 and more). Up:
+// fewer lattices are looked at closely.
+constexpr double kFast = 0.4;
+constexpr int kFirstFastCycle = 2;
+// What a cycle leaves of them, and how much more of them is hidden than before it (1): beyond both
+// they are slow, and cycles go on after the sixth (blocks on the ground: 0.2 to 0.9; held by a
+// corner: 0.95 to 1.02). Up: likewise; down: more cycles.
+constexpr double kHardlyFalls = 0.9;
+constexpr double kHidesMore = 1.02;
+constexpr int kFirstSlowCycle = 5;
+constexpr int kMostSlowCycles = 30;
+// The least factor that counts of them (blocks on the ground show 1 to 8, and 10 at nu 0.49), and
+// the greatest: of 300 small blocks at random those that were off most, by 8, 5.5 and 3 times what
+// was told, wanted 70. Up: fewer lattices; more cycles for those.
+constexpr double kClearlySlow = 12.0;
+constexpr double kMostOfSlow = 100.0;
+// What shows more than this moves freely, as tissue that nothing holds (held by a corner: 740).
+constexpr double kFree = 1000.0;
 
 // --- Patience
 
