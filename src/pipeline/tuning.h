@@ -308,8 +308,9 @@ constexpr double kShortestTimeStep = 1e-3;
 constexpr double kTimeRounding = 1e-6;
 
 // Tissue that comes to lie (Landing).
-// Iterations in which what lies is in balance: a block on a table takes 8 to 18, an organ that rolls
-// 140 to 820, to no end. More: what has to be followed waits longer. Less: what lies is followed.
+// Iterations in which what lies is in balance: a block on a table takes 8 to 18, an organ that
+// rolls 140 to 820, to no end. More: what has to be followed waits longer. Less: what lies is
+// followed.
 constexpr int kIterationsOfLying = 60;
 // Of the time in which a wave crosses the tissue (1): its viscosity. More: what rolls is slower;
 // less: it swings longer. Chosen.
