@@ -10,8 +10,7 @@
 namespace robot_tissue {
 namespace {
 
-// Quoted text carries this tag in yaml-cpp: "0.005" is no number.
-bool isPlainScalar(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
+bool isPlainScalar(const YAML::Node& node) { return node.IsScalar() && !isText(node); }
 
 std::optional<double> plainNumber(const YAML::Node& node) {
   return isPlainScalar(node) ? parseNumber(node.Scalar()) : std::nullopt;

@@ -42,7 +42,7 @@ void append(const YAML::Node& node, std::string& text) {
   if (!node.IsDefined() || node.IsNull()) {
     text += "(nothing)";
   } else if (node.IsScalar()) {
-    const bool quoted = node.Tag() == "!" || node.Scalar().empty();
+    const bool quoted = isText(node) || node.Scalar().empty();
     text += quoted ? '"' + node.Scalar() + '"' : node.Scalar();
   } else if (node.IsSequence()) {
     appendSequence(node, text);
@@ -57,6 +57,11 @@ bool hasAmbiguousLeadingZero(const std::string& digits) {
 }
 
 }  // namespace
+
+// yaml-cpp's tag of what stands in quotes, and YAML's own.
+bool isText(const YAML::Node& scalar) {
+  return scalar.Tag() == "!" || scalar.Tag() == "tag:yaml.org,2002:str";
+}
 
 std::string onOneLine(const std::string& text) {
   std::string line;

@@ -75,6 +75,7 @@ const std::vector<BadScene> kBadTissues = {
      "  spacing: 0.01\n",
      "",
      {"tissue.spacing is missing", "a number from 1e-06 to 1000 in m"}},
+    {"SpacingTagged", "spacing: 0.01", "spacing: !!str 0.01", {"tissue.spacing = \"0.01\""}},
     {"SpacingZero", "spacing: 0.01", "spacing: 0", {"tissue.spacing = 0:", "to 1000 in m"}},
     {"SpacingNegative",
      "spacing: 0.01",

@@ -11,6 +11,9 @@ namespace robot_tissue {
 // The value in YAML's flow style, cut short after some 60 characters.
 std::string valueText(const YAML::Node& node);
 
+// In quotes, or said to be one by its tag (!!str): "0.005" is no number.
+bool isText(const YAML::Node& scalar);
+
 // Control characters written as \n or ?, so that the text stays on its line.
 std::string onOneLine(const std::string& text);
 
