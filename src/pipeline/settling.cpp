@@ -3,6 +3,7 @@
 
 #include "landing.h"
 #include "pipeline_parts.h"
+#include "stopwatch.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -13,7 +14,13 @@ SolveReport Pipeline::settle() {
       landing_ ? world_.tissue.restingPieces() : std::vector<TissuePiece>();
   const bool any_loose = std::any_of(pieces.begin(), pieces.end(),
                                      [](const TissuePiece& piece) { return !piece.fixed; });
-  const SolveReport report = any_loose ? settleLoose() : balance();
+  SolveReport report;
+  double whole_ms = 0.0;  // the way to where it lies included
+  {
+    const Stopwatch watch(whole_ms);
+    report = any_loose ? settleLoose() : balance();
+  }
+  if (any_loose) report.wall_ms = whole_ms;
   touch();
   return report;
 }
