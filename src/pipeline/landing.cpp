@@ -87,6 +87,30 @@ Tissue::Displacements Landing::from(const Tissue& tissue,
   return in_time.tissue().displacements();
 }
 
+// Whether there is tissue below one of these pieces: it would fall through that, as tissue is not
+// looked for on tissue. By boxes that stand upright, less half a spacing where cuts parted them.
+bool Landing::anyLiesOnTissue(const Tissue& tissue, const std::map<int, double>& pieces) const {
+  const Eigen::Matrix3d upright =
+      Eigen::Quaterniond::FromTwoVectors(tissue_.gravity, -Vec3::UnitZ()).toRotationMatrix();
+  std::map<int, Box> boxes;
+  const std::vector<int>& piece_of = tissue.pieceOfNodes();
+  for (std::size_t node = 0; node < piece_of.size(); ++node) {
+    if (piece_of[node] < 0) continue;
+    boxes[piece_of[node]].extend(upright * tissue.nodePosition(static_cast<int>(node)));
+  }
+  const double slack = 0.5 * tissue_.spacing;
+  const auto is_below = [&](const Box& lower, const Box& upper) {
+    const Vec3 overlap = lower.max().cwiseMin(upper.max()) - lower.min().cwiseMax(upper.min());
+    return overlap.x() > slack && overlap.y() > slack && lower.min().z() < upper.min().z() - slack;
+  };
+  for (const auto& [number, clearance] : pieces) {
+    for (const auto& [other, box] : boxes) {
+      if (other != number && is_below(box, boxes[number])) return true;
+    }
+  }
+  return false;
+}
+
 // Pieces that hang, down to where one of their vertices is a spacing above a support: what falls
 // from high up is fast, and soft tissue that meets a table so is crushed. Null: one has none below.
 Tissue::Displacements Landing::lowered(const Tissue& tissue) const {
@@ -94,6 +118,7 @@ Tissue::Displacements Landing::lowered(const Tissue& tissue) const {
   for (const TissuePiece& piece : tissue.restingPieces()) {
     if (!piece.held) clearances[piece.number] = kNowhere;
   }
+  if (anyLiesOnTissue(tissue, clearances)) return nullptr;
   const std::vector<int>& piece_of = tissue.pieceOfNodes();
   const TissueSurface& surface = tissue.surface();
   for (std::size_t vertex = 0; vertex < surface.carriers.size(); ++vertex) {

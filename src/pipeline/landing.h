@@ -3,6 +3,7 @@
 // so its way is followed in time, by a pipeline of its own, until it rests.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,11 +27,12 @@ class Landing {
 
   // Displacements (m) in which the tissue, which no tool touches, rests, on its way from its
   // present shape; null: it does not within kLongestLanding, or before the end, or there is nothing
-  // below it.
+  // below it, or other tissue.
   Tissue::Displacements from(const Tissue& tissue, const std::optional<Deadline>& end) const;
 
  private:
   Tissue::Displacements lowered(const Tissue& tissue) const;
+  bool anyLiesOnTissue(const Tissue& tissue, const std::map<int, double>& pieces) const;
   double clearance(const Vec3& point) const;
 
   TissueConfig tissue_;  // with time, and without tearing

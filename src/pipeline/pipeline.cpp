@@ -179,28 +179,34 @@ void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_incremen
 
 SolveReport Pipeline::release(const std::vector<std::string>& names) {
   const Bounded bounded(*this);
-  const SolveReport report = world_.tissue.release(names);
+  const std::optional<Tissue::Shape> before = shapeOfLoose();
+  const SolveReport report = comeToLie(before, world_.tissue.release(names));
   touch();
   return report;
 }
 
 CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
   const Bounded bounded(*this);
-  const CutReport report = world_.tissue.cut(corners);
+  const std::optional<Tissue::Shape> before = shapeOfLoose();
+  CutReport report = world_.tissue.cut(corners);
+  report.solve = comeToLie(before, report.solve);
   touch();
   return report;
 }
 
 RemoveReport Pipeline::remove(const RemovedSpace& space) {
   const Bounded bounded(*this);
-  const RemoveReport report = world_.tissue.remove(space);
+  const std::optional<Tissue::Shape> before = shapeOfLoose();
+  RemoveReport report = world_.tissue.remove(space);
+  report.solve = comeToLie(before, report.solve);
   touch();
   return report;
 }
 
 SolveReport Pipeline::undo(int count) {
   const Bounded bounded(*this);
-  const SolveReport report = world_.tissue.undo(count);
+  const std::optional<Tissue::Shape> before = shapeOfLoose();
+  const SolveReport report = comeToLie(before, world_.tissue.undo(count));
   touch();
   return report;
 }

@@ -75,7 +75,19 @@ RunResult Runner::run() {
   return std::move(result_);
 }
 
+// Of loose tissue the rest shape is no place to begin from, unless the first step sees to that.
+void Runner::layDown() {
+  const Step& first = scene_.steps.front();
+  const bool is_seen_to =
+      std::holds_alternative<SettleStep>(first) || std::holds_alternative<LoadStateStep>(first);
+  if (is_seen_to || !pipeline_.isLoose()) return;
+  if (pipeline_.settle().status != SolveStatus::kOk) {
+    result_.remarks.push_back("the tissue, which nothing fixes, does not come to lie on supports");
+  }
+}
+
 void Runner::performAll() {
+  if (!scene_.steps.empty()) layDown();
   for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
     step_ = static_cast<int>(i);
     try {

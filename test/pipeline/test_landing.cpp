@@ -140,6 +140,39 @@ TEST_P(CutOff, LiesOnTheTableOnceSettled) {
   EXPECT_LT(balance.unbalanced().norm(), 0.02 * kWeight);
 }
 
+// Thinner than a fifth of a spacing, and four high, so that it does not stand.
+TEST(Landing, ASliceThatIsCutOffTopples) {
+  TissueConfig tissue = loose();
+  tissue.material.young_modulus = 5e4;
+  Pipeline pipeline(tissue, {}, {}, {tableAt(0.0)});
+  pipeline.settle();
+  const double place = kWidth - 0.0022;
+  const CutReport cut = pipeline.cut({Vec3(place, -1.0, -1.0), Vec3(place, 1.0, -1.0),
+                                      Vec3(place, 1.0, 1.0), Vec3(place, -1.0, 1.0)});
+  EXPECT_EQ(cut.pieces, 2);
+  EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
+  EXPECT_LT(pipeline.forceBalance().unbalanced().norm(), 0.02 * kWeight);
+  const std::vector<TissuePiece> pieces = pipeline.tissue().pieces();
+  EXPECT_GT(pieces[0].center.z(), 0.4 * kTop);
+  EXPECT_LT(pieces[1].center.z(), 0.25 * kTop);
+  EXPECT_EQ(pipeline.undo(1).status, SolveStatus::kOk);
+  EXPECT_EQ(pipeline.tissue().state().pieces, 1);
+}
+
+// Tissue would fall through tissue.
+TEST(Landing, ALooseBlocksUpperHalfStaysOnTheLower) {
+  Pipeline pipeline(loose(), {}, {}, {tableAt(-0.01)});
+  pipeline.settle();
+  constexpr double kHeight = 0.008;
+  pipeline.cut({Vec3(-1.0, -1.0, kHeight), Vec3(1.0, -1.0, kHeight), Vec3(1.0, 1.0, kHeight),
+                Vec3(-1.0, 1.0, kHeight)});
+  ASSERT_EQ(pipeline.tissue().state().pieces, 2);
+  const double top = pipeline.tissue().bounds().max().z();
+  EXPECT_EQ(pipeline.settle().status, SolveStatus::kOk);
+  EXPECT_NEAR(pipeline.tissue().bounds().max().z(), top, 0.01 * kStep);
+  EXPECT_NEAR(lowest(pipeline.tissue()), -0.01, 0.03 * kStep);
+}
+
 INSTANTIATE_TEST_SUITE_P(Method, CutOff, ::testing::Values("layered", "newton", "vbd"),
                          [](const auto& row) { return std::string(row.param); });
 

@@ -175,6 +175,22 @@ TEST(ToolPhysics, ASupportBearsTheWeightOfABlockThatNothingElseHolds) {
   EXPECT_LT(balance.unbalanced().norm(), 0.02 * weight);
 }
 
+// Not told as a step of its own.
+TEST(ToolPhysics, ABlockAboveATableLiesOnItBeforeTheFirstStep) {
+  std::string lower = kLyingBlock;
+  const std::string on_table = "point: [0, 0, 0]";
+  lower.replace(lower.find(on_table), on_table.size(), "point: [0, 0, -0.03]");
+  const RunResult result =
+      run(lower + kSphere + "steps:\n" + placed("probe", sphereAt(0.028), sphereAt(0.034), 2));
+  EXPECT_TRUE(result.allOk());
+  EXPECT_EQ(result.increments.size(), 2U);
+  EXPECT_GT(rowsOf(result, 0, "probe").back().force.z(), 0.3);
+  for (std::size_t node = 0; node < result.rest.size(); ++node) {
+    if (result.rest[node].z() > 1e-9) continue;
+    EXPECT_NEAR(result.displacement[node].z(), -0.03, 0.05 * kSpacing);
+  }
+}
+
 TEST(ToolPhysics, ABlockOnATableSinksLittleAndIsPressedThere) {
   const RunResult result = run(kLyingBlock + kSphere + "steps:\n  - settle: {}\n" +
                                placed("probe", sphereAt(-0.002), sphereAt(0.004), 3) +

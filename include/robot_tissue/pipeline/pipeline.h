@@ -97,6 +97,8 @@ class Pipeline {
   // As Tissue's, with the tools and supports where they are. Where no time passes, what nothing
   // holds falls onto supports that are below it, and comes to lie there.
   SolveReport settle();
+  // Whether there is something that has to come to lie so before anything else is done with it.
+  bool isLoose() const;
   void load(const LoadStep& step, const Tissue::OnIncrement& on_increment = {},
             int most_increments = 100000);
   SolveReport release(const std::vector<std::string>& names);
@@ -177,6 +179,10 @@ class Pipeline {
   // settling.cpp
   SolveReport balance();
   SolveReport settleLoose();
+  std::optional<Tissue::Shape> shapeOfLoose() const;
+  SolveReport comeToLie(const std::optional<Tissue::Shape>& before, const SolveReport& report);
+  SolveReport land(const Tissue::Shape& before);
+  void putInPlace(Tissue::Displacements displacement, std::shared_ptr<const CellSet> cells);
   bool isBehind() const;  // the shape shown is not yet the one of the tools' pose, in balance
 
   std::unique_ptr<Parts> parts_;

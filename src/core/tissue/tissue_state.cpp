@@ -155,6 +155,8 @@ void Tissue::take(const SavedState& saved) {
 
 void Tissue::takeOver(const Tissue& other) {
   take(other.stateNow());
+  last_report_ = SolveReport();
+  last_report_.patches.resize(patches_.size());
   wakeUnderBodyLoad();
 }
 
