@@ -135,17 +135,20 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
   return depths;
 }
 
+ToolContactUpdate::Touches ToolContactUpdate::takeSurface() {
+  if (surface_revision_ == world_.tissue.surface().revision) return Touches::kOfThisSurface;
+  surface_revision_ = world_.tissue.surface().revision;
+  const bool goes_on = world_.sliding.takeSurface(world_.pose, world_.tissue);
+  world_.sticking.takeCells(world_.tissue);
+  touch_finder_.beginStep();
+  return goes_on ? Touches::kGoOn : Touches::kMetAnew;
+}
+
 // The shape was solved for the contacts of before: are they those of the shape?
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
   contacts_ms_ = 0.0;
   const Stopwatch watch(contacts_ms_);
-  const bool new_surface = surface_revision_ != world_.tissue.surface().revision;
-  surface_revision_ = world_.tissue.surface().revision;
-  const bool goes_on = new_surface && world_.sliding.takeSurface(world_.pose, world_.tissue);
-  if (new_surface) {
-    world_.sticking.takeCells(world_.tissue);
-    touch_finder_.beginStep();
-  }
+  const Touches touches = takeSurface();
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   ContactSet contacts = touch_finder_.touchesAt(world_.pose, held);
   left_inside_ = 0.0;
@@ -156,10 +159,10 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
         is_at_rim ? touch_finder_.ownDepth(contact, contact.depth_m) : contact.depth_m - recess;
     left_inside_ = std::max(left_inside_, depth);
   }
-  if (new_surface && !goes_on) {
+  if (touches == Touches::kMetAnew) {
     world_.sliding.ride(world_.pose, world_.tissue);
     world_.sliding.meet(contacts, world_.pose, world_.tissue, held);
-  } else if (!new_surface) {
+  } else if (touches == Touches::kOfThisSurface) {
     touch_finder_.wanderPartOfWay(world_.pose, contacts);
     const bool settled = world_.sliding.update(touch_finder_.trackTouches(world_.pose, contacts),
                                                contacts, world_.pose, world_.tissue, held, shape);

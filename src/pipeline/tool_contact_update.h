@@ -24,6 +24,10 @@ class ToolContactUpdate : public ContactUpdate {
 
   double leftInside() const { return left_inside_; }
 
+  // Where the surface is another one, as after a cut, what touches and holds it is brought onto it.
+  enum class Touches { kOfThisSurface, kGoOn, kMetAnew };
+  Touches takeSurface();
+
  private:
   // Of a link: in the box a vertex goes so far at once and no farther (m), and on that way it is
   // looked for in the link after each stride (m).
