@@ -323,8 +323,8 @@ void Pipeline::forgetTools() {
 
 // After the tissue changed by other means than the tools' motion.
 void Pipeline::touch() {
-  parts_->contact_update
-      .takeSurface();  // what was taken back to rest bit for bit was not solved for
+  // A shape that is taken back bit for bit is not solved for, so nobody asked for its contacts.
+  parts_->contact_update.takeSurface();
   world_.sliding.commit(world_.pose, world_.tissue);
   touched_ = true;
   gave_up_ = false;

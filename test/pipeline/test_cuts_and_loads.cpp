@@ -114,21 +114,6 @@ TEST_P(HeldCut, TakenBackLeavesTheToolItsHold) {
 
 INSTANTIATE_TEST_SUITE_P(Grasped, HeldCut, testing::Bool());
 
-// So near that its contacts are looked for, but do not push: nothing is solved for as the cuts are
-// taken back.
-TEST(HoveringTool, TouchesTheMendedTissue) {
-  Pipeline cut(block(), {}, {probe()}), whole(block(), {}, {probe()});
-  for (Pipeline* pipeline : {&cut, &whole}) walk(*pipeline, -0.002, -0.0001);
-  ASSERT_GT(cut.cut(uprightAt(0.0325)).springs_cut, 0);
-  ASSERT_GT(cut.cut(uprightAt(0.0275)).springs_cut, 0);
-  cut.undo(2);
-  for (Pipeline* pipeline : {&cut, &whole}) walk(*pipeline, -0.0001, 0.002);
-  EXPECT_EQ(cut.tissue().lastReport().status, SolveStatus::kOk);
-  const double force = whole.report().tools.front().force_on_tool.z();
-  EXPECT_GT(force, 0.01);
-  EXPECT_NEAR(cut.report().tools.front().force_on_tool.z(), force, 0.01 * force);
-}
-
 // A patch beside a standing tool goes down: the tissue comes away from the tool or into it.
 TEST(LoadUnderATool, IsMetByTheToolAtEachIncrement) {
   Pipeline pipeline(block(), methodOf("elastic"), {probe()});

@@ -294,5 +294,33 @@ TEST(ToolSteps, RemarksGoToStderrUnlessQuiet) {
   fs::remove_all(pattern);
 }
 
+// So near that its contacts are looked for, but do not push: nothing is solved for as the cuts are
+// taken back.
+TEST(ToolSteps, ASphereThatHoversTouchesTissueThatWasMended) {
+  const std::string before =
+      "tissue:\n"
+      "  shape: {type: box, min: [0, 0, 0], max: [0.1, 0.1, 0.05]}\n"
+      "  spacing: 0.005\n"
+      "  material: {young_modulus: 10000}\n"
+      "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+      "tools: [{name: probe, shapes: [{type: sphere, radius: 0.01}]}]\n"
+      "steps:\n"
+      "  - move: {tool: probe, from: {xyz: [0.05, 0.05, 0.075]}, to: {xyz: [0.05, 0.05, 0.0601]}, "
+      "increments: 3}\n";
+  const std::string cuts =
+      "  - cut: {corners: [[0.055, -0.01, 0.01], [0.055, 0.11, 0.01], [0.055, 0.11, 0.06], "
+      "[0.055, -0.01, 0.06]]}\n"
+      "  - cut: {corners: [[-0.01, 0.045, 0.01], [0.11, 0.045, 0.01], [0.11, 0.045, 0.06], "
+      "[-0.01, 0.045, 0.06]]}\n"
+      "  - undo: {count: 2}\n";
+  const std::string after =
+      "  - move: {tool: probe, to: {xyz: [0.05, 0.05, 0.0598]}, increments: 3}\n";
+  const RunResult mended = run(before + cuts + after), whole = run(before + after);
+  EXPECT_TRUE(mended.allOk());
+  const double force = rowsOf(whole, 1, "probe").back().force.z();
+  EXPECT_GT(force, 0.001);
+  EXPECT_NEAR(rowsOf(mended, 4, "probe").back().force.z(), force, 0.01 * force);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tool_steps
