@@ -112,6 +112,17 @@ TEST_P(HeldCut, TakenBackLeavesTheToolItsHold) {
   EXPECT_LT(pipeline_.forceBalance().unbalanced().norm(), 0.05 * after);
 }
 
+// What is held is of the nodes that the cut made, too.
+TEST_P(HeldCut, ARemovalElsewhereLeavesTheToolItsHold) {
+  ASSERT_GT(pipeline_.cut(uprightAt(0.0275)).springs_cut, 0);
+  hold();
+  const double before = pipeline_.report().tools.front().force_on_tool.norm();
+  pipeline_.remove(Sphere{Vec3(0.0, 0.0, kTop), 0.008});
+  EXPECT_EQ(pipeline_.tissue().lastReport().status, SolveStatus::kOk);
+  EXPECT_EQ(pipeline_.report().tools.front().grasps, GetParam());
+  EXPECT_NEAR(pipeline_.report().tools.front().force_on_tool.norm(), before, 0.05 * before);
+}
+
 INSTANTIATE_TEST_SUITE_P(Grasped, HeldCut, testing::Bool());
 
 // A patch beside a standing tool goes down: the tissue comes away from the tool or into it.

@@ -38,12 +38,17 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   return state;
 }
 
+// Of ghosts, which tools' patches may be on, the patches that follow tell.
+bool isGone(const LatticeState& state, int node) {
+  return !state.cells->isGhost(node) && isRemoved(state, node);
+}
+
 // Drops the nodes of the patch that are gone.
 void loseNodes(const LatticeState& state, LoadingPatch& patch) {
   std::vector<int> nodes;
   std::vector<Vec3> displacement;
   for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
-    if (isRemoved(state, patch.nodes[i])) continue;
+    if (isGone(state, patch.nodes[i])) continue;
     nodes.push_back(patch.nodes[i]);
     if (!byForce(patch)) displacement.push_back(patch.displacement[i]);
   }
@@ -51,7 +56,7 @@ void loseNodes(const LatticeState& state, LoadingPatch& patch) {
   patch.displacement = std::move(displacement);
   patch.rim.erase(
       std::remove_if(patch.rim.begin(), patch.rim.end(),
-                     [&](const RimSpring& spring) { return isRemoved(state, spring.node); }),
+                     [&](const RimSpring& spring) { return isGone(state, spring.node); }),
       patch.rim.end());
 }
 
@@ -183,9 +188,7 @@ std::vector<std::string> Tissue::dropLostLoads() {
   for (std::size_t i = named_patches_; i < patches_.size(); ++i) loseNodes(state_, patches_[i]);
   for (LoadingPatch& target : due_) loseNodes(state_, target);
   for (const std::string& name : lost) dropNamed(name, due_);
-  const auto is_gone = [&](int node) {
-    return !state_.cells->isGhost(node) && isRemoved(state_, node);
-  };
+  const auto is_gone = [&](int node) { return isGone(state_, node); };
   disturbed_.erase(std::remove_if(disturbed_.begin(), disturbed_.end(), is_gone), disturbed_.end());
   return lost;
 }
