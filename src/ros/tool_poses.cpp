@@ -70,8 +70,8 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
       found.pose.links.push_back(tf2::transformToEigen(newest_of[link]));
     }
   } catch (const tf2::TransformException& error) {
-    found.message =
-        "no transform from link '" + looked_up + "' to '" + tissue_frame_ + "': " + error.what();
+    found.message = "no transform from link '" + looked_up + "' to '" + tissue_frame_ +
+                    "': " + onOneLine(error.what());
     return found;
   }
   found.pose.stamp_s = found.stamp.toSec();
