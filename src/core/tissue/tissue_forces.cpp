@@ -57,8 +57,10 @@ Vec3 Tissue::nodeForce(int node) const {
 
 // What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
 Vec3 Tissue::weight() const {
+  const std::vector<int> hanging = hangingNodes();
+  if (hanging.empty()) return weight_;
   Vec3 weight = weight_;
-  for (const Vec3& force : model_->forcesOn(state_, hangingNodes())) weight -= force;
+  for (const Vec3& force : model_->forcesOn(state_, hanging)) weight -= force;
   return weight;
 }
 
