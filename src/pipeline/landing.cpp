@@ -50,8 +50,10 @@ double dampingTime(const TissueConfig& tissue, double extent) {
 std::unique_ptr<const Landing> Landing::ofScene(const TissueConfig& tissue,
                                                 const SolverConfig& solver,
                                                 const std::vector<SupportConfig>& supports) {
-  const bool may_fall = !tissue.gravity.isZero(0.0) && !tissue.time && !supports.empty();
-  return may_fall ? std::make_unique<const Landing>(tissue, solver, supports) : nullptr;
+  const bool falls = !tissue.gravity.isZero(0.0) && !supports.empty();
+  const bool may_go_in_time = !tissue.time && tissue.membranes.empty();
+  return falls && may_go_in_time ? std::make_unique<const Landing>(tissue, solver, supports)
+                                 : nullptr;
 }
 
 Landing::Landing(const TissueConfig& tissue, const SolverConfig& solver,
@@ -65,14 +67,13 @@ Landing::Landing(const TissueConfig& tissue, const SolverConfig& solver,
   solver_.max_ms = 0.0;
 }
 
-Tissue::Displacements Landing::from(const Tissue& tissue,
-                                    const std::optional<Deadline>& end) const {
+Tissue::Displacements Landing::from(const Tissue& tissue, const Deadline& end) const {
   const Tissue::Displacements start = lowered(tissue);
   if (start == nullptr) return nullptr;
   TissueConfig config = tissue_;
   config.time->damping_time = dampingTime(config, tissue.bounds().sizes().maxCoeff());
   Pipeline in_time(config, solver_, {}, supports_);
-  in_time.setEnd(end.value_or(Deadline()));
+  in_time.setEnd(end);
   in_time.takeOver(tissue, start);
   const Vec3 middle = in_time.tissue().bounds().center();
   const double farthest = tuning::kFarthestLanding * tissue.bounds().sizes().maxCoeff();
@@ -80,7 +81,7 @@ Tissue::Displacements Landing::from(const Tissue& tissue,
     return (in_time.tissue().bounds().center() - middle).norm() < farthest;
   };
   for (double gone = 0.0; in_time.tissue().isMoving(); gone += tuning::kLandingPause) {
-    if (gone > tuning::kLongestLanding || !is_near() || (end && end->isOver())) return nullptr;
+    if (gone > tuning::kLongestLanding || !is_near() || end.isOver()) return nullptr;
     const SolveReport report = in_time.wait(tuning::kLandingPause);
     if (report.status == SolveStatus::kUnconverged) return nullptr;
   }

@@ -5,7 +5,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "robot_tissue/core/deadline.h"
@@ -17,7 +16,7 @@ namespace robot_tissue {
 
 class Landing {
  public:
-  // Null: no tissue of that scene has to come to lie.
+  // Null: no tissue of that scene has to come to lie, or its membranes do not move in time.
   static std::unique_ptr<const Landing> ofScene(const TissueConfig& tissue,
                                                 const SolverConfig& solver,
                                                 const std::vector<SupportConfig>& supports);
@@ -28,7 +27,7 @@ class Landing {
   // Displacements (m) in which the tissue, which no tool touches, rests, on its way from its
   // present shape; null: it does not within kLongestLanding, or before the end, or there is nothing
   // below it, or other tissue.
-  Tissue::Displacements from(const Tissue& tissue, const std::optional<Deadline>& end) const;
+  Tissue::Displacements from(const Tissue& tissue, const Deadline& end) const;
 
  private:
   Tissue::Displacements lowered(const Tissue& tissue) const;

@@ -221,8 +221,7 @@ SutureResult Pipeline::suture(const SutureConfig& config) {
 void Pipeline::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   if (!world_.tissue.retune(tissue, solver)) return;
   landing_ = Landing::ofScene(tissue, solver, supports_);
-  const Bounded bounded(*this);
-  parts_->load_step.balance();
+  balance();
   touch();
 }
 
@@ -293,10 +292,7 @@ SolveReport Pipeline::loadState(const std::string& bytes) {
 void Pipeline::takeOver(const Tissue& other, Tissue::Displacements displacement) {
   forgetTools();
   world_.tissue.takeOver(other);
-  Tissue::Shape shape = world_.tissue.shape();
-  shape.displacement = std::move(displacement);
-  world_.tissue.restore(shape);
-  world_.sliding.commit(world_.pose, world_.tissue);
+  putInPlace(std::move(displacement), world_.tissue.state().cells);
   describeTools();
 }
 

@@ -65,7 +65,7 @@ SolveReport Pipeline::comeToLie(const std::optional<Tissue::Shape>& before,
 SolveReport Pipeline::land(const Tissue::Shape& before) {
   const bool any_hangs = world_.tissue.anyHangs();
   putInPlace(before.displacement, before.cells);
-  const Tissue::Displacements lain = landing_->from(world_.tissue, end_);
+  const Tissue::Displacements lain = landing_->from(world_.tissue, end_.value_or(Deadline()));
   if (lain != nullptr) {
     putInPlace(lain, world_.tissue.state().cells);
   } else if (!any_hangs) {

@@ -83,6 +83,21 @@ TEST(Landing, WhatSlidesWithoutEndStaysWhereItWas) {
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
+// Its wall would be missing on the way.
+TEST(Landing, TissueWithAMembraneHangs) {
+  constexpr double kBall = 0.03;
+  TissueConfig tissue = loose();
+  tissue.mesh = std::make_shared<const TriangleMesh>(sphereMesh(kBall, 3));
+  MembraneConfig wall;
+  wall.name = "wall";
+  wall.thickness = 0.001;
+  wall.young_modulus = 5e4;
+  tissue.membranes.push_back(wall);
+  Pipeline pipeline(tissue, {}, {}, {tableAt(-0.1)});
+  EXPECT_EQ(pipeline.settle().status, SolveStatus::kOk);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
 TEST(Landing, WithNothingBelowItTissueHangs) {
   const SupportConfig aside = {"aside", boxOf(Vec3(0.1, 0.1, 0.02), Vec3(0.5, 0.0, -0.2)), 0.3};
   Pipeline pipeline(loose(), {}, {}, {aside});

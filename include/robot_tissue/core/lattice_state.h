@@ -56,6 +56,11 @@ inline double shareLeft(const LatticeState& state, int node) {
 // Nothing is left around the lattice's node.
 inline bool isRemoved(const LatticeState& state, int node) { return shareLeft(state, node) == 0.0; }
 
+// Likewise of any node; what ghosts there are has tissue around it.
+inline bool isGone(const LatticeState& state, int node) {
+  return !state.cells->isGhost(node) && isRemoved(state, node);
+}
+
 // Nothing was cut or removed.
 inline bool isAsMade(const LatticeState& state) {
   return state.springs_cut == 0 && state.taken.empty();

@@ -101,7 +101,7 @@ std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state)
   std::vector<int> piece(at(cells.nodeCount()), -1);
   int pieces = 0;
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (!cells.isGhost(node) && isRemoved(state, node)) continue;
+    if (isGone(state, node)) continue;
     const int lowest = nodes.lowest(node);
     // Ghosts come last: one that is joined to no node is of a part that lost its nodes.
     if (cells.isGhost(lowest)) continue;

@@ -299,7 +299,7 @@ void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& i
     if (!displacement.allFinite() || displacement.cwiseAbs().maxCoeff() > most) {
       throw InputError("is damaged: a displacement is beyond all bounds");
     }
-    const bool is_gone = !state.cells->isGhost(node) && isRemoved(state, node);
+    const bool is_gone = isGone(state, node);
     if ((is_gone || isFixed(lattice, *state.cells, node)) && !displacement.isZero(0.0)) {
       throw InputError("is damaged: a fixed or removed node is displaced");
     }

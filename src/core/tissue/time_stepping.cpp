@@ -133,8 +133,7 @@ void Tissue::predict() {
   kept_.reset();
   for (std::size_t node = 0; node < state_.displacement.size(); ++node) {
     const int index = static_cast<int>(node);
-    const bool is_gone = !state_.cells->isGhost(index) && isRemoved(state_, index);
-    if (!is_gone && !isFixed(lattice_, *state_.cells, index)) {
+    if (!isGone(state_, index) && !isFixed(lattice_, *state_.cells, index)) {
       state_.displacement[node] = time_->predicted(node);
     }
   }

@@ -38,12 +38,8 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   return state;
 }
 
-// Of ghosts, which tools' patches may be on, the patches that follow tell.
-bool isGone(const LatticeState& state, int node) {
-  return !state.cells->isGhost(node) && isRemoved(state, node);
-}
-
-// Drops the nodes of the patch that are gone.
+// Drops the nodes of the patch that are gone; of ghosts, which tools' patches may be on, the
+// patches that follow tell.
 void loseNodes(const LatticeState& state, LoadingPatch& patch) {
   std::vector<int> nodes;
   std::vector<Vec3> displacement;

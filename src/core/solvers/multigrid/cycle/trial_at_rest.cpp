@@ -129,8 +129,8 @@ double TrialAtRest<Real>::ofSmoothMotions() {
   for (int cycle = 0; cycle < tuning::kMostSlowCycles; ++cycle) {
     shape_.levels().correction().find();
     const double left = shape_.displacementNorm(), seen = shape_.correctionNorm();
-    if (!(seen > 0.0) || factor > tuning::kFree) return 1.0;
     const double factor_before = std::exchange(factor, left / seen);
+    if (!(factor <= tuning::kFree)) return 1.0;
     const bool is_slow =
         left > tuning::kHardlyFalls * before && factor > tuning::kHidesMore * factor_before;
     const bool is_fast = cycle == tuning::kFirstFastCycle && left < tuning::kFast * thrown;
