@@ -281,6 +281,15 @@ const KeyTable<TissueReading> kGridKeys = {
     {"gravity", readGravity},
 };
 
+// A mesh in millimeters is a thousand times as large.
+std::string orSmaller(const TissueConfig& tissue) {
+  constexpr double kLargest = 1.0;  // m; an organ is no larger. Chosen
+  if (!tissue.mesh) return "";
+  const double extent = boundsOf(tissue.mesh->vertices).sizes().maxCoeff();
+  return ", or the mesh, " + numberText(extent) + " m across, smaller" +
+         (extent > kLargest ? " (tissue.shape.scale: 0.001 if it is in millimeters)" : "");
+}
+
 }  // namespace
 
 Box readNodeBox(const MapReader& map, const Grid& grid) {
@@ -297,12 +306,15 @@ void requireMemory(const Entry& spacing, const TissueConfig& tissue, const std::
   const double free = freeMemory();
   const double most = mostNodes(free - around, method);
   if (nodes <= most) return;
-  spacing.fail("makes " + numberText(std::round(nodes)) + " nodes, which take " +
-               megabytes(around + memoryOf(nodes, method)) +
-               (method.empty() ? "" : " with method " + method) + " where " + megabytes(free) +
-               " are free: " +
-               (most > 0.0 ? "must give at most " + numberText(most) + " nodes"
-                           : "must be larger, or the mesh smaller"));
+  const std::string takes =
+      std::isfinite(around) ? " nodes, which take " + megabytes(around + memoryOf(nodes, method)) +
+                                  (method.empty() ? "" : " with method " + method) + " where " +
+                                  megabytes(free) + " are free: "
+                            : " nodes, in a box of more cells than can be numbered: ";
+  spacing.fail(
+      "makes " + numberText(std::round(nodes)) + takes +
+      (most > 0.0 ? "must give at most " + numberText(most) + " nodes" : "must be larger") +
+      orSmaller(tissue));
 }
 
 TissueConfig readTissue(const Entry& entry, const std::string& scene_folder, bool supported,

@@ -75,11 +75,12 @@ RunResult Runner::run() {
   return std::move(result_);
 }
 
-// Of loose tissue the rest shape is no place to begin from, unless the first step sees to that.
-void Runner::layDown() {
-  const Step& first = scene_.steps.front();
-  const bool is_seen_to =
-      std::holds_alternative<SettleStep>(first) || std::holds_alternative<LoadStateStep>(first);
+// Of loose tissue the rest shape is no place to begin from, unless the step that is next sees to
+// that.
+void Runner::layDown(const Step& next) {
+  const bool is_seen_to = std::holds_alternative<SettleStep>(next) ||
+                          std::holds_alternative<LoadStateStep>(next) ||
+                          std::holds_alternative<ResetStep>(next);
   if (is_seen_to || !pipeline_.isLoose()) return;
   if (pipeline_.settle().status != SolveStatus::kOk) {
     result_.remarks.push_back("the tissue, which nothing fixes, does not come to lie on supports");
@@ -87,10 +88,11 @@ void Runner::layDown() {
 }
 
 void Runner::performAll() {
-  if (!scene_.steps.empty()) layDown();
   for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
     step_ = static_cast<int>(i);
     try {
+      const bool is_at_rest = i == 0 || std::holds_alternative<ResetStep>(scene_.steps[i - 1]);
+      if (is_at_rest) layDown(scene_.steps[i]);
       const int torn = pipeline_.tissue().springsTorn();
       const std::size_t dropped = pipeline_.tissue().droppedPieces().size();
       const bool was_impatient = pipeline_.tissue().patience().cutsOff();

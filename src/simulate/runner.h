@@ -43,7 +43,7 @@ class Runner {
   void perform(const LoadStep& step);
   void perform(const ReleaseStep& step);
   void perform(const ResetStep& step);
-  void layDown();
+  void layDown(const Step& next);
   void performAll();
   void remark(const std::string& text);
   void remarkTorn(int before);

@@ -69,7 +69,8 @@ TEST_F(BallScene, SpacingThatIsTooLargeOrMakesTooManyNodes) {
   expectRefusal("spacing: 0.01", "spacing: 0.07",
                 {"tissue.spacing = 0.07", "at most the mesh's smallest extent, 0.066"});
   expectRefusal("spacing: 0.01", "spacing: 1.0e-5",
-                {"tissue.spacing = 1.0e-5", "e+11 nodes", "MB are free", "must be larger"});
+                {"tissue.spacing = 1.0e-5", "e+11 nodes", "than can be numbered",
+                 "must be larger, or the mesh, 0.066 m across, smaller"});
   expectRefusal("spacing: 0.01", "spacing: 1.0e-12", {"tissue.spacing = 1.0e-12", "from 1e-06"});
 }
 

@@ -176,15 +176,16 @@ TEST(ToolPhysics, ASupportBearsTheWeightOfABlockThatNothingElseHolds) {
 }
 
 // Not told as a step of its own.
-TEST(ToolPhysics, ABlockAboveATableLiesOnItBeforeTheFirstStep) {
+TEST(ToolPhysics, ABlockAboveATableLiesOnItBeforeTheFirstStepAndAfterAReset) {
   std::string lower = kLyingBlock;
   const std::string on_table = "point: [0, 0, 0]";
   lower.replace(lower.find(on_table), on_table.size(), "point: [0, 0, -0.03]");
-  const RunResult result =
-      run(lower + kSphere + "steps:\n" + placed("probe", sphereAt(0.028), sphereAt(0.034), 2));
+  const std::string press = placed("probe", sphereAt(0.028), sphereAt(0.034), 2);
+  const RunResult result = run(lower + kSphere + "steps:\n" + press + "  - reset: {}\n" + press);
   EXPECT_TRUE(result.allOk());
-  EXPECT_EQ(result.increments.size(), 2U);
+  EXPECT_EQ(result.increments.size(), 5U);
   EXPECT_GT(rowsOf(result, 0, "probe").back().force.z(), 0.3);
+  EXPECT_EQ(rowsOf(result, 0, "probe").back().force, rowsOf(result, 2, "probe").back().force);
   for (std::size_t node = 0; node < result.rest.size(); ++node) {
     if (result.rest[node].z() > 1e-9) continue;
     EXPECT_NEAR(result.displacement[node].z(), -0.03, 0.05 * kSpacing);
