@@ -44,7 +44,7 @@ void StickingContacts::takeCells(const Tissue& tissue) {
     std::decay_t<decltype(by_node)> renumbered;
     for (const auto& [node, value] : by_node) {
       const int here = cells_->nodeOf(*before, node);
-      if (here >= 0) renumbered.emplace(here, value);
+      if (here >= 0 && !isGone(tissue.state(), here)) renumbered.emplace(here, value);
     }
     by_node = std::move(renumbered);
   };

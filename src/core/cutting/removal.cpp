@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cutting/cell_division.h"
+#include "cutting/cut_front.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 
@@ -136,6 +137,7 @@ void removeCells(const Lattice& lattice, const std::vector<std::uint8_t>& cells,
     state.taken[place] = static_cast<std::uint8_t>(state.taken[place] | cells[place]);
   }
   noteTaken(lattice, state);
+  state.ahead = stillAhead(lattice, state);
   const auto there = cellsLeft(lattice, state, split);
   state.displacement = carriedOver(*state.cells, state.displacement, *there);
   state.cells = there;
