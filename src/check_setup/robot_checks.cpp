@@ -4,13 +4,13 @@
 
 #include "robot_tissue/contact/contact_finder.h"
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/contact/tool_sizes.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr double kLargestTool = 10.0;  // extents of the tissue: a unit was mistaken. Chosen
 constexpr double kThinnestTool = 0.1;  // spacings: it slips through between the nodes. Chosen
 
 double extentOf(const TissueConfig& tissue) {
@@ -31,11 +31,10 @@ Findings checkSizes(const Scene& scene, const std::vector<ToolGeometry>& tools) 
       if (link.shapes.empty()) continue;
       const std::string name = "tools: link '" + link.link + "' of '" + tool.name + "'";
       const double extent = finder.bounds(here, Pose::Identity()).sizes().maxCoeff();
-      if (extent > kLargestTool * extentOf(scene.tissue)) {
-        findings.push_back({Finding::Level::kWarning,
-                            name + " is " + numberText(extent) + " m across beside a tissue of " +
-                                numberText(extentOf(scene.tissue)) + " m: a mesh in millimeters?",
-                            "scale: 0.001 of its mesh, in the URDF or in shapes"});
+      const std::string remark = remarkOnSize(tool.name, link.link, extent, extentOf(scene.tissue));
+      if (!remark.empty()) {
+        findings.push_back({Finding::Level::kWarning, "tools: " + remark,
+                            "scale of its mesh, in the URDF or in shapes, or a smaller shape"});
       } else if (finder.thickness(here) < kThinnestTool * scene.tissue.spacing) {
         findings.push_back({Finding::Level::kWarning,
                             name + " is " + numberText(1e3 * finder.thickness(here)) +

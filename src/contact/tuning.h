@@ -131,4 +131,7 @@ constexpr double kUnitsPerM = 100.0;
 // at loading only. Chosen.
 constexpr std::size_t kWidthDirections = 400;
 
+// Extents of the tissue (1): a link that is larger was drawn in another unit. Chosen.
+constexpr double kLargestTool = 10.0;
+
 }  // namespace robot_tissue::tuning

@@ -49,7 +49,7 @@ robot_tissue_room(loads
   USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
-    dof_constraints.h loading_patch.cpp narrow_contact.cpp narrow_contact.h patch_rim.cpp
+    dof_constraints.h driven_places.cpp driven_places.h loading_patch.cpp narrow_contact.cpp narrow_contact.h patch_rim.cpp
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base lattice cutting loads
@@ -109,7 +109,7 @@ robot_tissue_room(tissue
     solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC load_step_bound.h method_names.h patience.h tissue.h
-  FILES contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h load_ramp.h load_step_bound.cpp load_stepping.cpp patience.cpp registry.cpp registry.h solve_bounds.cpp
+  FILES contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h load_ramp.h load_step_bound.cpp load_stepping.cpp partings.h patience.cpp registry.cpp registry.h solve_bounds.cpp
     round_gain.h suturing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h time_stepping.cpp
     tissue.cpp tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_pieces.cpp tissue_state.cpp
     tissue_state.h tissue_surface.cpp tissue_surgery.cpp topology_change.h tuning.h)

@@ -19,7 +19,8 @@ double PressGrowth::shareOfLastWay(std::size_t link, const Pose& pose) const {
   const Vec3 on_link = links_[link].inverse() * place;
   const Vec3 last_way = place - links_before_[link] * on_link;
   const Vec3 way = pose * on_link - place;
-  if (last_way.isZero(0.0)) return 0.0;
+  const double far = place.norm() + links_[link].translation().norm();
+  if (last_way.norm() <= tuning::kStoodStill * far) return 0.0;
   return std::clamp(way.dot(last_way) / last_way.squaredNorm(), -1.0, 1.0);
 }
 

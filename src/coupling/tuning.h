@@ -38,6 +38,8 @@ constexpr double kSameFriction = 0.03;
 // Of what a link presses with (1): the most that it is taken to grow or fall by in a load step.
 // More: bolder first guesses where contacts begin or end. Chosen.
 constexpr double kMostGrowth = 0.5;
+// Of how far from the origin a link is (1): what it goes by rounding, where it stands. Chosen.
+constexpr double kStoodStill = 1e-12;
 // Share (1) of what a plane's drift was other than foreseen, by which it is foreseen otherwise the
 // next time. Less: slower to learn; more: touches that share a push swing. 0.3, 0.5, 0.7, 1: from
 // four starts a sphere takes 1,968, 1,825, 1,987, 2,224 cycles (2,112 where nothing is foreseen), a

@@ -7,6 +7,10 @@
 
 namespace robot_tissue {
 
+void Burrs::endStrokes() {
+  for (BurrState& state : states_) state.is_drilling = false;
+}
+
 bool Burrs::goTo(RobotPose& pose) {
   bool all = true;
   world_.report.would_take_all.clear();  // told as long as they stand there

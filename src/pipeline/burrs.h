@@ -30,6 +30,8 @@ class Burrs {
     states_.assign(world_.tools.size(), BurrState());
     world_.report.would_take_all.clear();
   }
+  // What is removed next is a change of its own.
+  void endStrokes();
   const std::vector<BurrState>& states() const { return states_; }
   void restore(const std::vector<BurrState>& states) { states_ = states; }
 

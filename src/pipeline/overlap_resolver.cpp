@@ -15,6 +15,11 @@ void addUnit(const Vec3& way, std::vector<Vec3>& ways) {
   if (way.norm() > 0.0) ways.push_back(way.normalized());
 }
 
+// Steps on any way, at least one, that do not bring a point out that is so deep (m).
+int stepsWithin(double depth, double length) {
+  return static_cast<int>(std::clamp(depth / length, 1.0, 1.0 * Pipeline::kMostLoadSteps));
+}
+
 }  // namespace
 
 RobotPose OverlapResolver::moved(const Links& links, const Vec3& way, RobotPose pose) {
@@ -53,8 +58,15 @@ std::optional<Vec3> OverlapResolver::middleBeneath(const Links& links,
 }
 
 bool OverlapResolver::isInTissue(const Links& links, const RobotPose& pose) const {
+  return depthIn(links, pose).has_value();
+}
+
+// Of the deepest point of the surface in the links (m); absent: they are not in the tissue.
+std::optional<double> OverlapResolver::depthIn(const Links& links, const RobotPose& pose) const {
   const double touches = tuning::kOverlapRounding * world_.tissue.lattice().spacing();
-  return deepest(overlapOf(links, pose)) > touches || middleBeneath(links, pose).has_value();
+  const double depth = deepest(overlapOf(links, pose));
+  if (depth > touches || middleBeneath(links, pose)) return depth;
+  return std::nullopt;
 }
 
 bool OverlapResolver::isInTissue(std::size_t tool, const RobotPose& pose) const {
@@ -95,10 +107,12 @@ std::optional<int> OverlapResolver::stepsOut(const Links& links, const RobotPose
                                              const Vec3& way, int most) const {
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   bool gives_way = false;
-  for (int steps = 0; steps < most; ++steps) {
+  for (int steps = 0, next = 1; steps < most; steps += next) {
     const RobotPose there = moved(links, steps * world_.tissue.lattice().spacing() * way, pose);
     const ContactSet overlap = overlapOf(links, there);
-    if (deepest(overlap) <= 0.0 && !middleBeneath(links, there)) {
+    const double depth = deepest(overlap);
+    next = stepsWithin(depth, world_.tissue.lattice().spacing());
+    if (depth <= 0.0 && !middleBeneath(links, there)) {
       return gives_way ? std::optional<int>(steps) : std::nullopt;
     }
     if (!overlap.contacts.empty()) gives_way = false;
@@ -122,8 +136,13 @@ bool OverlapResolver::resolveOverlap(const Links& links, RobotPose& pose) const 
       if (world_.deadline.isOver()) break;
     }
   }
-  for (int step = 0; step < Pipeline::kMostLoadSteps && isInTissue(links, pose); ++step) {
-    pose = moved(links, world_.tissue.stepLength() * shortest, std::move(pose));
+  const double length = world_.tissue.stepLength();
+  for (int left = Pipeline::kMostLoadSteps; left > 0;) {
+    const std::optional<double> depth = depthIn(links, pose);
+    if (!depth) break;
+    int steps = std::min(left, stepsWithin(*depth, length));
+    left -= steps;
+    while (steps-- > 0) pose = moved(links, length * shortest, std::move(pose));
   }
   return true;
 }

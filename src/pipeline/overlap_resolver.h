@@ -22,6 +22,7 @@ class OverlapResolver {
   ContactSet overlapOf(const Links& links, const RobotPose& pose) const;
   std::optional<Vec3> middleBeneath(const Links& links, const RobotPose& pose) const;
   bool isInTissue(const Links& links, const RobotPose& pose) const;
+  std::optional<double> depthIn(const Links& links, const RobotPose& pose) const;
   std::vector<Vec3> waysOut(const Links& links, const RobotPose& pose) const;
   std::optional<int> stepsOut(const Links& links, const RobotPose& pose, const Vec3& way,
                               int most) const;

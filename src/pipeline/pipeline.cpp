@@ -37,7 +37,8 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
   takeTools(tools);
   parts_->load_step.lieDown();
   world_.last_pose.reset();
-  parts_->motion.clearCheckpoints();
+  parts_->motion.forget();
+  parts_->load_step.forgetUnderWay();
   touched_ = true;
 }
 
@@ -309,12 +310,14 @@ void Pipeline::forgetTools() {
   parts_->blades.forget();
   parts_->burrs.forget();
   parts_->scissors.forget();
-  parts_->motion.clearCheckpoints();
+  parts_->motion.forget();
+  parts_->load_step.forgetUnderWay();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
   world_.unfinished = gave_up_ = false;
   late_iterations_ = 0;
   touched_ = true;
+  was_near_ = false;
 }
 
 // After the tissue changed by other means than the tools' motion.
@@ -327,6 +330,8 @@ void Pipeline::touch() {
   late_iterations_ = 0;
   parts_->motion.checkInAnew();
   parts_->blades.endStrokes();
+  parts_->burrs.endStrokes();
+  parts_->scissors.endStrokes();
   describeTools();
 }
 

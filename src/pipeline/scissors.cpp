@@ -33,6 +33,10 @@ ScissorsState::Jaws jawsIn(const std::vector<Pose>& links) {
 
 }  // namespace
 
+void Scissors::endStrokes() {
+  for (ScissorsState& state : states_) state.is_cutting = false;
+}
+
 bool Scissors::goTo(RobotPose& pose) {
   bool all = true;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {

@@ -35,6 +35,8 @@ class Scissors {
 
   // They stand nowhere.
   void forget() { states_.assign(world_.tools.size(), ScissorsState()); }
+  // What is cut next is a change of its own.
+  void endStrokes();
   const std::vector<ScissorsState>& states() const { return states_; }
   void restore(const std::vector<ScissorsState>& states) { states_ = states; }
 

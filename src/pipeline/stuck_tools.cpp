@@ -77,10 +77,10 @@ void ToolMotion::leaveReleased(RobotPose& pose) {
 // one that was thrown to the other side of the tissue. What a tool holds, and blades in their
 // wounds, stay; so do all where work is bounded for a scene, of which this takes a good part.
 void ToolMotion::leaveJam(RobotPose& pose) {
-  lost_in_a_row_ = world_.report.lost ? lost_in_a_row_ + 1 : 0;
-  if (lost_in_a_row_ < tuning::kMostLostInARow) return;
+  behind_.lost_in_a_row = world_.report.lost ? behind_.lost_in_a_row + 1 : 0;
+  if (behind_.lost_in_a_row < tuning::kMostLostInARow) return;
   if (world_.tools.anyRigid() || world_.tissue.patience().isForScene()) return;
-  lost_in_a_row_ = 0;
+  behind_.lost_in_a_row = 0;
   std::vector<std::size_t> jammed;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (ways_.isAt(tool, *world_.last_pose, pose) || isAttached(tool)) continue;

@@ -12,6 +12,20 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+// Whether the shape is one that touches push into place, of tools or supports.
+bool pushesStill(const Tissue& tissue) {
+  const auto pushes = [&](const ContactSpring& spring) {
+    return !forceOf(spring, tissue.state().displacement).isZero(0.0);
+  };
+  return std::any_of(tissue.patches().begin(), tissue.patches().end(),
+                     [&](const LoadingPatch& patch) {
+                       return std::any_of(patch.contacts.begin(), patch.contacts.end(), pushes);
+                     });
+}
+
+}  // namespace
 
 // Where tissue slips off a tool, it springs far in one solve. So that it meets the tool again where
 // it would, no vertex near a link goes farther at once than half a spacing; so that it does not
@@ -171,7 +185,7 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   }
   if (round == Round::kLast) return true;
   of_tools = patchesOfTools(world_);
-  return !of_tools.empty();
+  return !of_tools.empty() || pushesStill(world_.tissue);
 }
 
 double ToolContactUpdate::deepestShown() {

@@ -44,10 +44,10 @@ bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
 // Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
 // or in time. Tools that pass the tissue by take none.
 RobotPose ToolMotion::walk(const RobotPose& pose) {
-  RobotPose start = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
+  RobotPose start = world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose;
   world_.asked = pose;
   const bool goes_back = turnsBack(start, pose);
-  last_goal_ = pose;
+  behind_.last_goal = pose;
   const bool moves = world_.tissue.isMoving();
   if (!moves && letPass(start, pose)) {
     passTo(pose);
@@ -64,15 +64,15 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
 
 // Whether the tools go back: what time ran out in on the way there they need not wait for.
 bool ToolMotion::turnsBack(const RobotPose& start, const RobotPose& pose) const {
-  if (last_goal_.links.size() != pose.links.size()) return false;
-  return ways_.stepsBetween(last_goal_, pose) >
-         std::max(ways_.stepsBetween(start, pose), ways_.stepsBetween(start, last_goal_));
+  if (behind_.last_goal.links.size() != pose.links.size()) return false;
+  return ways_.stepsBetween(behind_.last_goal, pose) >
+         std::max(ways_.stepsBetween(start, pose), ways_.stepsBetween(start, behind_.last_goal));
 }
 
 void ToolMotion::forgetUnfinished() {
   load_step_.forgetUnderWay();
   world_.unfinished = false;
-  late_iterations_ = 0;
+  behind_.late_iterations = 0;
 }
 
 // Ends the last load step, if time ran out in it, before the next one begins: errors of steps that
@@ -84,25 +84,25 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
     const double left = ways_.stepsBetween(start, pose);
     const bool leads_away = ways_.stepsBetween(load_step_.goesTo(), pose) > left;
     const bool stays = ways_.stepsBetween(start, load_step_.goesTo()) == 0.0;
-    const bool holds_up = stays && left > 0.0 && late_iterations_ > tuning::kMostToFinish;
+    const bool holds_up = stays && left > 0.0 && behind_.late_iterations > tuning::kMostToFinish;
     if (leads_away || holds_up) load_step_.forgetUnderWay();
   }
-  const bool may_end = !is_late || late_iterations_ > tuning::kMostToFinish;
+  const bool may_end = !is_late || behind_.late_iterations > tuning::kMostToFinish;
   if (!load_step_.isUnderWay() && may_end) {
-    late_iterations_ = 0;
+    behind_.late_iterations = 0;
     return true;
   }
   const double before_ms = world_.deadline.leftMs();
   const bool arrived = load_step_.finish(start);
   const int made = world_.tissue.lastReport().iterations;
-  late_iterations_ += std::max(1, made);
+  behind_.late_iterations += std::max(1, made);
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
-  if (is_done) late_iterations_ = 0;
+  if (is_done) behind_.late_iterations = 0;
   const bool is_short = isShort(world_.deadline, before_ms) ||
                         (isBounded() && made > tuning::kShortToGoOn * world_.mostIterations());
   if (is_done && !is_short) return true;
-  begins_short_ = !arrived && !load_step_.isUnderWay();
+  behind_.begins_short = !arrived && !load_step_.isUnderWay();
   world_.report.too_fast = !world_.report.lost;
   return false;
 }
@@ -124,7 +124,8 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   const double steps = stepsOf(load_steps, start, pose);
   // Rigid patches find the shapes that they left by the steps of their ways, as these were.
   const double end = world_.tools.anyRigid() ? steps : steps - tuning::kWayRounding;
-  double gone = 0.0, longest = std::exchange(begins_short_, false) ? tuning::kShortestStep : 1.0;
+  double gone = 0.0,
+         longest = std::exchange(behind_.begins_short, false) ? tuning::kShortestStep : 1.0;
   int in_short_ones = 0;  // iterations
   Patience& patience = world_.tissue.patience();
   patience.forgetWay();
@@ -164,7 +165,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     longest = tuning::kShortestStep;
     if (!isBounded() && !load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms))
       continue;
-    begins_short_ = world_.report.too_fast = true;
+    behind_.begins_short = world_.report.too_fast = true;
     return came();
   }
   if (end <= 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
@@ -173,10 +174,11 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
 }
 
 void ToolMotion::checkIn(const RobotPose& pose) {
-  if (!world_.tools.anyRigid() || world_.tissue.isUntouched()) checkpoints_.clear();
-  if (checkpoints_.size() >= tuning::kMostCheckpoints) checkpoints_.erase(checkpoints_.begin());
-  checkpoints_.push_back(world_.tools.anyRigid() ? load_step_.checkpoint() : Checkpoint());
-  checkpoints_.back().pose = pose;
+  if (!world_.tools.anyRigid() || world_.tissue.isUntouched()) behind_.checkpoints.clear();
+  if (behind_.checkpoints.size() >= tuning::kMostCheckpoints)
+    behind_.checkpoints.erase(behind_.checkpoints.begin());
+  behind_.checkpoints.push_back(world_.tools.anyRigid() ? load_step_.checkpoint() : Checkpoint());
+  behind_.checkpoints.back().pose = pose;
 }
 
 // The tools let go, and come in from outside. Those that wait for the next step stay away in the
@@ -192,7 +194,7 @@ void ToolMotion::startAnew(RobotPose& pose) {
   if (!world_.reached_s || *world_.reached_s > pose.stamp_s) world_.reached_s = pose.stamp_s;
   world_.pose.stamp_s = *world_.reached_s;
   load_step_.lieDown();
-  checkpoints_.clear();
+  behind_.checkpoints.clear();
   world_.last_pose = pose;
   world_.last_pose->stamp_s = *world_.reached_s;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -233,7 +235,7 @@ void ToolMotion::comeAndGo(RobotPose& pose) {
   if (!any) return;
   world_.last_pose = from;
   world_.sliding.commit(from, world_.tissue);
-  checkpoints_.clear();
+  behind_.checkpoints.clear();
   checkIn(from);
 }
 
@@ -274,23 +276,25 @@ void ToolMotion::passTo(const RobotPose& pose) {
 
 // Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
 void ToolMotion::goBackTo(RobotPose& pose) {
-  const RobotPose& from = world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose;
-  std::size_t nearest = checkpoints_.size() - 1;
+  const RobotPose& from =
+      world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose;
+  std::size_t nearest = behind_.checkpoints.size() - 1;
   double shortest = ways_.stepsBetween(from, pose);
   for (std::size_t earlier = nearest; world_.tools.anyRigid() && earlier-- > 0;) {
-    const double way = ways_.stepsBetween(checkpoints_[earlier].pose, pose);
+    const double way = ways_.stepsBetween(behind_.checkpoints[earlier].pose, pose);
     if (way < shortest) {
       shortest = way;
       nearest = earlier;
     }
   }
   if (world_.tools.anyRigid()) {
-    checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
-                       checkpoints_.end());
-    load_step_.goBackTo(checkpoints_.back());
+    behind_.checkpoints.erase(
+        behind_.checkpoints.begin() + static_cast<std::ptrdiff_t>(nearest) + 1,
+        behind_.checkpoints.end());
+    load_step_.goBackTo(behind_.checkpoints.back());
   }
-  const auto far =
-      ways_.farFrom(world_.tools.anyRigid() ? checkpoints_.back().pose : *world_.last_pose, pose);
+  const auto far = ways_.farFrom(
+      world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose, pose);
   if (!far.empty()) {
     world_.report.too_fast = true;
     world_.report.jumped = far;
@@ -312,7 +316,7 @@ void ToolMotion::stayAt(const Checkpoint& last_good, const RobotPose& goal) {
 }
 
 void ToolMotion::checkInAnew() {
-  checkpoints_.clear();
+  behind_.checkpoints.clear();
   if (world_.last_pose) checkIn(*world_.last_pose);
 }
 

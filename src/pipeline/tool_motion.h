@@ -11,6 +11,15 @@
 
 namespace robot_tissue {
 
+// What is remembered of the tools' way so far.
+struct WayBehind {
+  std::vector<Checkpoint> checkpoints;
+  RobotPose last_goal;        // of the last walk
+  int lost_in_a_row = 0;      // updates that no shape followed
+  int late_iterations = 0;    // of a load step that is being finished
+  bool begins_short = false;  // no shape followed the last load step, and time was over
+};
+
 class ToolMotion {
  public:
   ToolMotion(World& world, const WayLengths& ways, const OverlapResolver& overlap,
@@ -33,12 +42,12 @@ class ToolMotion {
   bool standsStill(const RobotPose& pose) const;
   std::vector<std::size_t> toolsBehind() const;
 
-  bool hasCheckpoints() const { return !checkpoints_.empty(); }
+  bool hasCheckpoints() const { return !behind_.checkpoints.empty(); }
   // The last pose is one to come back to, and the only one.
   void checkInAnew();
-  void clearCheckpoints() { checkpoints_.clear(); }
-  const std::vector<Checkpoint>& checkpoints() const { return checkpoints_; }
-  void restore(const std::vector<Checkpoint>& checkpoints) { checkpoints_ = checkpoints; }
+  const WayBehind& wayBehind() const { return behind_; }
+  void restore(const WayBehind& behind) { behind_ = behind; }
+  void forget() { behind_ = WayBehind(); }
 
  private:
   enum class Others { kNone, kCame };  // of the tools, in this step
@@ -65,11 +74,7 @@ class ToolMotion {
   const OverlapResolver& overlap_;
   Grasping& grasping_;
   LoadStepper& load_step_;
-  std::vector<Checkpoint> checkpoints_;
-  RobotPose last_goal_;        // of the last walk
-  int lost_in_a_row_ = 0;      // updates that no shape followed
-  int late_iterations_ = 0;    // of a load step that is being finished
-  bool begins_short_ = false;  // no shape followed the last load step, and time was over
+  WayBehind behind_;
 };
 
 }  // namespace robot_tissue

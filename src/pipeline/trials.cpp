@@ -5,7 +5,7 @@ namespace robot_tissue {
 
 struct Pipeline::Mark {
   Checkpoint now;
-  std::vector<Checkpoint> checkpoints;
+  WayBehind way_behind;
   ForceDrive drive;
   std::vector<BladeState> blades;
   std::vector<BurrState> burrs;
@@ -23,7 +23,7 @@ struct Pipeline::Mark {
 
 void Pipeline::beginTrial() {
   trial_from_ = std::make_shared<const Mark>(
-      Mark{parts_->load_step.checkpoint(), parts_->motion.checkpoints(), parts_->drive,
+      Mark{parts_->load_step.checkpoint(), parts_->motion.wayBehind(), parts_->drive,
            parts_->blades.states(), parts_->burrs.states(), parts_->scissors.states(),
            world_.last_pose, world_.asked, world_.dead_end, late_iterations_, gave_up_,
            world_.unfinished, touched_, world_.report, world_.finder.kept()});
@@ -36,7 +36,7 @@ void Pipeline::undoTrial() {
   const Mark& mark = *trial_from_;
   world_.tissue.endAside();
   parts_->load_step.goBackTo(mark.now);
-  parts_->motion.restore(mark.checkpoints);
+  parts_->motion.restore(mark.way_behind);
   parts_->drive = mark.drive;
   parts_->blades.restore(mark.blades);
   parts_->burrs.restore(mark.burrs);

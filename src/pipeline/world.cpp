@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "robot_tissue/contact/tool_sizes.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -41,6 +42,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   in_wound_.assign(tools.linkCount(), false);
   warnings = finder.warnings();
   warnings.insert(warnings.end(), drills.warnings().begin(), drills.warnings().end());
+  warnOfSizes(geometry);
   sticking = StickingContacts(tissue.lattice(), tools.names());
   std::vector<std::optional<double>> friction;
   for (const ToolGeometry& tool : all) {
@@ -57,6 +59,19 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   unfinished = false;
   report = StepReport();
   report.tools.resize(tools.size());
+}
+
+void World::warnOfSizes(const std::vector<ToolGeometry>& geometry) {
+  const double tissue_extent = tissue.lattice().bounds().sizes().maxCoeff();
+  std::size_t number = 0;
+  for (const ToolGeometry& tool : geometry) {
+    for (const LinkGeometry& link : tool.links) {
+      const double extent = finder.bounds(number++, Pose::Identity()).sizes().maxCoeff();
+      if (link.shapes.empty()) continue;
+      const std::string remark = remarkOnSize(tool.name, link.link, extent, tissue_extent);
+      if (!remark.empty()) warnings.push_back(remark);
+    }
+  }
 }
 
 bool World::mayEdgeTouch(std::size_t tool) const {

@@ -89,6 +89,8 @@ struct World {
   bool depths_are_due = false;  // of the tools' reports [Pipeline]
 
  private:
+  void warnOfSizes(const std::vector<ToolGeometry>& geometry);
+
   std::vector<bool> in_wound_;  // per link; supports have none
 
   std::vector<ToolShape> barsAlong(const std::vector<Vec3>& edge) const;

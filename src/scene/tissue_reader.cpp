@@ -210,9 +210,14 @@ void readRegions(const Entry& entry, TissueReading& reading) {
 
 void readFixed(const Entry& entry, TissueReading& reading) {
   if (!entry.given()) return;
+  const Grid& grid = reading.filled->grid;
   for (const Entry& box : entry.list(0, "boxes with min and max")) {
-    reading.tissue.fixed.push_back(
-        readNodeBox(MapReader(box, {"min", "max"}), reading.filled->grid));
+    reading.tissue.fixed.push_back(readNodeBox(MapReader(box, {"min", "max"}), grid));
+    const NodeRange fixed = grid.nodesIn(reading.tissue.fixed.back()),
+                    all = grid.nodesIn(grid.shape());
+    if (fixed.first == all.first && fixed.last == all.last) {
+      reading.remarks.push_back(box.line("holds all nodes: nothing of the tissue gives way"));
+    }
   }
 }
 

@@ -135,7 +135,7 @@ TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {
   EXPECT_EQ(check(scene, urdfOf("")), kHasWarnings);
   EXPECT_TRUE(says("no collision geometry")) << out_;
   EXPECT_EQ(check(scene, urdfOf("<box size='8 8 8'/>")), kHasWarnings);
-  EXPECT_TRUE(says("a mesh in millimeters?")) << out_;
+  EXPECT_TRUE(says("a mesh in millimeters has scale 0.001")) << out_;
   EXPECT_EQ(check(scene, "<robot name='r'><link name='base'/></robot>"), kCannotRun);
   EXPECT_TRUE(says("error: ") && says("'tip'")) << out_;
 }

@@ -271,5 +271,47 @@ TEST(Time, ForceOfAStepIsItsEnergysNegativeSlope) {
   }
 }
 
+// Nodes that a cut makes have no part in the time step before it.
+TEST(Time, WhatHoldsTheTissueIsToldAfterACutAsOfTheTissueAlone) {
+  TissueConfig config = bar(0.002, 2);
+  config.fixed.assign(1, nodeBox(config, {0, 0, 0}, {20, 0, 2}));
+  config.gravity = Vec3(0.0, 0.0, -kGravity);
+  Tissue tissue(config, solverOf("layered"));
+  tissue.wait(0.01);
+  ASSERT_GT(tissue.cut({{0.21, -1, -1}, {0.21, 1, -1}, {0.21, 1, 1}, {0.21, -1, 1}}).springs_cut,
+            0);
+  const CellSet& cells = *tissue.state().cells;
+  Vec3 held = Vec3::Zero();
+  bool any_made = false;
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (!isFixed(tissue.lattice(), cells, node)) continue;
+    any_made = any_made || cells.isGhost(node);
+    held -= tissue.nodeForce(node);
+  }
+  ASSERT_TRUE(any_made);
+  const double weight = 1000.0 * kGravity * 0.4 * 0.04 * 0.04;
+  EXPECT_LT((tissue.forceOfFixedNodes() - held).norm(), 1e-9 * weight);
+  EXPECT_GT(held.z(), 0.0);
+  EXPECT_LT(held.norm(), 2.0 * weight);
+}
+
+TEST(Time, ARefusedLoadLeavesItMoving) {
+  Tissue tissue(bar(0.0, 2), solverOf("layered"));
+  bendAndRelease(tissue, 0.004);
+  tissue.wait(0.01);
+  const std::vector<Vec3> there = tissue.state().displacement;
+  const PatchConfig far = displacedPatch(
+      "end", {Vec3(0.4 - 1e-6, -1.0, -1.0), Vec3(0.4 + 1e-6, 1.0, 1.0)}, Vec3(0.0, 0.0, -0.1));
+  EXPECT_THROW(tissue.load(loadOf({far}), {}, 2), InputError);
+  EXPECT_TRUE(tissue.isMoving());
+  EXPECT_EQ(tissue.state().displacement, there);
+  Tissue other(bar(0.0, 2), solverOf("layered"));
+  bendAndRelease(other, 0.004);
+  other.wait(0.01);
+  tissue.wait(0.01);
+  other.wait(0.01);
+  EXPECT_EQ(tissue.state().displacement, other.state().displacement);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_time

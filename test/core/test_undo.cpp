@@ -186,5 +186,31 @@ TEST(SavedState, HasItsSutures) {
   EXPECT_EQ(tissue.savedState(), other.savedState());
 }
 
+// Loads came since: the shape is found anew, in which nodes that cuts made have other numbers.
+TEST(Undo, UnderOtherLoadsThreadsStayWhereTheyWere) {
+  const TissueConfig config = block();
+  SolverConfig exact;
+  exact.tolerance = 1e-3;
+  Tissue tissue(config, exact), never(config, exact);
+  for (Tissue* each : {&tissue, &never}) {
+    each->cut(acrossX(0.065));
+    each->cut(acrossX(0.045));
+    each->suture(sutureOver(0.065, "s"));
+  }
+  tissue.cut(acrossX(0.055));
+  for (Tissue* each : {&tissue, &never}) each->load(pressOn(config));
+  EXPECT_EQ(tissue.undo(1).status, SolveStatus::kOk);
+  EXPECT_NEAR(tissue.sutures()[0].length, never.sutures()[0].length, 1e-4);
+  EXPECT_NEAR(tissue.sutures()[0].tension, never.sutures()[0].tension,
+              0.03 * never.sutures()[0].tension);
+  double off = 0.0, all = 0.0;
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    const Vec3& there = never.state().displacement[at(node)];
+    off += (tissue.state().displacement[at(node)] - there).squaredNorm();
+    all += there.squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(off), 0.005 * std::sqrt(all));
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_undo

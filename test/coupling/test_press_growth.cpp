@@ -56,5 +56,18 @@ TEST(PressGrowth, TellsWhichShareOfItsLastWayTheLinkGoes) {
   EXPECT_EQ(PressGrowth().shareOfLastWay(0, atX(0.001)), 0.0);
 }
 
+// A pose times its inverse is one to rounding.
+TEST(PressGrowth, ALinkThatStandsHasNoLastWay) {
+  for (int turn = 1; turn <= 20; ++turn) {
+    Pose stands = atX(0.1 * turn);
+    stands.rotate(Eigen::AngleAxisd(0.3 * turn, Vec3(1.0, 2.0, 3.0).normalized()));
+    PressGrowth growth;
+    growth.note({stands}, {{1.0, Vec3(0.013, 0.029, 0.017)}});
+    growth.note({stands}, {{1.2, Vec3(0.013, 0.029, 0.017)}});
+    EXPECT_EQ(growth.times(0, stands), 1.0) << turn;
+    EXPECT_EQ(growth.shareOfLastWay(0, stands), 0.0) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_press_growth

@@ -161,5 +161,25 @@ TEST(Burr, NoForceDrivesIt) {
   EXPECT_THROW(pipeline.push(0, Vec3(1.0, 0.0, 0.0)), InputError);
 }
 
+// What is done in between parts a stroke.
+TEST(Burr, WhatGoesAfterAnUndoIsAChangeOfItsOwn) {
+  Pipeline pipeline(block(), methodOf("elastic"), {ball()});
+  const std::vector<Vec3> aside = {
+      {0.052, -0.01, 0.02}, {0.052, 0.07, 0.02}, {0.052, 0.07, 0.06}, {0.052, -0.01, 0.06}};
+  ASSERT_GT(pipeline.cut(aside).springs_cut, 0);
+  const double depth = kTop - 0.003;
+  ASSERT_GT(go(pipeline, Vec3(-0.02, kMiddle, depth), Vec3(0.012, kMiddle, depth), 8), 0.0);
+  ASSERT_EQ(pipeline.tissue().undoable(), 2);
+  pipeline.undo(1);
+  double volume = 0.0;
+  for (double x = 0.012; x < 0.02; x += 0.002) {
+    volume += pipeline.step(at({Vec3(x, kMiddle, depth)})).volume_removed;
+  }
+  ASSERT_GT(volume, 0.0);
+  EXPECT_EQ(pipeline.tissue().undoable(), 2);
+  pipeline.undo(1);
+  EXPECT_GT(pipeline.tissue().state().springs_cut, 0) << "the cut was taken back with it";
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_burrs

@@ -193,5 +193,44 @@ TEST(CutBesideATool, LeavesItsForceAsItWas) {
   }
 }
 
+// A tool in the way of the tissue beside what a force drives: solves are taken back in part, and
+// the patch is told where its nodes are.
+TEST(ForcedPatch, IsWhereItsNodesAreBesideATool) {
+  for (const double force : {1.0, 2.0, 3.0}) {
+    Pipeline pipeline(block(), methodOf("elastic"), {probe()});
+    walk(pipeline, -0.001, -0.0002);
+    PatchConfig patch;
+    patch.name = "lift";
+    patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.02, 0.06, kTop)};
+    patch.force = Vec3(0.0, 0.0, force);
+    pipeline.load({1, {patch}});
+    const Tissue& tissue = pipeline.tissue();
+    EXPECT_GT(pipeline.report().tools.front().force_on_tool.norm(), 0.01) << force;
+    const LoadingPatch& lift = tissue.patches().front();
+    const Vec3 told = tissue.answerOf("lift", tissue.lastReport()).displacement;
+    EXPECT_GT(told.z(), 0.0005);
+    for (const int node : hardNodes(lift)) {
+      EXPECT_LT((tissue.state().displacement[at(node)] - told).norm(), 1e-9) << force;
+    }
+    for (const RimSpring& spring : lift.rim) {
+      EXPECT_LT((spring.anchor - told).norm(), 1e-9) << force;
+    }
+  }
+}
+
+TEST(ForceBalance, OfTissueThatIsResetIsNone) {
+  TissueConfig large = block();
+  large.shape = {Vec3::Zero(), Vec3(0.2, 0.2, 0.1)};
+  Pipeline pipeline(large, methodOf("elastic"), {});
+  PatchConfig patch;
+  patch.name = "punch";
+  patch.box = {Vec3(0.09, 0.09, 0.1), Vec3(0.11, 0.11, 0.1)};
+  patch.displacement = {{0.0, 0.0, -0.004}};
+  pipeline.load({1, {patch}});
+  EXPECT_GT(pipeline.forceBalance().fixed.norm(), 0.01);
+  pipeline.reset();
+  EXPECT_EQ(pipeline.forceBalance().fixed.norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_cuts_and_loads

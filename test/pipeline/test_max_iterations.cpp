@@ -136,5 +136,21 @@ TEST(MaxIterations, DrivenToolMeetsItsForce) {
   EXPECT_NEAR(force(pipeline).z(), wanted, 0.01 * wanted);
 }
 
+// What the last way came to, late or lost, is no matter for the next one.
+TEST(MaxIterations, AfterAResetItGoesAsTheFirstTime) {
+  Dragged once(8), again(8);
+  std::vector<Vec3> first, second;
+  pressAndDrag(once.pipeline, [&] { first.push_back(force(once.pipeline)); });
+  bool any_late = false;
+  for (int step = -4; step <= 60; ++step) {
+    again.pipeline.step(edgeAt(0.0213 + 0.0002 * step, 0.0009 * step));
+    any_late = again.pipeline.report().too_fast;
+  }
+  ASSERT_TRUE(any_late);
+  again.pipeline.reset();
+  pressAndDrag(again.pipeline, [&] { second.push_back(force(again.pipeline)); });
+  EXPECT_EQ(first, second);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_max_iterations

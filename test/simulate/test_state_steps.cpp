@@ -156,5 +156,32 @@ TEST_F(StateFiles, AStateOfAnotherLatticeIsRefusedAndNothingWritten) {
   EXPECT_EQ(text("out/nodes.csv"), nodes);
 }
 
+// What a removal leaves of a cut's front, and of what a grasper held, is what is saved.
+TEST(StateSteps, ARemovalBesideACutsFrontOrInAGraspIsReadBack) {
+  const std::string strip =
+      "tissue:\n  shape: {type: box, min: [0, 0, 0], max: [0.06, 0.012, 0.04]}\n"
+      "  spacing: 0.004\n  material: {young_modulus: 1.0e+4}\n"
+      "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+      "tools:\n"
+      "  - {name: forceps, role: grasper, jaws: [{shapes: [{type: box, size: [0.008, 0.004, "
+      "0.012]}]}, {shapes: [{type: box, size: [0.008, 0.004, 0.012]}]}], grasp: {close_gap: "
+      "0.010}}\n"
+      "  - {name: knife, role: blade, edge: [[-0.02, 0, 0], [0.02, 0, 0]], resistance: 50.0}\n"
+      "steps:\n";
+  const std::string beside_front =
+      "  - move: {tool: knife, from: {xyz: [0.03, 0.006, 0.05], rpy: [0, 0, 1.3036]}, to: {xyz: "
+      "[0.03, 0.006, 0.0243], rpy: [0, 0, 1.4736]}, increments: 1}\n"
+      "  - remove: {sphere: {center: [0.03304, 0.006, 0.0307], radius: 0.0083}}\n";
+  const std::string in_grasp =
+      "  - move: {tool: forceps, from: {xyz: [0.03, 0.006, 0.06], opening: 0.022}, to: {xyz: "
+      "[0.03, 0.006, 0.038], opening: 0.022}, increments: 1}\n"
+      "  - move: {tool: forceps, to: {xyz: [0.03, 0.006, 0.038], opening: 0.012}, increments: 1}\n"
+      "  - move: {tool: forceps, to: {xyz: [0.03, 0.006, 0.0372], opening: 0.012}, increments: 1}\n"
+      "  - remove: {sphere: {center: [0.02510, 0.006, 0.0374], radius: 0.0062}}\n";
+  for (const std::string& steps : {beside_front, in_grasp}) {
+    EXPECT_NO_THROW(run(strip + steps + kSave + "  - reset: {}\n" + kBack)) << steps;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_state_steps

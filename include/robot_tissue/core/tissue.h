@@ -330,7 +330,7 @@ class Tissue {
   void renewContacts();
   void switchAside();
   void limitWays();
-  bool goBack(const std::vector<Vec3>& before);
+  bool goBack(const Rounds& rounds);
   void putToolPatches(std::vector<LoadingPatch> of_tools);
   bool isBounded() const;
   bool isLookForNextCall() const;
@@ -406,7 +406,8 @@ class Tissue {
   std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there
   std::vector<int> disturbed_;     // by what the last solve had no time to balance
   SolveReport last_report_;
-  bool is_late_ = false;  // likewise
+  bool is_late_ = false;       // likewise
+  bool is_as_solved_ = false;  // the shape is the one that the method came to last
   bool are_contacts_settled_ = true;
   Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "loads/driven_places.h"
 #include "robot_tissue/core/part_of_way.h"
 #include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
@@ -24,7 +25,8 @@ double shortestMs(const SolveReport& solve) {
 struct Tissue::Rounds {
   explicit Rounds(const Displacements& start) : before(start), gain(start) {}
 
-  Displacements before;  // the shape that the last round began with
+  Displacements before;                    // the shape that the last round began with
+  std::vector<DrivenPlace> driven_before;  // likewise, of patches by a force
   RoundGain gain;
   SolveReport report;    // of all of them
   SolveReport of_round;  // of the last
@@ -36,10 +38,12 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (contact_update_ == nullptr) return solveOnce(disturbed);
   Rounds rounds(displacements());
+  rounds.driven_before = drivenPlaces(patches_);
   rounds.report = rounds.of_round = solveOnce(disturbed);
   while (asksForRound(rounds)) {
     rounds.before.reset();  // so that the next line's copy can take its memory
     rounds.before = displacements();
+    rounds.driven_before = drivenPlaces(patches_);
     const SolveReport earlier = rounds.report;
     rounds.report = rounds.of_round = solveOnce({});
     rounds.report.wall_ms += earlier.wall_ms;
@@ -67,7 +71,7 @@ bool Tissue::asksForRound(Rounds& rounds) {
   }
   const bool hurried = isBounded() && report.status == SolveStatus::kLate;
   const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-  const bool whole = (goesThroughTime() || !goBack(*rounds.before)) && solved;
+  const bool whole = (goesThroughTime() || !goBack(rounds)) && solved;
   if (whole) ++rounds.whole;
   rounds.gain.note(rounds.of_round, state_.displacement, whole);
   const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
@@ -112,11 +116,13 @@ void Tissue::limitWays() {
 
 // Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).
 // False: all of it is allowed.
-bool Tissue::goBack(const std::vector<Vec3>& before) {
-  const double share = contact_update_->shareOfWay(before);
+bool Tissue::goBack(const Rounds& rounds) {
+  const double share = contact_update_->shareOfWay(*rounds.before);
   if (share >= 1.0) return false;
   kept_.reset();
-  takeBack(before, share, state_.displacement);
+  is_as_solved_ = false;
+  takeBack(*rounds.before, share, state_.displacement);
+  takePatchesBack(rounds.driven_before, share, patches_);
   deformSurface();
   return true;
 }

@@ -18,7 +18,7 @@ class History {
   // The tissue before a change of its topology.
   struct Entry {
     std::vector<bool> severed;        // per spring
-    std::vector<double> parted_at;    // as LatticeState's
+    std::vector<double> parted_at;    // as LatticeState's, of the springs that are severed
     std::vector<SpringAhead> ahead;   // likewise
     std::vector<std::uint8_t> taken;  // as LatticeState's
     std::vector<SutureThread> sutures;

@@ -53,8 +53,10 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
     const auto nearest = nearestPoint(surface_, vertices_, point);
     if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
-      refuseSuture(config.name, std::string(key) + " is nowhere at the tissue's surface",
-                   "a point within a spacing of it");
+      std::ostringstream where;
+      where << key << " = (" << point.x() << ", " << point.y() << ", " << point.z()
+            << ") m is nowhere at the tissue's surface";
+      refuseSuture(config.name, where.str(), "a point within a spacing of it");
     }
     end.rest = restOf(surface_, nearest->on);
     end.inside = innerPlace(surface_, nearest->on.triangle, tuning::kInnerDepth * spacing);
@@ -148,6 +150,7 @@ SolveReport Tissue::drawThreadsIn() {
   } else if (changes) {
     const std::vector<int> due = threads_->nodes();
     disturbed_.insert(disturbed_.end(), due.begin(), due.end());
+    rememberDisturbed();
     is_late_ = true;
     report.status = std::max(report.status, SolveStatus::kLate);
   }

@@ -116,6 +116,8 @@ void Tissue::restore(const Shape& shape) {
   if (time_) time_->take(shape.motion);
   in_time_ = shape.in_time;
   in_time_step_ = expects_time_step_ = false;
+  if (time_) model_->setInertia(nullptr);  // of the step that is given up
+  is_as_solved_ = false;
   kept_.reset();
   state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
   restRemoved(state_);
@@ -162,7 +164,7 @@ void Tissue::reset() {
   due_.clear();
   disturbed_.clear();
   last_report_ = SolveReport();
-  is_late_ = false;
+  is_late_ = is_as_solved_ = false;
   are_contacts_settled_ = true;
   springs_torn_ = 0;
   history_->clear();
@@ -257,6 +259,7 @@ SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
     report.patches.resize(patches_.size());
   }
   is_late_ = report.status == SolveStatus::kLate;
+  is_as_solved_ = is_finite;
   are_contacts_settled_ = true;
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.

@@ -67,8 +67,10 @@ Vec3 Tissue::weight() const {
 // Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
 // them. Where the method does not visit all nodes: by the balance of all forces.
 Vec3 Tissue::forceOfFixedNodes() const {
-  if (method_->visited() != nullptr)
-    return method_->forceLeft() - weight() - forceOfPatches(last_report_);
+  if (method_->visited() != nullptr) {
+    const Vec3 left = is_as_solved_ ? method_->forceLeft() : Vec3(Vec3::Zero());
+    return left - weight() - forceOfPatches(last_report_);
+  }
   const CellSet& cells = *state_.cells;
   std::vector<int> fixed;
   for (int node = 0; node < cells.nodeCount(); ++node) {

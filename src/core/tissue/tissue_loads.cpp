@@ -64,6 +64,13 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
   }
 }
 
+std::string textOf(const Box& box) {
+  std::ostringstream text;
+  text << "(" << box.min().x() << ", " << box.min().y() << ", " << box.min().z() << ") to ("
+       << box.max().x() << ", " << box.max().y() << ", " << box.max().z() << ") m";
+  return text.str();
+}
+
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
 void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
   std::unordered_map<int, const LoadingPatch*> owners;
@@ -90,6 +97,7 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, patches_);
+  const Shape before = shape();
   stopTime();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
@@ -97,6 +105,7 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   }
   const int increments = step.increments.value_or(wholeParts(foreseenSteps(ramps)));
   if (increments > most_increments) {
+    restore(before);
     refusePatch(targets.front().name,
                 "the load needs " + std::to_string(increments) + " increments",
                 "at most " + std::to_string(most_increments) + ", so a smaller load");
@@ -115,6 +124,8 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
 }
 
 void Tissue::loadOn(const OnIncrement& on_increment) {
+  if (due_.empty()) return;
+  stopTime();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : std::exchange(due_, {})) {
     const LoadingPatch* standing = standingPatch(target.name);
@@ -167,7 +178,8 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
                                    [this](int node) { return isRemoved(state_, node); }),
                     patch.nodes.end());
   if (patch.nodes.empty())
-    refusePatch(config.name, "no node in its box", "a box that holds a node");
+    refusePatch(config.name, "no node in its box, " + textOf(config.box),
+                "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
                   [this](int node) { return lattice_.isFixed(node); })) {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");

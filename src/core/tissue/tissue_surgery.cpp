@@ -16,6 +16,7 @@
 #include "solvers/solver_method.h"
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
+#include "tissue/partings.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
@@ -28,7 +29,7 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   LatticeState state = lattice.restState();
   state.severed.assign(entry.severed.begin(), entry.severed.end());
   state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
-  state.parted_at = entry.parted_at;
+  takePartings(entry.parted_at, state);
   state.ahead = entry.ahead;
   state.taken = entry.taken;
   if (!state.taken.empty()) noteTaken(lattice, state);
@@ -80,6 +81,8 @@ std::vector<LoadingPatch> Tissue::namedLoads() const {
 SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
   kept_.reset();
+  is_as_solved_ = false;
+  if (takesNoTime()) model_->setInertia(nullptr);  // the last step's was of other nodes
   rebuildSurface();
   deformSurface(
       [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
@@ -216,6 +219,7 @@ SolveReport Tissue::undo(int count) {
   state_ = asBefore(lattice_, entry, model_->splitCells(), state_);
   weight_ = model_->weight(state_);
   threads_->take(entry.sutures);
+  if (threads_->anyWhole()) rebuildSurface();  // nodes may have other numbers than there
   takePieces(entry.pieces);
   history_->dropFrom(target);
   if (takesNoTime()) return changeTopology({});

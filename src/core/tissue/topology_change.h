@@ -4,6 +4,7 @@
 
 #include "robot_tissue/core/tissue.h"
 #include "tissue/history.h"
+#include "tissue/partings.h"
 #include "tissue/threads.h"
 
 namespace robot_tissue {
@@ -17,7 +18,7 @@ class Tissue::TopologyChange {
       const LatticeState& state = tissue_.state_;
       tissue_.history_->begin(kind,
                               {{state.severed.begin(), state.severed.end()},
-                               state.parted_at,
+                               partingsOf(state),
                                state.ahead,
                                state.taken,
                                tissue_.threads_->all(),

@@ -42,10 +42,8 @@ void ExplicitMethod::begin(int care) {
   patch_steps_.assign(shape_.patches.size(), {});
   measureContacts();
   weigh();
-  if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
-  cells_ = shape_.state.cells;
-  held_ = hold_.dirichletMask();
-  if (care > 0) fastest_ *= tuning::kCare;
+  findFastest();
+  fastest_ = std::pow(tuning::kCare, care) * measured_;
   findForces();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     float* velocity = field_->spare(kVelocity)[axis];
@@ -107,8 +105,12 @@ void ExplicitMethod::weigh() {
 }
 
 // Greatest eigenvalue of stiffness over mass by power iterations about the present shape, from a
-// random motion of sign +-; the shape is put back afterwards.
+// random motion of sign +-; the shape is put back afterwards. Known where it was found for the same
+// nodes.
 void ExplicitMethod::findFastest() {
+  if (cells_ == shape_.state.cells && held_ == hold_.dirichletMask()) return;
+  cells_ = shape_.state.cells;
+  held_ = hold_.dirichletMask();
   const int size = field_->size();
   const auto probe = static_cast<float>(tuning::kPowerProbe * lattice_.spacing() / field_->unit());
   findForces();
@@ -125,7 +127,7 @@ void ExplicitMethod::findFastest() {
   for (int power = 0; power < tuning::kPowers; ++power) {
     const double eigenvalue = takePower();
     if (eigenvalue <= 0.0) break;
-    fastest_ = tuning::kMargin * eigenvalue;
+    measured_ = tuning::kMargin * eigenvalue;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float* start = field_->spare(kStart)[axis];
@@ -199,9 +201,8 @@ SolveStatus ExplicitMethod::goThrough(int& steps) {
   field_->findSqueezed();
   measureContacts();
   weigh();
-  if (cells_ != shape_.state.cells || held_ != hold_.dirichletMask()) findFastest();
-  cells_ = shape_.state.cells;
-  held_ = hold_.dirichletMask();
+  findFastest();
+  fastest_ = measured_;
   const double longest = longestStableStep(passage.masses, passage.term.damping_time);
   const double count = std::max(1.0, std::ceil(term.duration / longest));
   SolveStatus status = SolveStatus::kUnconverged;

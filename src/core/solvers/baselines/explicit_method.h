@@ -47,13 +47,14 @@ class ExplicitMethod : public RelaxationMethod {
   double takePower();
   void rollPatches(double keep, double push);
 
-  double fastest_ = 8.0;  // greatest eigenvalue of stiffness over mass
-  double slowest_ = 0.0;  // the motion's
-  int steps_ = 0;         // since begin()
+  double measured_ = 8.0;  // greatest eigenvalue of stiffness over mass
+  double fastest_ = 8.0;   // the one that steps are made for
+  double slowest_ = 0.0;   // the motion's
+  int steps_ = 0;          // since begin()
   std::vector<Motion::OfPatch> patch_steps_;
   std::vector<double> contact_stiffness_;  // per node, all contacts closed (N/m)
   std::vector<Vec3> velocity_;             // at the end of the last time step (m/s)
-  std::vector<std::uint8_t> held_;         // what fastest_ was found for
+  std::vector<std::uint8_t> held_;         // what measured_ was found for
   std::shared_ptr<const CellSet> cells_;
 };
 

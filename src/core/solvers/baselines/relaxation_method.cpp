@@ -79,6 +79,7 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
   findWave();
   const bool goes_through = model_.inertia() != nullptr && time_steps_ == TimeSteps::kGoneThrough;
   report.status = goes_through ? goThrough(course.iterations) : run(course);
+  if (goes_through && report.status == SolveStatus::kUnconverged) shape_.patches = patches;
   if (goes_through) course.error = 0.0;
   if (course.iterations > 0) field_->give(shape_.state);
   findForces();
