@@ -14,6 +14,9 @@ namespace {
 const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
 const ros::WallDuration kWarnPeriod(10.0);
 
+// s: a stamp may be farther from another than ros::Duration tells, which throws then.
+double secondsFrom(const ros::Time& from, const ros::Time& to) { return to.toSec() - from.toSec(); }
+
 }  // namespace
 
 TransformIntake::TransformIntake(tf2::BufferCore& buffer, std::function<bool()> time_went_back)
@@ -37,12 +40,13 @@ void TransformIntake::take(const tf2_msgs::TFMessage& message, Kind kind) {
 bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform) {
   const ros::Time now = ros::Time::now(), stamp = transform.header.stamp;
   if (now.isZero()) return false;
-  if (stamp - now > buffer_.getCacheLength()) {
+  const double most = buffer_.getCacheLength().toSec();
+  if (secondsFrom(now, stamp) > most) {
     if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
     return false;
   }
   ros::Time& newest = newest_[transform.child_frame_id];
-  if (newest - stamp > buffer_.getCacheLength()) return false;
+  if (secondsFrom(stamp, newest) > most) return false;
   newest = std::max(newest, stamp);
   return true;
 }
@@ -50,13 +54,14 @@ bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform)
 void TransformIntake::warnOfAhead() {
   if (!ahead_) return;
   const ros::WallTime now = ros::WallTime::now();
-  const ros::Duration ahead = ahead_->stamp - ros::Time::now(), most = buffer_.getCacheLength();
+  const double ahead = secondsFrom(ros::Time::now(), ahead_->stamp);
+  const double most = buffer_.getCacheLength().toSec();
   if (ahead > most && now - ahead_->seen < kPatience) return;
   if (ahead > most && now - warned_ > kWarnPeriod) {
     warned_ = now;
     ROS_WARN_STREAM("/tf: the transform of '"
-                    << shortText(ahead_->frame) << "' is " << numberText(ahead.toSec())
-                    << " s ahead of now and left out; allowed: at most " << numberText(most.toSec())
+                    << shortText(ahead_->frame) << "' is " << numberText(ahead)
+                    << " s ahead of now and left out; allowed: at most " << numberText(most)
                     << " s, that the buffer holds");
   }
   ahead_.reset();

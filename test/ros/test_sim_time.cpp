@@ -200,10 +200,11 @@ TEST_F(SimTime, ABagTellsTheSameOfAPoseAtAnySpeed) {
   EXPECT_GT(slowly.size(), 0.9 * kPoses);
 }
 
-TEST_F(SimTime, OneTransformFromTheFutureBlindsNobody) {
+TEST_F(SimTime, TransformsFromTheFutureBlindNobody) {
   playFrom(400.0, -0.01);
+  sendPose(ros::TIME_MAX);
   sendPose(now_ + ros::Duration(3600.0));
-  ASSERT_TRUE(tickUntil([this] { return warnsOf("ahead of now"); }));
+  ASSERT_TRUE(tickUntil([this] { return warnsOf(" s ahead of now"); }));
   depth_ = 0.004;
   EXPECT_TRUE(
       tickUntil([this] { return state_->status == "OK" && wrench_->wrench.force.z < -0.1; }));
