@@ -1,5 +1,10 @@
 #include "output_bag.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "robot_tissue/core/types.h"
@@ -7,16 +12,31 @@
 
 namespace robot_tissue {
 
-OutputBag::OutputBag(const std::string& path) : path_(path), part_(path + ".active") {
+OutputBag::OutputBag(const std::string& path) : path_(path) {
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored) &&
       !std::filesystem::is_regular_file(path_, ignored)) {
     refuse("is no file");
   }
+  makePart();
   try {
     bag_.open(part_, rosbag::bagmode::Write);
   } catch (const std::exception& error) {
+    std::filesystem::remove(part_, ignored);
     refuse(error.what());
+  }
+}
+
+// A new file: one that is there already is another's, as of a recording that goes on.
+void OutputBag::makePart() {
+  const std::string first = path_ + ".active";
+  for (int number = 1; part_.empty(); ++number) {
+    const std::string name = number == 1 ? first : first + std::to_string(number);
+    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0 && errno != EEXIST) refuse(std::strerror(errno));
+    if (file < 0) continue;
+    ::close(file);
+    part_ = name;
   }
 }
 

@@ -1,5 +1,6 @@
-// A bag that is written: beside its place, as FILE.active, until it is whole. Messages are written
-// with their own stamps, so that the same messages are the same bytes.
+// A bag that is written: beside its place, as FILE.active or, where that is there, FILE.active2 and
+// so on, until it is whole. Messages are written with their own stamps, so that the same messages
+// are the same bytes.
 #pragma once
 
 #include <ros/time.h>
@@ -29,6 +30,7 @@ class OutputBag {
   void commit();
 
  private:
+  void makePart();
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string path_, part_;

@@ -239,6 +239,32 @@ TEST_F(Replay, RefusesWrongArguments) {
   EXPECT_EQ(run("in.bag", "whole.bag"), 0);  // the bag is as before
 }
 
+TEST_F(Replay, WritesBesideWhatIsThereInAnotherPlace) {
+  record("out.bag.active");
+  const std::string recorded = bytes("out.bag.active");
+  ASSERT_EQ(run("out.bag.active", "out.bag"), 0) << complained_;
+  EXPECT_TRUE(bytes("out.bag.active") == recorded);
+  EXPECT_FALSE(read<std_msgs::UInt64>("out.bag", "state_hash").empty());
+  is_stopped_ = true;
+  EXPECT_EQ(run("out.bag.active", "out.bag"), 2);
+  EXPECT_TRUE(bytes("out.bag.active") == recorded);
+  EXPECT_FALSE(fs::exists(path("out.bag.active2")));
+}
+
+// Farther ahead than a signed 32-bit number of seconds.
+TEST_F(Replay, LeavesATransformOfTheEndOfTimeOut) {
+  record("in.bag");
+  ASSERT_EQ(run("in.bag", "plain.bag"), 0) << complained_;
+  const std::string without = said_;
+  rosbag::Bag bag(path("in.bag"), rosbag::bagmode::Append);
+  tf2_msgs::TFMessage message;
+  message.transforms = {tipAt(ros::TIME_MAX, 0.0)};
+  bag.write("/tf", ros::Time(kStart + kGapFrom), message);
+  bag.close();
+  ASSERT_EQ(run("in.bag", "out.bag"), 0) << complained_;
+  EXPECT_EQ(said_, without);
+}
+
 TEST_F(Replay, LeavesWhatIsThereWhenItIsStopped) {
   record("in.bag");
   write("out.bag", "of before");
