@@ -17,18 +17,31 @@ namespace {
 
 using Found = std::optional<double>;
 
-// Regions that have a modulus of their own keep it.
-void setModulus(double young_modulus, NodeParameters& parameters) {
-  TissueConfig& tissue = parameters.scene.tissue;
+void requireContrasts(double young_modulus, const TissueConfig& tissue) {
+  const std::string value = "young_modulus = " + numberText(young_modulus);
   for (const Region& region : tissue.regions) {
     const double contrast = region.material.young_modulus / young_modulus;
     if (!region.own_modulus || std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast)
       continue;
-    throw InputError("young_modulus = " + numberText(young_modulus) +
-                     ": must be within a factor of " + numberText(ranges::kMostContrast) +
+    throw InputError(value + ": must be within a factor of " + numberText(ranges::kMostContrast) +
                      " of region '" + shortText(region.name) + "', " +
                      numberText(region.material.young_modulus) + " Pa");
   }
+  for (const MembraneConfig& membrane : tissue.membranes) {
+    const double most =
+        ranges::mostMembraneModulus(young_modulus, tissue.spacing, membrane.thickness);
+    if (membrane.young_modulus <= most) continue;
+    throw InputError(value + ": must be at least " +
+                     numberText(young_modulus * membrane.young_modulus / most) +
+                     " Pa beside membrane '" + shortText(membrane.name) + "' of " +
+                     numberText(membrane.young_modulus) + " Pa");
+  }
+}
+
+// Regions that have a modulus of their own keep it.
+void setModulus(double young_modulus, NodeParameters& parameters) {
+  TissueConfig& tissue = parameters.scene.tissue;
+  requireContrasts(young_modulus, tissue);
   tissue.material.young_modulus = young_modulus;
   for (Region& region : tissue.regions) {
     if (!region.own_modulus) region.material.young_modulus = young_modulus;
@@ -43,14 +56,53 @@ void setFriction(double friction, NodeParameters& parameters) {
   }
 }
 
+// On the parameter server, so that it tells what is so and a node that is started again has it. A
+// preset stands there no more: no number that it sets may stand beside it, so its numbers do.
+void keepModulus(const NodeParameters& parameters, ros::NodeHandle& private_node) {
+  const std::string path = "tissue/material";
+  const Material& material = parameters.scene.tissue.material;
+  XmlRpc::XmlRpcValue before, after;
+  const bool has_preset = private_node.getParam(path, before) && before.hasMember("preset");
+  if (!has_preset) return private_node.setParam(path + "/young_modulus", material.young_modulus);
+  for (auto& [key, value] : before) {
+    if (key != "preset") after[key] = value;
+  }
+  const ModelTraits& traits = traitsOfModel(parameters.scene.tissue.model);
+  const bool stiffens = material.law == Material::Law::kFung && traits.has_law;
+  after["young_modulus"] = material.young_modulus;
+  after["density"] = material.density;
+  if (traits.has_poisson_ratio) after["poisson_ratio"] = material.poisson_ratio;
+  if (stiffens) after["law"] = "fung";
+  if (stiffens) after["stiffening"] = material.stiffening;
+  private_node.setParam(path, after);
+}
+
+void keepFriction(const NodeParameters& parameters, ros::NodeHandle& private_node) {
+  XmlRpc::XmlRpcValue tools;
+  if (!private_node.getParam("tools", tools)) return;
+  const std::vector<ToolConfig>& of_scene = parameters.scene.tools;
+  const bool are_same = tools.getType() == XmlRpc::XmlRpcValue::TypeArray &&
+                        tools.size() == static_cast<int>(of_scene.size());
+  if (!are_same) return;
+  for (int tool = 0; tool < tools.size(); ++tool) {
+    const bool is_map = tools[tool].getType() == XmlRpc::XmlRpcValue::TypeStruct;
+    if (is_map && hasFriction(of_scene[at(tool)])) {
+      tools[tool]["friction"] = of_scene[at(tool)].friction;
+    }
+  }
+  private_node.setParam("tools", tools);
+}
+
 struct Live {
   const char* name;
   const char* description;
   Range range;
   Found (*get)(const NodeParameters&);  // empty: the scene has none
   void (*set)(double, NodeParameters&);
-  const char* path;                               // in the node's namespace; null: of each tool
+  const char* path;                               // in the node's namespace; null: see keep
   std::vector<std::string> (*words)() = nullptr;  // what it may be instead of a number
+  // Puts it on the parameter server where one path does not.
+  void (*keep)(const NodeParameters&, ros::NodeHandle&) = nullptr;
 };
 
 const std::vector<Live>& table() {
@@ -60,7 +112,7 @@ const std::vector<Live>& table() {
          const Material& material = parameters.scene.tissue.material;
          return material.spring_stiffness ? Found() : Found(material.young_modulus);
        },
-       setModulus, "tissue/material/young_modulus"},
+       setModulus, nullptr, nullptr, keepModulus},
       {"tolerance", "relative error of displacements that is allowed", ranges::tolerance(),
        [](const NodeParameters& parameters) {
          const SolverConfig& solver = parameters.scene.solver;
@@ -72,7 +124,8 @@ const std::vector<Live>& table() {
        [](const NodeParameters& parameters) { return Found(parameters.scene.solver.max_ms); },
        [](double value, NodeParameters& parameters) { parameters.scene.solver.max_ms = value; },
        "solver/max_ms"},
-      {"friction", "Coulomb's, of all tools", ranges::friction(), frictionOf, setFriction, nullptr},
+      {"friction", "Coulomb's, of all tools", ranges::friction(), frictionOf, setFriction, nullptr,
+       nullptr, keepFriction},
       {"rate", "Hz; updates at most", ranges::rate(),
        [](const NodeParameters& parameters) { return Found(parameters.rate_hz); },
        [](double value, NodeParameters& parameters) { parameters.rate_hz = value; }, "rate"},
@@ -112,23 +165,6 @@ std::vector<ReconfigureServer::Parameter> presentOf(const NodeParameters& parame
   return present;
 }
 
-// On the parameter server, so that it tells what is so and a node that is started again has it.
-void keepFriction(const NodeParameters& parameters, ros::NodeHandle& private_node) {
-  XmlRpc::XmlRpcValue tools;
-  if (!private_node.getParam("tools", tools)) return;
-  const std::vector<ToolConfig>& of_scene = parameters.scene.tools;
-  const bool are_same = tools.getType() == XmlRpc::XmlRpcValue::TypeArray &&
-                        tools.size() == static_cast<int>(of_scene.size());
-  if (!are_same) return;
-  for (int tool = 0; tool < tools.size(); ++tool) {
-    const bool is_map = tools[tool].getType() == XmlRpc::XmlRpcValue::TypeStruct;
-    if (is_map && hasFriction(of_scene[at(tool)])) {
-      tools[tool]["friction"] = of_scene[at(tool)].friction;
-    }
-  }
-  private_node.setParam("tools", tools);
-}
-
 }  // namespace
 
 std::optional<double> frictionOf(const NodeParameters& parameters) {
@@ -157,7 +193,7 @@ void LiveParameters::change(const ReconfigureServer::Values& values) {
     if (value == values.end()) continue;
     const std::vector<std::string> words = wordsOf(live);
     if (live.path == nullptr) {
-      keepFriction(parameters_, private_node_);
+      live.keep(parameters_, private_node_);
     } else if (words.empty()) {
       private_node_.setParam(live.path, value->second);
     } else {

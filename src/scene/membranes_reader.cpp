@@ -24,8 +24,8 @@ void readThickness(const Entry& entry, MembraneReading& reading) {
 void readModulus(const Entry& entry, MembraneReading& reading) {
   reading.membrane.young_modulus = entry.number(ranges::youngModulus());
   const TissueConfig& tissue = reading.tissue;
-  const double most = ranges::kMostMembraneContrast * tissue.material.young_modulus *
-                      tissue.spacing / reading.membrane.thickness;
+  const double most = ranges::mostMembraneModulus(tissue.material.young_modulus, tissue.spacing,
+                                                  reading.membrane.thickness);
   if (reading.membrane.young_modulus > most) {
     entry.fail("must be at most " + numberText(most) + " Pa: with its thickness a membrane is at " +
                "most " + numberText(ranges::kMostMembraneContrast) +

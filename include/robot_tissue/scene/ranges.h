@@ -47,7 +47,11 @@ constexpr double kLeastGravity = 1e-6;         // m/s^2, likewise
 constexpr double kLeastDirection = 1e-6;       // of a vector that has a direction
 constexpr double kMostContrast = 1e6;          // of a region's stiffness and the tissue's
 constexpr double kMostMembraneContrast = 1e7;  // of E t and the tissue's E h
-constexpr double kFarthestCell = 1e6;          // spacings from the origin to the tissue's far end
+// Pa: of a membrane of this thickness, on a tissue of this modulus and spacing.
+inline double mostMembraneModulus(double young_modulus, double spacing, double thickness) {
+  return kMostMembraneContrast * young_modulus * spacing / thickness;
+}
+constexpr double kFarthestCell = 1e6;  // spacings from the origin to the tissue's far end
 
 }  // namespace ranges
 
