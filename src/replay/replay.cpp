@@ -22,6 +22,7 @@ NodeParameters parametersOf(const ReplayOptions& options) {
   YAML::Node root = loadSceneText(options.scene);
   SceneSource source;
   source.name = options.scene;
+  source.user = SceneUser::kNode;
   source.folder = std::filesystem::absolute(options.scene).parent_path().string();
   source.overrides.threads = options.threads;
   if (options.rate && root.IsMap()) root["rate"] = *options.rate;

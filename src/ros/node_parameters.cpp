@@ -27,14 +27,15 @@ std::string shortestText(double value) {
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << std::setprecision(digits) << value;
-    if (digits == 17 || std::stod(text.str()) == value) return text.str();
+    if (digits == 17 || parseNumber(text.str()) == value) return text.str();
   }
 }
 
-// rosparam reads YAML 1.1, where an exponent needs a point and a sign: it makes words of 1e-6 and
-// 3.0e9, which are as good as numbers.
+// rosparam reads YAML 1.1, where an exponent needs a point and a sign, and a point that comes first
+// has no sign before it: it makes words of 1e-6, 3.0e9 and -.05, which are as good as numbers.
 bool isNumberOfRosparam(const std::string& text) {
   if (!parseNumber(text)) return false;
+  if (text.find_first_of("+-") == 0 && text.find('.') == 1) return false;
   const std::size_t exponent = text.find_first_of("eE");
   if (exponent == std::string::npos) return true;
   const bool has_sign = text[exponent + 1] == '+' || text[exponent + 1] == '-';
@@ -100,6 +101,13 @@ std::string readStateDir(const Entry& entry) {
   return folder.string();
 }
 
+double readWrenchRate(const Entry& entry) {
+  const double rate = entry.number(ranges::wrenchRate());
+  if (rate == 0.0 || rate >= ranges::kLeastWrenchRate) return rate;
+  entry.fail("must be 0, for one an update, or " + numberText(ranges::kLeastWrenchRate) +
+             " Hz at least");
+}
+
 ColorBy readColor(const Entry& entry) {
   if (!entry.given()) return ColorBy::kNone;
   const std::optional<ColorBy> color = colorByName(entry.word(joined(colorNames())));
@@ -119,7 +127,7 @@ const KeyTable<NodeParameters> kOwnKeys = {
      }},
     {"wrench_rate",
      [](const Entry& entry, NodeParameters& parameters) {
-       parameters.wrench_rate_hz = entry.numberOr(parameters.wrench_rate_hz, ranges::wrenchRate());
+       if (entry.given()) parameters.wrench_rate_hz = readWrenchRate(entry);
      }},
     {"tf_timeout",
      [](const Entry& entry, NodeParameters& parameters) {
@@ -157,7 +165,6 @@ int mostIterations(const NodeParameters& parameters) {
 }
 
 NodeParameters parseNodeParameters(const YAML::Node& root, SceneSource source) {
-  source.user = SceneUser::kNode;
   source.other_keys = namesOf(kOwnKeys);
   NodeParameters parameters;
   parameters.scene = parseScene(root, source);
@@ -176,6 +183,7 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   }
   SceneSource source;
   source.name = private_node.getNamespace();
+  source.user = SceneUser::kNode;
   source.folder = readSceneFolder(Entry(root["scene_file"], "scene_file", source.name));
   return parseNodeParameters(root, source);
 }

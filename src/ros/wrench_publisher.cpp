@@ -1,8 +1,7 @@
 #include "robot_tissue/ros/wrench_publisher.h"
 
-#include <ros/rate.h>
-
 #include <algorithm>
+#include <chrono>
 
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/tissue_messages.h"
@@ -23,7 +22,7 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
   has_told_ = false;
   const auto someone_came = [this](const ros::SingleSubscriberPublisher&) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    listener_came_.notify_one();
+    changed_.notify_one();
   };
   const auto advertise = [&](const std::string& topic) {
     return private_node_.advertise<geometry_msgs::WrenchStamped>(topic, tuning::kWrenchQueue,
@@ -116,19 +115,25 @@ void WrenchPublisher::sendPredicted() {
   }
 }
 
+// Late by more than a period it makes up for none.
 void WrenchPublisher::repeat() {
-  ros::WallRate rate(rate_hz_);
+  using Clock = std::chrono::steady_clock;
+  const auto period =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz_));
   std::unique_lock<std::mutex> lock(mutex_);
+  Clock::time_point due = Clock::now();
   while (!stops_) {
     if (isListenedTo()) {
       send();
       lock.unlock();
       sendPredicted();
-      rate.sleep();
       lock.lock();
+      due += period;
+      due = Clock::now() - due > period ? Clock::now() : due;
+      changed_.wait_until(lock, due, [this] { return stops_; });
     } else {
-      listener_came_.wait(lock);
-      rate.reset();
+      changed_.wait(lock);
+      due = Clock::now();
     }
   }
 }
@@ -143,7 +148,7 @@ void WrenchPublisher::stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stops_ = true;
-    listener_came_.notify_one();
+    changed_.notify_one();
   }
   if (thread_.joinable()) thread_.join();
 }

@@ -5,7 +5,10 @@
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <limits>
 #include <string>
+
+#include "robot_tissue/ros/node_parameters.h"
 
 namespace robot_tissue::test_bad_parameters {
 namespace {
@@ -61,6 +64,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"own_truth", "tf_timeout", true, "tf_timeout = true"},
                       Case{"rate", "rate", 0, "rate = 0"},
                       Case{"wrench_rate", "wrench_rate", 1001, "wrench_rate = 1001"},
+                      Case{"seldom_wrenches", "wrench_rate", 1e-10,
+                           "wrench_rate = 1e-10: must be 0, for one an update, or 0.01 Hz"},
+                      Case{"greatest", "tissue/spacing", std::numeric_limits<double>::max(),
+                           "tissue.spacing = 1.797693134862315"},
+                      Case{"least", "tissue/spacing", std::numeric_limits<double>::denorm_min(),
+                           "tissue.spacing = 4.940656458412"},
                       Case{"negative_wrench_rate", "wrench_rate", -1, "wrench_rate = -1"},
                       Case{"scene_file", "scene_file", "scene.yaml", "scene_file = scene.yaml"},
                       Case{"color", "color", "rainbow", "color = rainbow"},
@@ -70,6 +79,20 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"other_robot", "robot_description_param", "/other_description",
                            "probe"}),
     [](const ::testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
+
+// rosparam makes words of numbers that YAML 1.2, and so the runner, has.
+TEST(GoodParameter, NumbersThatRosparamMakesWordsOfAreTaken) {
+  XmlRpc::XmlRpcValue scene;
+  ASSERT_TRUE(ros::param::get("/good_scene", scene));
+  scene["tissue"]["shape"]["min"][0] = "-.05";
+  scene["tissue"]["shape"]["max"][0] = "+.5e-1";
+  scene["tissue"]["material"]["young_modulus"] = "1e4";
+  ros::param::set("/good_numbers", scene);
+  const NodeParameters parameters = readNodeParameters(ros::NodeHandle("/good_numbers"));
+  EXPECT_EQ(parameters.scene.tissue.shape.min().x(), -0.05);
+  EXPECT_EQ(parameters.scene.tissue.shape.max().x(), 0.05);
+  EXPECT_EQ(parameters.scene.tissue.material.young_modulus, 1e4);
+}
 
 }  // namespace
 }  // namespace robot_tissue::test_bad_parameters

@@ -87,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(Node, StartAndEnd, ::testing::Values(SIGINT, SIGTERM),
                            return std::string(signal.param == SIGINT ? "SigInt" : "SigTerm");
                          });
 
+// Less than one wrench in the time that this waits for the end.
+TEST_F(Start, BesideSeldomWrenchesTheEndComesAtOnce) {
+  ros::param::set("/tissue/wrench_rate", 0.01);
+  NodeProcess node;
+  int told = 0;
+  const ros::Subscriber listener = node_.subscribe<geometry_msgs::WrenchStamped>(
+      "/tissue/probe/measured_cf", 10,
+      [&told](const geometry_msgs::WrenchStampedConstPtr&) { ++told; });
+  EXPECT_TRUE(waitFor([&] {
+    return state_ && state_->status == "OK" && listener.getNumPublishers() > 0;
+  })) << node.read();
+  node.signal(SIGTERM);
+  EXPECT_TRUE(waitFor([&] { return node.hasEnded(); }));
+  EXPECT_TRUE(WIFEXITED(node.status())) << "ended by a signal";
+  EXPECT_LE(told, 1);
+  ros::param::del("/tissue/wrench_rate");
+}
+
 // A robot that never comes is warned about, once.
 TEST_F(Start, ARobotThatDoesNotComeIsWarnedAbout) {
   publishes_transform_ = false;

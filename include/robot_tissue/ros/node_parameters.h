@@ -28,7 +28,8 @@ double updateBudget(const NodeParameters& parameters);
 // Of a load step (solver.max_iterations); 0: any number.
 int mostIterations(const NodeParameters& parameters);
 
-// Of a scene's text, which may hold the node's own parameters, too. Throws InputError.
+// Of a scene's text, which may hold the node's own parameters, too; the scene as its user takes it.
+// Throws InputError.
 NodeParameters parseNodeParameters(const YAML::Node& root, SceneSource source);
 // Throws InputError.
 NodeParameters readNodeParameters(const ros::NodeHandle& private_node);

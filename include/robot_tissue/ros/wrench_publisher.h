@@ -67,7 +67,7 @@ class WrenchPublisher {
   bool silent_ = true;
   bool has_told_ = false;
   bool stops_ = false;
-  std::condition_variable listener_came_;  // or the thread is to stop
+  std::condition_variable changed_;  // a listener came, or the thread is to stop
   std::thread thread_;
 };
 
