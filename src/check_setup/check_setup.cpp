@@ -7,6 +7,7 @@
 #include "robot_checks.h"
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/ros/node_parameters.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "scene_checks.h"
@@ -92,9 +93,11 @@ Robot robotOf(const Arguments& arguments, const Scene& scene, const LookAtRobot&
 
 void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) {
   const YAML::Node text = loadSceneText(arguments.scene);
-  const auto folder = std::filesystem::absolute(arguments.scene).parent_path().string();
-  teller.tell(checkUnits(text, folder));
-  const Scene scene = loadScene(arguments.scene);
+  SceneSource source;  // of the runner: it may be a scene for that
+  source.name = arguments.scene;
+  source.folder = std::filesystem::absolute(arguments.scene).parent_path().string();
+  teller.tell(checkUnits(text, source.folder));
+  const Scene scene = parseNodeParameters(text, source).scene;
   teller.tell(checkWalls(scene.tissue));
   teller.tell(checkForNode(scene));
   const Robot robot = robotOf(arguments, scene, look);

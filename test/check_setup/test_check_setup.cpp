@@ -164,6 +164,14 @@ TEST_F(CheckSetup, JawsAreLinksEnough) {
       << out_ << err_;
 }
 
+TEST_F(CheckSetup, TheNodesOwnKeysAreTakenAndChecked) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
+  EXPECT_EQ(check(scene + "rate: 50\nwrench_rate: 200\ncolor: strain\n"), kFine) << out_ << err_;
+  EXPECT_EQ(check(scene + "rate: 0\n"), kCannotRun) << out_;
+  EXPECT_NE(err_.find("rate = 0: must be a number from 0.01"), std::string::npos) << err_;
+  EXPECT_EQ(check(scene + "steps: [{settle: {}}]\n"), kFine) << out_ << err_;
+}
+
 TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_EQ(check("tissue: {spacing: 0.01}"), kCannotRun);
   EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
