@@ -1,8 +1,8 @@
 #include "robot_tissue/ros/surgery_services.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "robot_tissue/pipeline/suture_names.h"
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
@@ -110,21 +110,10 @@ void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
                      " more to take back" + solved(report);
 }
 
-std::string SurgeryServices::freeSutureName() const {
-  const std::vector<SutureReport> sutures = pipeline_.tissue().sutures();
-  const auto is_taken = [&](const std::string& name) {
-    return std::any_of(sutures.begin(), sutures.end(),
-                       [&](const SutureReport& suture) { return suture.name == name; });
-  };
-  int number = 1;
-  while (is_taken("s" + std::to_string(number))) ++number;
-  return "s" + std::to_string(number);
-}
-
 void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response& response) {
   const Pose tissue_T_request = tool_poses_.frame(request.header.frame_id);
   SutureConfig suture;
-  suture.name = request.name.empty() ? freeSutureName() : request.name;
+  suture.name = request.name.empty() ? freeSutureName(pipeline_.tissue()) : request.name;
   requirePatchName(suture.name);
   suture.from = toVec3(request.start);
   suture.to = toVec3(request.end);

@@ -48,7 +48,7 @@ void readStepsPart(const Entry& entry, SceneReading& reading) {
   Scene& scene = reading.scene;
   if (reading.source.user == SceneUser::kRunner) {
     scene.steps = readSteps(entry, scene.tissue, scene.solver, scene.tools);
-  } else if (!entry.list(0, "steps").empty()) {
+  } else if (!entry.list(0, "steps", kMostSteps).empty()) {
     scene.remarks.push_back(entry.line("ignored, only the offline runner takes steps"));
   }
 }

@@ -8,7 +8,6 @@
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kMostSteps = 1000000;
 constexpr std::size_t kMostCorners = 1000;
 
 // What the steps are checked against: the scene's tools, and the patches and tools that the steps
@@ -25,7 +24,6 @@ struct Program {
   std::map<std::string, std::vector<StandingPatch>> saved;  // what stands in saved states
   bool patches_are_known =
       true;  // else a state of an earlier run was loaded, with what stood in it
-  std::set<std::string> sutures = {};  // names of all that the steps before have made
 };
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
@@ -188,7 +186,7 @@ const std::vector<StepKind>& stepKinds() {
        }},
       {"suture",
        [](const Entry& entry, Program& program) -> Step {
-         return readSuture(entry, program.tissue.model, program.lengths, program.sutures);
+         return readSuture(entry, program.tissue.model, program.lengths);
        }},
       {"release",
        [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},

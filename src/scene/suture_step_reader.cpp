@@ -7,21 +7,14 @@ namespace {
 
 struct SutureReading {
   const LengthRanges& lengths;
-  std::set<std::string>& names;
   SutureConfig suture;
 };
 
 void readName(const Entry& entry, SutureReading& reading) {
-  if (entry.given()) {
-    reading.suture.name = entry.word("a name");
-    const std::string fault = patchNameFault(reading.suture.name);
-    if (!fault.empty()) entry.fail(fault);
-  } else {
-    int number = 1;
-    while (reading.names.count("s" + std::to_string(number)) > 0) ++number;
-    reading.suture.name = "s" + std::to_string(number);
-  }
-  reading.names.insert(reading.suture.name);
+  if (!entry.given()) return;
+  reading.suture.name = entry.word("a name");
+  const std::string fault = patchNameFault(reading.suture.name);
+  if (!fault.empty()) entry.fail(fault);
 }
 
 const KeyTable<SutureReading> kSutureKeys = {
@@ -56,15 +49,14 @@ const KeyTable<SutureReading> kSutureKeys = {
 
 }  // namespace
 
-SutureStep readSuture(const Entry& entry, const std::string& model, const LengthRanges& lengths,
-                      std::set<std::string>& names) {
+SutureStep readSuture(const Entry& entry, const std::string& model, const LengthRanges& lengths) {
   const MapReader map(entry, namesOf(kSutureKeys));
   if (hardPatchesOnly(model)) {
     entry.fail("must be left out with tissue.model " + model +
                ", whose methods find no equilibrium; a thread needs model elastic with method " +
                joined(methodsFor("elastic"), " or "));
   }
-  SutureReading reading{lengths, names, {}};
+  SutureReading reading{lengths, {}};
   readKeys(map, kSutureKeys, reading);
   return {reading.suture};
 }

@@ -1,10 +1,13 @@
 // Runner: the step that sutures, and what is told of sutures after each increment.
+#include "robot_tissue/pipeline/suture_names.h"
 #include "runner.h"
 
 namespace robot_tissue {
 
 void Runner::perform(const SutureStep& step) {
-  const SolveReport report = pipeline_.suture(step.suture).solve;
+  SutureConfig suture = step.suture;
+  if (suture.name.empty()) suture.name = freeSutureName(pipeline_.tissue());
+  const SolveReport report = pipeline_.suture(suture).solve;
   followPushes();
   keep(report);
 }

@@ -144,6 +144,15 @@ TEST_F(StateFiles, ALaterRunGoesOnFromAFileInItsFolder) {
   EXPECT_EQ(text("out/a.tissue"), saved);
 }
 
+TEST_F(StateFiles, ASutureWithoutANameIsNoneOfAnEarlierRuns) {
+  const std::string suture = "  - suture: {from: [0.045, 0.05, 0.05], to: [0.065, 0.05, 0.05]}\n";
+  ASSERT_EQ(runInto("out", scene(suture + kSave)), 0) << err_.str();
+  ASSERT_EQ(runInto("out", scene(kBack + suture)), 0) << err_.str();
+  const std::string sutures = text("out/sutures.csv");
+  EXPECT_NE(sutures.find(",s1,"), std::string::npos) << sutures;
+  EXPECT_NE(sutures.find(",s2,"), std::string::npos) << sutures;
+}
+
 TEST_F(StateFiles, AStateOfAnotherLatticeIsRefusedAndNothingWritten) {
   ASSERT_EQ(runInto("out", scene(kSave)), 0) << err_.str();
   const std::string nodes = text("out/nodes.csv");

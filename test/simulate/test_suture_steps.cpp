@@ -40,6 +40,15 @@ TEST(SutureSteps, AreToldAfterEachIncrement) {
   EXPECT_EQ(std::count_if(result.remarks.begin(), result.remarks.end(), is_told), 1);
 }
 
+TEST(SutureSteps, WithoutANameTakeTheFirstThatIsFree) {
+  std::string named = kSuture;
+  named.replace(named.find("from"), 4, "name: s1, from");
+  const RunResult result = resultOf(named + kSuture + "  - reset: {}\n" + kSuture);
+  ASSERT_EQ(result.sutures.size(), 4U);
+  EXPECT_EQ(result.sutures[2].suture.name, "s2");
+  EXPECT_EQ(result.sutures[3].suture.name, "s1");
+}
+
 TEST(SutureSteps, GoWithAReset) {
   const RunResult result = resultOf(kSuture + "  - reset: {}\n" + kSuture);
   ASSERT_EQ(result.sutures.size(), 2U);

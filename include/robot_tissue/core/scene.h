@@ -107,7 +107,7 @@ struct CutStep {
   std::vector<Vec3> corners;
 };
 struct SutureStep {
-  SutureConfig suture;
+  SutureConfig suture;  // without a name: the first of s1, s2, ... that is free then
 };
 struct ReleaseStep {
   std::vector<std::string> patches;

@@ -32,7 +32,6 @@ class SurgeryServices {
   void onRemove(const Remove::Request& request, Remove::Response& response);
   void onUndo(const std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void onSuture(const Suture::Request& request, Suture::Response& response);
-  std::string freeSutureName() const;
   template <class Service>
   void advertise(ros::NodeHandle& private_node, const std::string& name,
                  void (SurgeryServices::*answer)(const typename Service::Request&,

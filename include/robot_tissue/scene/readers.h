@@ -39,6 +39,8 @@ Box readNodeBox(const MapReader& map, const Grid& grid);
 SolverConfig readSolver(const Entry& entry, const TissueConfig& tissue,
                         const SolverOverrides& overrides, Remarks& remarks);
 
+constexpr std::size_t kMostSteps = 1000000;
+
 // Follows the program through: which patches stand, whose nodes they hold, which tools stand.
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
                             const SolverConfig& solver, const std::vector<ToolConfig>& tools);
@@ -64,9 +66,7 @@ GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools
                         const std::set<std::string>& standing);
 RemoveStep readRemove(const Entry& entry, const LengthRanges& lengths);
 UndoStep readUndo(const Entry& entry);
-// `names`: of sutures before it; one without a name gets the first of s1, s2, ... that is free.
-SutureStep readSuture(const Entry& entry, const std::string& model, const LengthRanges& lengths,
-                      std::set<std::string>& names);
+SutureStep readSuture(const Entry& entry, const std::string& model, const LengthRanges& lengths);
 SaveStep readSave(const Entry& entry);
 LoadStateStep readLoadState(const Entry& entry);
 void requireStands(const Entry& entry, const std::string& tool,
