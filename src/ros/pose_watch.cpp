@@ -61,6 +61,11 @@ PoseWatch::Seen PoseWatch::seen() {
   return std::exchange(seen_, Seen());
 }
 
+ros::Time PoseWatch::newestStill() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return seen_.still;
+}
+
 PoseWatch::Counts PoseWatch::counts() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(counts_, Counts());

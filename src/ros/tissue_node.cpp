@@ -41,12 +41,11 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   follower_.settleFromRest();
   services_ = std::make_unique<TissueServices>(
       private_node_, parameters_, pipeline_, publisher_, tool_poses_,
-      TissueServices::Node{[this] { watch_.standAt(std::nullopt); },
+      TissueServices::Node{[this] { wake(); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
                            [this] { follow(); }, [this] { follower_.settleFromRest(); }});
-  surgery_ =
-      std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_, publisher_,
-                                        tool_poses_, [this] { watch_.standAt(std::nullopt); });
+  surgery_ = std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_,
+                                               publisher_, tool_poses_, [this] { wake(); });
   live_ = std::make_unique<LiveParameters>(
       private_node_, parameters_, [this](const NodeParameters& wanted) { retune(wanted); });
   diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
@@ -92,6 +91,14 @@ void TissueNode::retune(const NodeParameters& wanted) {
   if (other_friction) pipeline_.setFriction(*frictionOf(parameters_));
   pipeline_.retune(parameters_.scene.tissue, parameters_.scene.solver);
   publisher_.retune(parameters_);
+}
+
+// Before a request, which may give something to do at the pose that the node has: from here on none
+// is still, and that pose is as new as the still ones answered so far, so that no stamp goes back.
+void TissueNode::wake() {
+  watch_.standAt(std::nullopt);
+  const ros::Time still = watch_.newestStill();
+  if (still > last_look_up_.stamp) standUntil(still);
 }
 
 // Timers of simulated time stand still without a clock, and where time goes back one whose period
@@ -140,10 +147,15 @@ void TissueNode::onTimer() {
   tick(has_time && !pipeline_.isLate() ? Ticks::kSeldom : Ticks::kAtRate);
 }
 
-// Publishes markers and state, which go out seldom, at a pose at which there was nothing to solve.
-void TissueNode::tellStill(const ros::Time& stamp) {
+// The pose that was looked up last is the tools' at this time, too.
+void TissueNode::standUntil(const ros::Time& stamp) {
   last_look_up_.stamp = stamp;
   last_look_up_.age_s = (ros::Time::now() - stamp).toSec();
+}
+
+// Publishes markers and state, which go out seldom, at a pose at which there was nothing to solve.
+void TissueNode::tellStill(const ros::Time& stamp) {
+  standUntil(stamp);
   publisher_.publishSeldom(pipeline_, stamp, status_);
 }
 

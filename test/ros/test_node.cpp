@@ -199,6 +199,28 @@ TEST_F(RunningNode, ToolThatStandsGetsItsWrenchAtEveryPose) {
   }
 }
 
+// Poses that are answered as still ones are newer than the last one that was solved for.
+TEST_F(RunningNode, StampsDoNotGoBackWhereAServiceComesBetween) {
+  press(0.004);
+  ros::Time newest;
+  int told = 0, went_back = 0;
+  const ros::Subscriber listener = node_.subscribe<geometry_msgs::WrenchStamped>(
+      "/tissue/probe/measured_cf", 1000, [&](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+        ++told;
+        if (wrench->header.stamp < newest) ++went_back;
+        newest = std::max(newest, wrench->header.stamp);
+      });
+  ApplyLoad to_its_pose;
+  to_its_pose.request.name = "probe";
+  for (int time = 0; time < 20; ++time) {
+    told = 0;
+    ASSERT_TRUE(waitFor([&] { return told >= 5; }));
+    ASSERT_TRUE(ros::service::call("/tissue/apply_load", to_its_pose));
+    EXPECT_TRUE(to_its_pose.response.success) << to_its_pose.response.message;
+  }
+  EXPECT_EQ(went_back, 0);
+}
+
 TEST_F(RunningNode, ToolThatStoodIsFollowedWhenItMovesAgain) {
   double shallow = press(0.004).wrench.force.z;
   for (int time = 0; time < 5; ++time) {

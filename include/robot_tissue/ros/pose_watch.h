@@ -44,6 +44,8 @@ class PoseWatch {
     ros::Time still;  // the newest stamp of a still one; zero when there was none
   };
   Seen seen();
+  // The same stamp, for one who comes between.
+  ros::Time newestStill();
   // Since then: poses that were due, and those of them that a newer one replaced.
   struct Counts {
     int came = 0;

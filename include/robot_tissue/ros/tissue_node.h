@@ -44,7 +44,9 @@ class TissueNode {
   void tick(Ticks ticks);
   ros::Duration period() const;
   void retune(const NodeParameters& wanted);
+  void wake();
   bool timeWentBack();
+  void standUntil(const ros::Time& stamp);
   void tellStill(const ros::Time& stamp);
   bool isStill() const;
   void update(PoseLookUp look_up);
