@@ -16,16 +16,25 @@ namespace {
 const char* const kGroup = "Default";  // the protocol's name of the one group that there is
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();  // in no range
 
+// As Python reads it, in quotes.
+std::string pythonText(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text)
+    quoted += c == '\'' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return quoted + "'";
+}
+
 // What clients offer a choice by: the protocol's form of it is a dictionary as Python writes it.
 std::string choiceOf(const ReconfigureServer::Parameter& parameter) {
   std::string choices;
   for (const std::string& word : parameter.words) {
     choices += (choices.empty() ? "" : ", ") +
-               ("{'name': '" + word + "', 'type': 'str', 'value': '") + word +
-               "', 'description': '', 'srcline': 0, 'srcfile': '', " +
+               ("{'name': " + pythonText(word) + ", 'type': 'str', 'value': " + pythonText(word)) +
+               ", 'description': '', 'srcline': 0, 'srcfile': '', " +
                "'cconsttype': 'const char * const', 'ctype': 'std::string'}";
   }
-  return "{'enum_description': '" + parameter.description + "', 'enum': [" + choices + "]}";
+  return "{'enum_description': " + pythonText(parameter.description) + ", 'enum': [" + choices +
+         "]}";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <rosgraph_msgs/Log.h>
 
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -254,6 +255,19 @@ TEST_F(Reconfigure, TheColorTellsSomethingElse) {
       << warnings_[0];
   send(color("none"));
   EXPECT_TRUE(waitFor([&] { return !has_legend(); }));
+}
+
+// The client of the documents, which reads the description of the choice.
+TEST_F(Reconfigure, DynparamSetsTheColorByItsName) {
+  const auto dynparam = [](const std::string& color) {
+    const std::string command = "timeout 20 rosrun dynamic_reconfigure dynparam set /tissue color ";
+    return std::system((command + color).c_str());
+  };
+  EXPECT_EQ(dynparam("strain"), 0);
+  std::string kept;
+  EXPECT_TRUE(node_.getParam("/tissue/color", kept));
+  EXPECT_EQ(kept, "strain");
+  EXPECT_EQ(dynparam("none"), 0);
 }
 
 TEST_F(Reconfigure, ToleranceHoldsFromTheNextSolveOn) {
