@@ -79,16 +79,13 @@ int PoseWatch::timeJumps() {
 
 // With the mutex locked.
 void PoseWatch::noticeTime() {
-  const ros::Time now = ros::Time::now();
-  if (now < last_time_) {
-    ++time_jumps_;
-    buffer_.clear();
-    waiting_.reset();
-    still_.reset();
-    seen_ = Seen();
-    pick_.timeWentBack();
-  }
-  last_time_ = now;
+  if (!time_.wentBack(ros::Time::now(), ros::Time::isSimTime())) return;
+  ++time_jumps_;
+  buffer_.clear();
+  waiting_.reset();
+  still_.reset();
+  seen_ = Seen();
+  pick_.timeWentBack();
 }
 
 void PoseWatch::standAt(std::optional<StillPose> still) {

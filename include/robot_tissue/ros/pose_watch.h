@@ -16,6 +16,7 @@
 
 #include "robot_tissue/pipeline/still_pose.h"
 #include "robot_tissue/ros/pose_pick.h"
+#include "robot_tissue/ros/time_jumps.h"
 #include "robot_tissue/ros/tool_poses.h"
 #include "robot_tissue/ros/transform_feed.h"
 
@@ -79,7 +80,7 @@ class PoseWatch {
   bool started_ = false;
   Seen seen_;
   Counts counts_;
-  ros::Time last_time_;
+  TimeJumps time_;
   int time_jumps_ = 0;
   std::optional<StillPose> still_;
   std::optional<PoseLookUp> waiting_;  // for the spinner's thread
