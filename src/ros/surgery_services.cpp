@@ -89,7 +89,7 @@ void SurgeryServices::onLoadState(const File::Request& request, File::Response& 
 
 void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response& response) {
   response.pieces = pipeline_.tissue().state().pieces;
-  const Pose tissue_T_frame = tool_poses_.frame(request.header.frame_id);
+  const Pose tissue_T_frame = tool_poses_.frame(request.header);
   const RemoveReport report = pipeline_.remove(spaceOf(request, tissue_T_frame));
   publisher_.shapeChanged();
   response.volume = report.volume;
@@ -111,7 +111,7 @@ void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
 }
 
 void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response& response) {
-  const Pose tissue_T_request = tool_poses_.frame(request.header.frame_id);
+  const Pose tissue_T_request = tool_poses_.frame(request.header);
   SutureConfig suture;
   suture.name = request.name.empty() ? freeSutureName(pipeline_.tissue()) : request.name;
   requirePatchName(suture.name);

@@ -101,7 +101,7 @@ bool TissueServices::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
 
 bool TissueServices::onCut(Cut::Request& request, Cut::Response& response) {
   try {
-    const Pose tissue_T_blade = tool_poses_.frame(request.header.frame_id);
+    const Pose tissue_T_blade = tool_poses_.frame(request.header);
     std::vector<Vec3> corners = cornersOf(request);
     for (Vec3& corner : corners) corner = tissue_T_blade * corner;
     const CutReport cut = pipeline_.cut(corners);

@@ -91,12 +91,28 @@ std::optional<ToolPoses::Newest> ToolPoses::newest(const std::string& frame) con
   }
 }
 
-Pose ToolPoses::frame(const std::string& frame_id) const {
-  if (frame_id.empty() || frame_id == tissue_frame_) return Pose::Identity();
+Pose ToolPoses::frame(const std_msgs::Header& header) const {
+  const std::string& frame = header.frame_id;
+  if (frame.empty() || frame == tissue_frame_) return Pose::Identity();
   try {
-    return tf2::transformToEigen(buffer_.lookupTransform(tissue_frame_, frame_id, ros::Time(0)));
+    const auto newest = buffer_.lookupTransform(tissue_frame_, frame, ros::Time(0));
+    const double ahead = header.stamp.toSec() - newest.header.stamp.toSec();
+    const bool is_asked = !header.stamp.isZero() && !isStatic(newest.header.stamp);
+    if (is_asked && ahead > timeout_s_) {
+      throw InputError("header.stamp: " + numberText(ahead) + " s after the newest transform of '" +
+                       shortText(frame) + "'; allowed: at most " + numberText(timeout_s_) +
+                       " (~tf_timeout), or 0: the newest");
+    }
+    const bool is_earlier = is_asked && ahead < 0.0;
+    return tf2::transformToEigen(
+        is_earlier ? buffer_.lookupTransform(tissue_frame_, frame, header.stamp) : newest);
+  } catch (const tf2::ExtrapolationException& error) {
+    throw InputError("header.stamp: '" + shortText(frame) +
+                     "' has no transform of then; allowed: one that the buffer holds, or 0: the "
+                     "newest (" +
+                     shortText(error.what()) + ")");
   } catch (const tf2::TransformException& error) {
-    throw InputError("header.frame_id: '" + shortText(frame_id) + "' has no transform to '" +
+    throw InputError("header.frame_id: '" + shortText(frame) + "' has no transform to '" +
                      tissue_frame_ + "'; allowed: a connected frame, or none (" +
                      shortText(error.what()) + ")");
   }

@@ -13,6 +13,10 @@ namespace {
 
 const ros::WallDuration kPatience(1.0);  // until the clock is where a transform is
 const ros::WallDuration kWarnPeriod(10.0);
+// s: so long after time went back transforms of before may come; and so far ahead of the clock are
+// those that a simulator sends with its next tick. Chosen.
+constexpr double kOnItsWay = 1.0;
+constexpr double kAheadOfClock = 0.5;
 
 // s: a stamp may be farther from another than ros::Duration tells, which throws then.
 double secondsFrom(const ros::Time& from, const ros::Time& to) { return to.toSec() - from.toSec(); }
@@ -23,7 +27,10 @@ TransformIntake::TransformIntake(tf2::BufferCore& buffer, std::function<bool()> 
     : buffer_(buffer), time_went_back_(std::move(time_went_back)) {}
 
 void TransformIntake::take(const tf2_msgs::TFMessage& message, Kind kind) {
-  if (time_went_back_()) newest_.clear();
+  if (time_went_back_()) {
+    newest_.clear();
+    went_back_to_ = ros::Time::now();
+  }
   warnOfAhead();
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
     if (kind == Kind::kMoving && !hasPlace(transform)) continue;
@@ -45,10 +52,18 @@ bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform)
     if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
     return false;
   }
+  if (isOfBefore(now, stamp)) return false;
   ros::Time& newest = newest_[transform.child_frame_id];
   if (secondsFrom(stamp, newest) > most) return false;
   newest = std::max(newest, stamp);
   return true;
+}
+
+// Where time went back just now, what is ahead of it was still on its way. Put in, it would be the
+// newest until time has come there.
+bool TransformIntake::isOfBefore(const ros::Time& now, const ros::Time& stamp) const {
+  return went_back_to_ && secondsFrom(*went_back_to_, now) < kOnItsWay &&
+         secondsFrom(now, stamp) > kAheadOfClock;
 }
 
 void TransformIntake::warnOfAhead() {

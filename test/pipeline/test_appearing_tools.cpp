@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "../contact/contact_fixtures.h"
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_appearing_tools {
@@ -82,6 +83,16 @@ TEST(ToolInFixedTissue, LetsGoOfWhatItIsHookedOnOnceItIsOutside) {
   }
   EXPECT_GT(drawn_out, 0.005);
   EXPECT_TRUE(was_inside);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+// Its walls are as far off on all sides, and no way out is short: not searched for step by step.
+TEST(AppearingTool, MeshAroundAllOfTheTissueIsTold) {
+  const ToolShape ball = mesh(writeStl("large_ball.stl", ballTriangles(12, 10.0)));
+  Pipeline pipeline(block(), methodOf("elastic"), {toolOf(ball)});
+  EXPECT_EQ(pipeline.toolWarnings().size(), 1U);
+  const StepReport& report = pipeline.step(at({Vec3(kMiddle, kMiddle, kTop)}));
+  EXPECT_EQ(report.were_inside, std::vector<std::size_t>{0});
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 

@@ -144,5 +144,23 @@ TEST(SlidingTools, AFlatFaceIsHeldBackByFrictionAlone) {
   }
 }
 
+// What a tool drags along by friction is let go in the update in which it leaves.
+TEST(SlidingTools, AToolThatLeavesAsideLeavesTheTissueAtRest) {
+  for (const double friction : {0.3, 1.0}) {
+    for (const double depth : {0.0005, 0.001, 0.004}) {
+      for (const double aside : {0.001, 0.004}) {
+        Pipeline pipeline(block(), methodOf("elastic"), {withFriction(friction, probe())});
+        walk(pipeline, -0.001, depth);
+        ASSERT_GT(greatestDisplacement(pipeline.tissue()), 0.0);
+        const Vec3 above(kMiddle + aside, kMiddle, kTop + 0.0002);
+        const StepReport& report = pipeline.step(at({above + Vec3(0.0, 0.0, kRadius)}));
+        ASSERT_EQ(report.tools.front().force_on_tool, Vec3::Zero());
+        EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0)
+            << friction << " " << depth << " " << aside;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_sliding_tools

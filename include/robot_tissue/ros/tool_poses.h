@@ -3,6 +3,7 @@
 #pragma once
 
 #include <ros/time.h>
+#include <std_msgs/Header.h>
 #include <tf2/buffer_core.h>
 
 #include <optional>
@@ -45,8 +46,9 @@ class ToolPoses {
     ros::Time stamp;
   };
   std::optional<Newest> newest(const std::string& frame) const;
-  // tissue_T_frame at the newest stamp; throws InputError when there is none.
-  Pose frame(const std::string& frame_id) const;
+  // tissue_T_frame at the header's stamp; at the newest one where that is zero, or newer by no more
+  // than the timeout. Throws InputError where there is none.
+  Pose frame(const std_msgs::Header& header) const;
 
  private:
   const tf2::BufferCore& buffer_;

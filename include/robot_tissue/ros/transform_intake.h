@@ -32,11 +32,13 @@ class TransformIntake {
   };
 
   bool hasPlace(const geometry_msgs::TransformStamped& transform);
+  bool isOfBefore(const ros::Time& now, const ros::Time& stamp) const;
   void warnOfAhead();
 
   tf2::BufferCore& buffer_;
   std::function<bool()> time_went_back_;
   std::map<std::string, ros::Time> newest_;  // stamps put in, by child frame
+  std::optional<ros::Time> went_back_to_;    // the last time that time did
   std::optional<Ahead> ahead_;               // left out and not warned about yet
   ros::WallTime warned_;
 };

@@ -1,0 +1,102 @@
+// Which transforms are taken, and where a request's frame is.
+#include <geometry_msgs/TransformStamped.h>
+#include <gtest/gtest.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include "robot_tissue/core/types.h"
+#include "robot_tissue/ros/tool_poses.h"
+#include "robot_tissue/ros/transform_intake.h"
+
+namespace robot_tissue::test_request_frames {
+namespace {
+
+constexpr double kTimeout = 0.5;  // s
+
+geometry_msgs::TransformStamped cameraAt(double x, double stamp) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.frame_id = "tissue";
+  transform.header.stamp = ros::Time(stamp);
+  transform.child_frame_id = "camera";
+  transform.transform.translation.x = x;
+  transform.transform.rotation.w = 1.0;
+  return transform;
+}
+
+std_msgs::Header of(const std::string& frame, double stamp) {
+  std_msgs::Header header;
+  header.frame_id = frame;
+  header.stamp = ros::Time(stamp);
+  return header;
+}
+
+class RequestFrame : public ::testing::Test {
+ protected:
+  RequestFrame() {
+    buffer_.setTransform(cameraAt(0.1, 100.0), "test");
+    buffer_.setTransform(cameraAt(0.3, 101.0), "test");
+  }
+  double x(double stamp) const { return poses_.frame(of("camera", stamp)).translation().x(); }
+  std::string refusalOf(const std::string& frame, double stamp) const {
+    try {
+      poses_.frame(of(frame, stamp));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  tf2::BufferCore buffer_;
+  ToolPoses poses_{buffer_, "tissue", kTimeout};
+};
+
+TEST_F(RequestFrame, IsWhereItWasAtTheStamp) {
+  EXPECT_NEAR(x(100.0), 0.1, 1e-12);
+  EXPECT_NEAR(x(100.5), 0.2, 1e-12);
+  EXPECT_NEAR(x(101.0), 0.3, 1e-12);
+  EXPECT_NEAR(x(0.0), 0.3, 1e-12) << "without a stamp the newest counts";
+  EXPECT_NEAR(x(101.4), 0.3, 1e-12) << "a transform comes a little later than its request";
+}
+
+TEST_F(RequestFrame, OfAnotherTimeIsRefused) {
+  EXPECT_NE(refusalOf("camera", 101.6).find("header.stamp: 0.6 s after the newest"),
+            std::string::npos);
+  EXPECT_NE(refusalOf("camera", 99.0).find("header.stamp: 'camera' has no transform of then"),
+            std::string::npos);
+  EXPECT_NE(refusalOf("nowhere", 101.0).find("header.frame_id: 'nowhere'"), std::string::npos);
+}
+
+TEST_F(RequestFrame, ThatStandsIsThereAtAnyTime) {
+  geometry_msgs::TransformStamped base = cameraAt(0.7, 50.0);
+  base.child_frame_id = "base";
+  buffer_.setTransform(base, "test", true);
+  for (const double stamp : {0.0, 1.0, 101.0, 5000.0}) {
+    EXPECT_NEAR(poses_.frame(of("base", stamp)).translation().x(), 0.7, 1e-12) << stamp;
+  }
+  EXPECT_TRUE(poses_.frame(of("", 5000.0)).isApprox(Pose::Identity()));
+}
+
+// A message of before is on its way as time goes back, as where a bag begins again.
+TEST(TransformIntake, WhatIsAheadOfATimeThatWentBackIsLeftOut) {
+  tf2::BufferCore buffer;
+  bool went_back = false;
+  TransformIntake intake(buffer, [&] { return std::exchange(went_back, false); });
+  const auto take = [&](double now, double x, double stamp) {
+    ros::Time::setNow(ros::Time(now));
+    tf2_msgs::TFMessage message;
+    message.transforms.push_back(cameraAt(x, stamp));
+    intake.take(message, TransformIntake::Kind::kMoving);
+    return buffer.lookupTransform("tissue", "camera", ros::Time(0)).transform.translation.x;
+  };
+  EXPECT_EQ(take(109.0, 0.1, 109.0), 0.1);
+  buffer.clear();
+  went_back = true;
+  ros::Time::setNow(ros::Time(100.0));
+  EXPECT_EQ(take(100.0, 0.2, 100.0), 0.2);
+  EXPECT_EQ(take(100.01, 0.1, 109.0), 0.2);
+  EXPECT_EQ(take(100.02, 0.3, 100.02), 0.3);
+  EXPECT_EQ(take(100.03, 0.4, 100.2), 0.4) << "a simulator's next tick";
+  EXPECT_EQ(take(102.0, 0.5, 103.0), 0.5) << "nothing of before comes so late";
+}
+
+}  // namespace
+}  // namespace robot_tissue::test_request_frames
