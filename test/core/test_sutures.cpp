@@ -308,7 +308,7 @@ TEST_F(SutureRefusal, OfWhatIsNoThread) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   expectRefused([](SutureConfig& config) { config.to = Vec3(0.03, 0.01, 0.04); },
-                "to is nowhere at the tissue's surface");
+                "to = (0.03, 0.01, 0.04) m is nowhere at the tissue's surface");
   expectRefused([](SutureConfig& config) { config.from = Vec3(0.02, 0.01, 0.01); }, "from");
   expectRefused([](SutureConfig& config) { config.to = config.from; }, "one point");
   expectRefused([](SutureConfig& config) { config.name = "s1"; }, "of this name");

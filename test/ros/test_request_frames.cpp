@@ -79,6 +79,7 @@ TEST_F(RequestFrame, ThatStandsIsThereAtAnyTime) {
 TEST(TransformIntake, WhatIsAheadOfATimeThatWentBackIsLeftOut) {
   tf2::BufferCore buffer;
   bool went_back = false;
+  ros::Time::init();
   TransformIntake intake(buffer, [&] { return std::exchange(went_back, false); });
   const auto take = [&](double now, double x, double stamp) {
     ros::Time::setNow(ros::Time(now));

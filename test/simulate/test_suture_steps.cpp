@@ -62,7 +62,8 @@ TEST(SutureSteps, ToNowhereAreRefusedWithTheStep) {
     ADD_FAILURE() << "not refused";
   } catch (const InputError& error) {
     const std::string line = error.what();
-    EXPECT_NE(line.find("steps[0].suture: suture 's1': from is nowhere"), std::string::npos)
+    EXPECT_NE(line.find("steps[0].suture: suture 's1': from = (0.045, 0.05, 0.025) m is nowhere"),
+              std::string::npos)
         << line;
     EXPECT_EQ(line.find('\n'), std::string::npos);
   }
