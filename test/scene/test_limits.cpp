@@ -323,7 +323,9 @@ TEST(Memory, OneCorruptedVertexIsBounded) {
   } catch (const InputError& error) {
     message = error.what();
   }
-  EXPECT_NE(message.find("must be larger, or the mesh, 3000 m across, smaller (tissue.shape.scale: 0.001"), std::string::npos)
+  EXPECT_NE(message.find(
+                "must be larger, or the mesh, 3000 m across, smaller (tissue.shape.scale: 0.001"),
+            std::string::npos)
       << message;
 }
 
