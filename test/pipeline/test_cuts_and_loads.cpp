@@ -218,6 +218,27 @@ TEST(ForcedPatch, IsWhereItsNodesAreBesideATool) {
   }
 }
 
+// A patch that is driven against a ball gives way as a piece, not as a node under a ball.
+TEST(ForcedPatch, IsHeldUpByABallAboveIt) {
+  constexpr double kGap = 0.0002;  // m
+  for (const double force : {0.2, 0.5}) {
+    Pipeline pipeline(block(), methodOf("elastic"), {probe()});
+    walk(pipeline, -0.001, -kGap);
+    PatchConfig patch;
+    patch.name = "lift";
+    patch.box = {Vec3(0.02, 0.02, kTop), Vec3(0.04, 0.04, kTop)};
+    patch.force = Vec3(0.0, 0.0, force);
+    pipeline.load({1, {patch}});
+    const Tissue& tissue = pipeline.tissue();
+    const PatchAnswer answer = tissue.answerOf("lift", tissue.lastReport());
+    EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk);
+    EXPECT_NEAR(answer.displacement.z(), kGap, 0.05 * kSpacing);
+    const double borne = pipeline.report().tools.front().force_on_tool.z();
+    EXPECT_GT(borne, 0.5 * force);
+    EXPECT_LT(borne, 1.05 * force);
+  }
+}
+
 TEST(ForceBalance, OfTissueThatIsResetIsNone) {
   TissueConfig large = block();
   large.shape = {Vec3::Zero(), Vec3(0.2, 0.2, 0.1)};

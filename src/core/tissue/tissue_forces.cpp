@@ -1,4 +1,5 @@
 // Tissue: forces on it.
+#include <algorithm>
 #include <optional>
 
 #include "loads/narrow_contact.h"
@@ -47,6 +48,14 @@ bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
     }
   }
   return true;
+}
+
+// Of the first so many patches. What moves as one piece gives way otherwise than a node by itself.
+bool isInOne(const std::vector<LoadingPatch>& patches, std::size_t count, int node) {
+  const auto end = patches.begin() + static_cast<std::ptrdiff_t>(count);
+  return std::any_of(patches.begin(), end, [node](const LoadingPatch& patch) {
+    return std::find(patch.nodes.begin(), patch.nodes.end(), node) != patch.nodes.end();
+  });
 }
 
 }  // namespace
@@ -115,6 +124,7 @@ std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
   const CellSet& cells = *state_.cells;
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
+    if (isInOne(patches_, named_patches_, share.node)) return std::nullopt;
     if (!isUniformAround(cells, *model_, share.node)) return std::nullopt;
   }
   const Moduli moduli = model_->moduliAt(state_, press.shares.front().node);
