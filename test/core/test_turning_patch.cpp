@@ -177,5 +177,28 @@ TEST(TurningPatch, IsRefusedOnALineOfNodes) {
   }
 }
 
+// A large turn of a small patch, which what is left of it goes on with by less than matters.
+TEST(TurningPatch, AtTheDefaultToleranceEndsInBalance) {
+  TissueConfig config = withFixedBottom(blockOf(4, 6, 6, 0.01));
+  config.model = "elastic";
+  config.material.poisson_ratio = 0.45;
+  PatchConfig patch;
+  patch.name = "edge";
+  patch.box = {Vec3(0.01, 0.05, 0.06), Vec3(0.02, 0.06, 0.06)};
+  patch.force = Vec3(0.29, 0.033, 0.229);
+  patch.turns = true;
+  std::vector<Vec3> displacement;
+  for (const char* method : {"layered", "newton"}) {
+    SolverConfig solver;
+    solver.method = method;
+    Tissue tissue(config, solver);
+    for (const SolveReport& report : reportsOf(tissue, loadOf({patch}))) {
+      EXPECT_EQ(report.status, SolveStatus::kOk) << method;
+    }
+    displacement.push_back(tissue.answerOf("edge", tissue.lastReport()).displacement);
+  }
+  EXPECT_LT((displacement[0] - displacement[1]).norm(), 0.01 * displacement[1].norm());
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_turning_patch

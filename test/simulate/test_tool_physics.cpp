@@ -251,5 +251,36 @@ TEST(ToolPhysics, TwoRunsGiveTheSameBits) {
   }
 }
 
+// Beside a tool tissue goes half a spacing at most in a solve: then it is solved for anew, also
+// where the tool touches nothing any more.
+TEST(ToolPhysics, ALoadBesideAToolThatHasLeftIsAsWithoutIt) {
+  const std::string tissue =
+      "tissue:\n  shape: {type: box, min: [0, 0, 0], max: [0.056, 0.048, 0.048]}\n"
+      "  spacing: 0.008\n  material: {young_modulus: 1.0e+4, poisson_ratio: 0.45}\n"
+      "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n";
+  const std::string tools =
+      "tools:\n  - {name: probe, friction: 0.3, shapes: [{type: box, size: [0.028, 0.026, "
+      "0.03]}]}\n";
+  const std::string press =
+      "  - move: {tool: probe, from: {xyz: [0.0308, 0.0238, 0.073]}, to: {xyz: [0.0308, 0.0238, "
+      "0.0597]}}\n";
+  const std::string load =
+      "  - load: {patches: [{name: a, min: [0, 0.016, 0.048], max: [0.008, 0.032, 0.048], force: "
+      "[-0.117, 0.233, -0.0014]}]}\n";
+  const std::string leave = "  - move: {tool: probe, to: {xyz: [0.0308, 0.0238, 0.083]}}\n";
+  for (const std::string method : {"layered", "newton"}) {
+    const std::string solver = "solver: {method: " + method + "}\n";
+    const RunResult with = run(tissue + solver + tools + "steps:\n" + press + load + leave);
+    const RunResult without = run(tissue + solver + "steps:\n" + load);
+    EXPECT_TRUE(with.allOk() && without.allOk()) << method;
+    double off = 0.0, all = 0.0;
+    for (std::size_t node = 0; node < with.displacement.size(); ++node) {
+      off += (with.displacement[node] - without.displacement[node]).squaredNorm();
+      all += without.displacement[node].squaredNorm();
+    }
+    EXPECT_LT(std::sqrt(off), 0.02 * std::sqrt(all)) << method;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tool_physics

@@ -71,7 +71,8 @@ bool Tissue::asksForRound(Rounds& rounds) {
   }
   const bool hurried = isBounded() && report.status == SolveStatus::kLate;
   const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-  const bool whole = (goesThroughTime() || !goBack(rounds)) && solved;
+  const bool is_on_its_way = !goesThroughTime() && goBack(rounds);
+  const bool whole = !is_on_its_way && solved;
   if (whole) ++rounds.whole;
   rounds.gain.note(rounds.of_round, state_.displacement, whole);
   const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
@@ -84,7 +85,7 @@ bool Tissue::asksForRound(Rounds& rounds) {
       of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
       last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
   if (isBounded()) noteLook(left_ms - deadline_->leftMs());
-  if (!renewed && (last || !hurried)) return false;
+  if (!renewed && !is_on_its_way && (last || !hurried)) return false;
   if (whole && mayShowUnsettled()) {
     noteUnsettled();
     report.status = last_report_.status;
@@ -95,8 +96,9 @@ bool Tissue::asksForRound(Rounds& rounds) {
     raise(SolveStatus::kLate);
   }
   // What time ran out in is told; what is on its way to another place is no shape to show.
-  const bool is_none_to_show = spent || (!whole && patience_.bound().isSpent());
-  if (last && renewed && is_none_to_show) raise(SolveStatus::kUnconverged);
+  const bool stays_away = is_on_its_way && !renewed && !late;
+  const bool is_none_to_show = spent || stays_away || (!whole && patience_.bound().isSpent());
+  if (last && is_none_to_show) raise(SolveStatus::kUnconverged);
   if (!last && renewed) putToolPatches(std::move(of_tools));
   return !last;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "lattice/changed_cells.h"
@@ -20,6 +21,7 @@ FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model
                                const LayeredOptions& options)
     : lattice_(lattice),
       model_(model),
+      tolerance_(options.tolerance),
       part_(lattice, options.tolerance),
       ends_(lattice, options.tolerance),
       forces_(shape_, options.tolerance),
@@ -119,8 +121,8 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
   SolveReport report;
   wants_double_ = false;
   if (part_.isEmpty()) return report;
-  bool turned = true;  // a patch, so far that its forces are to be found anew
-  for (int round = 0; turned && round < tuning::kMostTurns; ++round) {
+  double turned = std::numeric_limits<double>::infinity();  // a patch, in the last round (rad)
+  for (int round = 0; turned > tuning::kTurned && round < tuning::kMostTurns; ++round) {
     report.status = balance(solve);
     wants_double_ = isForDouble(solve, report.status);
     if (wants_double_) return giveUp(solve);
@@ -133,7 +135,8 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
     turned = settlePatches(solve);
     if (report.status != SolveStatus::kOk) break;
   }
-  if (turned && report.status == SolveStatus::kOk) report.status = SolveStatus::kUnconverged;
+  const bool turns_on = turned > std::max(tuning::kTurned, tuning::kTurnsOn * tolerance_);
+  if (turns_on && report.status == SolveStatus::kOk) report.status = SolveStatus::kUnconverged;
   warm_start_.noteEnd(report.status);
   const double error = iteration_.error();
   report.error_estimate = std::isfinite(error) ? std::hypot(error, part_.missed()) : 1.0;
@@ -257,15 +260,16 @@ void FasCgSolver<Real>::writeShape(SolveContext& solve) const {
                                           solve.hold.dirichletMask());
 }
 
-// Patches by force go where the levels moved them, as rigid bodies do. True: one turned so far that
-// its nodes are no longer where they were found to balance.
+// Patches by force go where the levels moved them, as rigid bodies do. How far one turned (rad): so
+// far its nodes are no longer where they were found to balance.
 template <typename Real>
-bool FasCgSolver<Real>::settlePatches(SolveContext& solve) {
-  const PatchesMoved moved = movePatches(lattice_, shape_.finest().constrained.motion, solve.shape);
-  if (moved == PatchesMoved::kNone) return false;
+double FasCgSolver<Real>::settlePatches(SolveContext& solve) {
+  const std::optional<double> turned =
+      movePatches(lattice_, shape_.finest().constrained.motion, solve.shape);
+  if (!turned) return 0.0;
   shape_.levels().constraints().renewGroups(solve.shape, solve.hold);
   shape_.finest().findForces();
-  return moved == PatchesMoved::kTurned;
+  return *turned;
 }
 
 template <typename Real>

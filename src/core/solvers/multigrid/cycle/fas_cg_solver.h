@@ -47,7 +47,7 @@ class FasCgSolver : public MultigridSolver {
   void prepare(const SolveContext& solve);
   SolveStatus balance(SolveContext& solve);
   void writeShape(SolveContext& solve) const;
-  bool settlePatches(SolveContext& solve);
+  double settlePatches(SolveContext& solve);
   void forgetLevels();
   SolveReport giveUp(const SolveContext& solve);
   bool isForDouble(const SolveContext& solve, SolveStatus status) const;
@@ -55,6 +55,7 @@ class FasCgSolver : public MultigridSolver {
 
   const Lattice& lattice_;
   const ElasticModel& model_;
+  double tolerance_;
   std::unique_ptr<Workers> workers_;
   std::shared_ptr<const CellSet> cells_;     // that the levels were made of
   std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 
-#include "solvers/multigrid/cycle/tuning.h"
-
 namespace robot_tissue {
 
-PatchesMoved movePatches(const Lattice& lattice, const std::vector<GroupVector>& motions,
-                         ConstrainedState& shape) {
-  PatchesMoved moved = PatchesMoved::kNone;
+std::optional<double> movePatches(const Lattice& lattice, const std::vector<GroupVector>& motions,
+                                  ConstrainedState& shape) {
+  std::optional<double> turned;
   for (std::size_t index = 0; index < shape.patches.size(); ++index) {
     LoadingPatch& patch = shape.patches[index];
     const GroupVector& motion = motions[index];
     if (!byForce(patch) || motion.isZero(0.0)) continue;
     movePatch(lattice, patch, lattice.spacing() * motion.head<3>(), motion.tail<3>(), shape.state);
-    const bool turned = motion.tail<3>().norm() > cycle_tuning::kTurned;
-    moved = std::max(moved, turned ? PatchesMoved::kTurned : PatchesMoved::kShifted);
+    turned = std::max(turned.value_or(0.0), motion.tail<3>().norm());
   }
-  return moved;
+  return turned;
 }
 
 PatchAnswers answersOf(const Lattice& lattice, const SolveContext& solve,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "solvers/multigrid/cycle/solve_context.h"
@@ -9,12 +10,10 @@
 
 namespace robot_tissue {
 
-enum class PatchesMoved { kNone, kShifted, kTurned };
-
-// Moves patches by force, as rigid bodies, by these motions (spacings, rad). kTurned: one so far
-// that its nodes are no longer where they were found to balance.
-PatchesMoved movePatches(const Lattice& lattice, const std::vector<GroupVector>& motions,
-                         ConstrainedState& shape);
+// Moves patches by force, as rigid bodies, by these motions (spacings, rad). How far one turned at
+// most (rad); absent: none moved.
+std::optional<double> movePatches(const Lattice& lattice, const std::vector<GroupVector>& motions,
+                                  ConstrainedState& shape);
 
 struct PatchAnswers {
   std::vector<PatchAnswer> all;

@@ -200,6 +200,9 @@ constexpr int kUsualCycles = 30;
 // (chosen). Up: less exact moments; longer solves.
 constexpr double kTurned = 1e-4;
 constexpr int kMostTurns = 20;
+// Of the tolerance (rad): a patch that still turns so little, as to and fro, is in balance (chosen:
+// moments are as exact then as a tenth of the tolerance). Up: less exact moments.
+constexpr double kTurnsOn = 0.1;
 // Rounds of one solve, in wider parts or for what these miss (chosen). Up: longer solves.
 constexpr int kMostRounds = 8;
 
