@@ -260,8 +260,8 @@ void FasCgSolver<Real>::writeShape(SolveContext& solve) const {
                                           solve.hold.dirichletMask());
 }
 
-// Patches by force go where the levels moved them, as rigid bodies do. How far one turned (rad): so
-// far its nodes are no longer where they were found to balance.
+// Patches by force go where the levels moved them, as rigid bodies do. How far one turned (rad): by
+// so much its nodes are no longer where they were found to balance.
 template <typename Real>
 double FasCgSolver<Real>::settlePatches(SolveContext& solve) {
   const std::optional<double> turned =
