@@ -193,17 +193,24 @@ TEST(CutBesideATool, LeavesItsForceAsItWas) {
   }
 }
 
+constexpr double kGap = 0.0002;  // m
+
+// A force upwards on the patch in the box, with the tool above the block by the gap.
+void liftBelowTheTool(Pipeline& pipeline, const Box& box, double force) {
+  walk(pipeline, -0.001, -kGap);
+  PatchConfig patch;
+  patch.name = "lift";
+  patch.box = box;
+  patch.force = Vec3(0.0, 0.0, force);
+  pipeline.load({1, {patch}});
+}
+
 // A tool in the way of the tissue beside what a force drives: solves are taken back in part, and
 // the patch is told where its nodes are.
 TEST(ForcedPatch, IsWhereItsNodesAreBesideATool) {
   for (const double force : {1.0, 2.0, 3.0}) {
     Pipeline pipeline(block(), methodOf("elastic"), {probe()});
-    walk(pipeline, -0.001, -0.0002);
-    PatchConfig patch;
-    patch.name = "lift";
-    patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.02, 0.06, kTop)};
-    patch.force = Vec3(0.0, 0.0, force);
-    pipeline.load({1, {patch}});
+    liftBelowTheTool(pipeline, {Vec3(0.0, 0.0, kTop), Vec3(0.02, 0.06, kTop)}, force);
     const Tissue& tissue = pipeline.tissue();
     EXPECT_GT(pipeline.report().tools.front().force_on_tool.norm(), 0.01) << force;
     const LoadingPatch& lift = tissue.patches().front();
@@ -220,15 +227,9 @@ TEST(ForcedPatch, IsWhereItsNodesAreBesideATool) {
 
 // A patch that is driven against a ball gives way as a piece, not as a node under a ball.
 TEST(ForcedPatch, IsHeldUpByABallAboveIt) {
-  constexpr double kGap = 0.0002;  // m
   for (const double force : {0.2, 0.5}) {
     Pipeline pipeline(block(), methodOf("elastic"), {probe()});
-    walk(pipeline, -0.001, -kGap);
-    PatchConfig patch;
-    patch.name = "lift";
-    patch.box = {Vec3(0.02, 0.02, kTop), Vec3(0.04, 0.04, kTop)};
-    patch.force = Vec3(0.0, 0.0, force);
-    pipeline.load({1, {patch}});
+    liftBelowTheTool(pipeline, {Vec3(0.02, 0.02, kTop), Vec3(0.04, 0.04, kTop)}, force);
     const Tissue& tissue = pipeline.tissue();
     const PatchAnswer answer = tissue.answerOf("lift", tissue.lastReport());
     EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk);

@@ -141,12 +141,10 @@ TEST(MaxIterations, AfterAResetItGoesAsTheFirstTime) {
   Dragged once(8), again(8);
   std::vector<Vec3> first, second;
   pressAndDrag(once.pipeline, [&] { first.push_back(force(once.pipeline)); });
-  bool any_late = false;
-  for (int step = -4; step <= 60; ++step) {
+  for (int step = -4; !again.pipeline.report().too_fast; ++step) {
+    ASSERT_LT(step, 60) << "no way is too long to be followed";
     again.pipeline.step(edgeAt(0.0213 + 0.0002 * step, 0.0009 * step));
-    any_late = again.pipeline.report().too_fast;
   }
-  ASSERT_TRUE(any_late);
   again.pipeline.reset();
   pressAndDrag(again.pipeline, [&] { second.push_back(force(again.pipeline)); });
   EXPECT_EQ(first, second);
