@@ -30,11 +30,11 @@ robot_tissue_room(cutting
     cut.cpp cut.h cut_front.cpp cut_front.h removal.cpp removal.h split_cells.cpp split_cells.h tear.cpp tear.h)
 robot_tissue_room(surface
   USES base geometry lattice cutting
-  PUBLIC curved_surface.h surface.h
+  PUBLIC curved_surface.h surface.h surface_strain.h
   FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h divided_grid.cpp
     divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
-    smooth_carriers.h surface.cpp)
+    smooth_carriers.h surface.cpp surface_strain.cpp)
 robot_tissue_room(membrane
   USES base geometry config surface
   FILES hinge.cpp hinge.h membrane.cpp membrane.h membrane_plan.cpp membrane_plan.h node_blocks.cpp
@@ -102,7 +102,7 @@ robot_tissue_room(solvers/baselines/kernels
 robot_tissue_room(solvers/baselines
   USES base simd material loads solvers solvers/baselines/kernels
   FILES contact_passage.cpp contact_passage.h explicit_method.cpp explicit_method.h node_step.cpp node_step.h relaxation_method.cpp
-    relaxation_method.h relaxation_waves.cpp soa_field.cpp soa_field.h soa_sweeps.cpp tuning.h
+    relaxation_method.h relaxation_waves.cpp soa_field.cpp soa_field.h soa_sweeps.cpp spare_arrays.h tuning.h
     vbd_method.cpp vbd_method.h xpbd_method.cpp xpbd_method.h)
 robot_tissue_room(tissue
   USES base config lattice cutting surface membrane material loads saving solvers

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
-#include "robot_tissue/core/triangle_mesh.h"
-#include "robot_tissue/core/triangle_point.h"
+#include "robot_tissue/core/surface_strain.h"
+#include "robot_tissue/pipeline/touch_pressure.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -29,10 +28,6 @@ constexpr std::array<std::array<double, 3>, 5> kRamp = {{{1.00, 1.00, 0.80},
 // Towards the light, unit: from above and before.
 const Vec3 kLight(0.36, -0.48, 0.80);
 
-Corners cornersOf(const std::vector<Vec3>& vertices, const MeshTriangle& triangle) {
-  return {vertices[at(triangle[0])], vertices[at(triangle[1])], vertices[at(triangle[2])]};
-}
-
 // Where nodes have them (m): what is drawn at tools' edges is aside of that.
 std::vector<Vec3> verticesOfNodes(const Tissue& tissue) {
   std::vector<Vec3> vertices;
@@ -51,102 +46,8 @@ std::vector<double> displacements(const Tissue& tissue) {
   return values;
 }
 
-// First fundamental form: scalar products of two sides.
-Eigen::Matrix2d metricOf(const Corners& corners) {
-  const Vec3 side = corners[1] - corners[0], other = corners[2] - corners[0];
-  Eigen::Matrix2d metric;
-  metric << side.dot(side), side.dot(other), side.dot(other), other.dot(other);
-  return metric;
-}
-
-// The greatest eigenvalue of (rest metric)^-1 (metric) is the square of the stretch.
-double greatestStretch(const Corners& rest, const Corners& now) {
-  const Eigen::Matrix2d rest_metric = metricOf(rest);
-  if (!(rest_metric.determinant() > 0.0)) return 1.0;
-  const Eigen::Matrix2d change = rest_metric.inverse() * metricOf(now);
-  const double mean = 0.5 * change.trace();
-  return std::sqrt(mean + std::sqrt(std::max(mean * mean - change.determinant(), 0.0)));
-}
-
-std::vector<double> strains(const Tissue& tissue) {
-  const TissueSurface& surface = tissue.surface();
-  const std::vector<Vec3> vertices = verticesOfNodes(tissue);
-  std::vector<double> values(surface.rest.size(), 0.0), areas(surface.rest.size(), 0.0);
-  for (const MeshTriangle& triangle : surface.triangles) {
-    const double area = doubleArea(surface.rest, triangle).norm();
-    const double strain =
-        greatestStretch(cornersOf(surface.rest, triangle), cornersOf(vertices, triangle)) - 1.0;
-    for (const int vertex : triangle) {
-      values[at(vertex)] += kPercent * area * strain;
-      areas[at(vertex)] += area;
-    }
-  }
-  for (std::size_t vertex = 0; vertex < values.size(); ++vertex) {
-    if (areas[vertex] > 0.0) values[vertex] /= areas[vertex];
-  }
-  return values;
-}
-
-std::vector<ToolTouch> pressingTouches(const Pipeline& pipeline) {
-  std::vector<ToolTouch> pressing;
-  for (std::size_t tool = 0; tool < pipeline.tools().size() && pipeline.pose(); ++tool) {
-    for (const ToolTouch& touch : pipeline.touchesOf(tool)) {
-      if (touch.normal_force > 0.0) pressing.push_back(touch);
-    }
-  }
-  return pressing;
-}
-
-// Whose box reaches into the box around the touches: each of these is on one of them.
-std::vector<MeshTriangle> trianglesAround(const std::vector<ToolTouch>& touches,
-                                          const Tissue& tissue) {
-  Box around;
-  for (const ToolTouch& touch : touches) around.extend(touch.point);
-  const Box near = grownBy(tissue.lattice().spacing(), around);
-  std::vector<MeshTriangle> triangles;
-  for (const MeshTriangle& triangle : tissue.surface().triangles) {
-    Box box;
-    for (const int vertex : triangle) box.extend(tissue.vertices()[at(vertex)]);
-    if (box.intersects(near)) triangles.push_back(triangle);
-  }
-  return triangles;
-}
-
-// Shares the force among the corners of the triangle that the point is on.
-void addForce(const Tissue& tissue, const std::vector<MeshTriangle>& triangles, const Vec3& point,
-              double force, std::vector<double>& forces) {
-  double nearest = std::numeric_limits<double>::infinity();
-  MeshTriangle found{};
-  Vec3 shares = Vec3::Zero();
-  for (const MeshTriangle& triangle : triangles) {
-    const Corners corners = cornersOf(tissue.vertices(), triangle);
-    const Vec3 weights = nearestInTriangle(point, corners);
-    const double distance = (pointOf(corners, weights) - point).norm();
-    if (distance >= nearest) continue;
-    nearest = distance;
-    found = triangle;
-    shares = weights;
-  }
-  for (int k = 0; k < 3; ++k) forces[at(found[at(k)])] += shares[k] * force;
-}
-
-std::vector<double> pressures(const Pipeline& pipeline) {
-  const Tissue& tissue = pipeline.tissue();
-  std::vector<double> values(tissue.vertices().size(), 0.0);
-  const std::vector<ToolTouch> touches = pressingTouches(pipeline);
-  if (touches.empty()) return values;
-  const std::vector<MeshTriangle> near = trianglesAround(touches, tissue);
-  for (const ToolTouch& touch : touches) {
-    addForce(tissue, near, touch.point, touch.normal_force, values);
-  }
-  std::vector<double> areas(values.size(), 0.0);
-  for (const MeshTriangle& triangle : tissue.surface().triangles) {
-    const double share = doubleArea(tissue.vertices(), triangle).norm() / 6.0;
-    for (const int vertex : triangle) areas[at(vertex)] += share;
-  }
-  for (std::size_t vertex = 0; vertex < values.size(); ++vertex) {
-    if (areas[vertex] > 0.0) values[vertex] *= kKilopascals / areas[vertex];
-  }
+std::vector<double> inUnit(double units, std::vector<double> values) {
+  for (double& value : values) value *= units;
   return values;
 }
 
@@ -173,9 +74,10 @@ std::vector<double> surfaceValues(ColorBy color, const Pipeline& pipeline) {
     case ColorBy::kDisplacement:
       return displacements(pipeline.tissue());
     case ColorBy::kStrain:
-      return strains(pipeline.tissue());
+      return inUnit(kPercent, surfaceStrains(pipeline.tissue().surface(),
+                                             verticesOfNodes(pipeline.tissue())));
     case ColorBy::kPressure:
-      return pressures(pipeline);
+      return inUnit(kKilopascals, touchPressures(pipeline));
     case ColorBy::kNone:
       break;
   }

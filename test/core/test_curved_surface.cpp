@@ -6,6 +6,7 @@
 #include <random>
 
 #include "robot_tissue/core/curved_surface.h"
+#include "robot_tissue/core/surface_strain.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue::test_curved_surface {
@@ -178,6 +179,24 @@ TEST(CurvedSurface, IsOfTheShapeThatWasTakenLast) {
   expectTaken(flat, dented);
   expectTaken(folded, folded.rest);
   expectTaken(flat, ball);
+}
+
+// Sheared by s, a plane's principal stretches are l and 1/l with l - 1/l = s, whatever the
+// rotation.
+TEST(SurfaceStrain, IsTheGreatestPrincipalStretchLessOne) {
+  const TissueSurface flat = square();
+  for (const double strain : surfaceStrains(flat, flat.rest)) EXPECT_NEAR(strain, 0.0, 1e-7);
+  constexpr double kShear = 0.4;
+  Eigen::Matrix3d sheared = Eigen::Matrix3d::Identity();
+  sheared(0, 1) = kShear;
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(1.1, Vec3(1.0, 2.0, -1.0).normalized()) * sheared;
+  std::vector<Vec3> vertices;
+  for (const Vec3& rest : flat.rest) vertices.push_back(turned * rest + Vec3(0.1, 0.0, -0.2));
+  const double stretch = 0.5 * kShear + std::sqrt(0.25 * kShear * kShear + 1.0);
+  for (const double strain : surfaceStrains(flat, vertices)) {
+    EXPECT_NEAR(strain, stretch - 1.0, 1e-12);
+  }
 }
 
 }  // namespace

@@ -280,6 +280,28 @@ TEST(Layering, ProgramsForTheCommandLineKnowNoRos) {
   }
 }
 
+// It asks a master only where it is started: what it checks is the scene and the description.
+TEST(Layering, CheckSetupSpeaksToRosInItsMainAlone) {
+  int found = 0;
+  for (const Include& include : includesIn("src/check_setup")) {
+    const bool is_of_ros = startsWith(include.header, "ros/") || startsWith(include.header, "tf2");
+    if (!is_of_ros) continue;
+    ++found;
+    EXPECT_EQ(fs::path(include.file).filename(), "main.cpp") << include.header;
+  }
+  EXPECT_GT(found, 0);
+}
+
+TEST(Layering, CholmodKnowsCoreAlone) {
+  for (const Include& include : includesIn("src/cholmod")) {
+    for (const char* other : {"ros/", "fcl/", "robot_tissue/"}) {
+      const bool is_core = startsWith(include.header, "robot_tissue/core/");
+      EXPECT_TRUE(is_core || !startsWith(include.header, other))
+          << include.file << " includes " << include.header;
+    }
+  }
+}
+
 TEST(Layering, FclIsIncludedInContactsSourcesOnly) {
   int found = 0;
   for (const char* folder : {"include", "src"}) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "pipeline_fixtures.h"
+#include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/pipeline/touch_pressure.h"
 
 namespace robot_tissue::test_contact_forces {
 namespace {
@@ -80,6 +82,26 @@ TEST_P(WithEachMethod, MethodsAgreeAboutTheForce) {
 
 INSTANTIATE_TEST_SUITE_P(Method, WithEachMethod, ::testing::Values("layered", "newton"),
                          [](const auto& row) { return std::string(row.param); });
+
+TEST(TouchPressures, TimesTheirAreasAddUpToTheNormalForces) {
+  Pipeline pipeline(block("elastic", 0.01), {}, {probe()});
+  const auto total = [&] {
+    const std::vector<double> pressures = touchPressures(pipeline);
+    const Tissue& tissue = pipeline.tissue();
+    double sum = 0.0;
+    for (const MeshTriangle& triangle : tissue.surface().triangles) {
+      const double third = doubleArea(tissue.vertices(), triangle).norm() / 6.0;
+      for (const int vertex : triangle) sum += third * pressures[at(vertex)];
+    }
+    return sum;
+  };
+  EXPECT_EQ(total(), 0.0);
+  walk(pipeline, -0.001, 0.006, 0.001);
+  double pressed = 0.0;
+  for (const ToolTouch& touch : pipeline.touchesOf(0)) pressed += touch.normal_force;
+  ASSERT_GT(pressed, 0.1);
+  EXPECT_NEAR(total(), pressed, 1e-9 * pressed);
+}
 
 // Of all ways to hold on to the tissue, dragged sideways so that friction acts, too.
 TEST(Touches, AddUpToTheForceOfTheTool) {

@@ -1,7 +1,9 @@
 // The surface as it is drawn. rviz shades every triangle flat, so where the surface bends it is
 // drawn finer than the lattice: as curved PN triangles (Vlachos et al. 2001), cubics through the
-// vertices, square to the vertices' normals. It is the surface that tools touch (curved_surface.h);
-// ~surface has the flat triangles.
+// vertices, square to the vertices' normals. It is the surface that tools touch (curved_surface.h)
+// but beside creases: there normals are those of one side of the crease, from edge to edge, where
+// tools meet those of all triangles that no sharp edge parts from the touched one. ~surface has the
+// flat triangles.
 //
 // Creases stay sharp: edges that are sharp at rest, as a block's, and edges between skin and what a
 // cut opened. Along a crease the cubic follows the line in which the tangent planes of its two

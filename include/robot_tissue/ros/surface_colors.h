@@ -25,9 +25,7 @@ std::vector<std::string> colorNames();
 
 // One a vertex of the surface, in the unit of the legend; empty for kNone.
 //   displacement: length of the way from rest
-//   strain: the greatest principal stretch of the triangles around, less 1: their mean by area
-//   pressure: normal forces of the tools' touches, shared among the corners of their triangles,
-//     over a third of the area of the triangles around
+//   strain: surfaceStrains; pressure: touchPressures
 std::vector<double> surfaceValues(ColorBy color, const Pipeline& pipeline);
 
 // The upper end of a scale that holds all values: 1, 2 or 5 times a power of ten. `present`: that

@@ -11,8 +11,9 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kStart = 0, kVelocity = 2, kLastForce = 3;  // spare arrays of the field
-constexpr int kSoftness = 4;                              // the first of three
+// Spare arrays of the field. kSoftness: the first axis of it, for all three.
+constexpr int kStart = kOfMethod, kVelocity = kOfMethod + 1, kLastForce = kOfMethod + 2,
+              kSoftness = kOfMethod + 3;
 
 }  // namespace
 

@@ -11,11 +11,6 @@
 #include "solvers/baselines/tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr int kMark = 0, kBest = 1;  // spare arrays of the field; 6 and 7: relaxation_waves.cpp
-
-}  // namespace
 
 // The state of one solve. A look compares the shape with that of the look before, stride()
 // iterations ago. Lengths are L2 over the free nodes (m).

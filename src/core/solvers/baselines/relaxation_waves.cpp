@@ -10,7 +10,6 @@ namespace robot_tissue {
 namespace {
 
 constexpr double kPi = 3.14159265358979;
-constexpr int kLooked = 6, kLookedForce = 7;  // spare arrays of the field
 
 }  // namespace
 

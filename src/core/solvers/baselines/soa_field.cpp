@@ -7,7 +7,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kArrays = 3 * (5 + SoaField::kSpares) + 4;
+constexpr int kArrays = 3 * (5 + kSpareArrays) + 4;
 constexpr std::size_t kAlignment = 4096;
 // Blocks between arrays beyond whole pages: what stands in the same place of several arrays must
 // not fall on the same lines of the cache.
@@ -90,7 +90,7 @@ void SoaField::allocate() {
     for (float*& array : *arrays) take_array(array);
   }
   for (float** array : {&shear_, &bulk_, &compliance_, &tightest_}) take_array(*array);
-  for (int spare = 0; spare < kSpares + (model_.movesInTime() ? 1 : 0); ++spare) {
+  for (int spare = 0; spare < kSpareArrays + (model_.movesInTime() ? 1 : 0); ++spare) {
     for (float*& array : spare_[at(spare)]) take_array(array);
   }
   if (stiffens_) take_array(stiffening_);

@@ -12,6 +12,7 @@
 #include "loads/dof_constraints.h"
 #include "material/elastic_model.h"
 #include "solvers/baselines/kernels/lane_kernels.h"
+#include "solvers/baselines/spare_arrays.h"
 
 namespace robot_tissue {
 
@@ -70,9 +71,8 @@ class SoaField {
   int nodeCount() const { return static_cast<int>(movable_.size()); }
   // Writes the node's displacement to the state, held components too, as where a patch moved it.
   void giveAll(int node, LatticeState& state) const;
-  // Further arrays, zero after bind() has met other cells.
-  static constexpr int kSpares = 8;
-  static constexpr int kFreeMotion = kSpares;  // one more in time: InertialTerm::free_motion
+  // Further arrays (SpareArray), zero after bind() has met other cells.
+  static constexpr int kFreeMotion = kSpareArrays;  // one more in time: InertialTerm::free_motion
   const Arrays& spare(int index) const { return spare_[at(index)]; }
 
  private:
@@ -107,7 +107,7 @@ class SoaField {
   int size_ = 0;
   std::unique_ptr<float, FreeBuffer> buffer_;
   Arrays moved_{}, load_{}, free_{}, lane_free_{}, force_{};
-  std::array<Arrays, kSpares + 1> spare_{};
+  std::array<Arrays, kSpareArrays + 1> spare_{};
   float* shear_ = nullptr;
   float* bulk_ = nullptr;
   float* stiffening_ = nullptr;  // null: 0 in all

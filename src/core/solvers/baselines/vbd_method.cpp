@@ -12,7 +12,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr int kLast = 2, kBefore = 3;  // spare arrays of the field
+constexpr int kLast = kOfMethod, kBefore = kOfMethod + 1;  // spare arrays of the field
 // A sweep's complex eigenvalue that Chebyshev's method with a great radius damps least. By Fourier
 // analysis of an endless lattice at rest (doc/baselines.md) for Poisson's ratios 0.25, 0.35 and
 // 0.45; a line through these.

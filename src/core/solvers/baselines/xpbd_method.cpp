@@ -13,7 +13,7 @@ namespace {
 
 // Spare arrays of the field: the shape before the step, mobilities, the shape when the step was
 // last shortened.
-constexpr int kSweepStart = 2, kMobility = 3, kShortened = 4;
+constexpr int kSweepStart = kOfMethod, kMobility = kOfMethod + 1, kShortened = kOfMethod + 2;
 
 }  // namespace
 
