@@ -10,7 +10,7 @@
 // and the planes where the touches are now. A load step begins with ride() and meet(), calls
 // update() until that says the contacts are settled, and ends with commit(). In: contacts (tissue
 // frame, normals from the tool into the tissue), poses of the links. Out: the springs of each tool.
-// Points that held nodes carry, but for a tenth of their weight, are never taken.
+// Points that held nodes carry, but for four tenths of their weight at most, are never taken.
 //
 // In time a point that is found deep, as between points that touched before, comes out by and by:
 // its plane is in the tool by `entry`, which goes to zero. At once it would have a speed that it
