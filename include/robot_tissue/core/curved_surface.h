@@ -27,13 +27,18 @@ class CurvedSurface {
   // beside it.
   static Vec3 cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners);
 
-  // What follows is of that surface with its vertices there (m); it is asked for what it has until
-  // the next one is taken. Without a look at all of it where its revision is known; what was found
-  // of the same vertices stays.
+  // Sets the surface that all queries below refer to, with its vertices at these places (m, as many
+  // as surface.rest). The vertices are copied. The surface is kept by pointer and read by later
+  // queries: it must live, unchanged, until the next take() or the last query. A surface with the
+  // revision of the last one counts as the same (0 never does), and is not looked at as a whole;
+  // what was found for the same vertices stays.
   void take(const TissueSurface& surface, const std::vector<Vec3>& vertices);
 
+  // Queries check nothing. Before them take() was called; triangle and vertex are indices into that
+  // surface, barycentric weights sum to 1. Results are cached: not for several threads at once.
+
   // Unit normal outwards, even from corner to corner of the point's triangle; zero where it has
-  // none.
+  // none, as where all triangles around its corners have no area.
   Vec3 normalAt(const SurfacePoint& point) const;
   // How far the surface is from the triangle's point (m); zero at corners.
   Vec3 bulgeAt(const SurfacePoint& point) const;

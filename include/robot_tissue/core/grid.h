@@ -19,7 +19,9 @@ struct NodeRange {
 
 class Grid {
  public:
-  // The shape's extent must be a whole multiple of the spacing, in reach of int.
+  // The shape's extent is a whole multiple of the spacing (spacingFits), in reach of int. That is
+  // not checked: of any other extent the number of cells is the nearest whole one, counted from the
+  // lower corner, so that the last nodes are off the shape's upper sides by up to half a spacing.
   Grid(const Box& shape, double spacing);
   // With only the cells that are not 0 (one entry a cell) and the nodes at their corners.
   Grid(const Grid& whole, std::vector<std::uint8_t> cells);

@@ -17,9 +17,10 @@ bool isText(const YAML::Node& scalar);
 // Control characters written as \n or ?, so that the text stays on its line.
 std::string onOneLine(const std::string& text);
 
-// On one line and cut short after some 60 characters.
+// Whether all of its bytes are valid UTF-8: no overlong forms, no surrogates.
 bool isUtf8(const std::string& text);
 
+// On one line and cut short after some 60 characters.
 std::string shortText(const std::string& text);
 
 // Short decimal text, up to nine digits.
