@@ -255,5 +255,38 @@ TEST(SavedState, WithLoadsOfAnotherMaterialIsRefused) {
             std::string::npos);
 }
 
+// Two cuts that end in the tissue near its fixed bottom and cross: what stood in for a node beside
+// the first wall stands in for a fixed one beside both.
+TEST(SavedState, OfCrossingCutsBesideFixedNodesComesBack) {
+  TissueConfig config = withFixedBottom(blockOf(8, 6, 4, kSpacing));
+  config.model = "elastic";
+  config.material.poisson_ratio = 0.3;
+  config.gravity = Vec3(0.0, 0.0, -9.81);
+  config.shape.translate(-config.shape.min());
+  config.fixed = {Box(Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, 1e-6))};
+  Tissue tissue(config, solverFor("elastic"));
+  const std::vector<std::vector<Vec3>> cuts = {{{0.0464, 0.0561, -0.0082},
+                                                {0.0096, 0.0061, 0.0052},
+                                                {-0.0398, -0.0181, 0.0252},
+                                                {-0.003, 0.0319, 0.0118}},
+                                               {{0.0023, 0.0005, 0.0189},
+                                                {-0.0167, 0.0221, 0.0761},
+                                                {0.0127, 0.0335, 0.0317},
+                                                {0.0317, 0.0119, -0.0255}}};
+  for (const std::vector<Vec3>& corners : cuts) {
+    ASSERT_GT(tissue.cut(corners).springs_cut, 0);
+    const LatticeState& state = tissue.state();
+    for (int node = 0; node < state.cells->nodeCount(); ++node) {
+      if (isFixed(tissue.lattice(), *state.cells, node)) {
+        EXPECT_EQ(state.displacement[at(node)], Vec3(Vec3::Zero())) << node;
+      }
+    }
+  }
+  const std::string bytes = tissue.savedState();
+  Tissue other(config, solverFor("elastic"));
+  loadInto(other, bytes);
+  EXPECT_EQ(other.savedState(), bytes);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_saved_state

@@ -132,5 +132,20 @@ TEST(Gravity, SurfaceSinksWithTheColumn) {
               0.02 * topSinks(config) / length(config));
 }
 
+// Each balance begins nearer to the last one's end, down to rounding.
+TEST(Gravity, SettlingAgainAndAgainCostsNothing) {
+  TissueConfig config = withFixedBottom(blockOf(8, 6, 4, 0.01));
+  config.model = "elastic";
+  config.material.poisson_ratio = 0.3;
+  config.gravity = Vec3(0.0, 0.0, -kGravity);
+  Tissue tissue(config, {});
+  ASSERT_EQ(tissue.settle().status, SolveStatus::kOk);
+  for (int again = 0; again < 12; ++again) {
+    const SolveReport report = tissue.settle();
+    EXPECT_EQ(report.status, SolveStatus::kOk) << again;
+    EXPECT_LE(report.iterations, 3) << again;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tissue_gravity

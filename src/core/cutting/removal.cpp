@@ -13,6 +13,8 @@ namespace robot_tissue {
 namespace {
 
 constexpr unsigned kWholeCell = 0xff;
+// Of the spacing: places that are the same but for the last digits.
+constexpr double kRounding = 1e-9;
 
 void requireSpace(const RemovedSpace& space) {
   if (const PlacedBox* placed = std::get_if<PlacedBox>(&space)) {
@@ -68,6 +70,34 @@ Vec3 centerOf(const Lattice& lattice, const LatticeState& state, const Cell& cel
   return center;
 }
 
+Box boundsOf(const RemovedSpace& space) {
+  if (const auto* sphere = std::get_if<Sphere>(&space)) {
+    const Vec3 radius = Vec3::Constant(sphere->radius);
+    return {sphere->center - radius, sphere->center + radius};
+  }
+  if (const auto* covered = std::get_if<CoveredSpace>(&space)) return covered->bounds;
+  const auto& placed = std::get<PlacedBox>(space);
+  Box bounds;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    bounds.extend(placed.tissue_T_box * placed.box.corner(static_cast<Box::CornerType>(corner)));
+  }
+  return bounds;
+}
+
+// Around the part's deformed corners, its center is within it; of one that the model has lost
+// nothing is known: everywhere.
+bool mayReach(const Box& bounds, const Lattice& lattice, const LatticeState& state,
+              const Cell& cell, int part) {
+  const Cell* there = state.cells->owner(cell.place, part);
+  if (there == nullptr) return true;
+  Box around;
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    around.extend(lattice.restPosition(cell.nodes[corner]) +
+                  state.displacement[at(there->nodes[corner])]);
+  }
+  return around.intersects(bounds);
+}
+
 // Springs of which no cell has both ends any more are severed; that parts no material.
 void severBareSprings(const Lattice& lattice, LatticeState& state) {
   std::vector<std::uint8_t> bare(state.severed.size(), 1);
@@ -108,12 +138,14 @@ void weighNodes(const Lattice& lattice, LatticeState& state) {
 std::vector<std::uint8_t> cellsWithin(const Lattice& lattice, const LatticeState& state,
                                       const RemovedSpace& space) {
   requireSpace(space);
+  const Box bounds = grownBy(kRounding * lattice.spacing(), boundsOf(space));
   std::vector<std::uint8_t> within(lattice.cells().size(), 0);
   bool any = false;
   for (const Cell& cell : lattice.cells()) {
     const auto parts = cellParts(lattice, state, cell.nodes);
     for (int part = 0; part < kCorners; ++part) {
       if (parts[at(part)] != part || isTaken(state, cell.place, part)) continue;
+      if (!mayReach(bounds, lattice, state, cell, part)) continue;
       const unsigned bits = bitsOfPart(parts, part);
       if (!holds(space, centerOf(lattice, state, cell, bits, part))) continue;
       within[at(cell.place)] = static_cast<std::uint8_t>(within[at(cell.place)] | bits);

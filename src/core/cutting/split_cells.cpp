@@ -287,6 +287,10 @@ std::vector<Vec3> carriedOver(const CellSet& from, const std::vector<Vec3>& disp
       carried[at(part.nodes[corner])] = displacement[at(earlier->nodes[corner])];
     }
   }
+  // One that was free may have come to stand for a fixed node.
+  for (std::size_t ghost = 0; ghost < to.ghosts().size(); ++ghost) {
+    if (to.ghosts()[ghost].fixed) carried[at(to.latticeNodeCount()) + ghost].setZero();
+  }
   return carried;
 }
 

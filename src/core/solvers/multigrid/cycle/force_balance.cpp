@@ -36,9 +36,15 @@ bool ForceBalance<Real>::isReached(const SolveContext& solve) const {
 // Membranes may have a pressure inside.
 template <typename Real>
 bool ForceBalance<Real>::isLoaded(const SolveContext& solve) const {
-  const GridLevel<Real>& finest = shape_.finest();
-  return solve.in_time || !solve.shape.patches.empty() || finest.membrane() != nullptr ||
-         greatestIn(finest.right_hand_side, finest.count()) > 0.0;
+  return solve.in_time || !solve.shape.patches.empty() || shape_.finest().membrane() != nullptr ||
+         greatestGiven() > 0.0;
+}
+
+// On a node along an axis, as weight: a solve that begins in balance has no other force to compare
+// with what is left.
+template <typename Real>
+double ForceBalance<Real>::greatestGiven() const {
+  return greatestIn(shape_.finest().right_hand_side, shape_.finest().count());
 }
 
 // A tissue that hangs on little moves far: the error relative to its displacement is small while
@@ -46,7 +52,7 @@ bool ForceBalance<Real>::isLoaded(const SolveContext& solve) const {
 // none does, all that there are but rounding bring the tissue home.
 template <typename Real>
 bool ForceBalance<Real>::isCalm(const SolveContext& solve) const {
-  double most = std::max(greatest_at_start_, greatest_held_);
+  double most = std::max({greatest_at_start_, greatest_held_, greatestGiven()});
   for (const GroupVector& load : shape_.finest().constrained.right_hand_side) {
     most = std::max(most, sizeOf(load));
   }
@@ -113,7 +119,7 @@ double ForceBalance<Real>::residual(const ConstrainedState& state) const {
     if (!byForce(state.patches[index])) continue;
     left = std::max(left, sizeOf(shape_.finest().constrained.force[index]));
   }
-  return left / std::max({greatest_held_, greatest_at_start_, tuning::kStill});
+  return left / std::max({greatest_held_, greatest_at_start_, greatestGiven(), tuning::kStill});
 }
 
 // Level by level: a unit of force is four times the finer level's.

@@ -33,6 +33,7 @@ class ForceBalance {
 
  private:
   bool isLoaded(const SolveContext& solve) const;
+  double greatestGiven() const;
   bool isCalm(const SolveContext& solve) const;
   bool isRounding(const SolveContext& solve) const;
   bool areContactsBalanced() const;
