@@ -1,5 +1,7 @@
 // The tissue: lattice, shape, standing loads and the method that solves them, behind one door.
-// Every call either succeeds as a whole or throws InputError and changes nothing.
+// Every call either succeeds as a whole or throws InputError and changes nothing; calls for which
+// no error is named throw none. Lengths are in m, forces in N, times in s; points and vectors are
+// in the tissue's frame.
 #pragma once
 
 #include <array>
@@ -25,20 +27,9 @@
 
 namespace robot_tissue {
 
-class History;
-class MembranePlan;
-class PieceNumbers;
-class SolverMethod;
-class TimeIntegrator;
-class TissueModel;
-class Threads;
-class BladeSurface;
-struct Crossing;
-struct SpringAhead;
 struct NodeMotion;
-struct LoadRamp;
 struct SavedState;
-struct SutureThread;
+struct TissueParts;
 
 struct CutReport {
   int springs_cut = 0;   // by this cut
@@ -58,16 +49,18 @@ struct RemoveReport {
   SolveReport solve;               // balance after it; the last one when nothing was removed
 };
 
-// What hangs together, over springs.
+// A part of the tissue in which springs that are not severed join all nodes.
 struct TissuePiece {
-  int number = 0;              // its own for as long as it lasts
-  double volume = 0.0;         // at rest (m^3)
-  bool fixed = false;          // a fixed node holds it
-  bool held = false;           // that, a patch, a touch of a tool, or a suture to a held piece does
+  int number = 0;       // its own for as long as it lasts
+  double volume = 0.0;  // at rest (m^3)
+  bool fixed = false;   // a fixed node holds it
+  // A fixed node, a patch, a touch of a tool, or a suture to a held piece holds it.
+  bool held = false;
   Vec3 center = Vec3::Zero();  // of its volume, deformed (m, tissue frame)
 };
 
-// Of a blade or burr, from where it comes into the tissue to where it leaves it.
+// The way of a blade or burr from where it comes into the tissue to where it leaves it: whether a
+// call begins one, or goes on with the last one.
 enum class Stroke { kBegins, kGoesOn };
 
 // Corners of a triangle that cuts (m, tissue frame).
@@ -81,7 +74,8 @@ struct SutureResult {
 // What bears the tissue: fixed nodes alone, or supports, too, along which it may slide.
 enum class Bedding { kFixedNodes, kSupports };
 
-// Whether tools or supports are there in a time step: it is another formula's then.
+// Whether tools or supports are near in a time step. Where they are, the step is one of Euler's
+// backward method; else of the generalized-alpha method, which is more exact (doc/time.md).
 enum class Touched { kByNone, kByTools };
 
 class Tissue {
@@ -93,76 +87,85 @@ class Tissue {
   Tissue(const TissueConfig& tissue, const SolverConfig& solver);
   ~Tissue();
 
-  const Lattice& lattice() const { return lattice_; }
-  const LatticeState& state() const { return state_; }
-  const TissueSurface& surface() const { return surface_; }
+  // References are to what the tissue has as long as it lives; what they refer to changes with it.
+  const Lattice& lattice() const;
+  const LatticeState& state() const;
+  const TissueSurface& surface() const;
   // Deformed vertices of the surface (m, tissue frame).
-  const std::vector<Vec3>& vertices() const { return vertices_; }
-  const Box& bounds() const { return bounds_; }  // of the vertices
+  const std::vector<Vec3>& vertices() const;
+  const Box& bounds() const;  // of vertices() (m, tissue frame)
   // Number of the piece that each node is of, the ghosts last, -1: removed. Of a piece that comes
   // apart the largest part keeps the number, the others get the next ones; undo and loadState bring
   // numbers back, a reset begins anew.
   const std::vector<int>& pieceOfNodes() const;
   std::vector<TissuePiece> pieces() const;  // by their numbers, ascending
-  // The same with centers at rest: only what holds them is found each time.
+  // As pieces(), but with their centers in the rest shape, which costs less: only what holds the
+  // pieces is found anew each time.
   std::vector<TissuePiece> restingPieces() const;
-  // Numbers of those that were taken out, as nothing held them any more (tissue.free_pieces).
+  // Numbers of the pieces that were taken out, as nothing held them any more (tissue.free_pieces).
   const std::vector<int>& droppedPieces() const;
   // No tool touched it in the last solve.
-  bool isUntouched() const { return patches_.size() == named_patches_; }
+  bool isUntouched() const;
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
-  // Of all its solves.
-  Patience& patience() { return patience_; }
-  const Patience& patience() const { return patience_; }
+  // Which bounds the iterations of all of the tissue's solves.
+  Patience& patience();
+  const Patience& patience() const;
   // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
-  const std::vector<LoadingPatch>& patches() const { return patches_; }
+  const std::vector<LoadingPatch>& patches() const;
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
-  std::size_t namedPatches() const { return named_patches_; }
+  std::size_t namedPatches() const;
 
-  // The nodes' displacements (m) as they are now, to be kept; one copy while the shape stays.
+  // The nodes' displacements (m, tissue frame) as they are now, to be kept. While the shape stays
+  // all calls give the same copy: one pointer, one shape.
   using Displacements = std::shared_ptr<const std::vector<Vec3>>;
   Displacements displacements() const;
 
-  // Cells of the model that turned inside out are a wrong shape.
+  // Whether the model's cells push back when they are pressed flat: then a shape with cells inside
+  // out is a wrong one.
   bool resistsInversion() const;
-  // Cells so strained that the law `fung` goes on as a polynomial there (doc/model.md).
+  // How many cells are so strained that the law `fung` goes on as a polynomial there
+  // (doc/model.md).
   int cellsBeyondLaw() const;
   // What the method said of the present shape.
-  const SolveReport& lastReport() const { return last_report_; }
-  // Of a shape that cannot be right for a reason that the tissue does not know.
+  const SolveReport& lastReport() const;
+  // Makes lastReport() one of a shape that did not converge: for who knows a reason why the shape
+  // cannot be right that the tissue does not know.
   void noteUnconverged();
-  // Displacements as they are shown (m): nodes of a patch's rim where the patch has them, of a
-  // tool's where the tool has them.
+  // Displacements as they are shown (m, tissue frame): nodes of a patch's rim where the patch has
+  // them, nodes that a tool touches where the tool has them.
   std::vector<Vec3> shownDisplacement() const;
-  // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
-  // its tool.
+  // Net force of the springs, of threads (and of gravity) on a node (N, tissue frame): what a patch
+  // node hands to its tool.
   Vec3 nodeForce(int node) const;
-  std::vector<int> freeNodes() const;  // all that are not fixed
-  // Of the tissue (N), but for pieces that hang: gravity pulls them and nothing bears them, so that
-  // no shape is their balance. Where no time passes they stay as they are.
+  std::vector<int> freeNodes() const;  // all nodes that are neither fixed nor removed, ascending
+  // Of the tissue (N, tissue frame), but for pieces that hang: gravity pulls them and nothing bears
+  // them, so that no shape is their balance. Where no time passes they stay as they are.
   Vec3 weight() const;
-  bool anyHangs() const { return !hangingNodes().empty(); }
-  Vec3 forceOfFixedNodes() const;  // on the tissue (N)
-  // Against moving a node alone from rest, mean over the axes (N/m): of the cells, and how many
-  // times that in the time step under way, where its rate and the node's mass count, too.
+  bool anyHangs() const;
+  Vec3 forceOfFixedNodes() const;  // on the tissue (N, tissue frame)
+  // Of the cells, against moving a node alone from rest, mean over the axes (N/m).
   double nodeStiffness(int node) const;
+  // How many times nodeStiffness the node has in the time step under way or expected (1), where the
+  // rate of strain and the node's mass count, too. 1: there is none, or the method goes through it.
   double stiffening(int node) const;
-  Vec3 nodePosition(int node) const;  // deformed (m)
-  // Of a node so many spacings inside the plate's edge, < 0: beyond it (doc/model.md, "The rim").
+  Vec3 nodePosition(int node) const;  // deformed (m, tissue frame)
+  // Of a node `depth` spacings inside a plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
-  // None where a node is not in a flat surface of whole cells; likewise.
+  // How much deeper than the lattice tells the ball goes into the tissue (narrow_contact.h). None
+  // where one of its nodes is not in a flat surface of whole cells of one material, or is in a
+  // named patch, and where the method finds no equilibrium or the model has no moduli.
   std::optional<Recess> recessUnder(const BallPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
-  void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
+  void setContactUpdate(ContactUpdate* update);
 
   // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
   // one solve at least, with one cycle of the method, but for a change of the topology, which may
   // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
   // solver.max_ms bounds each solve.
-  void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
+  void setDeadline(std::optional<Deadline> deadline);
   // Whether a solve and a look at the contacts, as short as the last ones, would end after it, but
   // not if they were the first that a call does.
   bool isRoundForNextCall() const;
@@ -171,54 +174,62 @@ class Tissue {
   // where nothing was solved for since the tissue, or its cells, are as they are.
   void expectTouch();
 
-  // Equilibrium under what acts now, at rest.
+  // Equilibrium under what acts now, at rest: time stops (stopTime).
   SolveReport settle();
 
-  // Where tissue.time is set. Time goes by in steps: what is called between beginTimeStep and
-  // endTimeStep is of the step, its shape the one at the step's end; between two steps the shape
-  // stays as it is. After stopTime, and before the first step, shapes are equilibria, at rest.
-  bool hasTime() const { return time_ != nullptr; }
-  bool isMoving() const;           // time will change the shape
+  // Whether tissue.time is set. Then time goes by in steps: what is called between beginTimeStep
+  // and endTimeStep is of the step, its shape the one at the step's end; between two steps the
+  // shape stays as it is. After stopTime, and before the first step, shapes are equilibria, at
+  // rest.
+  bool hasTime() const;
+  bool isMoving() const;  // time will change the shape
+  // The five that follow, and wait, are for tissue that has time alone.
   double longestTimeStep() const;  // that the error of the last one allows (s)
-  // What is asked from here on is asked for a step of that length (s), which is about to begin.
+  // What is asked from here on is asked for a time step of `duration` (s), which is about to begin.
   void expectTimeStep(double duration, Touched touched);
-  void beginTimeStep(double duration, Touched touched = Touched::kByNone);
+  void beginTimeStep(double duration, Touched touched = Touched::kByNone);  // s
   void endTimeStep();
-  bool isInTimeStep() const { return in_time_step_; }
-  bool goesInTime() const { return in_time_step_ || expects_time_step_; }  // in one, or soon
-  // Likewise, and in steps of the method's own: contacts pushed as it says, in the mean.
+  bool isInTimeStep() const;
+  bool goesInTime() const;  // a time step is under way, or expected
+  // A time step is under way or expected, and the method goes through it in shorter steps of its
+  // own: then the forces of contacts are means over the time step.
   bool goesThroughTime() const;
   void stopTime();
-  // Time goes by while no tool moves, in steps of an error within the tolerance.
+  // Lets so much time (s) go by while no tool moves, in steps of an error within the tolerance. The
+  // report has the worst status of all steps, and the work of all.
   SolveReport wait(double duration);
-  // Brings the step's patches to their loads in increments; they stand until released. Refused when
-  // the method needs more than most_increments.
+  // Brings the step's patches to their loads in increments; they stand until released. Throws
+  // InputError: a patch whose box has no node, or a fixed one, or a node of another patch; one that
+  // the method cannot turn; a load that needs more than most_increments.
   void load(const LoadStep& step, const OnIncrement& on_increment = {},
             int most_increments = 100000);
   // There was no time to come to balance, whatever else is to be said of the shape, or to bring
   // named patches to their loads.
-  bool isLate() const { return is_late_ || isLoading(); }
-  // Else the shape is in balance, but was shown before its contacts were settled (LoadStepBound).
-  bool areContactsSettled() const { return are_contacts_settled_ || isUntouched(); }
-  // Whether that may be, with the contacts as they are.
+  bool isLate() const;
+  // False: the shape is in balance, but was shown before its contacts were settled (LoadStepBound).
+  bool areContactsSettled() const;
+  // Whether the shape may be shown before its contacts are settled, as tools stand no deeper in it
+  // than the bound on the load step bears; and that it is.
   bool mayShowUnsettled() const;
   void noteUnsettled();
-  bool isLoading() const { return !due_.empty(); }
-  // Brings those patches on.
+  bool isLoading() const;  // there was no time to bring named patches to their loads
+  // Brings the patches that isLoading tells of on.
   void loadOn(const OnIncrement& on_increment = {});
-  // What a named patch met in the last solve; zero when there is none of that name.
+  // What a named patch met (N, N m, m; tissue frame), of a report of this tissue; zero when there
+  // is none of that name.
   PatchAnswer answerOf(const std::string& name, const SolveReport& report) const;
-  // Takes patches away; the shape is found anew from rest under the loads that stay.
+  // Takes named patches away; the shape is found anew from rest under the loads that stay. Throws
+  // InputError for a name that no standing patch has.
   SolveReport release(const std::vector<std::string>& names);
-  // Puts the tools' patches in the place of the earlier ones and solves. `disturbed`: nodes that
-  // left a patch. When the last tool has left, the shape is found anew from rest, unless the tissue
-  // is borne by supports, which it may have slid along.
+  // Puts the tools' patches (m, tissue frame) in the place of the earlier ones and solves.
+  // `disturbed`: nodes that left a patch. When the last tool has left, the shape is found anew from
+  // rest, unless the tissue is borne by supports, which it may have slid along.
   SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed,
                      Bedding bedding = Bedding::kFixedNodes);
   // The shape and its loads, to come back to; cuts are not part of it: those made since stay.
   struct Shape {
     Displacements displacement;
-    std::shared_ptr<const CellSet> cells;  // whose nodes they are of
+    std::shared_ptr<const CellSet> cells;  // whose nodes `displacement` is of
     std::vector<LoadingPatch> patches;
     std::size_t named_patches = 0;
     SolveReport report;
@@ -229,41 +240,47 @@ class Tissue {
     std::vector<std::string> whole_sutures;  // that have not broken
   };
   Shape shape() const;
-  void restore(const Shape& shape);
-  // Cells, shape, named loads and sutures of another tissue of the same lattice; at rest.
+  void restore(const Shape& shape);  // of this tissue
+  // Takes cells, shape, named loads and sutures of another tissue of the same lattice; at rest.
   void takeOver(const Tissue& other);
-  // In between, solves teach the method nothing that later ones depend on.
+  // Between these two calls, solves teach the method nothing that later ones depend on.
   void beginAside();
   void endAside();
-  // Severs the springs that cross the polygon in the deformed shape, then balances; in time it only
-  // severs them.
+  // Severs the springs that cross the polygon (3 or more corners in order, m, tissue frame) in the
+  // deformed shape, then balances; in time it only severs them. Throws InputError: fewer than 3
+  // corners, one that is not finite, or no area.
   CutReport cut(const std::vector<Vec3>& corners);
-  // Takes what has its center in the space away, in whole cells and parts that cuts made of cells,
-  // then as cut. Named loads lose the nodes that go. Throws InputError when nothing would be left.
+  // Takes away what has its center in the space (m, tissue frame) in the deformed shape, in whole
+  // cells and parts that cuts made of cells, then balances; in time it only takes away. Named loads
+  // lose the nodes that go. Throws InputError when nothing would be left.
   RemoveReport remove(const RemovedSpace& space);
-  // The same along a burr's way, without the refusal: all of a stroke is taken back as one removal.
+  // As remove, along a burr's way; where nothing would be left it removes nothing, and the report
+  // tells (holds_all). All of a stroke is taken back as one removal.
   RemoveReport drill(const CoveredSpace& space, Stroke stroke);
   // How many cuts, removals, tears and sutures there are to take back: all since the last reset, or
   // loaded state.
   int undoable() const;
-  // Takes the last ones back. Where the named loads are those of then, no tool touches and the
-  // shape was in balance, it is that one, bit for bit; else it is balanced under what stands now.
-  // Throws InputError for less than 1, or more than there are.
+  // Takes the last `count` of them back. Where the named loads are those of before them, no tool
+  // touches and the shape was in balance, it is that one, bit for bit; else it is balanced under
+  // what stands now. Throws InputError for less than 1, or more than undoable().
   SolveReport undo(int count);
-  // The same of a surface of triangles, such as a blade's edge sweeps. All of a stroke is taken
-  // back as one cut.
+  // As cut, along a surface of triangles, such as a blade's edge sweeps; those without an area cut
+  // nothing. All of a stroke is taken back as one cut.
   CutReport cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke = Stroke::kBegins);
   // Drops pieces that nothing holds any more, where free pieces drop; severs what is stretched
   // beyond tear_stretch and balances, over and over, until nothing is. For shapes that tools make:
-  // those of the other calls but follow have torn already. LATE: the rest is left to the next call.
+  // all other calls that solve, but `follow`, have torn already. LATE: the rest is left to the next
+  // call.
   SolveReport tear();
   // Severs the springs between these nodes and the others, torn in one change, and balances; false:
   // there are none. For what a grasper holds.
   bool tearOut(const std::vector<int>& nodes);
-  bool mayTear() const { return !tear_strains_.empty() || drops_free_; }
-  int springsTorn() const { return springs_torn_; }  // since rest, or the state that was loaded
+  bool mayTear() const;     // `tear` may sever or drop something, now or in other shapes
+  int springsTorn() const;  // since rest, or the state that was loaded
   // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut
-  // leaves each end on its side; where the tissue of an end goes the thread goes.
+  // leaves each end on its side; where the tissue of an end goes the thread goes. Throws
+  // InputError: numbers out of range, no name or one that is taken, a point farther than a spacing
+  // off the surface, two ends at one point, a method that finds no equilibrium.
   SutureResult suture(const SutureConfig& config);
   // In the order in which they were made, broken ones, too.
   std::vector<SutureReport> sutures() const;
@@ -277,152 +294,16 @@ class Tissue {
   // Topology, shape and named loads as bytes (doc/state_file.md); a load on its way is the one that
   // it has come to.
   std::string savedState() const;
-  // The same only of two states that are, bit for bit.
+  // Of savedState: two states have the same hash only when they are the same, bit for bit.
   std::uint64_t stateHash() const;
   // Throws InputError, the reason alone, for bytes that are no state of this tissue.
   std::shared_ptr<const SavedState> readState(const std::string& bytes) const;
-  // Back to it, bit for bit where it was in balance without tools; else it is balanced. Tools'
-  // patches and sutures go.
+  // Back to that state, bit for bit where it was in balance without tools; else it is balanced.
+  // Patches and sutures of now go.
   SolveReport loadState(const SavedState& saved);
 
  private:
-  SolveReport solve(const std::vector<int>& disturbed);
-  void disturb(const std::vector<int>& nodes);
-  void rememberDisturbed();
-  SolveReport severAndBalance(const std::vector<Crossing>& crossings,
-                              const BladeSurface* blade = nullptr);
-  SolveReport goNearer(std::vector<SpringAhead> ahead);
-  bool takesNoTime() const;
-  void findFreePieces();
-  std::vector<std::size_t> fallingPieces();
-  void shift(const std::vector<int>& nodes, const Vec3& way);
-  void predict();
-  SolveReport asItIs();
-  // tissue_surgery.cpp
-  class TopologyChange;
-  SavedState stateNow() const;
-  void take(const SavedState& saved);
-  bool mayReach(const Box& bounds) const;
-  RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
-  std::vector<std::string> dropLostLoads();
-  // tissue_pieces.cpp
-  void takePieces(std::shared_ptr<const PieceNumbers> numbers);
-  void renumberPieces();
-  std::vector<char> heldPieces() const;
-  std::vector<int> freePieces() const;
-  std::vector<int> hangingNodes() const;
-  bool holdHanging();
-  void letHangingBe(SolveReport& report);
-  std::vector<int> freedPieces();
-  void takeOut(const std::vector<int>& pieces);
-  const std::vector<TissuePiece>& piecesAtRest() const;
-  void dropFreed();
-  void dropLetGo();
-  std::vector<LoadingPatch> namedLoads() const;
-  SolveReport changeTopology(const std::vector<int>& disturbed);
-  bool hasTimeForLevels(double before_ms) const;
-  SolveReport leaveToNextCall(const std::vector<int>& disturbed);
-  // contact_rounds.cpp
-  struct Rounds;
-  SolveReport solveInRounds(const std::vector<int>& disturbed);
-  bool asksForRound(Rounds& rounds);
-  double volumeRatio() const;
-  void renewContacts();
-  void switchAside();
-  void limitWays();
-  bool goBack(const Rounds& rounds);
-  void putToolPatches(std::vector<LoadingPatch> of_tools);
-  bool isBounded() const;
-  bool isLookForNextCall() const;
-  double mostMs() const;
-  void noteLook(double ms);
-  int mostIterations() const;
-  Patience::Of solved() const;
-  void wakeUnderBodyLoad();
-  double costOfIteration() const;
-  SolveReport solveOnce(const std::vector<int>& disturbed);
-  // suturing.cpp
-  SutureThread threadOf(const SutureConfig& config) const;
-  SolveReport drawThreadsIn();
-  bool solveOnThreads(SolveReport& report);
-  SolveReport settleFromRest();
-  SolveReport solveWithThreads(const std::vector<int>& disturbed);
-  SolveReport solveAndBreak(const std::vector<int>& disturbed);
-  void rebindThreads();
-  SolveReport solveFromRest();
-  void describeShape(SolveReport& report);
-  using OffPoint = Vec3 (*)(const ContactSpring&, const std::vector<Vec3>&);
-  void deformSurface(OffPoint of_tools = drawnOff);
-  std::vector<std::pair<int, Vec3>> shownAsTheirOwn(OffPoint of_tools) const;
-  LoadingPatch makePatch(const PatchConfig& config) const;
-  std::size_t place(const LoadingPatch& patch);
-  LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
-  const LoadingPatch* standingPatch(const std::string& name) const;
-  // load_stepping.cpp; reports are the last increment's, with the worst status of all.
-  bool stopsOnTheWay(const std::vector<LoadRamp>& ramps);
-  double foreseenSteps(const std::vector<LoadRamp>& ramps) const;
-  SolveReport stepLoadsByItself(const std::vector<LoadRamp>& ramps,
-                                const OnIncrement& on_increment);
-  SolveReport stepLoads(const std::vector<LoadRamp>& ramps, int increments,
-                        const OnIncrement& on_increment);
-  SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
-  SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
-  Vec3 patchForce(const LoadingPatch& patch) const;
-  void planMembranes(const TissueConfig& tissue);
-  void renewTies();
-  void rebuildSurface();
-
-  Lattice lattice_;
-  LatticeState state_;
-  mutable Displacements kept_;  // of state_; null: nobody asked since it changed
-  std::unique_ptr<TissueModel> model_;
-  SolverConfig solver_;
-  std::uint64_t balance_fingerprint_ = 0;  // of the scene
-  std::unique_ptr<SolverMethod> method_;
-  std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
-  bool is_aside_ = false;
-  std::unique_ptr<History> history_;  // of what changed the topology
-  TriangleMesh mesh_;                 // with edges of a spacing at most; empty: the shape is a box
-  TissueSurface surface_;
-  std::vector<double> tear_strains_;  // per spring (tearStrains)
-  int springs_torn_ = 0;
-  std::unique_ptr<Threads> threads_;
-  std::shared_ptr<const PieceNumbers> piece_numbers_;
-  mutable std::vector<int> piece_of_nodes_;                   // by number
-  mutable std::shared_ptr<const CellSet> piece_of_nodes_of_;  // null: to be found
-  bool drops_free_ = false;
-  mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
-  mutable std::vector<double> volume_at_node_;       // of cells, per node of the lattice (m^3)
-  std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
-  double rest_volume_ = 0.0;                         // m^3
-  Vec3 weight_ = Vec3::Zero();                       // N
-  std::unique_ptr<const MembranePlan> membranes_;    // null: none
-  bool has_body_load_ = false;   // gravity, or a pressure: the rest shape is not in balance
-  Vec3 gravity_ = Vec3::Zero();  // m/s^2
-  std::vector<Vec3> vertices_;   // deformed, of the surface
-  Box bounds_;                   // of them
-  std::vector<LoadingPatch> patches_;
-  std::size_t named_patches_ = 0;
-  std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there
-  std::vector<int> disturbed_;     // by what the last solve had no time to balance
-  SolveReport last_report_;
-  bool is_late_ = false;       // likewise
-  bool is_as_solved_ = false;  // the shape is the one that the method came to last
-  bool are_contacts_settled_ = true;
-  Patience patience_;
-  double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
-  std::optional<Deadline> deadline_;
-  double look_ms_ = 0.0;      // that looks at the contacts took lately
-  double shortest_ms_ = 0.0;  // that the last solve would have taken with one iteration, about
-  ContactUpdate* contact_update_ = nullptr;
-  std::unique_ptr<TimeIntegrator> time_;  // null: there is none
-  // Nodes of each piece that no fixed node holds, and the cells that they were found for.
-  std::vector<std::vector<int>> free_pieces_;
-  std::shared_ptr<const CellSet> free_pieces_of_;
-  bool in_time_ =
-      false;  // since the last stopTime there was a time step, or there are forces for one
-  bool in_time_step_ = false;
-  bool expects_time_step_ = false;
+  std::unique_ptr<TissueParts> parts_;  // the classes behind it, see doc/architecture.md
 };
 
 }  // namespace robot_tissue

@@ -6,9 +6,9 @@
 
 #include "loads/driven_places.h"
 #include "robot_tissue/core/part_of_way.h"
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/round_gain.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
@@ -22,7 +22,7 @@ double shortestMs(const SolveReport& solve) {
 
 }  // namespace
 
-struct Tissue::Rounds {
+struct TissueParts::Rounds {
   explicit Rounds(const Displacements& start) : before(start), gain(start) {}
 
   Displacements before;                    // the shape that the last round began with
@@ -34,7 +34,7 @@ struct Tissue::Rounds {
   int whole = 0;  // in which the shape is the one that was solved for
 };
 
-SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
+SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(state_);
   if (contact_update_ == nullptr) return solveOnce(disturbed);
   Rounds rounds(displacements());
@@ -55,7 +55,7 @@ SolveReport Tissue::solveInRounds(const std::vector<int>& disturbed) {
 }
 
 // Looks at the contacts. True: they are others, and patches for them are there.
-bool Tissue::asksForRound(Rounds& rounds) {
+bool TissueParts::asksForRound(Rounds& rounds) {
   SolveReport& report = rounds.report;
   const auto raise = [&](SolveStatus status) {
     last_report_.status = report.status = std::max(report.status, status);
@@ -104,7 +104,7 @@ bool Tissue::asksForRound(Rounds& rounds) {
 }
 
 // Of the surface's vertices: a ghost that carries little of one may go farther than it.
-void Tissue::limitWays() {
+void TissueParts::limitWays() {
   std::vector<WayLimit> limits;
   if (contact_update_ != nullptr) {
     const std::vector<double> longest = contact_update_->longestWays();
@@ -118,7 +118,7 @@ void Tissue::limitWays() {
 
 // Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).
 // False: all of it is allowed.
-bool Tissue::goBack(const Rounds& rounds) {
+bool TissueParts::goBack(const Rounds& rounds) {
   const double share = contact_update_->shareOfWay(*rounds.before);
   if (share >= 1.0) return false;
   kept_.reset();

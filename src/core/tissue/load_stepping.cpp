@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "material/tissue_model.h"
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/load_ramp.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
@@ -49,7 +49,7 @@ int wholeParts(double share) {
 }
 
 // Out of time on the way of named patches: they stand there, and what they go to is due.
-bool Tissue::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
+bool TissueParts::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   const bool named = std::all_of(ramps.begin(), ramps.end(),
                                  [&](const LoadRamp& ramp) { return ramp.patch < named_patches_; });
   if (!named || !deadline_ || !deadline_->isOver()) return false;
@@ -65,7 +65,7 @@ bool Tissue::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
 // A patch by force: the force over k s, k the stiffness of the patch. In equilibrium a hard patch
 // of n nodes answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes
 // do (own); the paper's moves while the tissue around it stands, so all n nodes answer.
-double Tissue::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
+double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
   double steps = 1.0;
   for (const LoadRamp& ramp : ramps) {
     if (byForce(ramp.target)) {
@@ -91,8 +91,8 @@ double Tissue::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
 // With increments of its own choice. Those of a displacement are equal. Those of a force follow the
 // stiffness that the last one met, so that the next moves its patch by one step, and one that went
 // too far is made anew, where the method finds equilibria.
-SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
-                                      const OnIncrement& on_increment) {
+SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
+                                           const OnIncrement& on_increment) {
   const bool forced = std::any_of(ramps.begin(), ramps.end(),
                                   [](const LoadRamp& ramp) { return byForce(ramp.target); });
   if (!forced || !method_->findsEquilibrium())
@@ -128,8 +128,8 @@ SolveReport Tissue::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
   return report;
 }
 
-SolveReport Tissue::stepLoads(const std::vector<LoadRamp>& ramps, int increments,
-                              const OnIncrement& on_increment) {
+SolveReport TissueParts::stepLoads(const std::vector<LoadRamp>& ramps, int increments,
+                                   const OnIncrement& on_increment) {
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
@@ -148,7 +148,8 @@ SolveReport Tissue::stepLoads(const std::vector<LoadRamp>& ramps, int increments
 
 // An increment that would turn cells over, were only the patch to move, is walked in the method's
 // own steps: in one go the shape would be that of no way there.
-SolveReport Tissue::goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments) {
+SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
+                                   int increments) {
   const double steps = method_->findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
   const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
@@ -168,7 +169,7 @@ SolveReport Tissue::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
   return report;
 }
 
-SolveReport Tissue::goTo(const std::vector<LoadRamp>& ramps, double share) {
+SolveReport TissueParts::goTo(const std::vector<LoadRamp>& ramps, double share) {
   for (const LoadRamp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
   return solve({});
 }

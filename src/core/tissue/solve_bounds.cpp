@@ -2,17 +2,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot_tissue/core/tissue.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 
 // Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
 // square of the step, be accelerations: no clock cuts it short.
-bool Tissue::isBounded() const { return deadline_ && !in_time_step_; }
+bool TissueParts::isBounded() const { return deadline_ && !in_time_step_; }
 
 // Time for the next solve (ms); 0: no bound.
-double Tissue::mostMs() const {
+double TissueParts::mostMs() const {
   if (in_time_step_) return 0.0;
   if (!deadline_) return max_ms_;
   const double left = deadline_->leftMs();
@@ -23,31 +23,31 @@ double Tissue::mostMs() const {
 }
 
 // How long a look at the contacts took.
-void Tissue::noteLook(double ms) { look_ms_ = std::max(ms, tuning::kLooksFade * look_ms_); }
+void TissueParts::noteLook(double ms) { look_ms_ = std::max(ms, tuning::kLooksFade * look_ms_); }
 
-bool Tissue::isRoundForNextCall() const {
+bool TissueParts::isRoundForNextCall() const {
   if (!isBounded()) return false;
   const double round = shortest_ms_ + look_ms_;
   return deadline_->leftMs() < round && round <= deadline_->wholeMs();
 }
 
 // As of a mesh, after a solve that took longer than it was to. What it came to is no shape to show.
-bool Tissue::isLookForNextCall() const {
+bool TissueParts::isLookForNextCall() const {
   return isRoundForNextCall() && deadline_->leftMs() < look_ms_ - tuning::kMostOverstepMs;
 }
 
 // Of the next solve.
-int Tissue::mostIterations() const {
+int TissueParts::mostIterations() const {
   const int left = patience_.left(solved(), costOfIteration());
   return std::max(1, in_time_step_ ? left : std::min(left, patience_.bound().left()));
 }
 
-bool Tissue::mayShowUnsettled() const {
+bool TissueParts::mayShowUnsettled() const {
   const double bearable = patience_.bound().bearableDepth() * lattice_.spacing();
   return bearable > 0.0 && contact_update_->deepestShown() <= bearable;
 }
 
-void Tissue::noteUnsettled() {
+void TissueParts::noteUnsettled() {
   are_contacts_settled_ = false;
   last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
 }
@@ -55,7 +55,7 @@ void Tissue::noteUnsettled() {
 // Over that of an iteration with few touches, on a lattice that is whole. Where there are more
 // touches than nodes, as of a fine mesh on a coarse lattice, they are most of the work; so are
 // cells that cuts parted.
-double Tissue::costOfIteration() const {
+double TissueParts::costOfIteration() const {
   double touches = 0.0;
   for (const LoadingPatch& patch : patches_) touches += static_cast<double>(patch.contacts.size());
   const double nodes = lattice_.nodeCount();
@@ -64,7 +64,7 @@ double Tissue::costOfIteration() const {
                    (nodes + tuning::kNodesOfGhost * ghosts) / std::max(nodes, tuning::kFewNodes)});
 }
 
-Patience::Of Tissue::solved() const {
+Patience::Of TissueParts::solved() const {
   return in_time_step_ ? Patience::Of::kTimeStep : Patience::Of::kLoadStep;
 }
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "surface/nearest_point.h"
 #include "tissue/front_ties.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/threads.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
@@ -47,7 +47,7 @@ void requireNumbers(const SutureConfig& config) {
 }  // namespace
 
 // The end at the surface's point that is nearest in the deformed shape.
-SutureThread Tissue::threadOf(const SutureConfig& config) const {
+SutureThread TissueParts::threadOf(const SutureConfig& config) const {
   const double spacing = lattice_.spacing();
   SutureThread thread;
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
@@ -75,7 +75,7 @@ SutureThread Tissue::threadOf(const SutureConfig& config) const {
   return thread;
 }
 
-SutureResult Tissue::suture(const SutureConfig& config) {
+SutureResult TissueParts::suture(const SutureConfig& config) {
   requireNumbers(config);
   if (!method_->findsEquilibrium()) {
     std::string allowed;
@@ -106,7 +106,7 @@ SutureResult Tissue::suture(const SutureConfig& config) {
   return result;
 }
 
-std::vector<SutureReport> Tissue::sutures() const {
+std::vector<SutureReport> TissueParts::sutures() const {
   std::vector<SutureReport> reports;
   for (const SutureThread& thread : threads_->all()) {
     reports.push_back(reportOf(thread, state_.displacement));
@@ -115,7 +115,7 @@ std::vector<SutureReport> Tissue::sutures() const {
 }
 
 // Adds a solve to the report. False: the time is over.
-bool Tissue::solveOnThreads(SolveReport& report) {
+bool TissueParts::solveOnThreads(SolveReport& report) {
   const SolveReport earlier = report;
   report = solve(threads_->nodes());
   report.status = std::max(report.status, earlier.status);
@@ -126,7 +126,7 @@ bool Tissue::solveOnThreads(SolveReport& report) {
 
 // To their rest lengths, in steps that the method follows well. Out of time they are there at once,
 // and what is left to balance is due.
-SolveReport Tissue::drawThreadsIn() {
+SolveReport TissueParts::drawThreadsIn() {
   threads_->soften([this](int node) { return tuning::kSoftThread * nodeStiffness(node); },
                    state_.displacement);
   const int steps = wholeParts(threads_->wayLeft() / method_->patchStep());
@@ -159,14 +159,14 @@ SolveReport Tissue::drawThreadsIn() {
 }
 
 // Under gravity and threads alone, these drawn in from where the rest shape has their ends.
-SolveReport Tissue::settleFromRest() {
+SolveReport TissueParts::settleFromRest() {
   SolveReport report;
   threads_->loosen(state_.displacement);
   if (has_body_load_) report = settle();
   return threads_->anyWhole() ? drawThreadsIn() : report;
 }
 
-SolveReport Tissue::solveWithThreads(const std::vector<int>& disturbed) {
+SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed) {
   if (!threads_->act()) return method_->solve(patches_, disturbed, state_);
   patches_.push_back(threads_->patch());
   SolveReport report = method_->solve(patches_, disturbed, state_);
@@ -176,7 +176,7 @@ SolveReport Tissue::solveWithThreads(const std::vector<int>& disturbed) {
 }
 
 // Threads break in balance, one after the other: what one leaves, the others may bear.
-SolveReport Tissue::solveAndBreak(const std::vector<int>& disturbed) {
+SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
   SolveReport report = solveInRounds(disturbed);
   while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
     const std::vector<int> left = threads_->breakOne(state_.displacement);
@@ -190,9 +190,9 @@ SolveReport Tissue::solveAndBreak(const std::vector<int>& disturbed) {
   return report;
 }
 
-void Tissue::renewTies() { threads_->tie(tiesOfFronts(lattice_, state_, *model_)); }
+void TissueParts::renewTies() { threads_->tie(tiesOfFronts(lattice_, state_, *model_)); }
 
-void Tissue::rebindThreads() {
+void TissueParts::rebindThreads() {
   for (const int node : threads_->rebind(surface_, lattice_.spacing())) {
     disturbed_.push_back(state_.cells->original(node));
   }

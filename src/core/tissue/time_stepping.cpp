@@ -4,24 +4,26 @@
 
 #include "cutting/split_cells.h"
 #include "material/elastic_model.h"
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/threads.h"
 #include "tissue/time_integrator.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 
-bool Tissue::isMoving() const { return time_ && in_time_ && time_->moves(); }
+bool TissueParts::isMoving() const { return time_ && in_time_ && time_->moves(); }
 
-bool Tissue::goesThroughTime() const { return goesInTime() && method_->goesThroughTimeSteps(); }
+bool TissueParts::goesThroughTime() const {
+  return goesInTime() && method_->goesThroughTimeSteps();
+}
 
-double Tissue::longestTimeStep() const { return time_->longestStep(); }
+double TissueParts::longestTimeStep() const { return time_->longestStep(); }
 
 // Whether loads that go and cuts leave the shape as it is, to be moved by time.
-bool Tissue::takesNoTime() const { return time_ && !in_time_step_; }
+bool TissueParts::takesNoTime() const { return time_ && !in_time_step_; }
 
-void Tissue::expectTimeStep(double duration, Touched touched) {
+void TissueParts::expectTimeStep(double duration, Touched touched) {
   using Scheme = TimeIntegrator::Scheme;
   const auto& model = dynamic_cast<const ElasticModel&>(*model_);
   expects_time_step_ = true;
@@ -30,7 +32,7 @@ void Tissue::expectTimeStep(double duration, Touched touched) {
                 state_, model.nodeMasses(*state_.cells));
 }
 
-void Tissue::beginTimeStep(double duration, Touched touched) {
+void TissueParts::beginTimeStep(double duration, Touched touched) {
   expectTimeStep(duration, touched);
   const auto& model = dynamic_cast<const ElasticModel&>(*model_);
   in_time_ = in_time_step_ = true;
@@ -42,7 +44,7 @@ void Tissue::beginTimeStep(double duration, Touched touched) {
   model_->setInertia(&time_->begin(state_, cell_forces));
 }
 
-void Tissue::endTimeStep() {
+void TissueParts::endTimeStep() {
   expects_time_step_ = false;
   if (!in_time_step_) return;
   in_time_step_ = false;
@@ -55,7 +57,7 @@ void Tissue::endTimeStep() {
   for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(gravity_));
 }
 
-void Tissue::findFreePieces() {
+void TissueParts::findFreePieces() {
   if (free_pieces_of_ == state_.cells) return;
   free_pieces_of_ = state_.cells;
   const std::vector<int>& pieces = pieceOfNodes();
@@ -76,7 +78,7 @@ void Tissue::findFreePieces() {
 
 // Of free_pieces_, those that nothing holds or touches: their centers of mass go as gravity says,
 // to rounding.
-std::vector<std::size_t> Tissue::fallingPieces() {
+std::vector<std::size_t> TissueParts::fallingPieces() {
   findFreePieces();
   std::vector<int> touched = threads_->nodes();
   for (const LoadingPatch& patch : patches_) {
@@ -99,14 +101,14 @@ std::vector<std::size_t> Tissue::fallingPieces() {
   return falling;
 }
 
-void Tissue::shift(const std::vector<int>& nodes, const Vec3& way) {
+void TissueParts::shift(const std::vector<int>& nodes, const Vec3& way) {
   if (way.isZero(0.0)) return;
   for (const int node : nodes) state_.displacement[at(node)] += way;
   kept_.reset();
   deformSurface();
 }
 
-void Tissue::stopTime() {
+void TissueParts::stopTime() {
   if (!time_) return;
   in_time_ = in_time_step_ = expects_time_step_ = false;
   time_->rest();
@@ -114,14 +116,14 @@ void Tissue::stopTime() {
 }
 
 // Until it was solved for, the shape at rest is not the one under gravity or a pressure.
-void Tissue::wakeUnderBodyLoad() {
+void TissueParts::wakeUnderBodyLoad() {
   if (!time_ || !has_body_load_) return;
   in_time_ = true;
   time_->wake(state_);
 }
 
 // Loads or cuts are others, the shape is not yet.
-SolveReport Tissue::asItIs() {
+SolveReport TissueParts::asItIs() {
   in_time_ = true;
   time_->wake(state_);
   last_report_.patches.resize(patches_.size());
@@ -129,7 +131,7 @@ SolveReport Tissue::asItIs() {
 }
 
 // Tools would have to be looked at on the way.
-void Tissue::predict() {
+void TissueParts::predict() {
   kept_.reset();
   for (std::size_t node = 0; node < state_.displacement.size(); ++node) {
     const int index = static_cast<int>(node);
@@ -139,7 +141,7 @@ void Tissue::predict() {
   }
 }
 
-SolveReport Tissue::wait(double duration) {
+SolveReport TissueParts::wait(double duration) {
   if (in_time_ && !time_->moves()) {
     last_report_.iterations = 0;
     last_report_.wall_ms = 0.0;

@@ -1,326 +1,121 @@
+// Tissue: which of the parts behind it answers what.
 #include "robot_tissue/core/tissue.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "cutting/removal.h"
-#include "cutting/split_cells.h"
-#include "cutting/tear.h"
-#include "lattice/piece_numbers.h"
-#include "membrane/membrane_plan.h"
-#include "robot_tissue/core/body_load.h"
-#include "robot_tissue/core/cells.h"
-#include "surface/mesh_surface.h"
-#include "tissue/history.h"
-#include "tissue/load_ramp.h"
-#include "tissue/registry.h"
-#include "tissue/threads.h"
-#include "tissue/time_integrator.h"
-#include "tissue/tissue_state.h"
-#include "tissue/tuning.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
-namespace {
-
-bool isFinite(const Vec3& vector) { return vector.allFinite(); }
-
-bool hasOnlyFiniteNumbers(const SolveReport& report) {
-  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
-         std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
-           return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
-         });
-}
-
-}  // namespace
 
 Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
-    : lattice_(tissue),
-      state_(lattice_.restState()),
-      model_(makeModel(tissue, lattice_)),
-      solver_(solver),
-      balance_fingerprint_(balanceFingerprint(tissue, solver)),
-      history_(std::make_unique<History>()),
-      threads_(std::make_unique<Threads>()),
-      drops_free_(tissue.free_pieces == FreePieces::kDrop),
-      has_body_load_(hasBodyLoad(tissue)),
-      gravity_(tissue.gravity),
-      max_ms_(solver.max_ms) {
-  if (tissue.time) {
-    time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
-                                             solver.tolerance);
-  }
-  tear_strains_ = tearStrains(lattice_, tissue);
-  if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
-  rebuildSurface();
-  planMembranes(tissue);
-  method_ = makeMethod(solver, lattice_, *model_);
-  patience_ = Patience(method_->usualIterations(), lattice_.nodeCount());
-  weight_ = model_->weight(state_);
-  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
-  wakeUnderBodyLoad();
-}
+    : parts_(std::make_unique<TissueParts>(tissue, solver)) {}
 
 Tissue::~Tissue() = default;
 
-// Contacts are found anew after each step: what a tool meets on the way must not be far.
-double Tissue::stepLength() const {
-  return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
+const Lattice& Tissue::lattice() const { return parts_->lattice(); }
+const LatticeState& Tissue::state() const { return parts_->state(); }
+const TissueSurface& Tissue::surface() const { return parts_->surface(); }
+const std::vector<Vec3>& Tissue::vertices() const { return parts_->vertices(); }
+const Box& Tissue::bounds() const { return parts_->bounds(); }
+const std::vector<int>& Tissue::pieceOfNodes() const { return parts_->pieceOfNodes(); }
+std::vector<TissuePiece> Tissue::pieces() const { return parts_->pieces(); }
+std::vector<TissuePiece> Tissue::restingPieces() const { return parts_->restingPieces(); }
+const std::vector<int>& Tissue::droppedPieces() const { return parts_->droppedPieces(); }
+bool Tissue::isUntouched() const { return parts_->isUntouched(); }
+double Tissue::stepLength() const { return parts_->stepLength(); }
+Patience& Tissue::patience() { return parts_->patience(); }
+const Patience& Tissue::patience() const { return parts_->patience(); }
+const std::vector<LoadingPatch>& Tissue::patches() const { return parts_->patches(); }
+std::size_t Tissue::namedPatches() const { return parts_->namedPatches(); }
+Tissue::Displacements Tissue::displacements() const { return parts_->displacements(); }
+bool Tissue::resistsInversion() const { return parts_->resistsInversion(); }
+int Tissue::cellsBeyondLaw() const { return parts_->cellsBeyondLaw(); }
+const SolveReport& Tissue::lastReport() const { return parts_->lastReport(); }
+void Tissue::noteUnconverged() { parts_->noteUnconverged(); }
+std::vector<Vec3> Tissue::shownDisplacement() const { return parts_->shownDisplacement(); }
+Vec3 Tissue::nodeForce(int node) const { return parts_->nodeForce(node); }
+std::vector<int> Tissue::freeNodes() const { return parts_->freeNodes(); }
+Vec3 Tissue::weight() const { return parts_->weight(); }
+bool Tissue::anyHangs() const { return parts_->anyHangs(); }
+Vec3 Tissue::forceOfFixedNodes() const { return parts_->forceOfFixedNodes(); }
+double Tissue::nodeStiffness(int node) const { return parts_->nodeStiffness(node); }
+double Tissue::stiffening(int node) const { return parts_->stiffening(node); }
+Vec3 Tissue::nodePosition(int node) const { return parts_->nodePosition(node); }
+std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
+  return parts_->rimCompliance(node, depth);
 }
-
-Tissue::Displacements Tissue::displacements() const {
-  if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
-  return kept_;
+std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
+  return parts_->recessUnder(press);
 }
-
-SolveReport Tissue::settle() {
-  stopTime();
-  solve(freeNodes());
-  return tear();
+void Tissue::setContactUpdate(ContactUpdate* update) { parts_->setContactUpdate(update); }
+void Tissue::setDeadline(std::optional<Deadline> deadline) { parts_->setDeadline(deadline); }
+bool Tissue::isRoundForNextCall() const { return parts_->isRoundForNextCall(); }
+void Tissue::expectTouch() { parts_->expectTouch(); }
+SolveReport Tissue::settle() { return parts_->settle(); }
+bool Tissue::hasTime() const { return parts_->hasTime(); }
+bool Tissue::isMoving() const { return parts_->isMoving(); }
+double Tissue::longestTimeStep() const { return parts_->longestTimeStep(); }
+void Tissue::expectTimeStep(double duration, Touched touched) {
+  parts_->expectTimeStep(duration, touched);
 }
-
+void Tissue::beginTimeStep(double duration, Touched touched) {
+  parts_->beginTimeStep(duration, touched);
+}
+void Tissue::endTimeStep() { parts_->endTimeStep(); }
+bool Tissue::isInTimeStep() const { return parts_->isInTimeStep(); }
+bool Tissue::goesInTime() const { return parts_->goesInTime(); }
+bool Tissue::goesThroughTime() const { return parts_->goesThroughTime(); }
+void Tissue::stopTime() { parts_->stopTime(); }
+SolveReport Tissue::wait(double duration) { return parts_->wait(duration); }
+void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
+  parts_->load(step, on_increment, most_increments);
+}
+bool Tissue::isLate() const { return parts_->isLate(); }
+bool Tissue::areContactsSettled() const { return parts_->areContactsSettled(); }
+bool Tissue::mayShowUnsettled() const { return parts_->mayShowUnsettled(); }
+void Tissue::noteUnsettled() { parts_->noteUnsettled(); }
+bool Tissue::isLoading() const { return parts_->isLoading(); }
+void Tissue::loadOn(const OnIncrement& on_increment) { parts_->loadOn(on_increment); }
+PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
+  return parts_->answerOf(name, report);
+}
+SolveReport Tissue::release(const std::vector<std::string>& names) {
+  return parts_->release(names);
+}
 SolveReport Tissue::follow(std::vector<LoadingPatch> tool_patches,
                            const std::vector<int>& disturbed, Bedding bedding) {
-  const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
-    return std::none_of(tool_patches.begin(), tool_patches.end(),
-                        [&](const LoadingPatch& now) { return now.name == earlier.name; });
-  });
-  putToolPatches(std::move(tool_patches));
-  const bool last_left = one_left && patches_.size() == named_patches_;
-  const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
-  if (in_time_) return in_time_step_ ? solve(disturbed) : asItIs();
-  const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
-  if (from_rest) return solveFromRest();
-  const bool one_there = patches_.size() > named_patches_;
-  const SolveReport report = solve(disturbed);
-  // The tissue left the last tool behind in the solve.
-  const bool one_lost = one_there && patches_.size() == named_patches_;
-  return one_lost && returns ? solveFromRest() : report;
+  return parts_->follow(std::move(tool_patches), disturbed, bedding);
 }
-
-Tissue::Shape Tissue::shape() const {
-  return {displacements(),
-          state_.cells,
-          patches_,
-          named_patches_,
-          last_report_,
-          is_late_,
-          are_contacts_settled_,
-          time_ ? time_->motion() : nullptr,
-          in_time_,
-          threads_->whole()};
+Tissue::Shape Tissue::shape() const { return parts_->shape(); }
+void Tissue::restore(const Shape& shape) { parts_->restore(shape); }
+void Tissue::takeOver(const Tissue& other) { parts_->takeOver(*other.parts_); }
+void Tissue::beginAside() { parts_->beginAside(); }
+void Tissue::endAside() { parts_->endAside(); }
+CutReport Tissue::cut(const std::vector<Vec3>& corners) { return parts_->cut(corners); }
+RemoveReport Tissue::remove(const RemovedSpace& space) { return parts_->remove(space); }
+RemoveReport Tissue::drill(const CoveredSpace& space, Stroke stroke) {
+  return parts_->drill(space, stroke);
 }
-
-void Tissue::restore(const Shape& shape) {
-  if (time_) time_->take(shape.motion);
-  in_time_ = shape.in_time;
-  in_time_step_ = expects_time_step_ = false;
-  if (time_) model_->setInertia(nullptr);  // of the step that is given up
-  is_as_solved_ = false;
-  kept_.reset();
-  state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
-  restRemoved(state_);
-  patches_ = shape.patches;
-  named_patches_ = shape.named_patches;
-  last_report_ = shape.report;
-  is_late_ = shape.is_late;
-  are_contacts_settled_ = shape.are_contacts_settled;
-  threads_->mend(shape.whole_sutures);
-  deformSurface();
+int Tissue::undoable() const { return parts_->undoable(); }
+SolveReport Tissue::undo(int count) { return parts_->undo(count); }
+CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
+  return parts_->cutAlong(swept, stroke);
 }
-
-void Tissue::beginAside() {
-  if (is_aside_) return;
-  patience_.beginTrial();
-  switchAside();
+SolveReport Tissue::tear() { return parts_->tear(); }
+bool Tissue::tearOut(const std::vector<int>& nodes) { return parts_->tearOut(nodes); }
+bool Tissue::mayTear() const { return parts_->mayTear(); }
+int Tissue::springsTorn() const { return parts_->springsTorn(); }
+SutureResult Tissue::suture(const SutureConfig& config) { return parts_->suture(config); }
+std::vector<SutureReport> Tissue::sutures() const { return parts_->sutures(); }
+void Tissue::reset() { parts_->reset(); }
+bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
+  return parts_->retune(tissue, solver);
 }
-
-void Tissue::endAside() {
-  if (!is_aside_) return;
-  patience_.endTrial();
-  switchAside();
+std::string Tissue::savedState() const { return parts_->savedState(); }
+std::uint64_t Tissue::stateHash() const { return parts_->stateHash(); }
+std::shared_ptr<const SavedState> Tissue::readState(const std::string& bytes) const {
+  return parts_->readState(bytes);
 }
-
-void Tissue::switchAside() {
-  is_aside_ = !is_aside_;
-  if (!method_->remembers()) return;
-  if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
-  std::swap(method_, other_method_);
-}
-
-void Tissue::reset() {
-  const bool was_cut = !isAsMade(state_);
-  stopTime();
-  endAside();
-  patience_.forget();
-  other_method_.reset();
-  method_->forget();
-  kept_.reset();
-  state_ = lattice_.restState();
-  threads_->clear();
-  patches_.clear();
-  named_patches_ = 0;
-  due_.clear();
-  disturbed_.clear();
-  last_report_ = SolveReport();
-  is_late_ = is_as_solved_ = false;
-  are_contacts_settled_ = true;
-  springs_torn_ = 0;
-  history_->clear();
-  if (was_cut) {
-    weight_ = model_->weight(state_);
-    rebuildSurface();
-  }
-  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
-  vertices_ = surface_.rest;
-  bounds_ = boundsOf(vertices_);
-  wakeUnderBodyLoad();
-}
-
-void Tissue::noteUnconverged() {
-  last_report_.status = std::max(last_report_.status, SolveStatus::kUnconverged);
-}
-
-bool Tissue::resistsInversion() const { return model_->resistsInversion(); }
-
-int Tissue::cellsBeyondLaw() const { return model_->cellsBeyondLaw(state_); }
-
-Vec3 Tissue::nodePosition(int node) const {
-  return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
-}
-
-void Tissue::expectTouch() {
-  if (!hasTime()) method_->expect(state_);
-}
-
-// The surface is another one: touches are found anew where it is now.
-void Tissue::renewContacts() {
-  if (contact_update_ == nullptr) return;
-  std::vector<LoadingPatch> of_tools;
-  contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved, ContactUpdate::Round::kNext);
-  putToolPatches(std::move(of_tools));  // none, too: those of before may be on ghosts that are gone
-}
-
-void Tissue::putToolPatches(std::vector<LoadingPatch> of_tools) {
-  patches_.erase(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patches_.end());
-  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
-}
-
-SolveReport Tissue::solve(const std::vector<int>& disturbed) {
-  const Patience::LoadStep load_step(patience_);
-  disturb(disturbed);
-  SolveReport report = solveAndBreak(disturbed_);
-  if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
-  if (!is_late_) disturbed_.clear();
-  rememberDisturbed();
-  last_report_.volume_ratio = report.volume_ratio = volumeRatio();
-  return report;
-}
-
-void Tissue::disturb(const std::vector<int>& nodes) {
-  if (disturbed_.empty()) {
-    disturbed_ = nodes;
-    return;
-  }
-  disturbed_.insert(disturbed_.end(), nodes.begin(), nodes.end());
-  std::sort(disturbed_.begin(), disturbed_.end());
-  disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
-}
-
-// For the next solve: ghosts may go meanwhile.
-void Tissue::rememberDisturbed() {
-  for (int& node : disturbed_) node = state_.cells->original(node);
-}
-
-SolveReport Tissue::solveOnce(const std::vector<int>& disturbed) {
-  // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
-  // it saves a method that stays finite.
-  const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
-  const Displacements last_good = keeps_shape ? displacements() : nullptr;
-  const std::vector<LoadingPatch> last_good_patches = patches_;
-  kept_.reset();
-  limitWays();
-  method_->limitTime(mostMs());
-  method_->limitIterations(mostIterations());
-  const double cost = costOfIteration();
-  const bool any_hangs = holdHanging();
-  SolveReport report = solveWithThreads(disturbed);
-  if (any_hangs) letHangingBe(report);
-  const bool is_finite =
-      hasOnlyFiniteNumbers(report) &&
-      (method_->staysFinite() ||
-       std::all_of(state_.displacement.begin(), state_.displacement.end(), isFinite));
-  if (!is_finite) {
-    if (last_good) state_.displacement = *last_good;
-    patches_ = last_good_patches;
-    report = SolveReport();
-    report.status = SolveStatus::kUnconverged;
-    report.patches.resize(patches_.size());
-  }
-  is_late_ = report.status == SolveStatus::kLate;
-  is_as_solved_ = is_finite;
-  are_contacts_settled_ = true;
-  const bool converged = report.status != SolveStatus::kUnconverged;
-  // Loads alone are an answer, however long it took.
-  if (converged && isUntouched()) {
-    patience_.noteEasy();
-  } else {
-    patience_.note(report.iterations, converged, solved(), cost);
-  }
-  describeShape(report);
-  last_report_ = report;
-  return report;
-}
-
-// Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
-// holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
-SolveReport Tissue::solveFromRest() {
-  const std::vector<LoadingPatch> standing = patches_;
-  method_->forget();
-  kept_.reset();
-  std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
-  SolveReport report;
-  const bool sutured = threads_->anyWhole();
-  if (has_body_load_ || sutured) {
-    const std::size_t named = std::exchange(named_patches_, 0);
-    patches_.clear();
-    report = settleFromRest();
-    patches_.insert(patches_.begin(), standing.begin(), standing.end());
-    named_patches_ = named;
-  }
-  std::vector<LoadRamp> ramps;
-  for (std::size_t patch = 0; patch < standing.size(); ++patch) {
-    ramps.push_back(makeRamp(standing[patch], nullptr));
-    ramps.back().patch = patch;
-    ramps.back().start.force.setZero();
-    patches_[patch] = ramps.back().start;
-  }
-  if (!ramps.empty()) {
-    report = stepLoadsByItself(ramps, {});
-  } else if (!has_body_load_ && !sutured) {
-    describeShape(report);
-    report.volume_ratio = volumeRatio();
-    last_report_ = report;
-    is_late_ = false;
-  }
-  return report;
-}
-
-void Tissue::describeShape(SolveReport& report) {
-  deformSurface();
-  const GridBox* visited = method_->visited();
-  report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
-                                             : countInvertedCells(lattice_, state_, *visited);
-  if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
-}
-
-std::vector<int> Tissue::freeNodes() const {
-  std::vector<int> nodes;
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    if (!lattice_.isFixed(node) && !isRemoved(state_, node)) nodes.push_back(node);
-  }
-  return nodes;
-}
+SolveReport Tissue::loadState(const SavedState& saved) { return parts_->loadState(saved); }
 
 }  // namespace robot_tissue

@@ -9,21 +9,21 @@
 #include "cutting/cut_front.h"
 #include "cutting/tear.h"
 #include "material/tissue_model.h"
-#include "robot_tissue/core/tissue.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 
 // Nodes round a mesh are up to a cell's diagonal off its surface.
-bool Tissue::mayReach(const Box& bounds) const {
+bool TissueParts::mayReach(const Box& bounds) const {
   return grownBy(tuning::kNodesBeyondSurface * lattice_.spacing(), bounds_).intersects(bounds);
 }
 
 // Severs the springs and balances what they leave. Tissue that may tear has cuts that end at the
 // last springs severed, as tears do: what tears next is told by the strain there.
-SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings,
-                                    const BladeSurface* blade) {
+SolveReport TissueParts::severAndBalance(const std::vector<Crossing>& crossings,
+                                         const BladeSurface* blade) {
   std::vector<int> disturbed;
   for (const Crossing& crossing : crossings) {
     disturbed.push_back(lattice_.springs()[at(crossing.spring)].a);
@@ -41,7 +41,7 @@ SolveReport Tissue::severAndBalance(const std::vector<Crossing>& crossings,
 }
 
 // The blade severs nothing, but what is ahead of it bears less.
-SolveReport Tissue::goNearer(std::vector<SpringAhead> ahead) {
+SolveReport TissueParts::goNearer(std::vector<SpringAhead> ahead) {
   const TopologyChange change(*this, History::Kind::kStrokeGoesOn);
   state_.ahead = std::move(ahead);
   renewTies();
@@ -53,7 +53,7 @@ SolveReport Tissue::goNearer(std::vector<SpringAhead> ahead) {
   return takesNoTime() ? asItIs() : solve(disturbed);
 }
 
-CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
+CutReport TissueParts::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
   CutReport report;
   report.pieces = state_.pieces;
   report.solve = last_report_;
@@ -82,7 +82,7 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
   return report;
 }
 
-bool Tissue::tearOut(const std::vector<int>& nodes) {
+bool TissueParts::tearOut(const std::vector<int>& nodes) {
   std::vector<std::uint8_t> goes(at(lattice_.nodeCount()), 0);
   for (const int node : nodes) goes[at(state_.cells->original(node))] = 1;
   std::vector<int> around;
@@ -100,7 +100,7 @@ bool Tissue::tearOut(const std::vector<int>& nodes) {
 }
 
 // In time the shape gives way by and by: what goes next is seen after the next step.
-SolveReport Tissue::tear() {
+SolveReport TissueParts::tear() {
   dropLetGo();
   if (tear_strains_.empty()) return last_report_;
   SolveStatus worst = last_report_.status;

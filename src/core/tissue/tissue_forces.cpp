@@ -5,10 +5,10 @@
 #include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
 #include "material/tissue_model.h"
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/threads.h"
 #include "tissue/time_integrator.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -60,12 +60,12 @@ bool isInOne(const std::vector<LoadingPatch>& patches, std::size_t count, int no
 
 }  // namespace
 
-Vec3 Tissue::nodeForce(int node) const {
+Vec3 TissueParts::nodeForce(int node) const {
   return model_->nodeForce(state_, node) + threads_->forceOn(node, state_.displacement);
 }
 
 // What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
-Vec3 Tissue::weight() const {
+Vec3 TissueParts::weight() const {
   const std::vector<int> hanging = hangingNodes();
   if (hanging.empty()) return weight_;
   Vec3 weight = weight_;
@@ -75,7 +75,7 @@ Vec3 Tissue::weight() const {
 
 // Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
 // them. Where the method does not visit all nodes: by the balance of all forces.
-Vec3 Tissue::forceOfFixedNodes() const {
+Vec3 TissueParts::forceOfFixedNodes() const {
   if (method_->visited() != nullptr) {
     const Vec3 left = is_as_solved_ ? method_->forceLeft() : Vec3(Vec3::Zero());
     return left - weight() - forceOfPatches(last_report_);
@@ -101,9 +101,11 @@ Vec3 Tissue::forceOfFixedNodes() const {
   return force;
 }
 
-double Tissue::nodeStiffness(int node) const { return model_->nodeStiffness(state_, node).mean(); }
+double TissueParts::nodeStiffness(int node) const {
+  return model_->nodeStiffness(state_, node).mean();
+}
 
-std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
+std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
   const CellSet& cells = *state_.cells;
   for (const CellSet::Meeting& met : cells.meetings(node)) {
@@ -119,7 +121,7 @@ std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const
   return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
 }
 
-std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
+std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
   const CellSet& cells = *state_.cells;
   for (const NodeWeight& share : press.shares) {
@@ -132,7 +134,7 @@ std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
   return robot_tissue::recessUnder(press, lattice_, {moduli.shear, poissonRatio(moduli)});
 }
 
-double Tissue::stiffening(int node) const {
+double TissueParts::stiffening(int node) const {
   const bool is_solved = expects_time_step_ && !goesThroughTime();
   const double stiffness = is_solved ? nodeStiffness(node) : 0.0;
   if (!(stiffness > 0.0)) return 1.0;

@@ -8,9 +8,9 @@
 
 #include "loads/patch_rim.h"
 #include "material/tissue_model.h"
-#include "robot_tissue/core/tissue.h"
 #include "solvers/solver_method.h"
 #include "tissue/load_ramp.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -93,7 +93,7 @@ void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches) {
   patches.erase(std::remove_if(patches.begin(), patches.end(), is_it), patches.end());
 }
 
-void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
+void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, patches_);
@@ -123,7 +123,7 @@ void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int mos
   }
 }
 
-void Tissue::loadOn(const OnIncrement& on_increment) {
+void TissueParts::loadOn(const OnIncrement& on_increment) {
   if (due_.empty()) return;
   stopTime();
   std::vector<LoadRamp> ramps;
@@ -137,7 +137,7 @@ void Tissue::loadOn(const OnIncrement& on_increment) {
   stepLoadsByItself(ramps, on_increment);
 }
 
-SolveReport Tissue::release(const std::vector<std::string>& names) {
+SolveReport TissueParts::release(const std::vector<std::string>& names) {
   const auto named = [&](const std::string& name) {
     const auto end = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
     return std::find_if(patches_.begin(), end,
@@ -163,14 +163,14 @@ SolveReport Tissue::release(const std::vector<std::string>& names) {
   return tear();
 }
 
-PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
+PatchAnswer TissueParts::answerOf(const std::string& name, const SolveReport& report) const {
   for (std::size_t index = 0; index < std::min(named_patches_, report.patches.size()); ++index) {
     if (patches_[index].name == name) return report.patches[index];
   }
   return {};
 }
 
-LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
+LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
   LoadingPatch patch;
   patch.name = config.name;
   patch.nodes = lattice_.nodesIn(config.box);
@@ -222,7 +222,7 @@ LoadingPatch Tissue::makePatch(const PatchConfig& config) const {
 
 // Index of the patch among the standing ones; a new one comes after the other named ones, with no
 // load yet.
-std::size_t Tissue::place(const LoadingPatch& patch) {
+std::size_t TissueParts::place(const LoadingPatch& patch) {
   for (std::size_t index = 0; index < named_patches_; ++index) {
     if (patches_[index].name != patch.name) continue;
     patches_[index] = patch;
@@ -232,7 +232,7 @@ std::size_t Tissue::place(const LoadingPatch& patch) {
   return named_patches_++;
 }
 
-const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
+const LoadingPatch* TissueParts::standingPatch(const std::string& name) const {
   for (std::size_t index = 0; index < named_patches_; ++index) {
     if (patches_[index].name == name) return &patches_[index];
   }
@@ -240,7 +240,7 @@ const LoadingPatch* Tissue::standingPatch(const std::string& name) const {
 }
 
 // Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
-LoadRamp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
+LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
   LoadRamp ramp;
   ramp.target = target;
   ramp.start = target;
@@ -262,7 +262,7 @@ LoadRamp Tissue::makeRamp(const LoadingPatch& target, const LoadingPatch* standi
   return ramp;
 }
 
-Vec3 Tissue::patchForce(const LoadingPatch& patch) const {
+Vec3 TissueParts::patchForce(const LoadingPatch& patch) const {
   std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
   for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
   for (const LoadingPatch& other : patches_) addContactForces(other, state_.displacement, forces);

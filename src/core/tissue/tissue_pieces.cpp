@@ -10,26 +10,26 @@
 #include "lattice/piece_numbers.h"
 #include "material/tissue_model.h"
 #include "robot_tissue/core/disjoint_sets.h"
-#include "robot_tissue/core/tissue.h"
 #include "tissue/history.h"
 #include "tissue/threads.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
 
 namespace robot_tissue {
 
 // What is free now stays so: nothing was let go of.
-void Tissue::takePieces(std::shared_ptr<const PieceNumbers> numbers) {
+void TissueParts::takePieces(std::shared_ptr<const PieceNumbers> numbers) {
   piece_numbers_ = std::move(numbers);
   piece_of_nodes_of_.reset();
   if (drops_free_) left_free_ = freePieces();
 }
 
-void Tissue::renumberPieces() {
+void TissueParts::renumberPieces() {
   piece_numbers_ = std::make_shared<const PieceNumbers>(piece_numbers_->after(lattice_, state_));
   piece_of_nodes_of_.reset();
 }
 
-const std::vector<int>& Tissue::pieceOfNodes() const {
+const std::vector<int>& TissueParts::pieceOfNodes() const {
   if (piece_of_nodes_of_ != nullptr && piece_of_nodes_of_ == state_.cells) return piece_of_nodes_;
   piece_of_nodes_ = robot_tissue::pieceOfNodes(lattice_, state_);
   const std::vector<int>& of_parts = piece_numbers_->names().of_parts;
@@ -41,10 +41,12 @@ const std::vector<int>& Tissue::pieceOfNodes() const {
   return piece_of_nodes_;
 }
 
-const std::vector<int>& Tissue::droppedPieces() const { return piece_numbers_->names().dropped; }
+const std::vector<int>& TissueParts::droppedPieces() const {
+  return piece_numbers_->names().dropped;
+}
 
 // By number, without what holds them; centers at rest.
-const std::vector<TissuePiece>& Tissue::piecesAtRest() const {
+const std::vector<TissuePiece>& TissueParts::piecesAtRest() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   if (!pieces_at_rest_.empty()) return pieces_at_rest_;
   pieces_at_rest_.resize(at(piece_numbers_->names().next));
@@ -70,7 +72,7 @@ const std::vector<TissuePiece>& Tissue::piecesAtRest() const {
   return pieces_at_rest_;
 }
 
-std::vector<TissuePiece> Tissue::restingPieces() const {
+std::vector<TissuePiece> TissueParts::restingPieces() const {
   const std::vector<char> held = heldPieces();
   std::vector<int> numbers = piece_numbers_->names().of_parts;
   std::sort(numbers.begin(), numbers.end());
@@ -83,7 +85,7 @@ std::vector<TissuePiece> Tissue::restingPieces() const {
   return pieces;
 }
 
-std::vector<TissuePiece> Tissue::pieces() const {
+std::vector<TissuePiece> TissueParts::pieces() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   std::vector<Vec3> moved(at(piece_numbers_->names().next), Vec3::Zero());
   std::vector<TissuePiece> pieces = restingPieces();
@@ -97,7 +99,7 @@ std::vector<TissuePiece> Tissue::pieces() const {
 
 // Per number. What threads join is held together. Touches may still be of the surface before a
 // change, on ghosts that are gone.
-std::vector<char> Tissue::heldPieces() const {
+std::vector<char> TissueParts::heldPieces() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   const auto piece = [&](int node) { return at(node) < piece_of.size() ? piece_of[at(node)] : -1; };
   DisjointSets joined(at(piece_numbers_->names().next));
@@ -126,7 +128,7 @@ std::vector<char> Tissue::heldPieces() const {
   return held;
 }
 
-std::vector<int> Tissue::freePieces() const {
+std::vector<int> TissueParts::freePieces() const {
   const std::vector<char> held = heldPieces();
   std::vector<int> numbers = piece_numbers_->names().of_parts;
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
@@ -137,7 +139,7 @@ std::vector<int> Tissue::freePieces() const {
 }
 
 // Of pieces that gravity pulls and nothing bears; ascending.
-std::vector<int> Tissue::hangingNodes() const {
+std::vector<int> TissueParts::hangingNodes() const {
   if (gravity_.isZero(0.0) || goesInTime() || isMoving()) return {};
   const std::vector<int> free = freePieces();
   std::vector<int> hanging;
@@ -152,7 +154,7 @@ std::vector<int> Tissue::hangingNodes() const {
 }
 
 // For one solve, as a patch that keeps them where they are. False: there are none.
-bool Tissue::holdHanging() {
+bool TissueParts::holdHanging() {
   LoadingPatch patch;
   patch.nodes = hangingNodes();
   if (patch.nodes.empty()) return false;
@@ -162,14 +164,14 @@ bool Tissue::holdHanging() {
 }
 
 // What would have to hold them is no answer to a load.
-void Tissue::letHangingBe(SolveReport& report) {
+void TissueParts::letHangingBe(SolveReport& report) {
   patches_.pop_back();
   report.patches.resize(patches_.size());
 }
 
 // Those that were held when this was asked last, or are new, and are free now. While nothing holds
 // any of the tissue it floats, and all of it stays.
-std::vector<int> Tissue::freedPieces() {
+std::vector<int> TissueParts::freedPieces() {
   if (!drops_free_ || state_.pieces == 1) return {};
   const std::vector<int> free = freePieces();
   std::vector<int> freed;
@@ -186,7 +188,7 @@ std::vector<int> Tissue::freedPieces() {
   return freed;
 }
 
-void Tissue::takeOut(const std::vector<int>& pieces) {
+void TissueParts::takeOut(const std::vector<int>& pieces) {
   const std::vector<int>& piece_of = pieceOfNodes();
   std::vector<std::uint8_t> cells(lattice_.cells().size(), 0);
   for (const Cell& cell : lattice_.cells()) {
@@ -208,7 +210,7 @@ void Tissue::takeOut(const std::vector<int>& pieces) {
 
 // Within a change of the topology, before its balance. The surface, and with it the ends of
 // threads, may still be that of before.
-void Tissue::dropFreed() {
+void TissueParts::dropFreed() {
   if (!drops_free_ || state_.pieces == 1) return;
   if (threads_->anyWhole()) rebuildSurface();
   const std::vector<int> freed = freedPieces();
@@ -216,7 +218,7 @@ void Tissue::dropFreed() {
 }
 
 // By tools, loads or threads that hold them no longer.
-void Tissue::dropLetGo() {
+void TissueParts::dropLetGo() {
   const std::vector<int> freed = freedPieces();
   if (freed.empty()) return;
   const TopologyChange change(*this, History::Kind::kByItself);

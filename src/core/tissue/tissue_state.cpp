@@ -6,7 +6,6 @@
 #include "lattice/piece_numbers.h"
 #include "material/tissue_model.h"
 #include "membrane/membrane_plan.h"
-#include "robot_tissue/core/tissue.h"
 #include "saving/bytes.h"
 #include "saving/saved_state.h"
 #include "solvers/solver_method.h"
@@ -14,6 +13,7 @@
 #include "tissue/registry.h"
 #include "tissue/threads.h"
 #include "tissue/time_integrator.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -76,7 +76,7 @@ std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig&
 }
 
 // What the method learned was of the other material.
-bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
+bool TissueParts::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   solver_ = solver;
   max_ms_ = solver.max_ms;
   const std::uint64_t fingerprint = balanceFingerprint(tissue, solver);
@@ -102,7 +102,7 @@ bool Tissue::retune(const TissueConfig& tissue, const SolverConfig& solver) {
   return true;
 }
 
-SavedState Tissue::stateNow() const {
+SavedState TissueParts::stateNow() const {
   SavedState saved;
   saved.lattice = state_;
   saved.pieces = piece_numbers_->names();
@@ -115,22 +115,22 @@ SavedState Tissue::stateNow() const {
   return saved;
 }
 
-std::string Tissue::savedState() const {
+std::string TissueParts::savedState() const {
   const SplitCells split = model_->splitCells();
   return encodeState(lattice_, split, stateNow(),
                      {fingerprintOf(lattice_, split), balance_fingerprint_});
 }
 
-std::uint64_t Tissue::stateHash() const { return robot_tissue::stateHash(savedState()); }
+std::uint64_t TissueParts::stateHash() const { return robot_tissue::stateHash(savedState()); }
 
-std::shared_ptr<const SavedState> Tissue::readState(const std::string& bytes) const {
+std::shared_ptr<const SavedState> TissueParts::readState(const std::string& bytes) const {
   const SplitCells split = model_->splitCells();
   return std::make_shared<const SavedState>(
       decodeState(lattice_, split, bytes, {fingerprintOf(lattice_, split), balance_fingerprint_}));
 }
 
 // Nothing of what was there stays, nor of what the method learned of it.
-void Tissue::take(const SavedState& saved) {
+void TissueParts::take(const SavedState& saved) {
   stopTime();
   endAside();
   other_method_.reset();
@@ -153,14 +153,14 @@ void Tissue::take(const SavedState& saved) {
   deformSurface();
 }
 
-void Tissue::takeOver(const Tissue& other) {
+void TissueParts::takeOver(const TissueParts& other) {
   take(other.stateNow());
   last_report_ = SolveReport();
   last_report_.patches.resize(patches_.size());
   wakeUnderBodyLoad();
 }
 
-SolveReport Tissue::loadState(const SavedState& saved) {
+SolveReport TissueParts::loadState(const SavedState& saved) {
   take(saved);
   if (!saved.in_balance) return solve(freeNodes());
   last_report_.inverted_cells = countInvertedCells(lattice_, state_);

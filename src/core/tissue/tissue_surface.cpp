@@ -6,8 +6,8 @@
 #include "material/tissue_model.h"
 #include "membrane/membrane_plan.h"
 #include "robot_tissue/core/method_names.h"
-#include "robot_tissue/core/tissue.h"
 #include "surface/mesh_surface.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -28,11 +28,13 @@ void shrinkToFit(TissueSurface& surface) {
 
 }  // namespace
 
-double Tissue::volumeRatio() const { return enclosedVolume(surface_, vertices_) / rest_volume_; }
+double TissueParts::volumeRatio() const {
+  return enclosedVolume(surface_, vertices_) / rest_volume_;
+}
 
 // Nodes at rims, and their displacements as patches and tools have them (m); of_tools: where a
 // tool's spring is shown off its point.
-std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn(OffPoint of_tools) const {
+std::vector<std::pair<int, Vec3>> TissueParts::shownAsTheirOwn(OffPoint of_tools) const {
   std::vector<std::pair<int, Vec3>> own;
   for (const LoadingPatch& patch : patches_) {
     if (!patch.rim.empty()) {
@@ -50,13 +52,13 @@ std::vector<std::pair<int, Vec3>> Tissue::shownAsTheirOwn(OffPoint of_tools) con
   return own;
 }
 
-std::vector<Vec3> Tissue::shownDisplacement() const {
+std::vector<Vec3> TissueParts::shownDisplacement() const {
   std::vector<Vec3> shown = state_.displacement;
   for (const auto& [node, own] : shownAsTheirOwn(shownOff)) shown[at(node)] = own;
   return shown;
 }
 
-void Tissue::deformSurface(OffPoint of_tools) {
+void TissueParts::deformSurface(OffPoint of_tools) {
   std::vector<std::pair<int, Vec3>> own = shownAsTheirOwn(of_tools);
   const auto exchange = [&](std::pair<int, Vec3>& of_node) {
     std::swap(state_.displacement[at(of_node.first)], of_node.second);
@@ -67,7 +69,7 @@ void Tissue::deformSurface(OffPoint of_tools) {
 }
 
 // On the surface as it was made.
-void Tissue::planMembranes(const TissueConfig& tissue) {
+void TissueParts::planMembranes(const TissueConfig& tissue) {
   if (tissue.membranes.empty()) return;
   if (!traitsOfModel(tissue.model).has_membranes || tissue.time) {
     throw InputError("tissue.membranes: allowed with tissue.model " +
@@ -77,7 +79,7 @@ void Tissue::planMembranes(const TissueConfig& tissue) {
   model_->setMembrane(membranes_->on(surface_));
 }
 
-void Tissue::rebuildSurface() {
+void TissueParts::rebuildSurface() {
   renewTies();
   surface_ = mesh_.triangles.empty() ? extractSurface(lattice_, state_)
                                      : meshSurface(lattice_, state_, mesh_);

@@ -11,12 +11,12 @@
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 #include "material/tissue_model.h"
-#include "robot_tissue/core/tissue.h"
 #include "saving/saved_state.h"
 #include "solvers/solver_method.h"
 #include "tissue/history.h"
 #include "tissue/load_ramp.h"
 #include "tissue/partings.h"
+#include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
@@ -72,13 +72,13 @@ std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
 
 }  // namespace
 
-std::vector<LoadingPatch> Tissue::namedLoads() const {
+std::vector<LoadingPatch> TissueParts::namedLoads() const {
   return {patches_.begin(), patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)};
 }
 
 // Balances what other cells and springs leave. Until contacts are renewed, tools' springs are of
 // the nodes that there were.
-SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
+SolveReport TissueParts::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
   kept_.reset();
   is_as_solved_ = false;
@@ -95,14 +95,14 @@ SolveReport Tissue::changeTopology(const std::vector<int>& disturbed) {
 }
 
 // before_ms: what was left before the surface was made.
-bool Tissue::hasTimeForLevels(double before_ms) const {
+bool TissueParts::hasTimeForLevels(double before_ms) const {
   const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
   if (!isBounded() || !std::isfinite(left_ms)) return true;
   return left_ms >= tuning::kLevelsOverSurface * (before_ms - left_ms);
 }
 
 // The shape stays, to be balanced by the next solve.
-SolveReport Tissue::leaveToNextCall(const std::vector<int>& disturbed) {
+SolveReport TissueParts::leaveToNextCall(const std::vector<int>& disturbed) {
   disturb(disturbed);
   rememberDisturbed();
   is_late_ = true;
@@ -113,7 +113,7 @@ SolveReport Tissue::leaveToNextCall(const std::vector<int>& disturbed) {
   return last_report_;
 }
 
-CutReport Tissue::cut(const std::vector<Vec3>& corners) {
+CutReport TissueParts::cut(const std::vector<Vec3>& corners) {
   const std::vector<Crossing> crossing =
       sparingCrumbs(lattice_, state_, springsAcross(lattice_, state_, corners));
   CutReport report;
@@ -131,7 +131,7 @@ CutReport Tissue::cut(const std::vector<Vec3>& corners) {
   return report;
 }
 
-RemoveReport Tissue::remove(const RemovedSpace& space) {
+RemoveReport TissueParts::remove(const RemovedSpace& space) {
   const RemoveReport report = takeAway(cellsWithin(lattice_, state_, space), Stroke::kBegins);
   if (report.holds_all) {
     throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
@@ -139,13 +139,13 @@ RemoveReport Tissue::remove(const RemovedSpace& space) {
   return report;
 }
 
-RemoveReport Tissue::drill(const CoveredSpace& space, Stroke stroke) {
+RemoveReport TissueParts::drill(const CoveredSpace& space, Stroke stroke) {
   const bool reaches = mayReach(space.bounds);
   return takeAway(reaches ? cellsWithin(lattice_, state_, space) : std::vector<std::uint8_t>(),
                   stroke);
 }
 
-RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& within, Stroke stroke) {
+RemoveReport TissueParts::takeAway(const std::vector<std::uint8_t>& within, Stroke stroke) {
   RemoveReport report;
   report.pieces = state_.pieces;
   report.solve = last_report_;
@@ -172,7 +172,7 @@ RemoveReport Tissue::takeAway(const std::vector<std::uint8_t>& within, Stroke st
 }
 
 // Names of those of which nothing is left.
-std::vector<std::string> Tissue::dropLostLoads() {
+std::vector<std::string> TissueParts::dropLostLoads() {
   std::vector<std::string> lost;
   std::vector<PatchAnswer>& answers = last_report_.patches;
   for (std::size_t i = named_patches_; i-- > 0;) {
@@ -192,9 +192,9 @@ std::vector<std::string> Tissue::dropLostLoads() {
   return lost;
 }
 
-int Tissue::undoable() const { return static_cast<int>(history_->size()); }
+int TissueParts::undoable() const { return static_cast<int>(history_->size()); }
 
-SolveReport Tissue::undo(int count) {
+SolveReport TissueParts::undo(int count) {
   if (count < 1 || count > undoable()) {
     throw InputError("count: " + std::to_string(count) + " to take back; allowed: " +
                      (undoable() == 0 ? "none, as nothing was cut, removed, torn or sutured"

@@ -2,17 +2,17 @@
 // take back.
 #pragma once
 
-#include "robot_tissue/core/tissue.h"
 #include "tissue/history.h"
 #include "tissue/partings.h"
 #include "tissue/threads.h"
+#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 
-class Tissue::TopologyChange {
+class TissueParts::TopologyChange {
  public:
   // To be made before the change, where something will change. One within another is part of it.
-  TopologyChange(Tissue& tissue, History::Kind kind)
+  TopologyChange(TissueParts& tissue, History::Kind kind)
       : tissue_(tissue), is_outermost_(!tissue.history_->isUnderWay()) {
     if (is_outermost_ && tissue_.history_->begins(kind)) {
       const LatticeState& state = tissue_.state_;
@@ -34,7 +34,7 @@ class Tissue::TopologyChange {
   TopologyChange& operator=(const TopologyChange&) = delete;
 
  private:
-  Tissue& tissue_;
+  TissueParts& tissue_;
   bool is_outermost_;
 };
 

@@ -1,0 +1,326 @@
+#include "tissue/tissue_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cutting/removal.h"
+#include "cutting/split_cells.h"
+#include "cutting/tear.h"
+#include "lattice/piece_numbers.h"
+#include "membrane/membrane_plan.h"
+#include "robot_tissue/core/body_load.h"
+#include "robot_tissue/core/cells.h"
+#include "surface/mesh_surface.h"
+#include "tissue/history.h"
+#include "tissue/load_ramp.h"
+#include "tissue/registry.h"
+#include "tissue/threads.h"
+#include "tissue/time_integrator.h"
+#include "tissue/tissue_state.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+bool isFinite(const Vec3& vector) { return vector.allFinite(); }
+
+bool hasOnlyFiniteNumbers(const SolveReport& report) {
+  return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
+         std::all_of(report.patches.begin(), report.patches.end(), [](const PatchAnswer& patch) {
+           return isFinite(patch.force) && isFinite(patch.torque) && isFinite(patch.displacement);
+         });
+}
+
+}  // namespace
+
+TissueParts::TissueParts(const TissueConfig& tissue, const SolverConfig& solver)
+    : lattice_(tissue),
+      state_(lattice_.restState()),
+      model_(makeModel(tissue, lattice_)),
+      solver_(solver),
+      balance_fingerprint_(balanceFingerprint(tissue, solver)),
+      history_(std::make_unique<History>()),
+      threads_(std::make_unique<Threads>()),
+      drops_free_(tissue.free_pieces == FreePieces::kDrop),
+      has_body_load_(hasBodyLoad(tissue)),
+      gravity_(tissue.gravity),
+      max_ms_(solver.max_ms) {
+  if (tissue.time) {
+    time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
+                                             solver.tolerance);
+  }
+  tear_strains_ = tearStrains(lattice_, tissue);
+  if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
+  rebuildSurface();
+  planMembranes(tissue);
+  method_ = makeMethod(solver, lattice_, *model_);
+  patience_ = Patience(method_->usualIterations(), lattice_.nodeCount());
+  weight_ = model_->weight(state_);
+  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
+  wakeUnderBodyLoad();
+}
+
+TissueParts::~TissueParts() = default;
+
+// Contacts are found anew after each step: what a tool meets on the way must not be far.
+double TissueParts::stepLength() const {
+  return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
+}
+
+TissueParts::Displacements TissueParts::displacements() const {
+  if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
+  return kept_;
+}
+
+SolveReport TissueParts::settle() {
+  stopTime();
+  solve(freeNodes());
+  return tear();
+}
+
+SolveReport TissueParts::follow(std::vector<LoadingPatch> tool_patches,
+                                const std::vector<int>& disturbed, Bedding bedding) {
+  const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
+  const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
+    return std::none_of(tool_patches.begin(), tool_patches.end(),
+                        [&](const LoadingPatch& now) { return now.name == earlier.name; });
+  });
+  putToolPatches(std::move(tool_patches));
+  const bool last_left = one_left && patches_.size() == named_patches_;
+  const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
+  if (in_time_) return in_time_step_ ? solve(disturbed) : asItIs();
+  const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
+  if (from_rest) return solveFromRest();
+  const bool one_there = patches_.size() > named_patches_;
+  const SolveReport report = solve(disturbed);
+  // The tissue left the last tool behind in the solve.
+  const bool one_lost = one_there && patches_.size() == named_patches_;
+  return one_lost && returns ? solveFromRest() : report;
+}
+
+TissueParts::Shape TissueParts::shape() const {
+  return {displacements(),
+          state_.cells,
+          patches_,
+          named_patches_,
+          last_report_,
+          is_late_,
+          are_contacts_settled_,
+          time_ ? time_->motion() : nullptr,
+          in_time_,
+          threads_->whole()};
+}
+
+void TissueParts::restore(const Shape& shape) {
+  if (time_) time_->take(shape.motion);
+  in_time_ = shape.in_time;
+  in_time_step_ = expects_time_step_ = false;
+  if (time_) model_->setInertia(nullptr);  // of the step that is given up
+  is_as_solved_ = false;
+  kept_.reset();
+  state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
+  restRemoved(state_);
+  patches_ = shape.patches;
+  named_patches_ = shape.named_patches;
+  last_report_ = shape.report;
+  is_late_ = shape.is_late;
+  are_contacts_settled_ = shape.are_contacts_settled;
+  threads_->mend(shape.whole_sutures);
+  deformSurface();
+}
+
+void TissueParts::beginAside() {
+  if (is_aside_) return;
+  patience_.beginTrial();
+  switchAside();
+}
+
+void TissueParts::endAside() {
+  if (!is_aside_) return;
+  patience_.endTrial();
+  switchAside();
+}
+
+void TissueParts::switchAside() {
+  is_aside_ = !is_aside_;
+  if (!method_->remembers()) return;
+  if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
+  std::swap(method_, other_method_);
+}
+
+void TissueParts::reset() {
+  const bool was_cut = !isAsMade(state_);
+  stopTime();
+  endAside();
+  patience_.forget();
+  other_method_.reset();
+  method_->forget();
+  kept_.reset();
+  state_ = lattice_.restState();
+  threads_->clear();
+  patches_.clear();
+  named_patches_ = 0;
+  due_.clear();
+  disturbed_.clear();
+  last_report_ = SolveReport();
+  is_late_ = is_as_solved_ = false;
+  are_contacts_settled_ = true;
+  springs_torn_ = 0;
+  history_->clear();
+  if (was_cut) {
+    weight_ = model_->weight(state_);
+    rebuildSurface();
+  }
+  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
+  vertices_ = surface_.rest;
+  bounds_ = boundsOf(vertices_);
+  wakeUnderBodyLoad();
+}
+
+void TissueParts::noteUnconverged() {
+  last_report_.status = std::max(last_report_.status, SolveStatus::kUnconverged);
+}
+
+bool TissueParts::resistsInversion() const { return model_->resistsInversion(); }
+
+int TissueParts::cellsBeyondLaw() const { return model_->cellsBeyondLaw(state_); }
+
+Vec3 TissueParts::nodePosition(int node) const {
+  return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
+}
+
+void TissueParts::expectTouch() {
+  if (!hasTime()) method_->expect(state_);
+}
+
+// The surface is another one: touches are found anew where it is now.
+void TissueParts::renewContacts() {
+  if (contact_update_ == nullptr) return;
+  std::vector<LoadingPatch> of_tools;
+  contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved, ContactUpdate::Round::kNext);
+  putToolPatches(std::move(of_tools));  // none, too: those of before may be on ghosts that are gone
+}
+
+void TissueParts::putToolPatches(std::vector<LoadingPatch> of_tools) {
+  patches_.erase(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patches_.end());
+  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
+}
+
+SolveReport TissueParts::solve(const std::vector<int>& disturbed) {
+  const Patience::LoadStep load_step(patience_);
+  disturb(disturbed);
+  SolveReport report = solveAndBreak(disturbed_);
+  if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
+  if (!is_late_) disturbed_.clear();
+  rememberDisturbed();
+  last_report_.volume_ratio = report.volume_ratio = volumeRatio();
+  return report;
+}
+
+void TissueParts::disturb(const std::vector<int>& nodes) {
+  if (disturbed_.empty()) {
+    disturbed_ = nodes;
+    return;
+  }
+  disturbed_.insert(disturbed_.end(), nodes.begin(), nodes.end());
+  std::sort(disturbed_.begin(), disturbed_.end());
+  disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
+}
+
+// For the next solve: ghosts may go meanwhile.
+void TissueParts::rememberDisturbed() {
+  for (int& node : disturbed_) node = state_.cells->original(node);
+}
+
+SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
+  // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
+  // it saves a method that stays finite.
+  const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
+  const Displacements last_good = keeps_shape ? displacements() : nullptr;
+  const std::vector<LoadingPatch> last_good_patches = patches_;
+  kept_.reset();
+  limitWays();
+  method_->limitTime(mostMs());
+  method_->limitIterations(mostIterations());
+  const double cost = costOfIteration();
+  const bool any_hangs = holdHanging();
+  SolveReport report = solveWithThreads(disturbed);
+  if (any_hangs) letHangingBe(report);
+  const bool is_finite =
+      hasOnlyFiniteNumbers(report) &&
+      (method_->staysFinite() ||
+       std::all_of(state_.displacement.begin(), state_.displacement.end(), isFinite));
+  if (!is_finite) {
+    if (last_good) state_.displacement = *last_good;
+    patches_ = last_good_patches;
+    report = SolveReport();
+    report.status = SolveStatus::kUnconverged;
+    report.patches.resize(patches_.size());
+  }
+  is_late_ = report.status == SolveStatus::kLate;
+  is_as_solved_ = is_finite;
+  are_contacts_settled_ = true;
+  const bool converged = report.status != SolveStatus::kUnconverged;
+  // Loads alone are an answer, however long it took.
+  if (converged && isUntouched()) {
+    patience_.noteEasy();
+  } else {
+    patience_.note(report.iterations, converged, solved(), cost);
+  }
+  describeShape(report);
+  last_report_ = report;
+  return report;
+}
+
+// Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
+// holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
+SolveReport TissueParts::solveFromRest() {
+  const std::vector<LoadingPatch> standing = patches_;
+  method_->forget();
+  kept_.reset();
+  std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
+  SolveReport report;
+  const bool sutured = threads_->anyWhole();
+  if (has_body_load_ || sutured) {
+    const std::size_t named = std::exchange(named_patches_, 0);
+    patches_.clear();
+    report = settleFromRest();
+    patches_.insert(patches_.begin(), standing.begin(), standing.end());
+    named_patches_ = named;
+  }
+  std::vector<LoadRamp> ramps;
+  for (std::size_t patch = 0; patch < standing.size(); ++patch) {
+    ramps.push_back(makeRamp(standing[patch], nullptr));
+    ramps.back().patch = patch;
+    ramps.back().start.force.setZero();
+    patches_[patch] = ramps.back().start;
+  }
+  if (!ramps.empty()) {
+    report = stepLoadsByItself(ramps, {});
+  } else if (!has_body_load_ && !sutured) {
+    describeShape(report);
+    report.volume_ratio = volumeRatio();
+    last_report_ = report;
+    is_late_ = false;
+  }
+  return report;
+}
+
+void TissueParts::describeShape(SolveReport& report) {
+  deformSurface();
+  const GridBox* visited = method_->visited();
+  report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
+                                             : countInvertedCells(lattice_, state_, *visited);
+  if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
+}
+
+std::vector<int> TissueParts::freeNodes() const {
+  std::vector<int> nodes;
+  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+    if (!lattice_.isFixed(node) && !isRemoved(state_, node)) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+}  // namespace robot_tissue
