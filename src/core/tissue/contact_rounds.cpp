@@ -8,6 +8,7 @@
 #include "robot_tissue/core/part_of_way.h"
 #include "solvers/solver_method.h"
 #include "tissue/round_gain.h"
+#include "tissue/solve_total.h"
 #include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
@@ -26,12 +27,21 @@ struct TissueParts::Rounds {
   explicit Rounds(const Displacements& start) : before(start), gain(start) {}
 
   Displacements before;                    // the shape that the last round began with
-  std::vector<DrivenPlace> driven_before;  // likewise, of patches by a force
+  std::vector<DrivenPlace> driven_before;  // of patches by a force, where the last round began
   RoundGain gain;
   SolveReport report;    // of all of them
   SolveReport of_round;  // of the last
   int count = 1;
   int whole = 0;  // in which the shape is the one that was solved for
+};
+
+struct TissueParts::RoundShape {
+  bool late = false;           // no time, or no iterations, are left for another solve
+  bool hurried = false;        // the solve was cut short by the clock
+  bool is_on_its_way = false;  // contacts allow a share of the solve's way alone
+  bool whole = false;          // the shape is the one that was solved for, in balance
+  bool spent = false;          // there is no patience for another solve
+  bool last = false;           // no further solve follows, whatever the contacts are
 };
 
 SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
@@ -40,67 +50,85 @@ SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
   Rounds rounds(displacements());
   rounds.driven_before = drivenPlaces(patches_);
   rounds.report = rounds.of_round = solveOnce(disturbed);
-  while (asksForRound(rounds)) {
+  while (endRound(rounds) == RoundDecision::kSolveAgain) {
     rounds.before.reset();  // so that the next line's copy can take its memory
     rounds.before = displacements();
     rounds.driven_before = drivenPlaces(patches_);
-    const SolveReport earlier = rounds.report;
+    SolveTotal total(rounds.report);
     rounds.report = rounds.of_round = solveOnce({});
-    rounds.report.wall_ms += earlier.wall_ms;
-    rounds.report.iterations += earlier.iterations;
+    total.addWork(rounds.report);
+    total.tellWorkIn(rounds.report);
     last_report_ = rounds.report;
     ++rounds.count;
   }
   return rounds.report;
 }
 
-// Looks at the contacts. True: they are others, and patches for them are there.
-bool TissueParts::asksForRound(Rounds& rounds) {
-  SolveReport& report = rounds.report;
-  const auto raise = [&](SolveStatus status) {
-    last_report_.status = report.status = std::max(report.status, status);
-  };
+// The look at the contacts after a solve: the shape is taken back to where contacts allow it, the
+// contacts are renewed, and the report tells what is left open. Where it is to be solved again, the
+// patches are those for it.
+TissueParts::RoundDecision TissueParts::endRound(Rounds& rounds) {
   const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
   shortest_ms_ = shortestMs(rounds.of_round);
   const bool no_time = isBounded() && left_ms <= 2.0 * look_ms_ + shortest_ms_;
-  const bool late = no_time || patience_.bound().isSpent();
   if (rounds.count > 1 && isLookForNextCall()) {
     is_late_ = true;
-    raise(SolveStatus::kUnconverged);
-    return false;
+    worsen(rounds, SolveStatus::kUnconverged);
+    return RoundDecision::kDone;
   }
-  const bool hurried = isBounded() && report.status == SolveStatus::kLate;
-  const bool solved = report.status != SolveStatus::kUnconverged && (late || !hurried);
-  const bool is_on_its_way = !goesThroughTime() && goBack(rounds);
-  const bool whole = !is_on_its_way && solved;
-  if (whole) ++rounds.whole;
-  rounds.gain.note(rounds.of_round, state_.displacement, whole);
-  const bool spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
-  const bool stands =
-      !solved && !hurried && rounds.count > 1 && state_.displacement == *rounds.before;
-  const bool last = late || spent || stands || rounds.gain.isOver() ||
-                    rounds.whole == tuning::kContactRounds || rounds.count == tuning::kMostRounds;
+  const RoundShape shape = takeShape(rounds, no_time || patience_.bound().isSpent());
   std::vector<LoadingPatch> of_tools;
   const bool renewed = contact_update_->renew(
-      of_tools, whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
-      last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
+      of_tools, shape.whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
+      shape.last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
   if (isBounded()) noteLook(left_ms - deadline_->leftMs());
-  if (!renewed && !is_on_its_way && (last || !hurried)) return false;
-  if (whole && mayShowUnsettled()) {
+  const bool is_settled = !renewed && !shape.is_on_its_way && (shape.last || !shape.hurried);
+  if (is_settled) return RoundDecision::kDone;
+  if (shape.whole && mayShowUnsettled()) {
     noteUnsettled();
-    report.status = last_report_.status;
-    return false;
+    rounds.report.status = last_report_.status;
+    return RoundDecision::kDone;
   }
-  if (late) {
+  tellWhatIsOpen(rounds, shape, renewed);
+  if (shape.last) return RoundDecision::kDone;
+  if (renewed) putToolPatches(std::move(of_tools));
+  return RoundDecision::kSolveAgain;
+}
+
+// Takes the shape that the solve came to, or the share of its way there that contacts allow, as the
+// one of the round.
+TissueParts::RoundShape TissueParts::takeShape(Rounds& rounds, bool late) {
+  const SolveReport& report = rounds.report;
+  RoundShape shape;
+  shape.late = late;
+  shape.hurried = isBounded() && report.status == SolveStatus::kLate;
+  const bool solved = report.status != SolveStatus::kUnconverged && (late || !shape.hurried);
+  shape.is_on_its_way = !goesThroughTime() && goBack(rounds);
+  shape.whole = !shape.is_on_its_way && solved;
+  if (shape.whole) ++rounds.whole;
+  rounds.gain.note(rounds.of_round, state_.displacement, shape.whole);
+  shape.spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
+  const bool stands =
+      !solved && !shape.hurried && rounds.count > 1 && state_.displacement == *rounds.before;
+  shape.last = late || shape.spent || stands || rounds.gain.isOver() ||
+               rounds.whole == tuning::kContactRounds || rounds.count == tuning::kMostRounds;
+  return shape;
+}
+
+// What time ran out in is told; what is on its way to another place is no shape to show.
+void TissueParts::tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool renewed) {
+  if (shape.late) {
     is_late_ = true;
-    raise(SolveStatus::kLate);
+    worsen(rounds, SolveStatus::kLate);
   }
-  // What time ran out in is told; what is on its way to another place is no shape to show.
-  const bool stays_away = is_on_its_way && !renewed && !late;
-  const bool is_none_to_show = spent || stays_away || (!whole && patience_.bound().isSpent());
-  if (last && is_none_to_show) raise(SolveStatus::kUnconverged);
-  if (!last && renewed) putToolPatches(std::move(of_tools));
-  return !last;
+  const bool stays_away = shape.is_on_its_way && !renewed && !shape.late;
+  const bool is_none_to_show =
+      shape.spent || stays_away || (!shape.whole && patience_.bound().isSpent());
+  if (shape.last && is_none_to_show) worsen(rounds, SolveStatus::kUnconverged);
+}
+
+void TissueParts::worsen(Rounds& rounds, SolveStatus status) {
+  last_report_.status = rounds.report.status = std::max(rounds.report.status, status);
 }
 
 // Of the surface's vertices: a ghost that carries little of one may go farther than it.

@@ -5,6 +5,7 @@
 #include "material/tissue_model.h"
 #include "solvers/solver_method.h"
 #include "tissue/load_ramp.h"
+#include "tissue/solve_total.h"
 #include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
@@ -154,11 +155,10 @@ SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int incre
   const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
   for (int part = 1; part <= parts; ++part) {
-    const SolveReport earlier = report;
+    SolveTotal total(report);
     report = goTo(ramps, (increment - 1 + static_cast<double>(part) / parts) / increments);
-    report.status = std::max(report.status, earlier.status);
-    report.iterations += earlier.iterations;
-    report.wall_ms += earlier.wall_ms;
+    total.add(report);
+    total.tellIn(report);
     last_report_ = report;
     report = tear();
     if (part < parts && stopsOnTheWay(ramps)) {

@@ -8,6 +8,7 @@
 #include "tissue/front_ties.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
+#include "tissue/solve_total.h"
 #include "tissue/threads.h"
 #include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
@@ -114,13 +115,12 @@ std::vector<SutureReport> TissueParts::sutures() const {
   return reports;
 }
 
-// Adds a solve to the report. False: the time is over.
+// The report is of this solve and those before it. False: the time is over.
 bool TissueParts::solveOnThreads(SolveReport& report) {
-  const SolveReport earlier = report;
+  SolveTotal total(report);
   report = solve(threads_->nodes());
-  report.status = std::max(report.status, earlier.status);
-  report.iterations += earlier.iterations;
-  report.wall_ms += earlier.wall_ms;
+  total.add(report);
+  total.tellIn(report);
   return !deadline_ || !deadline_->isOver();
 }
 
@@ -181,10 +181,10 @@ SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
   while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
     const std::vector<int> left = threads_->breakOne(state_.displacement);
     if (left.empty()) break;
-    const SolveReport earlier = report;
+    SolveTotal total(report);
     report = solveInRounds(left);
-    report.iterations += earlier.iterations;
-    report.wall_ms += earlier.wall_ms;
+    total.addWork(report);
+    total.tellWorkIn(report);
     last_report_ = report;
   }
   return report;

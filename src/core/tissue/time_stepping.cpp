@@ -5,6 +5,7 @@
 #include "cutting/split_cells.h"
 #include "material/elastic_model.h"
 #include "solvers/solver_method.h"
+#include "tissue/solve_total.h"
 #include "tissue/threads.h"
 #include "tissue/time_integrator.h"
 #include "tissue/tissue_parts.h"
@@ -149,9 +150,7 @@ SolveReport TissueParts::wait(double duration) {
   }
   double left = duration;
   double longest = longestTimeStep();
-  SolveStatus worst = SolveStatus::kOk;
-  double wall_ms = 0.0;
-  int iterations = 0;
+  SolveTotal total;
   while (left > 0.0) {
     const double steps = std::ceil(left / longest - tuning::kRounding);
     const double step = left / std::max(1.0, steps);
@@ -160,8 +159,7 @@ SolveReport TissueParts::wait(double duration) {
     if (patches_.empty()) predict();
     const SolveReport report = solve({});
     endTimeStep();
-    wall_ms += report.wall_ms;
-    iterations += report.iterations;
+    total.addWork(report);
     if (time_->errorRatio() > tuning::kRefusedError && step > tuning::kShortestStep) {
       longest = std::max(tuning::kShortestStep, tuning::kMostShrink * step);
       restore(good);
@@ -169,17 +167,15 @@ SolveReport TissueParts::wait(double duration) {
     }
     tear();
     longest = longestTimeStep();
-    worst = std::max(worst, report.status);
+    total.worsen(report.status);
     left = steps > 1.0 ? left - step : 0.0;
     if (!time_->moves()) break;
     if (deadline_ && deadline_->isOver() && left > 0.0) {
-      worst = std::max(worst, SolveStatus::kLate);
+      total.worsen(SolveStatus::kLate);
       break;
     }
   }
-  last_report_.status = worst;
-  last_report_.wall_ms = wall_ms;
-  last_report_.iterations = iterations;
+  total.tellIn(last_report_);
   return last_report_;
 }
 

@@ -10,6 +10,7 @@
 #include "cutting/tear.h"
 #include "material/tissue_model.h"
 #include "tissue/tissue_parts.h"
+#include "tissue/solve_total.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
@@ -103,9 +104,7 @@ bool TissueParts::tearOut(const std::vector<int>& nodes) {
 SolveReport TissueParts::tear() {
   dropLetGo();
   if (tear_strains_.empty()) return last_report_;
-  SolveStatus worst = last_report_.status;
-  double wall_ms = last_report_.wall_ms;
-  int iterations = last_report_.iterations;
+  SolveTotal total(last_report_);
   bool any = false;
   std::optional<TopologyChange> change;
   for (int round = 0; !isLate(); ++round) {
@@ -113,7 +112,7 @@ SolveReport TissueParts::tear() {
     if (weakest.empty()) break;
     if (round == tuning::kMostTearRounds || (any && deadline_ && deadline_->isOver())) {
       is_late_ = true;
-      worst = std::max(worst, SolveStatus::kLate);
+      total.worsen(SolveStatus::kLate);
       break;
     }
     if (patience_.cutsOff() && last_report_.status == SolveStatus::kUnconverged) break;
@@ -122,14 +121,10 @@ SolveReport TissueParts::tear() {
     springs_torn_ += static_cast<int>(weakest.size());
     const SolveReport round_report = severAndBalance(weakest);
     if (takesNoTime()) break;
-    worst = std::max(worst, round_report.status);
-    wall_ms += round_report.wall_ms;
-    iterations += round_report.iterations;
+    total.add(round_report);
   }
   if (!any) return last_report_;
-  last_report_.status = worst;
-  last_report_.wall_ms = wall_ms;
-  last_report_.iterations = iterations;
+  total.tellIn(last_report_);
   return last_report_;
 }
 

@@ -251,8 +251,13 @@ struct TissueParts {
   SolveReport leaveToNextCall(const std::vector<int>& disturbed);
   // contact_rounds.cpp
   struct Rounds;
+  struct RoundShape;
+  enum class RoundDecision { kDone, kSolveAgain };
   SolveReport solveInRounds(const std::vector<int>& disturbed);
-  bool asksForRound(Rounds& rounds);
+  RoundDecision endRound(Rounds& rounds);
+  RoundShape takeShape(Rounds& rounds, bool late);
+  void tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool renewed);
+  void worsen(Rounds& rounds, SolveStatus status);
   double volumeRatio() const;
   void renewContacts();
   void switchAside();
