@@ -45,14 +45,14 @@ struct TissueParts::RoundShape {
 };
 
 SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
-  method_->beginStep(state_);
+  method_->beginStep(body_.state());
   if (contact_update_ == nullptr) return solveOnce(disturbed);
-  Rounds rounds(displacements());
+  Rounds rounds(body_.displacements());
   rounds.driven_before = drivenPlaces(patches_);
   rounds.report = rounds.of_round = solveOnce(disturbed);
   while (endRound(rounds) == RoundDecision::kSolveAgain) {
     rounds.before.reset();  // so that the next line's copy can take its memory
-    rounds.before = displacements();
+    rounds.before = body_.displacements();
     rounds.driven_before = drivenPlaces(patches_);
     SolveTotal total(rounds.report);
     rounds.report = rounds.of_round = solveOnce({});
@@ -106,10 +106,10 @@ TissueParts::RoundShape TissueParts::takeShape(Rounds& rounds, bool late) {
   shape.is_on_its_way = !goesThroughTime() && goBack(rounds);
   shape.whole = !shape.is_on_its_way && solved;
   if (shape.whole) ++rounds.whole;
-  rounds.gain.note(rounds.of_round, state_.displacement, shape.whole);
+  rounds.gain.note(rounds.of_round, body_.displacement(), shape.whole);
   shape.spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
   const bool stands =
-      !solved && !shape.hurried && rounds.count > 1 && state_.displacement == *rounds.before;
+      !solved && !shape.hurried && rounds.count > 1 && body_.displacement() == *rounds.before;
   shape.last = late || shape.spent || stands || rounds.gain.isOver() ||
                rounds.whole == tuning::kContactRounds || rounds.count == tuning::kMostRounds;
   return shape;
@@ -138,7 +138,7 @@ void TissueParts::limitWays() {
     const std::vector<double> longest = contact_update_->longestWays();
     for (std::size_t vertex = 0; vertex < longest.size(); ++vertex) {
       if (!std::isfinite(longest[vertex])) continue;
-      limits.push_back({surface_.carriers[vertex], longest[vertex]});
+      limits.push_back({body_.surface().carriers[vertex], longest[vertex]});
     }
   }
   method_->limitWays(std::move(limits));
@@ -149,9 +149,8 @@ void TissueParts::limitWays() {
 bool TissueParts::goBack(const Rounds& rounds) {
   const double share = contact_update_->shareOfWay(*rounds.before);
   if (share >= 1.0) return false;
-  kept_.reset();
   is_as_solved_ = false;
-  takeBack(*rounds.before, share, state_.displacement);
+  takeBack(*rounds.before, share, body_.change().displacement);
   takePatchesBack(rounds.driven_before, share, patches_);
   deformSurface();
   return true;

@@ -71,7 +71,7 @@ double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
   for (const LoadRamp& ramp : ramps) {
     if (byForce(ramp.target)) {
       double sum = 0.0;
-      for (const int node : ramp.target.nodes) sum += nodeStiffness(node);
+      for (const int node : ramp.target.nodes) sum += body_.nodeStiffness(node);
       const double nodes = static_cast<double>(ramp.target.nodes.size());
       const double stiffness = method_->findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
       const double force = (ramp.target.force - ramp.start.force).norm();
@@ -108,7 +108,7 @@ SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     const double to = part < 1.0 - share ? share + part : 1.0;
     report = goTo(ramps, to);
     const double went =
-        farthestWay(ramps, *good.displacement, state_.displacement) / method_->patchStep();
+        farthestWay(ramps, *good.displacement, body_.displacement()) / method_->patchStep();
     stride = std::max(least, part / std::max(went, 1.0 / tuning::kMostGrowth));
     if (went > tuning::kTooFar && stride < part) {
       restore(good);

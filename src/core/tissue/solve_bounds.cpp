@@ -43,7 +43,7 @@ int TissueParts::mostIterations() const {
 }
 
 bool TissueParts::mayShowUnsettled() const {
-  const double bearable = patience_.bound().bearableDepth() * lattice_.spacing();
+  const double bearable = patience_.bound().bearableDepth() * body_.lattice().spacing();
   return bearable > 0.0 && contact_update_->deepestShown() <= bearable;
 }
 
@@ -58,8 +58,8 @@ void TissueParts::noteUnsettled() {
 double TissueParts::costOfIteration() const {
   double touches = 0.0;
   for (const LoadingPatch& patch : patches_) touches += static_cast<double>(patch.contacts.size());
-  const double nodes = lattice_.nodeCount();
-  const double ghosts = static_cast<double>(state_.displacement.size()) - nodes;
+  const double nodes = body_.lattice().nodeCount();
+  const double ghosts = static_cast<double>(body_.displacement().size()) - nodes;
   return std::max({1.0, touches / (nodes + ghosts),
                    (nodes + tuning::kNodesOfGhost * ghosts) / std::max(nodes, tuning::kFewNodes)});
 }

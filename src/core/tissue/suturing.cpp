@@ -49,19 +49,19 @@ void requireNumbers(const SutureConfig& config) {
 
 // The end at the surface's point that is nearest in the deformed shape.
 SutureThread TissueParts::threadOf(const SutureConfig& config) const {
-  const double spacing = lattice_.spacing();
+  const double spacing = body_.lattice().spacing();
   SutureThread thread;
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
-    const auto nearest = nearestPoint(surface_, vertices_, point);
+    const auto nearest = nearestPoint(body_.surface(), body_.vertices(), point);
     if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
       std::ostringstream where;
       where << key << " = (" << point.x() << ", " << point.y() << ", " << point.z()
             << ") m is nowhere at the tissue's surface";
       refuseSuture(config.name, where.str(), "a point within a spacing of it");
     }
-    end.rest = restOf(surface_, nearest->on);
-    end.inside = innerPlace(surface_, nearest->on.triangle, tuning::kInnerDepth * spacing);
-    bindEnd(surface_, spacing, config.bite, end);
+    end.rest = restOf(body_.surface(), nearest->on);
+    end.inside = innerPlace(body_.surface(), nearest->on.triangle, tuning::kInnerDepth * spacing);
+    bindEnd(body_.surface(), spacing, config.bite, end);
   };
   place("from", config.from, thread.from);
   place("to", config.to, thread.to);
@@ -96,8 +96,8 @@ SutureResult TissueParts::suture(const SutureConfig& config) {
     threads_->add(std::move(thread));
     result.solve = asItIs();
   } else {
-    const double now = reportOf(thread, state_.displacement).length;
-    const double same = tuning::kSameDistance * lattice_.spacing();
+    const double now = reportOf(thread, body_.displacement()).length;
+    const double same = tuning::kSameDistance * body_.lattice().spacing();
     const bool is_slack = now <= thread.rest_length + same;
     if (!is_slack) thread.length = now;
     threads_->add(std::move(thread));
@@ -110,7 +110,7 @@ SutureResult TissueParts::suture(const SutureConfig& config) {
 std::vector<SutureReport> TissueParts::sutures() const {
   std::vector<SutureReport> reports;
   for (const SutureThread& thread : threads_->all()) {
-    reports.push_back(reportOf(thread, state_.displacement));
+    reports.push_back(reportOf(thread, body_.displacement()));
   }
   return reports;
 }
@@ -127,8 +127,8 @@ bool TissueParts::solveOnThreads(SolveReport& report) {
 // To their rest lengths, in steps that the method follows well. Out of time they are there at once,
 // and what is left to balance is due.
 SolveReport TissueParts::drawThreadsIn() {
-  threads_->soften([this](int node) { return tuning::kSoftThread * nodeStiffness(node); },
-                   state_.displacement);
+  threads_->soften([this](int node) { return tuning::kSoftThread * body_.nodeStiffness(node); },
+                   body_.displacement());
   const int steps = wholeParts(threads_->wayLeft() / method_->patchStep());
   SolveReport report;
   bool in_time = true;
@@ -136,11 +136,11 @@ SolveReport TissueParts::drawThreadsIn() {
     threads_->drawIn(1.0 / (steps - step + 1));
     in_time = solveOnThreads(report);
   }
-  const double same = tuning::kSameDistance * lattice_.spacing();
+  const double same = tuning::kSameDistance * body_.lattice().spacing();
   bool changes = threads_->wayLeft() > 0.0;
-  if (!in_time) changes = changes || threads_->correct(state_.displacement) > same;
+  if (!in_time) changes = changes || threads_->correct(body_.displacement()) > same;
   for (int round = 1; round <= tuning::kRoundsOfThread && in_time; ++round) {
-    if (threads_->correct(state_.displacement) <= same) break;
+    if (threads_->correct(body_.displacement()) <= same) break;
     changes = true;
     in_time = solveOnThreads(report);
   }
@@ -161,15 +161,15 @@ SolveReport TissueParts::drawThreadsIn() {
 // Under gravity and threads alone, these drawn in from where the rest shape has their ends.
 SolveReport TissueParts::settleFromRest() {
   SolveReport report;
-  threads_->loosen(state_.displacement);
-  if (has_body_load_) report = settle();
+  threads_->loosen(body_.displacement());
+  if (body_.hasBodyLoad()) report = settle();
   return threads_->anyWhole() ? drawThreadsIn() : report;
 }
 
-SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed) {
-  if (!threads_->act()) return method_->solve(patches_, disturbed, state_);
+SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed, LatticeState& state) {
+  if (!threads_->act()) return method_->solve(patches_, disturbed, state);
   patches_.push_back(threads_->patch());
-  SolveReport report = method_->solve(patches_, disturbed, state_);
+  SolveReport report = method_->solve(patches_, disturbed, state);
   patches_.pop_back();
   report.patches.resize(patches_.size());
   return report;
@@ -179,7 +179,7 @@ SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed) {
 SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
   SolveReport report = solveInRounds(disturbed);
   while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
-    const std::vector<int> left = threads_->breakOne(state_.displacement);
+    const std::vector<int> left = threads_->breakOne(body_.displacement());
     if (left.empty()) break;
     SolveTotal total(report);
     report = solveInRounds(left);
@@ -190,11 +190,13 @@ SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
   return report;
 }
 
-void TissueParts::renewTies() { threads_->tie(tiesOfFronts(lattice_, state_, *model_)); }
+void TissueParts::renewTies() {
+  threads_->tie(tiesOfFronts(body_.lattice(), body_.state(), body_.model()));
+}
 
 void TissueParts::rebindThreads() {
-  for (const int node : threads_->rebind(surface_, lattice_.spacing())) {
-    disturbed_.push_back(state_.cells->original(node));
+  for (const int node : threads_->rebind(body_.surface(), body_.lattice().spacing())) {
+    disturbed_.push_back(body_.cells().original(node));
   }
 }
 

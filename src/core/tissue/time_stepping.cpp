@@ -26,23 +26,23 @@ bool TissueParts::takesNoTime() const { return time_ && !in_time_step_; }
 
 void TissueParts::expectTimeStep(double duration, Touched touched) {
   using Scheme = TimeIntegrator::Scheme;
-  const auto& model = dynamic_cast<const ElasticModel&>(*model_);
+  const auto& model = dynamic_cast<const ElasticModel&>(body_.model());
   expects_time_step_ = true;
   time_->expect(duration,
                 touched == Touched::kByTools ? Scheme::kBackwardEuler : Scheme::kGeneralizedAlpha,
-                state_, model.nodeMasses(*state_.cells));
+                body_.state(), model.nodeMasses(body_.cells()));
 }
 
 void TissueParts::beginTimeStep(double duration, Touched touched) {
   expectTimeStep(duration, touched);
-  const auto& model = dynamic_cast<const ElasticModel&>(*model_);
+  const auto& model = dynamic_cast<const ElasticModel&>(body_.model());
   in_time_ = in_time_step_ = true;
-  model_->setInertia(nullptr);
+  body_.model().setInertia(nullptr);
   const auto cell_forces = [&](const LatticeState& shape) {
     std::vector<Vec3> forces = method_->cellForces(shape);
     return forces.empty() ? model.cellForces(shape) : forces;
   };
-  model_->setInertia(&time_->begin(state_, cell_forces));
+  body_.model().setInertia(&time_->begin(body_.state(), cell_forces));
 }
 
 void TissueParts::endTimeStep() {
@@ -51,16 +51,16 @@ void TissueParts::endTimeStep() {
   in_time_step_ = false;
   const std::vector<std::size_t> falling = fallingPieces();
   for (const std::size_t piece : falling) {
-    shift(free_pieces_[piece], -time_->drift(free_pieces_[piece], state_, gravity_));
+    shift(free_pieces_[piece], -time_->drift(free_pieces_[piece], body_.state(), body_.gravity()));
   }
-  time_->end(state_, method_->velocities());
+  time_->end(body_.state(), method_->velocities());
   if (!time_->moves()) return;
-  for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(gravity_));
+  for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(body_.gravity()));
 }
 
 void TissueParts::findFreePieces() {
-  if (free_pieces_of_ == state_.cells) return;
-  free_pieces_of_ = state_.cells;
+  if (free_pieces_of_ == body_.state().cells) return;
+  free_pieces_of_ = body_.state().cells;
   const std::vector<int>& pieces = pieceOfNodes();
   std::vector<bool> held;
   free_pieces_.clear();
@@ -70,7 +70,7 @@ void TissueParts::findFreePieces() {
     if (free_pieces_.size() <= piece) free_pieces_.resize(piece + 1);
     held.resize(free_pieces_.size(), false);
     free_pieces_[piece].push_back(static_cast<int>(node));
-    if (isFixed(lattice_, *state_.cells, static_cast<int>(node))) held[piece] = true;
+    if (isFixed(body_.lattice(), body_.cells(), static_cast<int>(node))) held[piece] = true;
   }
   for (std::size_t piece = 0; piece < held.size(); ++piece) {
     if (held[piece]) free_pieces_[piece].clear();
@@ -104,8 +104,8 @@ std::vector<std::size_t> TissueParts::fallingPieces() {
 
 void TissueParts::shift(const std::vector<int>& nodes, const Vec3& way) {
   if (way.isZero(0.0)) return;
-  for (const int node : nodes) state_.displacement[at(node)] += way;
-  kept_.reset();
+  std::vector<Vec3>& displacement = body_.change().displacement;
+  for (const int node : nodes) displacement[at(node)] += way;
   deformSurface();
 }
 
@@ -113,31 +113,31 @@ void TissueParts::stopTime() {
   if (!time_) return;
   in_time_ = in_time_step_ = expects_time_step_ = false;
   time_->rest();
-  model_->setInertia(nullptr);
+  body_.model().setInertia(nullptr);
 }
 
 // Until it was solved for, the shape at rest is not the one under gravity or a pressure.
 void TissueParts::wakeUnderBodyLoad() {
-  if (!time_ || !has_body_load_) return;
+  if (!time_ || !body_.hasBodyLoad()) return;
   in_time_ = true;
-  time_->wake(state_);
+  time_->wake(body_.state());
 }
 
 // Loads or cuts are others, the shape is not yet.
 SolveReport TissueParts::asItIs() {
   in_time_ = true;
-  time_->wake(state_);
+  time_->wake(body_.state());
   last_report_.patches.resize(patches_.size());
   return last_report_;
 }
 
 // Tools would have to be looked at on the way.
 void TissueParts::predict() {
-  kept_.reset();
-  for (std::size_t node = 0; node < state_.displacement.size(); ++node) {
+  LatticeState& state = body_.change();
+  for (std::size_t node = 0; node < state.displacement.size(); ++node) {
     const int index = static_cast<int>(node);
-    if (!isGone(state_, index) && !isFixed(lattice_, *state_.cells, index)) {
-      state_.displacement[node] = time_->predicted(node);
+    if (!isGone(state, index) && !isFixed(body_.lattice(), *state.cells, index)) {
+      state.displacement[node] = time_->predicted(node);
     }
   }
 }

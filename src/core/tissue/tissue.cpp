@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "material/tissue_model.h"
 #include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
@@ -12,11 +13,11 @@ Tissue::Tissue(const TissueConfig& tissue, const SolverConfig& solver)
 
 Tissue::~Tissue() = default;
 
-const Lattice& Tissue::lattice() const { return parts_->lattice(); }
-const LatticeState& Tissue::state() const { return parts_->state(); }
-const TissueSurface& Tissue::surface() const { return parts_->surface(); }
-const std::vector<Vec3>& Tissue::vertices() const { return parts_->vertices(); }
-const Box& Tissue::bounds() const { return parts_->bounds(); }
+const Lattice& Tissue::lattice() const { return parts_->body_.lattice(); }
+const LatticeState& Tissue::state() const { return parts_->body_.state(); }
+const TissueSurface& Tissue::surface() const { return parts_->body_.surface(); }
+const std::vector<Vec3>& Tissue::vertices() const { return parts_->body_.vertices(); }
+const Box& Tissue::bounds() const { return parts_->body_.bounds(); }
 const std::vector<int>& Tissue::pieceOfNodes() const { return parts_->pieceOfNodes(); }
 std::vector<TissuePiece> Tissue::pieces() const { return parts_->pieces(); }
 std::vector<TissuePiece> Tissue::restingPieces() const { return parts_->restingPieces(); }
@@ -27,20 +28,24 @@ Patience& Tissue::patience() { return parts_->patience(); }
 const Patience& Tissue::patience() const { return parts_->patience(); }
 const std::vector<LoadingPatch>& Tissue::patches() const { return parts_->patches(); }
 std::size_t Tissue::namedPatches() const { return parts_->namedPatches(); }
-Tissue::Displacements Tissue::displacements() const { return parts_->displacements(); }
-bool Tissue::resistsInversion() const { return parts_->resistsInversion(); }
-int Tissue::cellsBeyondLaw() const { return parts_->cellsBeyondLaw(); }
+Tissue::Displacements Tissue::displacements() const { return parts_->body_.displacements(); }
+bool Tissue::resistsInversion() const { return parts_->body_.model().resistsInversion(); }
+int Tissue::cellsBeyondLaw() const {
+  return parts_->body_.model().cellsBeyondLaw(parts_->body_.state());
+}
 const SolveReport& Tissue::lastReport() const { return parts_->lastReport(); }
 void Tissue::noteUnconverged() { parts_->noteUnconverged(); }
-std::vector<Vec3> Tissue::shownDisplacement() const { return parts_->shownDisplacement(); }
+std::vector<Vec3> Tissue::shownDisplacement() const {
+  return parts_->body_.shownDisplacement(parts_->patches());
+}
 Vec3 Tissue::nodeForce(int node) const { return parts_->nodeForce(node); }
-std::vector<int> Tissue::freeNodes() const { return parts_->freeNodes(); }
+std::vector<int> Tissue::freeNodes() const { return parts_->body_.freeNodes(); }
 Vec3 Tissue::weight() const { return parts_->weight(); }
 bool Tissue::anyHangs() const { return parts_->anyHangs(); }
 Vec3 Tissue::forceOfFixedNodes() const { return parts_->forceOfFixedNodes(); }
-double Tissue::nodeStiffness(int node) const { return parts_->nodeStiffness(node); }
+double Tissue::nodeStiffness(int node) const { return parts_->body_.nodeStiffness(node); }
 double Tissue::stiffening(int node) const { return parts_->stiffening(node); }
-Vec3 Tissue::nodePosition(int node) const { return parts_->nodePosition(node); }
+Vec3 Tissue::nodePosition(int node) const { return parts_->body_.nodePosition(node); }
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->rimCompliance(node, depth);
 }

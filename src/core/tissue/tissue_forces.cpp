@@ -61,15 +61,16 @@ bool isInOne(const std::vector<LoadingPatch>& patches, std::size_t count, int no
 }  // namespace
 
 Vec3 TissueParts::nodeForce(int node) const {
-  return model_->nodeForce(state_, node) + threads_->forceOn(node, state_.displacement);
+  return body_.model().nodeForce(body_.state(), node) +
+         threads_->forceOn(node, body_.displacement());
 }
 
 // What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
 Vec3 TissueParts::weight() const {
   const std::vector<int> hanging = hangingNodes();
-  if (hanging.empty()) return weight_;
-  Vec3 weight = weight_;
-  for (const Vec3& force : model_->forcesOn(state_, hanging)) weight -= force;
+  if (hanging.empty()) return body_.weight();
+  Vec3 weight = body_.weight();
+  for (const Vec3& force : body_.model().forcesOn(body_.state(), hanging)) weight -= force;
   return weight;
 }
 
@@ -80,41 +81,38 @@ Vec3 TissueParts::forceOfFixedNodes() const {
     const Vec3 left = is_as_solved_ ? method_->forceLeft() : Vec3(Vec3::Zero());
     return left - weight() - forceOfPatches(last_report_);
   }
-  const CellSet& cells = *state_.cells;
+  const CellSet& cells = body_.cells();
   std::vector<int> fixed;
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(lattice_, cells, node)) fixed.push_back(node);
+    if (isFixed(body_.lattice(), cells, node)) fixed.push_back(node);
   }
-  const std::vector<Vec3> on_fixed = model_->forcesOn(state_, fixed);
+  const std::vector<Vec3> on_fixed = body_.model().forcesOn(body_.state(), fixed);
   Vec3 force = Vec3::Zero();
   for (std::size_t i = 0; i < fixed.size(); ++i) {
-    force -= on_fixed[i] + threads_->forceOn(fixed[i], state_.displacement);
+    force -= on_fixed[i] + threads_->forceOn(fixed[i], body_.displacement());
   }
   for (const LoadingPatch& patch : patches_) {
     for (const ContactSpring& spring : patch.contacts) {
       for (const NodeWeight& carrier : spring.carriers) {
-        if (!isFixed(lattice_, cells, carrier.node)) continue;
-        force -= carrier.weight * robot_tissue::forceOf(spring, state_.displacement);
+        if (!isFixed(body_.lattice(), cells, carrier.node)) continue;
+        force -= carrier.weight * robot_tissue::forceOf(spring, body_.displacement());
       }
     }
   }
   return force;
 }
 
-double TissueParts::nodeStiffness(int node) const {
-  return model_->nodeStiffness(state_, node).mean();
-}
-
 std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
-  const CellSet& cells = *state_.cells;
+  const CellSet& cells = body_.cells();
   for (const CellSet::Meeting& met : cells.meetings(node)) {
-    if (lattice_.cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0) return std::nullopt;
+    if (body_.lattice().cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0)
+      return std::nullopt;
   }
-  const Moduli moduli = model_->moduliAt(state_, node);
+  const Moduli moduli = body_.model().moduliAt(body_.state(), node);
   if (moduli.shear <= 0.0) return std::nullopt;
   const RimLaw law = rimLaw(poissonRatio(moduli));
-  const double unit = moduli.shear * lattice_.spacing();
+  const double unit = moduli.shear * body_.lattice().spacing();
   const auto compliance = [&](const RimMode& mode) {
     return 1.0 / (unit * rimStiffness(mode, depth));
   };
@@ -123,20 +121,20 @@ std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) 
 
 std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
   if (!method_->findsEquilibrium()) return std::nullopt;
-  const CellSet& cells = *state_.cells;
+  const CellSet& cells = body_.cells();
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
     if (isInOne(patches_, named_patches_, share.node)) return std::nullopt;
-    if (!isUniformAround(cells, *model_, share.node)) return std::nullopt;
+    if (!isUniformAround(cells, body_.model(), share.node)) return std::nullopt;
   }
-  const Moduli moduli = model_->moduliAt(state_, press.shares.front().node);
+  const Moduli moduli = body_.model().moduliAt(body_.state(), press.shares.front().node);
   if (moduli.shear <= 0.0) return std::nullopt;
-  return robot_tissue::recessUnder(press, lattice_, {moduli.shear, poissonRatio(moduli)});
+  return robot_tissue::recessUnder(press, body_.lattice(), {moduli.shear, poissonRatio(moduli)});
 }
 
 double TissueParts::stiffening(int node) const {
   const bool is_solved = expects_time_step_ && !goesThroughTime();
-  const double stiffness = is_solved ? nodeStiffness(node) : 0.0;
+  const double stiffness = is_solved ? body_.nodeStiffness(node) : 0.0;
   if (!(stiffness > 0.0)) return 1.0;
   return time_->stiffness().elastic_scale + time_->inertia(node) / stiffness;
 }

@@ -159,7 +159,7 @@ SolveReport TissueParts::release(const std::vector<std::string>& names) {
   }
   if (takesNoTime()) return asItIs();
   const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
-  unique ? solve(freeNodes()) : solveFromRest();
+  unique ? solve(body_.freeNodes()) : solveFromRest();
   return tear();
 }
 
@@ -173,19 +173,19 @@ PatchAnswer TissueParts::answerOf(const std::string& name, const SolveReport& re
 LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
   LoadingPatch patch;
   patch.name = config.name;
-  patch.nodes = lattice_.nodesIn(config.box);
+  patch.nodes = body_.lattice().nodesIn(config.box);
   patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
-                                   [this](int node) { return isRemoved(state_, node); }),
+                                   [this](int node) { return isRemoved(body_.state(), node); }),
                     patch.nodes.end());
   if (patch.nodes.empty())
     refusePatch(config.name, "no node in its box, " + textOf(config.box),
                 "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
-                  [this](int node) { return lattice_.isFixed(node); })) {
+                  [this](int node) { return body_.lattice().isFixed(node); })) {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
   if (method_->findsEquilibrium()) {
-    patch.rim = rimOf(lattice_, *model_, state_, config.box, patch.nodes);
+    patch.rim = rimOf(body_.lattice(), body_.model(), body_.state(), config.box, patch.nodes);
   }
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
@@ -194,13 +194,13 @@ LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
       refusePatch(config.name, "turns: this method moves patches without turning them",
                   "turns false, or another method");
     }
-    if (config.turns && areOnALine(lattice_, patch.nodes)) {
+    if (config.turns && areOnALine(body_.lattice(), patch.nodes)) {
       refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
                   "turns false, or a box of nodes on more than one line");
     }
     patch.turns = config.turns;
     for (const int node : patch.nodes) {
-      patch.center += lattice_.restPosition(node) / static_cast<double>(patch.nodes.size());
+      patch.center += body_.lattice().restPosition(node) / static_cast<double>(patch.nodes.size());
     }
     return patch;
   }
@@ -244,7 +244,7 @@ LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* s
   LoadRamp ramp;
   ramp.target = target;
   ramp.start = target;
-  for (RimSpring& spring : ramp.start.rim) spring.anchor = state_.displacement[at(spring.node)];
+  for (RimSpring& spring : ramp.start.rim) spring.anchor = body_.displacement()[at(spring.node)];
   ramp.start.place = PatchPlace();
   if (standing != nullptr) {
     for (RimSpring& spring : ramp.start.rim) {
@@ -258,15 +258,16 @@ LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* s
     ramp.start.force = patchForce(ramp.start);
     return ramp;
   }
-  ramp.start.displacement = ownDisplacement(ramp.start, state_.displacement);
+  ramp.start.displacement = ownDisplacement(ramp.start, body_.displacement());
   return ramp;
 }
 
 Vec3 TissueParts::patchForce(const LoadingPatch& patch) const {
-  std::vector<Vec3> forces(state_.displacement.size(), Vec3::Zero());
+  std::vector<Vec3> forces(body_.displacement().size(), Vec3::Zero());
   for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
-  for (const LoadingPatch& other : patches_) addContactForces(other, state_.displacement, forces);
-  return robot_tissue::answerOf(lattice_, state_, patch, onHardNodes(patch, forces)).force;
+  for (const LoadingPatch& other : patches_) addContactForces(other, body_.displacement(), forces);
+  return robot_tissue::answerOf(body_.lattice(), body_.state(), patch, onHardNodes(patch, forces))
+      .force;
 }
 
 }  // namespace robot_tissue

@@ -35,29 +35,21 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
 }  // namespace
 
 TissueParts::TissueParts(const TissueConfig& tissue, const SolverConfig& solver)
-    : lattice_(tissue),
-      state_(lattice_.restState()),
-      model_(makeModel(tissue, lattice_)),
+    : body_(tissue),
       solver_(solver),
       balance_fingerprint_(balanceFingerprint(tissue, solver)),
       history_(std::make_unique<History>()),
       threads_(std::make_unique<Threads>()),
       drops_free_(tissue.free_pieces == FreePieces::kDrop),
-      has_body_load_(hasBodyLoad(tissue)),
-      gravity_(tissue.gravity),
       max_ms_(solver.max_ms) {
   if (tissue.time) {
     time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
                                              solver.tolerance);
   }
-  tear_strains_ = tearStrains(lattice_, tissue);
-  if (tissue.mesh) mesh_ = refined(*tissue.mesh, tissue.spacing);
-  rebuildSurface();
-  planMembranes(tissue);
-  method_ = makeMethod(solver, lattice_, *model_);
-  patience_ = Patience(method_->usualIterations(), lattice_.nodeCount());
-  weight_ = model_->weight(state_);
-  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
+  tear_strains_ = tearStrains(body_.lattice(), tissue);
+  method_ = makeMethod(solver, body_.lattice(), body_.model());
+  patience_ = Patience(method_->usualIterations(), body_.lattice().nodeCount());
+  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state()));
   wakeUnderBodyLoad();
 }
 
@@ -65,17 +57,12 @@ TissueParts::~TissueParts() = default;
 
 // Contacts are found anew after each step: what a tool meets on the way must not be far.
 double TissueParts::stepLength() const {
-  return std::min(method_->patchStep(), tuning::kToolStep * lattice_.spacing());
-}
-
-TissueParts::Displacements TissueParts::displacements() const {
-  if (!kept_) kept_ = std::make_shared<const std::vector<Vec3>>(state_.displacement);
-  return kept_;
+  return std::min(method_->patchStep(), tuning::kToolStep * body_.lattice().spacing());
 }
 
 SolveReport TissueParts::settle() {
   stopTime();
-  solve(freeNodes());
+  solve(body_.freeNodes());
   return tear();
 }
 
@@ -100,8 +87,8 @@ SolveReport TissueParts::follow(std::vector<LoadingPatch> tool_patches,
 }
 
 TissueParts::Shape TissueParts::shape() const {
-  return {displacements(),
-          state_.cells,
+  return {body_.displacements(),
+          body_.state().cells,
           patches_,
           named_patches_,
           last_report_,
@@ -116,11 +103,11 @@ void TissueParts::restore(const Shape& shape) {
   if (time_) time_->take(shape.motion);
   in_time_ = shape.in_time;
   in_time_step_ = expects_time_step_ = false;
-  if (time_) model_->setInertia(nullptr);  // of the step that is given up
+  if (time_) body_.model().setInertia(nullptr);  // of the step that is given up
   is_as_solved_ = false;
-  kept_.reset();
-  state_.displacement = carriedOver(*shape.cells, *shape.displacement, *state_.cells);
-  restRemoved(state_);
+  LatticeState& state = body_.change();
+  state.displacement = carriedOver(*shape.cells, *shape.displacement, *state.cells);
+  restRemoved(state);
   patches_ = shape.patches;
   named_patches_ = shape.named_patches;
   last_report_ = shape.report;
@@ -145,19 +132,18 @@ void TissueParts::endAside() {
 void TissueParts::switchAside() {
   is_aside_ = !is_aside_;
   if (!method_->remembers()) return;
-  if (!other_method_) other_method_ = makeMethod(solver_, lattice_, *model_);
+  if (!other_method_) other_method_ = makeMethod(solver_, body_.lattice(), body_.model());
   std::swap(method_, other_method_);
 }
 
 void TissueParts::reset() {
-  const bool was_cut = !isAsMade(state_);
+  const bool was_cut = !isAsMade(body_.state());
   stopTime();
   endAside();
   patience_.forget();
   other_method_.reset();
   method_->forget();
-  kept_.reset();
-  state_ = lattice_.restState();
+  body_.change() = body_.lattice().restState();
   threads_->clear();
   patches_.clear();
   named_patches_ = 0;
@@ -169,12 +155,11 @@ void TissueParts::reset() {
   springs_torn_ = 0;
   history_->clear();
   if (was_cut) {
-    weight_ = model_->weight(state_);
+    body_.weigh();
     rebuildSurface();
   }
-  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_));
-  vertices_ = surface_.rest;
-  bounds_ = boundsOf(vertices_);
+  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state()));
+  body_.showRest();
   wakeUnderBodyLoad();
 }
 
@@ -182,16 +167,8 @@ void TissueParts::noteUnconverged() {
   last_report_.status = std::max(last_report_.status, SolveStatus::kUnconverged);
 }
 
-bool TissueParts::resistsInversion() const { return model_->resistsInversion(); }
-
-int TissueParts::cellsBeyondLaw() const { return model_->cellsBeyondLaw(state_); }
-
-Vec3 TissueParts::nodePosition(int node) const {
-  return restPosition(lattice_, *state_.cells, node) + state_.displacement[at(node)];
-}
-
 void TissueParts::expectTouch() {
-  if (!hasTime()) method_->expect(state_);
+  if (!hasTime()) method_->expect(body_.state());
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -214,7 +191,7 @@ SolveReport TissueParts::solve(const std::vector<int>& disturbed) {
   if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
   if (!is_late_) disturbed_.clear();
   rememberDisturbed();
-  last_report_.volume_ratio = report.volume_ratio = volumeRatio();
+  last_report_.volume_ratio = report.volume_ratio = body_.volumeRatio();
   return report;
 }
 
@@ -230,29 +207,29 @@ void TissueParts::disturb(const std::vector<int>& nodes) {
 
 // For the next solve: ghosts may go meanwhile.
 void TissueParts::rememberDisturbed() {
-  for (int& node : disturbed_) node = state_.cells->original(node);
+  for (int& node : disturbed_) node = body_.cells().original(node);
 }
 
 SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
   // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
   // it saves a method that stays finite.
   const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
-  const Displacements last_good = keeps_shape ? displacements() : nullptr;
+  const Displacements last_good = keeps_shape ? body_.displacements() : nullptr;
   const std::vector<LoadingPatch> last_good_patches = patches_;
-  kept_.reset();
+  LatticeState& state = body_.change();
   limitWays();
   method_->limitTime(mostMs());
   method_->limitIterations(mostIterations());
   const double cost = costOfIteration();
   const bool any_hangs = holdHanging();
-  SolveReport report = solveWithThreads(disturbed);
+  SolveReport report = solveWithThreads(disturbed, state);
   if (any_hangs) letHangingBe(report);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
       (method_->staysFinite() ||
-       std::all_of(state_.displacement.begin(), state_.displacement.end(), isFinite));
+       std::all_of(state.displacement.begin(), state.displacement.end(), isFinite));
   if (!is_finite) {
-    if (last_good) state_.displacement = *last_good;
+    if (last_good) state.displacement = *last_good;
     patches_ = last_good_patches;
     report = SolveReport();
     report.status = SolveStatus::kUnconverged;
@@ -278,11 +255,11 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
 SolveReport TissueParts::solveFromRest() {
   const std::vector<LoadingPatch> standing = patches_;
   method_->forget();
-  kept_.reset();
-  std::fill(state_.displacement.begin(), state_.displacement.end(), Vec3::Zero());
+  std::vector<Vec3>& displacement = body_.change().displacement;
+  std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
   SolveReport report;
   const bool sutured = threads_->anyWhole();
-  if (has_body_load_ || sutured) {
+  if (body_.hasBodyLoad() || sutured) {
     const std::size_t named = std::exchange(named_patches_, 0);
     patches_.clear();
     report = settleFromRest();
@@ -298,29 +275,31 @@ SolveReport TissueParts::solveFromRest() {
   }
   if (!ramps.empty()) {
     report = stepLoadsByItself(ramps, {});
-  } else if (!has_body_load_ && !sutured) {
+  } else if (!body_.hasBodyLoad() && !sutured) {
     describeShape(report);
-    report.volume_ratio = volumeRatio();
+    report.volume_ratio = body_.volumeRatio();
     last_report_ = report;
     is_late_ = false;
   }
   return report;
 }
 
+void TissueParts::deformSurface(Body::OffPoint of_tools) { body_.deform(patches_, of_tools); }
+
+// On other cells: what threads and ties hang on is found there.
+void TissueParts::rebuildSurface() {
+  renewTies();
+  body_.rebuildSurface();
+  rebindThreads();
+}
+
 void TissueParts::describeShape(SolveReport& report) {
   deformSurface();
   const GridBox* visited = method_->visited();
-  report.inverted_cells = visited == nullptr ? countInvertedCells(lattice_, state_)
-                                             : countInvertedCells(lattice_, state_, *visited);
+  report.inverted_cells = visited == nullptr
+                              ? countInvertedCells(body_.lattice(), body_.state())
+                              : countInvertedCells(body_.lattice(), body_.state(), *visited);
   if (report.inverted_cells > 0) report.status = SolveStatus::kInverted;
-}
-
-std::vector<int> TissueParts::freeNodes() const {
-  std::vector<int> nodes;
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
-    if (!lattice_.isFixed(node) && !isRemoved(state_, node)) nodes.push_back(node);
-  }
-  return nodes;
 }
 
 }  // namespace robot_tissue

@@ -9,15 +9,14 @@
 #include <vector>
 
 #include "robot_tissue/core/tissue.h"
+#include "tissue/body.h"
 
 namespace robot_tissue {
 
 class History;
-class MembranePlan;
 class PieceNumbers;
 class SolverMethod;
 class TimeIntegrator;
-class TissueModel;
 class Threads;
 class BladeSurface;
 struct Crossing;
@@ -34,12 +33,6 @@ struct TissueParts {
   TissueParts(const TissueConfig& tissue, const SolverConfig& solver);
   ~TissueParts();
 
-  const Lattice& lattice() const { return lattice_; }
-  const LatticeState& state() const { return state_; }
-  const TissueSurface& surface() const { return surface_; }
-  // Deformed vertices of the surface (m, tissue frame).
-  const std::vector<Vec3>& vertices() const { return vertices_; }
-  const Box& bounds() const { return bounds_; }  // of the vertices
   // Number of the piece that each node is of, the ghosts last, -1: removed. Of a piece that comes
   // apart the largest part keeps the number, the others get the next ones; undo and loadState bring
   // numbers back, a reset begins anew.
@@ -61,24 +54,13 @@ struct TissueParts {
   // How many of patches(), counted from the first, are named loads; the rest are the tools'.
   std::size_t namedPatches() const { return named_patches_; }
 
-  // The nodes' displacements (m) as they are now, to be kept; one copy while the shape stays.
-  Displacements displacements() const;
-
-  // Cells of the model that turned inside out are a wrong shape.
-  bool resistsInversion() const;
-  // Cells so strained that the law `fung` goes on as a polynomial there (doc/model.md).
-  int cellsBeyondLaw() const;
   // What the method said of the present shape.
   const SolveReport& lastReport() const { return last_report_; }
   // Of a shape that cannot be right for a reason that the tissue does not know.
   void noteUnconverged();
-  // Displacements as they are shown (m): nodes of a patch's rim where the patch has them, of a
-  // tool's where the tool has them.
-  std::vector<Vec3> shownDisplacement() const;
   // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
   // its tool.
   Vec3 nodeForce(int node) const;
-  std::vector<int> freeNodes() const;  // all that are not fixed
   // Of the tissue (N), but for pieces that hang: gravity pulls them and nothing bears them, so that
   // no shape is their balance. Where no time passes they stay as they are.
   Vec3 weight() const;
@@ -86,9 +68,7 @@ struct TissueParts {
   Vec3 forceOfFixedNodes() const;  // on the tissue (N)
   // Against moving a node alone from rest, mean over the axes (N/m): of the cells, and how many
   // times that in the time step under way, where its rate and the node's mass count, too.
-  double nodeStiffness(int node) const;
   double stiffening(int node) const;
-  Vec3 nodePosition(int node) const;  // deformed (m)
   // Of a node so many spacings inside the plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
@@ -212,7 +192,6 @@ struct TissueParts {
   // patches and sutures go.
   SolveReport loadState(const SavedState& saved);
 
- private:
   SolveReport solve(const std::vector<int>& disturbed);
   void disturb(const std::vector<int>& nodes);
   void rememberDisturbed();
@@ -258,7 +237,6 @@ struct TissueParts {
   RoundShape takeShape(Rounds& rounds, bool late);
   void tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool renewed);
   void worsen(Rounds& rounds, SolveStatus status);
-  double volumeRatio() const;
   void renewContacts();
   void switchAside();
   void limitWays();
@@ -278,14 +256,12 @@ struct TissueParts {
   SolveReport drawThreadsIn();
   bool solveOnThreads(SolveReport& report);
   SolveReport settleFromRest();
-  SolveReport solveWithThreads(const std::vector<int>& disturbed);
+  SolveReport solveWithThreads(const std::vector<int>& disturbed, LatticeState& state);
   SolveReport solveAndBreak(const std::vector<int>& disturbed);
   void rebindThreads();
   SolveReport solveFromRest();
   void describeShape(SolveReport& report);
-  using OffPoint = Vec3 (*)(const ContactSpring&, const std::vector<Vec3>&);
-  void deformSurface(OffPoint of_tools = drawnOff);
-  std::vector<std::pair<int, Vec3>> shownAsTheirOwn(OffPoint of_tools) const;
+  void deformSurface(Body::OffPoint of_tools = drawnOff);
   LoadingPatch makePatch(const PatchConfig& config) const;
   std::size_t place(const LoadingPatch& patch);
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
@@ -300,22 +276,16 @@ struct TissueParts {
   SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
   SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
   Vec3 patchForce(const LoadingPatch& patch) const;
-  void planMembranes(const TissueConfig& tissue);
   void renewTies();
   void rebuildSurface();
 
-  Lattice lattice_;
-  LatticeState state_;
-  mutable Displacements kept_;  // of state_; null: nobody asked since it changed
-  std::unique_ptr<TissueModel> model_;
+  Body body_;
   SolverConfig solver_;
   std::uint64_t balance_fingerprint_ = 0;  // of the scene
   std::unique_ptr<SolverMethod> method_;
   std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
   bool is_aside_ = false;
   std::unique_ptr<History> history_;  // of what changed the topology
-  TriangleMesh mesh_;                 // with edges of a spacing at most; empty: the shape is a box
-  TissueSurface surface_;
   std::vector<double> tear_strains_;  // per spring (tearStrains)
   int springs_torn_ = 0;
   std::unique_ptr<Threads> threads_;
@@ -326,13 +296,6 @@ struct TissueParts {
   mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
   mutable std::vector<double> volume_at_node_;       // of cells, per node of the lattice (m^3)
   std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
-  double rest_volume_ = 0.0;                         // m^3
-  Vec3 weight_ = Vec3::Zero();                       // N
-  std::unique_ptr<const MembranePlan> membranes_;    // null: none
-  bool has_body_load_ = false;   // gravity, or a pressure: the rest shape is not in balance
-  Vec3 gravity_ = Vec3::Zero();  // m/s^2
-  std::vector<Vec3> vertices_;   // deformed, of the surface
-  Box bounds_;                   // of them
   std::vector<LoadingPatch> patches_;
   std::size_t named_patches_ = 0;
   std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there

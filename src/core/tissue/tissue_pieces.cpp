@@ -25,18 +25,20 @@ void TissueParts::takePieces(std::shared_ptr<const PieceNumbers> numbers) {
 }
 
 void TissueParts::renumberPieces() {
-  piece_numbers_ = std::make_shared<const PieceNumbers>(piece_numbers_->after(lattice_, state_));
+  piece_numbers_ =
+      std::make_shared<const PieceNumbers>(piece_numbers_->after(body_.lattice(), body_.state()));
   piece_of_nodes_of_.reset();
 }
 
 const std::vector<int>& TissueParts::pieceOfNodes() const {
-  if (piece_of_nodes_of_ != nullptr && piece_of_nodes_of_ == state_.cells) return piece_of_nodes_;
-  piece_of_nodes_ = robot_tissue::pieceOfNodes(lattice_, state_);
+  if (piece_of_nodes_of_ != nullptr && piece_of_nodes_of_ == body_.state().cells)
+    return piece_of_nodes_;
+  piece_of_nodes_ = robot_tissue::pieceOfNodes(body_.lattice(), body_.state());
   const std::vector<int>& of_parts = piece_numbers_->names().of_parts;
   for (int& piece : piece_of_nodes_) {
     if (piece >= 0) piece = of_parts[at(piece)];
   }
-  piece_of_nodes_of_ = state_.cells;
+  piece_of_nodes_of_ = body_.state().cells;
   pieces_at_rest_.clear();
   return piece_of_nodes_;
 }
@@ -50,19 +52,20 @@ const std::vector<TissuePiece>& TissueParts::piecesAtRest() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   if (!pieces_at_rest_.empty()) return pieces_at_rest_;
   pieces_at_rest_.resize(at(piece_numbers_->names().next));
-  volume_at_node_.assign(at(lattice_.nodeCount()), 0.0);
-  const double cell_volume = std::pow(lattice_.spacing(), 3);
-  for (const Cell& cell : lattice_.cells()) {
-    const auto fills = cornerFills(lattice_, state_, cell);
+  volume_at_node_.assign(at(body_.lattice().nodeCount()), 0.0);
+  const double cell_volume = std::pow(body_.lattice().spacing(), 3);
+  for (const Cell& cell : body_.lattice().cells()) {
+    const auto fills = cornerFills(body_.lattice(), body_.state(), cell);
     for (int corner = 0; corner < kCorners; ++corner) {
-      if (isTaken(state_, cell.place, corner)) continue;
+      if (isTaken(body_.state(), cell.place, corner)) continue;
       const int node = cell.nodes[at(corner)];
       const FillIntegrals& fill = fills[at(corner)];
       TissuePiece& piece = pieces_at_rest_[at(piece_of[at(node)])];
-      piece.fixed = piece.fixed || lattice_.isFixed(node);
+      piece.fixed = piece.fixed || body_.lattice().isFixed(node);
       volume_at_node_[at(node)] += cell_volume * fill.volume;
       piece.volume += fill.volume;
-      piece.center += fill.volume * lattice_.cellCenter(cell) + lattice_.spacing() * fill.first;
+      piece.center +=
+          fill.volume * body_.lattice().cellCenter(cell) + body_.lattice().spacing() * fill.first;
     }
   }
   for (TissuePiece& piece : pieces_at_rest_) {
@@ -89,9 +92,9 @@ std::vector<TissuePiece> TissueParts::pieces() const {
   const std::vector<int>& piece_of = pieceOfNodes();
   std::vector<Vec3> moved(at(piece_numbers_->names().next), Vec3::Zero());
   std::vector<TissuePiece> pieces = restingPieces();
-  for (int node = 0; node < lattice_.nodeCount(); ++node) {
+  for (int node = 0; node < body_.lattice().nodeCount(); ++node) {
     const double volume = volume_at_node_[at(node)];
-    if (volume > 0.0) moved[at(piece_of[at(node)])] += volume * state_.displacement[at(node)];
+    if (volume > 0.0) moved[at(piece_of[at(node)])] += volume * body_.displacement()[at(node)];
   }
   for (TissuePiece& piece : pieces) piece.center += moved[at(piece.number)] / piece.volume;
   return pieces;
@@ -140,7 +143,7 @@ std::vector<int> TissueParts::freePieces() const {
 
 // Of pieces that gravity pulls and nothing bears; ascending.
 std::vector<int> TissueParts::hangingNodes() const {
-  if (gravity_.isZero(0.0) || goesInTime() || isMoving()) return {};
+  if (body_.gravity().isZero(0.0) || goesInTime() || isMoving()) return {};
   const std::vector<int> free = freePieces();
   std::vector<int> hanging;
   if (free.empty()) return hanging;
@@ -158,7 +161,7 @@ bool TissueParts::holdHanging() {
   LoadingPatch patch;
   patch.nodes = hangingNodes();
   if (patch.nodes.empty()) return false;
-  for (const int node : patch.nodes) patch.displacement.push_back(state_.displacement[at(node)]);
+  for (const int node : patch.nodes) patch.displacement.push_back(body_.displacement()[at(node)]);
   patches_.push_back(std::move(patch));
   return true;
 }
@@ -172,10 +175,10 @@ void TissueParts::letHangingBe(SolveReport& report) {
 // Those that were held when this was asked last, or are new, and are free now. While nothing holds
 // any of the tissue it floats, and all of it stays.
 std::vector<int> TissueParts::freedPieces() {
-  if (!drops_free_ || state_.pieces == 1) return {};
+  if (!drops_free_ || body_.state().pieces == 1) return {};
   const std::vector<int> free = freePieces();
   std::vector<int> freed;
-  if (free.size() == at(state_.pieces)) {
+  if (free.size() == at(body_.state().pieces)) {
     left_free_ = free;
     return freed;
   }
@@ -190,20 +193,20 @@ std::vector<int> TissueParts::freedPieces() {
 
 void TissueParts::takeOut(const std::vector<int>& pieces) {
   const std::vector<int>& piece_of = pieceOfNodes();
-  std::vector<std::uint8_t> cells(lattice_.cells().size(), 0);
-  for (const Cell& cell : lattice_.cells()) {
+  std::vector<std::uint8_t> cells(body_.lattice().cells().size(), 0);
+  for (const Cell& cell : body_.lattice().cells()) {
     unsigned bits = 0;
     for (int corner = 0; corner < kCorners; ++corner) {
       const int piece = piece_of[at(cell.nodes[at(corner)])];
       const bool goes = std::binary_search(pieces.begin(), pieces.end(), piece);
-      if (goes && !isTaken(state_, cell.place, corner)) bits |= 1U << corner;
+      if (goes && !isTaken(body_.state(), cell.place, corner)) bits |= 1U << corner;
     }
     cells[at(cell.place)] = static_cast<std::uint8_t>(bits);
   }
-  removeCells(lattice_, cells, model_->splitCells(), state_);
-  weight_ = model_->weight(state_);
-  piece_numbers_ =
-      std::make_shared<const PieceNumbers>(piece_numbers_->after(lattice_, state_).without(pieces));
+  removeCells(body_.lattice(), cells, body_.model().splitCells(), body_.change());
+  body_.weigh();
+  piece_numbers_ = std::make_shared<const PieceNumbers>(
+      piece_numbers_->after(body_.lattice(), body_.state()).without(pieces));
   piece_of_nodes_of_.reset();
   dropLostLoads();
 }
@@ -211,7 +214,7 @@ void TissueParts::takeOut(const std::vector<int>& pieces) {
 // Within a change of the topology, before its balance. The surface, and with it the ends of
 // threads, may still be that of before.
 void TissueParts::dropFreed() {
-  if (!drops_free_ || state_.pieces == 1) return;
+  if (!drops_free_ || body_.state().pieces == 1) return;
   if (threads_->anyWhole()) rebuildSurface();
   const std::vector<int> freed = freedPieces();
   if (!freed.empty()) takeOut(freed);

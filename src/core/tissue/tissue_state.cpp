@@ -84,18 +84,12 @@ bool TissueParts::retune(const TissueConfig& tissue, const SolverConfig& solver)
   balance_fingerprint_ = fingerprint;
   endAside();
   other_method_.reset();
-  lattice_.weigh(tissue);
   method_.reset();  // it refers to the model
-  const std::unique_ptr<TissueModel> earlier = std::exchange(model_, makeModel(tissue, lattice_));
-  if (membranes_) {
-    membranes_ =
-        std::make_unique<MembranePlan>(tissue.membranes, membranes_->asMade(), tissue.spacing);
-    model_->setMembrane(membranes_->on(surface_));
-  }
-  method_ = makeMethod(solver, lattice_, *model_);
+  const std::unique_ptr<TissueModel> earlier = body_.remake(tissue);
+  method_ = makeMethod(solver, body_.lattice(), body_.model());
   renewTies();
   for (auto* patches : {&patches_, &due_}) {
-    for (LoadingPatch& patch : *patches) scaleRim(state_, *earlier, *model_, patch);
+    for (LoadingPatch& patch : *patches) scaleRim(body_.state(), *earlier, body_.model(), patch);
   }
   history_->forgetStates();
   if (time_) time_->setTolerance(solver.tolerance);
@@ -104,7 +98,7 @@ bool TissueParts::retune(const TissueConfig& tissue, const SolverConfig& solver)
 
 SavedState TissueParts::stateNow() const {
   SavedState saved;
-  saved.lattice = state_;
+  saved.lattice = body_.state();
   saved.pieces = piece_numbers_->names();
   saved.loads.assign(patches_.begin(),
                      patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
@@ -116,17 +110,18 @@ SavedState TissueParts::stateNow() const {
 }
 
 std::string TissueParts::savedState() const {
-  const SplitCells split = model_->splitCells();
-  return encodeState(lattice_, split, stateNow(),
-                     {fingerprintOf(lattice_, split), balance_fingerprint_});
+  const SplitCells split = body_.model().splitCells();
+  return encodeState(body_.lattice(), split, stateNow(),
+                     {fingerprintOf(body_.lattice(), split), balance_fingerprint_});
 }
 
 std::uint64_t TissueParts::stateHash() const { return robot_tissue::stateHash(savedState()); }
 
 std::shared_ptr<const SavedState> TissueParts::readState(const std::string& bytes) const {
-  const SplitCells split = model_->splitCells();
+  const SplitCells split = body_.model().splitCells();
   return std::make_shared<const SavedState>(
-      decodeState(lattice_, split, bytes, {fingerprintOf(lattice_, split), balance_fingerprint_}));
+      decodeState(body_.lattice(), split, bytes,
+                  {fingerprintOf(body_.lattice(), split), balance_fingerprint_}));
 }
 
 // Nothing of what was there stays, nor of what the method learned of it.
@@ -135,20 +130,19 @@ void TissueParts::take(const SavedState& saved) {
   endAside();
   other_method_.reset();
   method_->forget();
-  kept_.reset();
   due_.clear();
   disturbed_.clear();
   is_late_ = false;
   springs_torn_ = 0;
-  state_ = saved.lattice;
+  body_.change() = saved.lattice;
   patches_ = saved.loads;
   named_patches_ = patches_.size();
   history_->clear();
-  weight_ = model_->weight(state_);
+  body_.weigh();
   threads_->clear();
   rebuildSurface();
   threads_->take(saved.sutures);
-  takePieces(std::make_shared<const PieceNumbers>(lattice_, state_, saved.pieces));
+  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state(), saved.pieces));
   last_report_ = saved.report;
   deformSurface();
 }
@@ -162,9 +156,9 @@ void TissueParts::takeOver(const TissueParts& other) {
 
 SolveReport TissueParts::loadState(const SavedState& saved) {
   take(saved);
-  if (!saved.in_balance) return solve(freeNodes());
-  last_report_.inverted_cells = countInvertedCells(lattice_, state_);
-  last_report_.volume_ratio = volumeRatio();
+  if (!saved.in_balance) return solve(body_.freeNodes());
+  last_report_.inverted_cells = countInvertedCells(body_.lattice(), body_.state());
+  last_report_.volume_ratio = body_.volumeRatio();
   return last_report_;
 }
 

@@ -80,9 +80,9 @@ std::vector<LoadingPatch> TissueParts::namedLoads() const {
 // the nodes that there were.
 SolveReport TissueParts::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
-  kept_.reset();
+  body_.change();
   is_as_solved_ = false;
-  if (takesNoTime()) model_->setInertia(nullptr);  // the last step's was of other nodes
+  if (takesNoTime()) body_.model().setInertia(nullptr);  // the last step's was of other nodes
   rebuildSurface();
   deformSurface(
       [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
@@ -109,30 +109,31 @@ SolveReport TissueParts::leaveToNextCall(const std::vector<int>& disturbed) {
   last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
   last_report_.iterations = 0;
   last_report_.wall_ms = 0.0;
-  last_report_.volume_ratio = volumeRatio();
+  last_report_.volume_ratio = body_.volumeRatio();
   return last_report_;
 }
 
 CutReport TissueParts::cut(const std::vector<Vec3>& corners) {
-  const std::vector<Crossing> crossing =
-      sparingCrumbs(lattice_, state_, springsAcross(lattice_, state_, corners));
+  const std::vector<Crossing> crossing = sparingCrumbs(
+      body_.lattice(), body_.state(), springsAcross(body_.lattice(), body_.state(), corners));
   CutReport report;
   report.springs_cut = static_cast<int>(crossing.size());
-  report.pieces = state_.pieces;
+  report.pieces = body_.state().pieces;
   report.solve = last_report_;
   if (crossing.empty()) return report;
   const TopologyChange change(*this, History::Kind::kByItself);
   const int torn = springs_torn_;
-  const BladeSurface blade = BladeSurface::of(corners, lattice_.spacing());
+  const BladeSurface blade = BladeSurface::of(corners, body_.lattice().spacing());
   severAndBalance(crossing, &blade);
   report.solve = tear();
   report.springs_torn = springs_torn_ - torn;
-  report.pieces = state_.pieces;
+  report.pieces = body_.state().pieces;
   return report;
 }
 
 RemoveReport TissueParts::remove(const RemovedSpace& space) {
-  const RemoveReport report = takeAway(cellsWithin(lattice_, state_, space), Stroke::kBegins);
+  const RemoveReport report =
+      takeAway(cellsWithin(body_.lattice(), body_.state(), space), Stroke::kBegins);
   if (report.holds_all) {
     throw InputError("the space holds all of the tissue; allowed: one that leaves some of it");
   }
@@ -141,33 +142,34 @@ RemoveReport TissueParts::remove(const RemovedSpace& space) {
 
 RemoveReport TissueParts::drill(const CoveredSpace& space, Stroke stroke) {
   const bool reaches = mayReach(space.bounds);
-  return takeAway(reaches ? cellsWithin(lattice_, state_, space) : std::vector<std::uint8_t>(),
-                  stroke);
+  return takeAway(
+      reaches ? cellsWithin(body_.lattice(), body_.state(), space) : std::vector<std::uint8_t>(),
+      stroke);
 }
 
 RemoveReport TissueParts::takeAway(const std::vector<std::uint8_t>& within, Stroke stroke) {
   RemoveReport report;
-  report.pieces = state_.pieces;
+  report.pieces = body_.state().pieces;
   report.solve = last_report_;
   if (within.empty()) return report;
-  const std::vector<std::uint8_t> cells = withCrumbs(lattice_, state_, within);
-  const bool leaves_some =
-      std::any_of(lattice_.cells().begin(), lattice_.cells().end(), [&](const Cell& cell) {
-        return (takenOf(state_, cell.place) | cells[at(cell.place)]) < 0xff;
+  const std::vector<std::uint8_t> cells = withCrumbs(body_.lattice(), body_.state(), within);
+  const bool leaves_some = std::any_of(
+      body_.lattice().cells().begin(), body_.lattice().cells().end(), [&](const Cell& cell) {
+        return (takenOf(body_.state(), cell.place) | cells[at(cell.place)]) < 0xff;
       });
   report.holds_all = !leaves_some;
   if (report.holds_all) return report;
   const TopologyChange change(
       *this, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
-  removeCells(lattice_, cells, model_->splitCells(), state_);
-  weight_ = model_->weight(state_);
-  report.volume = volumeOf(lattice_, state_, cells);
+  removeCells(body_.lattice(), cells, body_.model().splitCells(), body_.change());
+  body_.weigh();
+  report.volume = volumeOf(body_.lattice(), body_.state(), cells);
   renumberPieces();
   report.loads = dropLostLoads();
   dropFreed();
-  changeTopology(nodesAround(lattice_, cells, state_));
+  changeTopology(nodesAround(body_.lattice(), cells, body_.state()));
   report.solve = tear();
-  report.pieces = state_.pieces;
+  report.pieces = body_.state().pieces;
   return report;
 }
 
@@ -176,7 +178,7 @@ std::vector<std::string> TissueParts::dropLostLoads() {
   std::vector<std::string> lost;
   std::vector<PatchAnswer>& answers = last_report_.patches;
   for (std::size_t i = named_patches_; i-- > 0;) {
-    loseNodes(state_, patches_[i]);
+    loseNodes(body_.state(), patches_[i]);
     if (!patches_[i].nodes.empty()) continue;
     lost.push_back(patches_[i].name);
     const auto place = static_cast<std::ptrdiff_t>(i);
@@ -184,10 +186,11 @@ std::vector<std::string> TissueParts::dropLostLoads() {
     patches_.erase(patches_.begin() + place);
     --named_patches_;
   }
-  for (std::size_t i = named_patches_; i < patches_.size(); ++i) loseNodes(state_, patches_[i]);
-  for (LoadingPatch& target : due_) loseNodes(state_, target);
+  for (std::size_t i = named_patches_; i < patches_.size(); ++i)
+    loseNodes(body_.state(), patches_[i]);
+  for (LoadingPatch& target : due_) loseNodes(body_.state(), target);
   for (const std::string& name : lost) dropNamed(name, due_);
-  const auto is_gone = [&](int node) { return isGone(state_, node); };
+  const auto is_gone = [&](int node) { return isGone(body_.state(), node); };
   disturbed_.erase(std::remove_if(disturbed_.begin(), disturbed_.end(), is_gone), disturbed_.end());
   return lost;
 }
@@ -216,15 +219,15 @@ SolveReport TissueParts::undo(int count) {
     return report;
   }
   stopTime();
-  state_ = asBefore(lattice_, entry, model_->splitCells(), state_);
-  weight_ = model_->weight(state_);
+  body_.change() = asBefore(body_.lattice(), entry, body_.model().splitCells(), body_.state());
+  body_.weigh();
   threads_->take(entry.sutures);
   if (threads_->anyWhole()) rebuildSurface();  // nodes may have other numbers than there
   takePieces(entry.pieces);
   history_->dropFrom(target);
   if (takesNoTime()) return changeTopology({});
-  threads_->loosen(state_.displacement);
-  changeTopology(freeNodes());
+  threads_->loosen(body_.displacement());
+  changeTopology(body_.freeNodes());
   if (threads_->anyWhole()) drawThreadsIn();
   return tear();
 }

@@ -15,7 +15,7 @@ class TissueParts::TopologyChange {
   TopologyChange(TissueParts& tissue, History::Kind kind)
       : tissue_(tissue), is_outermost_(!tissue.history_->isUnderWay()) {
     if (is_outermost_ && tissue_.history_->begins(kind)) {
-      const LatticeState& state = tissue_.state_;
+      const LatticeState& state = tissue_.body_.state();
       tissue_.history_->begin(kind,
                               {{state.severed.begin(), state.severed.end()},
                                partingsOf(state),
