@@ -48,17 +48,17 @@ SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
   method_->beginStep(body_.state());
   if (contact_update_ == nullptr) return solveOnce(disturbed);
   Rounds rounds(body_.displacements());
-  rounds.driven_before = drivenPlaces(patches_);
+  rounds.driven_before = drivenPlaces(loads_.patches());
   rounds.report = rounds.of_round = solveOnce(disturbed);
   while (endRound(rounds) == RoundDecision::kSolveAgain) {
     rounds.before.reset();  // so that the next line's copy can take its memory
     rounds.before = body_.displacements();
-    rounds.driven_before = drivenPlaces(patches_);
+    rounds.driven_before = drivenPlaces(loads_.patches());
     SolveTotal total(rounds.report);
     rounds.report = rounds.of_round = solveOnce({});
     total.addWork(rounds.report);
     total.tellWorkIn(rounds.report);
-    last_report_ = rounds.report;
+    outcome_.report = rounds.report;
     ++rounds.count;
   }
   return rounds.report;
@@ -72,7 +72,7 @@ TissueParts::RoundDecision TissueParts::endRound(Rounds& rounds) {
   shortest_ms_ = shortestMs(rounds.of_round);
   const bool no_time = isBounded() && left_ms <= 2.0 * look_ms_ + shortest_ms_;
   if (rounds.count > 1 && isLookForNextCall()) {
-    is_late_ = true;
+    outcome_.is_late = true;
     worsen(rounds, SolveStatus::kUnconverged);
     return RoundDecision::kDone;
   }
@@ -86,12 +86,12 @@ TissueParts::RoundDecision TissueParts::endRound(Rounds& rounds) {
   if (is_settled) return RoundDecision::kDone;
   if (shape.whole && mayShowUnsettled()) {
     noteUnsettled();
-    rounds.report.status = last_report_.status;
+    rounds.report.status = outcome_.report.status;
     return RoundDecision::kDone;
   }
   tellWhatIsOpen(rounds, shape, renewed);
   if (shape.last) return RoundDecision::kDone;
-  if (renewed) putToolPatches(std::move(of_tools));
+  if (renewed) loads_.putToolPatches(std::move(of_tools));
   return RoundDecision::kSolveAgain;
 }
 
@@ -118,7 +118,7 @@ TissueParts::RoundShape TissueParts::takeShape(Rounds& rounds, bool late) {
 // What time ran out in is told; what is on its way to another place is no shape to show.
 void TissueParts::tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool renewed) {
   if (shape.late) {
-    is_late_ = true;
+    outcome_.is_late = true;
     worsen(rounds, SolveStatus::kLate);
   }
   const bool stays_away = shape.is_on_its_way && !renewed && !shape.late;
@@ -128,7 +128,7 @@ void TissueParts::tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool r
 }
 
 void TissueParts::worsen(Rounds& rounds, SolveStatus status) {
-  last_report_.status = rounds.report.status = std::max(rounds.report.status, status);
+  outcome_.report.status = rounds.report.status = std::max(rounds.report.status, status);
 }
 
 // Of the surface's vertices: a ghost that carries little of one may go farther than it.
@@ -149,9 +149,9 @@ void TissueParts::limitWays() {
 bool TissueParts::goBack(const Rounds& rounds) {
   const double share = contact_update_->shareOfWay(*rounds.before);
   if (share >= 1.0) return false;
-  is_as_solved_ = false;
+  outcome_.is_as_solved = false;
   takeBack(*rounds.before, share, body_.change().displacement);
-  takePatchesBack(rounds.driven_before, share, patches_);
+  takePatchesBack(rounds.driven_before, share, loads_.patches());
   deformSurface();
   return true;
 }

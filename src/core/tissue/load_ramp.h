@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
 #include "robot_tissue/core/loading_patch.h"
 
@@ -17,7 +15,5 @@ struct LoadRamp {
 
 // How many equal increments of at most one step a way of so many steps is; one at least.
 int wholeParts(double steps);
-// Takes away the patch of this name.
-void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches);
 
 }  // namespace robot_tissue

@@ -52,13 +52,10 @@ int wholeParts(double share) {
 // Out of time on the way of named patches: they stand there, and what they go to is due.
 bool TissueParts::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   const bool named = std::all_of(ramps.begin(), ramps.end(),
-                                 [&](const LoadRamp& ramp) { return ramp.patch < named_patches_; });
+                                 [&](const LoadRamp& ramp) { return ramp.patch < loads_.named(); });
   if (!named || !deadline_ || !deadline_->isOver()) return false;
-  for (const LoadRamp& ramp : ramps) {
-    dropNamed(ramp.target.name, due_);
-    due_.push_back(ramp.target);
-  }
-  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
+  for (const LoadRamp& ramp : ramps) loads_.makeDue(ramp.target);
+  outcome_.worsen(SolveStatus::kLate);
   return true;
 }
 
@@ -136,7 +133,7 @@ SolveReport TissueParts::stepLoads(const std::vector<LoadRamp>& ramps, int incre
   for (int increment = 1; increment <= increments; ++increment) {
     report = goInSteps(ramps, increment, increments);
     worst = std::max(worst, report.status);
-    const bool stopped = report.status == SolveStatus::kLate && isLoading();
+    const bool stopped = report.status == SolveStatus::kLate && loads_.isLoading();
     if (on_increment) on_increment(increment, increments, report);
     if (stopped || (increment < increments && stopsOnTheWay(ramps))) {
       worst = std::max(worst, SolveStatus::kLate);
@@ -159,10 +156,10 @@ SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int incre
     report = goTo(ramps, (increment - 1 + static_cast<double>(part) / parts) / increments);
     total.add(report);
     total.tellIn(report);
-    last_report_ = report;
+    outcome_.report = report;
     report = tear();
     if (part < parts && stopsOnTheWay(ramps)) {
-      report.status = last_report_.status;
+      report.status = outcome_.report.status;
       break;
     }
   }
@@ -170,7 +167,7 @@ SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int incre
 }
 
 SolveReport TissueParts::goTo(const std::vector<LoadRamp>& ramps, double share) {
-  for (const LoadRamp& ramp : ramps) goAlong(ramp, share, patches_[ramp.patch]);
+  for (const LoadRamp& ramp : ramps) goAlong(ramp, share, loads_.patches()[ramp.patch]);
   return solve({});
 }
 

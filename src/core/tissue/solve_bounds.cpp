@@ -48,8 +48,8 @@ bool TissueParts::mayShowUnsettled() const {
 }
 
 void TissueParts::noteUnsettled() {
-  are_contacts_settled_ = false;
-  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
+  outcome_.are_contacts_settled = false;
+  outcome_.worsen(SolveStatus::kLate);
 }
 
 // Over that of an iteration with few touches, on a lattice that is whole. Where there are more
@@ -57,7 +57,8 @@ void TissueParts::noteUnsettled() {
 // cells that cuts parted.
 double TissueParts::costOfIteration() const {
   double touches = 0.0;
-  for (const LoadingPatch& patch : patches_) touches += static_cast<double>(patch.contacts.size());
+  for (const LoadingPatch& patch : loads_.patches())
+    touches += static_cast<double>(patch.contacts.size());
   const double nodes = body_.lattice().nodeCount();
   const double ghosts = static_cast<double>(body_.displacement().size()) - nodes;
   return std::max({1.0, touches / (nodes + ghosts),

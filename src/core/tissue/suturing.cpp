@@ -101,7 +101,7 @@ SutureResult TissueParts::suture(const SutureConfig& config) {
     const bool is_slack = now <= thread.rest_length + same;
     if (!is_slack) thread.length = now;
     threads_->add(std::move(thread));
-    result.solve = is_slack ? last_report_ : drawThreadsIn();
+    result.solve = is_slack ? outcome_.report : drawThreadsIn();
   }
   result.suture = sutures().back();
   return result;
@@ -149,12 +149,12 @@ SolveReport TissueParts::drawThreadsIn() {
     solveOnThreads(report);
   } else if (changes) {
     const std::vector<int> due = threads_->nodes();
-    disturbed_.insert(disturbed_.end(), due.begin(), due.end());
-    rememberDisturbed();
-    is_late_ = true;
+    outcome_.disturbed.insert(outcome_.disturbed.end(), due.begin(), due.end());
+    outcome_.forgetGhosts(body_.cells());
+    outcome_.is_late = true;
     report.status = std::max(report.status, SolveStatus::kLate);
   }
-  last_report_ = report;
+  outcome_.report = report;
   return report;
 }
 
@@ -167,11 +167,12 @@ SolveReport TissueParts::settleFromRest() {
 }
 
 SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed, LatticeState& state) {
-  if (!threads_->act()) return method_->solve(patches_, disturbed, state);
-  patches_.push_back(threads_->patch());
-  SolveReport report = method_->solve(patches_, disturbed, state);
-  patches_.pop_back();
-  report.patches.resize(patches_.size());
+  if (!threads_->act()) return method_->solve(loads_.patches(), disturbed, state);
+  std::vector<LoadingPatch>& patches = loads_.patches();
+  patches.push_back(threads_->patch());
+  SolveReport report = method_->solve(patches, disturbed, state);
+  patches.pop_back();
+  report.patches.resize(patches.size());
   return report;
 }
 
@@ -185,7 +186,7 @@ SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
     report = solveInRounds(left);
     total.addWork(report);
     total.tellWorkIn(report);
-    last_report_ = report;
+    outcome_.report = report;
   }
   return report;
 }
@@ -196,7 +197,7 @@ void TissueParts::renewTies() {
 
 void TissueParts::rebindThreads() {
   for (const int node : threads_->rebind(body_.surface(), body_.lattice().spacing())) {
-    disturbed_.push_back(body_.cells().original(node));
+    outcome_.disturbed.push_back(body_.cells().original(node));
   }
 }
 

@@ -82,7 +82,7 @@ void TissueParts::findFreePieces() {
 std::vector<std::size_t> TissueParts::fallingPieces() {
   findFreePieces();
   std::vector<int> touched = threads_->nodes();
-  for (const LoadingPatch& patch : patches_) {
+  for (const LoadingPatch& patch : loads_.patches()) {
     touched.insert(touched.end(), patch.nodes.begin(), patch.nodes.end());
     for (const ContactSpring& contact : patch.contacts) {
       for (const NodeWeight& carrier : contact.carriers) touched.push_back(carrier.node);
@@ -127,8 +127,8 @@ void TissueParts::wakeUnderBodyLoad() {
 SolveReport TissueParts::asItIs() {
   in_time_ = true;
   time_->wake(body_.state());
-  last_report_.patches.resize(patches_.size());
-  return last_report_;
+  outcome_.report.patches.resize(loads_.patches().size());
+  return outcome_.report;
 }
 
 // Tools would have to be looked at on the way.
@@ -144,9 +144,9 @@ void TissueParts::predict() {
 
 SolveReport TissueParts::wait(double duration) {
   if (in_time_ && !time_->moves()) {
-    last_report_.iterations = 0;
-    last_report_.wall_ms = 0.0;
-    return last_report_;
+    outcome_.report.iterations = 0;
+    outcome_.report.wall_ms = 0.0;
+    return outcome_.report;
   }
   double left = duration;
   double longest = longestTimeStep();
@@ -156,7 +156,7 @@ SolveReport TissueParts::wait(double duration) {
     const double step = left / std::max(1.0, steps);
     const Shape good = shape();
     beginTimeStep(step);
-    if (patches_.empty()) predict();
+    if (loads_.patches().empty()) predict();
     const SolveReport report = solve({});
     endTimeStep();
     total.addWork(report);
@@ -175,8 +175,8 @@ SolveReport TissueParts::wait(double duration) {
       break;
     }
   }
-  total.tellIn(last_report_);
-  return last_report_;
+  total.tellIn(outcome_.report);
+  return outcome_.report;
 }
 
 }  // namespace robot_tissue

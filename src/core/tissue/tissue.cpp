@@ -26,17 +26,17 @@ bool Tissue::isUntouched() const { return parts_->isUntouched(); }
 double Tissue::stepLength() const { return parts_->stepLength(); }
 Patience& Tissue::patience() { return parts_->patience(); }
 const Patience& Tissue::patience() const { return parts_->patience(); }
-const std::vector<LoadingPatch>& Tissue::patches() const { return parts_->patches(); }
-std::size_t Tissue::namedPatches() const { return parts_->namedPatches(); }
+const std::vector<LoadingPatch>& Tissue::patches() const { return parts_->loads_.patches(); }
+std::size_t Tissue::namedPatches() const { return parts_->loads_.named(); }
 Tissue::Displacements Tissue::displacements() const { return parts_->body_.displacements(); }
 bool Tissue::resistsInversion() const { return parts_->body_.model().resistsInversion(); }
 int Tissue::cellsBeyondLaw() const {
   return parts_->body_.model().cellsBeyondLaw(parts_->body_.state());
 }
-const SolveReport& Tissue::lastReport() const { return parts_->lastReport(); }
-void Tissue::noteUnconverged() { parts_->noteUnconverged(); }
+const SolveReport& Tissue::lastReport() const { return parts_->outcome_.report; }
+void Tissue::noteUnconverged() { parts_->outcome_.worsen(SolveStatus::kUnconverged); }
 std::vector<Vec3> Tissue::shownDisplacement() const {
-  return parts_->body_.shownDisplacement(parts_->patches());
+  return parts_->body_.shownDisplacement(parts_->loads_.patches());
 }
 Vec3 Tissue::nodeForce(int node) const { return parts_->nodeForce(node); }
 std::vector<int> Tissue::freeNodes() const { return parts_->body_.freeNodes(); }
@@ -79,7 +79,7 @@ bool Tissue::isLate() const { return parts_->isLate(); }
 bool Tissue::areContactsSettled() const { return parts_->areContactsSettled(); }
 bool Tissue::mayShowUnsettled() const { return parts_->mayShowUnsettled(); }
 void Tissue::noteUnsettled() { parts_->noteUnsettled(); }
-bool Tissue::isLoading() const { return parts_->isLoading(); }
+bool Tissue::isLoading() const { return parts_->loads_.isLoading(); }
 void Tissue::loadOn(const OnIncrement& on_increment) { parts_->loadOn(on_increment); }
 PatchAnswer Tissue::answerOf(const std::string& name, const SolveReport& report) const {
   return parts_->answerOf(name, report);

@@ -58,7 +58,7 @@ SolveReport TissueParts::goNearer(std::vector<SpringAhead> ahead) {
 CutReport TissueParts::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
   CutReport report;
   report.pieces = body_.state().pieces;
-  report.solve = last_report_;
+  report.solve = outcome_.report;
   const BladeSurface surface(swept, body_.lattice().spacing());
   if (!mayReach(surface.bounds())) return report;
   const std::vector<Crossing> crossings = sparingCrumbs(
@@ -106,8 +106,8 @@ bool TissueParts::tearOut(const std::vector<int>& nodes) {
 // In time the shape gives way by and by: what goes next is seen after the next step.
 SolveReport TissueParts::tear() {
   dropLetGo();
-  if (tear_strains_.empty()) return last_report_;
-  SolveTotal total(last_report_);
+  if (tear_strains_.empty()) return outcome_.report;
+  SolveTotal total(outcome_.report);
   bool any = false;
   std::optional<TopologyChange> change;
   for (int round = 0; !isLate(); ++round) {
@@ -115,11 +115,11 @@ SolveReport TissueParts::tear() {
         tearingNext(body_.lattice(), body_.state(), tear_strains_);
     if (weakest.empty()) break;
     if (round == tuning::kMostTearRounds || (any && deadline_ && deadline_->isOver())) {
-      is_late_ = true;
+      outcome_.is_late = true;
       total.worsen(SolveStatus::kLate);
       break;
     }
-    if (patience_.cutsOff() && last_report_.status == SolveStatus::kUnconverged) break;
+    if (patience_.cutsOff() && outcome_.report.status == SolveStatus::kUnconverged) break;
     if (!any) change.emplace(*this, History::Kind::kTear);
     any = true;
     springs_torn_ += static_cast<int>(weakest.size());
@@ -127,9 +127,9 @@ SolveReport TissueParts::tear() {
     if (takesNoTime()) break;
     total.add(round_report);
   }
-  if (!any) return last_report_;
-  total.tellIn(last_report_);
-  return last_report_;
+  if (!any) return outcome_.report;
+  total.tellIn(outcome_.report);
+  return outcome_.report;
 }
 
 }  // namespace robot_tissue

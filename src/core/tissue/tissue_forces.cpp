@@ -50,9 +50,10 @@ bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
   return true;
 }
 
-// Of the first so many patches. What moves as one piece gives way otherwise than a node by itself.
-bool isInOne(const std::vector<LoadingPatch>& patches, std::size_t count, int node) {
-  const auto end = patches.begin() + static_cast<std::ptrdiff_t>(count);
+// Of named loads. What moves as one piece gives way otherwise than a node by itself.
+bool isInOne(const StandingLoads& loads, int node) {
+  const std::vector<LoadingPatch>& patches = loads.patches();
+  const auto end = patches.begin() + static_cast<std::ptrdiff_t>(loads.named());
   return std::any_of(patches.begin(), end, [node](const LoadingPatch& patch) {
     return std::find(patch.nodes.begin(), patch.nodes.end(), node) != patch.nodes.end();
   });
@@ -78,8 +79,8 @@ Vec3 TissueParts::weight() const {
 // them. Where the method does not visit all nodes: by the balance of all forces.
 Vec3 TissueParts::forceOfFixedNodes() const {
   if (method_->visited() != nullptr) {
-    const Vec3 left = is_as_solved_ ? method_->forceLeft() : Vec3(Vec3::Zero());
-    return left - weight() - forceOfPatches(last_report_);
+    const Vec3 left = outcome_.is_as_solved ? method_->forceLeft() : Vec3(Vec3::Zero());
+    return left - weight() - forceOfPatches(outcome_.report);
   }
   const CellSet& cells = body_.cells();
   std::vector<int> fixed;
@@ -91,7 +92,7 @@ Vec3 TissueParts::forceOfFixedNodes() const {
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     force -= on_fixed[i] + threads_->forceOn(fixed[i], body_.displacement());
   }
-  for (const LoadingPatch& patch : patches_) {
+  for (const LoadingPatch& patch : loads_.patches()) {
     for (const ContactSpring& spring : patch.contacts) {
       for (const NodeWeight& carrier : spring.carriers) {
         if (!isFixed(body_.lattice(), cells, carrier.node)) continue;
@@ -124,7 +125,7 @@ std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
   const CellSet& cells = body_.cells();
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
-    if (isInOne(patches_, named_patches_, share.node)) return std::nullopt;
+    if (isInOne(loads_, share.node)) return std::nullopt;
     if (!isUniformAround(cells, body_.model(), share.node)) return std::nullopt;
   }
   const Moduli moduli = body_.model().moduliAt(body_.state(), press.shares.front().node);

@@ -88,20 +88,15 @@ void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
 
 }  // namespace
 
-void dropNamed(const std::string& name, std::vector<LoadingPatch>& patches) {
-  const auto is_it = [&](const LoadingPatch& patch) { return patch.name == name; };
-  patches.erase(std::remove_if(patches.begin(), patches.end(), is_it), patches.end());
-}
-
 void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
-  requireOwnNodes(targets, patches_);
+  requireOwnNodes(targets, loads_.patches());
   const Shape before = shape();
   stopTime();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
-    ramps.push_back(makeRamp(target, standingPatch(target.name)));
+    ramps.push_back(makeRamp(target, loads_.find(target.name)));
   }
   const int increments = step.increments.value_or(wholeParts(foreseenSteps(ramps)));
   if (increments > most_increments) {
@@ -111,10 +106,10 @@ void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, in
                 "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
   for (LoadRamp& ramp : ramps) {
-    dropNamed(ramp.target.name, due_);
-    ramp.patch = place(ramp.start);
+    loads_.dropDue(ramp.target.name);
+    ramp.patch = loads_.place(ramp.start);
   }
-  leaveRimsToOwners(patches_);
+  leaveRimsToOwners(loads_.patches());
   if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
   if (step.increments) {
     stepLoads(ramps, increments, on_increment);
@@ -124,50 +119,42 @@ void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, in
 }
 
 void TissueParts::loadOn(const OnIncrement& on_increment) {
-  if (due_.empty()) return;
+  if (!loads_.isLoading()) return;
   stopTime();
   std::vector<LoadRamp> ramps;
-  for (const LoadingPatch& target : std::exchange(due_, {})) {
-    const LoadingPatch* standing = standingPatch(target.name);
+  for (const LoadingPatch& target : loads_.takeDue()) {
+    const LoadingPatch* standing = loads_.find(target.name);
     if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
   }
   if (ramps.empty()) return;
-  for (LoadRamp& ramp : ramps) ramp.patch = place(ramp.start);
-  leaveRimsToOwners(patches_);
+  for (LoadRamp& ramp : ramps) ramp.patch = loads_.place(ramp.start);
+  leaveRimsToOwners(loads_.patches());
   stepLoadsByItself(ramps, on_increment);
 }
 
 SolveReport TissueParts::release(const std::vector<std::string>& names) {
-  const auto named = [&](const std::string& name) {
-    const auto end = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-    return std::find_if(patches_.begin(), end,
-                        [&](const LoadingPatch& patch) { return patch.name == name; });
-  };
   for (const std::string& name : names) {
-    if (named(name) == patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)) {
+    if (loads_.find(name) == nullptr) {
       refusePatch(name, "no standing patch has this name", "the name of a patch that was loaded");
     }
   }
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
-    const auto patch = named(name);
-    const auto index = static_cast<std::size_t>(patch - patches_.begin());
-    std::vector<PatchAnswer>& answers = last_report_.patches;
-    if (index < answers.size()) answers.erase(answers.begin() + (patch - patches_.begin()));
-    patches_.erase(patch);
-    --named_patches_;
-    dropNamed(name, due_);
+    const std::size_t number = *loads_.numberOf(name);
+    std::vector<PatchAnswer>& answers = outcome_.report.patches;
+    if (number < answers.size()) {
+      answers.erase(answers.begin() + static_cast<std::ptrdiff_t>(number));
+    }
+    loads_.remove(number);
   }
   if (takesNoTime()) return asItIs();
-  const bool unique = method_->findsEquilibrium() && patches_.size() > named_patches_;
+  const bool unique = method_->findsEquilibrium() && !isUntouched();
   unique ? solve(body_.freeNodes()) : solveFromRest();
   return tear();
 }
 
 PatchAnswer TissueParts::answerOf(const std::string& name, const SolveReport& report) const {
-  for (std::size_t index = 0; index < std::min(named_patches_, report.patches.size()); ++index) {
-    if (patches_[index].name == name) return report.patches[index];
-  }
-  return {};
+  const std::optional<std::size_t> number = loads_.numberOf(name);
+  return number && *number < report.patches.size() ? report.patches[*number] : PatchAnswer();
 }
 
 LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
@@ -220,25 +207,6 @@ LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
   return patch;
 }
 
-// Index of the patch among the standing ones; a new one comes after the other named ones, with no
-// load yet.
-std::size_t TissueParts::place(const LoadingPatch& patch) {
-  for (std::size_t index = 0; index < named_patches_; ++index) {
-    if (patches_[index].name != patch.name) continue;
-    patches_[index] = patch;
-    return index;
-  }
-  patches_.insert(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patch);
-  return named_patches_++;
-}
-
-const LoadingPatch* TissueParts::standingPatch(const std::string& name) const {
-  for (std::size_t index = 0; index < named_patches_; ++index) {
-    if (patches_[index].name == name) return &patches_[index];
-  }
-  return nullptr;
-}
-
 // Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
 LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
   LoadRamp ramp;
@@ -265,7 +233,8 @@ LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* s
 Vec3 TissueParts::patchForce(const LoadingPatch& patch) const {
   std::vector<Vec3> forces(body_.displacement().size(), Vec3::Zero());
   for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
-  for (const LoadingPatch& other : patches_) addContactForces(other, body_.displacement(), forces);
+  for (const LoadingPatch& other : loads_.patches())
+    addContactForces(other, body_.displacement(), forces);
   return robot_tissue::answerOf(body_.lattice(), body_.state(), patch, onHardNodes(patch, forces))
       .force;
 }

@@ -68,32 +68,28 @@ SolveReport TissueParts::settle() {
 
 SolveReport TissueParts::follow(std::vector<LoadingPatch> tool_patches,
                                 const std::vector<int>& disturbed, Bedding bedding) {
-  const auto first_tool = patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_);
-  const bool one_left = std::any_of(first_tool, patches_.end(), [&](const LoadingPatch& earlier) {
-    return std::none_of(tool_patches.begin(), tool_patches.end(),
-                        [&](const LoadingPatch& now) { return now.name == earlier.name; });
-  });
-  putToolPatches(std::move(tool_patches));
-  const bool last_left = one_left && patches_.size() == named_patches_;
+  const bool one_left = loads_.isOneLeftBy(tool_patches);
+  loads_.putToolPatches(std::move(tool_patches));
+  const bool last_left = one_left && isUntouched();
   const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
   if (in_time_) return in_time_step_ ? solve(disturbed) : asItIs();
   const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
   if (from_rest) return solveFromRest();
-  const bool one_there = patches_.size() > named_patches_;
+  const bool one_there = !isUntouched();
   const SolveReport report = solve(disturbed);
   // The tissue left the last tool behind in the solve.
-  const bool one_lost = one_there && patches_.size() == named_patches_;
+  const bool one_lost = one_there && isUntouched();
   return one_lost && returns ? solveFromRest() : report;
 }
 
 TissueParts::Shape TissueParts::shape() const {
   return {body_.displacements(),
           body_.state().cells,
-          patches_,
-          named_patches_,
-          last_report_,
-          is_late_,
-          are_contacts_settled_,
+          loads_.patches(),
+          loads_.named(),
+          outcome_.report,
+          outcome_.is_late,
+          outcome_.are_contacts_settled,
           time_ ? time_->motion() : nullptr,
           in_time_,
           threads_->whole()};
@@ -104,15 +100,14 @@ void TissueParts::restore(const Shape& shape) {
   in_time_ = shape.in_time;
   in_time_step_ = expects_time_step_ = false;
   if (time_) body_.model().setInertia(nullptr);  // of the step that is given up
-  is_as_solved_ = false;
+  outcome_.is_as_solved = false;
   LatticeState& state = body_.change();
   state.displacement = carriedOver(*shape.cells, *shape.displacement, *state.cells);
   restRemoved(state);
-  patches_ = shape.patches;
-  named_patches_ = shape.named_patches;
-  last_report_ = shape.report;
-  is_late_ = shape.is_late;
-  are_contacts_settled_ = shape.are_contacts_settled;
+  loads_.restore(shape.patches, shape.named_patches);
+  outcome_.report = shape.report;
+  outcome_.is_late = shape.is_late;
+  outcome_.are_contacts_settled = shape.are_contacts_settled;
   threads_->mend(shape.whole_sutures);
   deformSurface();
 }
@@ -145,13 +140,8 @@ void TissueParts::reset() {
   method_->forget();
   body_.change() = body_.lattice().restState();
   threads_->clear();
-  patches_.clear();
-  named_patches_ = 0;
-  due_.clear();
-  disturbed_.clear();
-  last_report_ = SolveReport();
-  is_late_ = is_as_solved_ = false;
-  are_contacts_settled_ = true;
+  loads_.take({});
+  outcome_ = SolveOutcome();
   springs_torn_ = 0;
   history_->clear();
   if (was_cut) {
@@ -163,10 +153,6 @@ void TissueParts::reset() {
   wakeUnderBodyLoad();
 }
 
-void TissueParts::noteUnconverged() {
-  last_report_.status = std::max(last_report_.status, SolveStatus::kUnconverged);
-}
-
 void TissueParts::expectTouch() {
   if (!hasTime()) method_->expect(body_.state());
 }
@@ -176,38 +162,19 @@ void TissueParts::renewContacts() {
   if (contact_update_ == nullptr) return;
   std::vector<LoadingPatch> of_tools;
   contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved, ContactUpdate::Round::kNext);
-  putToolPatches(std::move(of_tools));  // none, too: those of before may be on ghosts that are gone
-}
-
-void TissueParts::putToolPatches(std::vector<LoadingPatch> of_tools) {
-  patches_.erase(patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_), patches_.end());
-  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
+  loads_.putToolPatches(
+      std::move(of_tools));  // none, too: those of before may be on ghosts that are gone
 }
 
 SolveReport TissueParts::solve(const std::vector<int>& disturbed) {
   const Patience::LoadStep load_step(patience_);
-  disturb(disturbed);
-  SolveReport report = solveAndBreak(disturbed_);
-  if (in_time_step_) is_late_ = false;  // what it left, the next time step takes up
-  if (!is_late_) disturbed_.clear();
-  rememberDisturbed();
-  last_report_.volume_ratio = report.volume_ratio = body_.volumeRatio();
+  outcome_.disturb(disturbed);
+  SolveReport report = solveAndBreak(outcome_.disturbed);
+  if (in_time_step_) outcome_.is_late = false;  // what it left, the next time step takes up
+  if (!outcome_.is_late) outcome_.disturbed.clear();
+  outcome_.forgetGhosts(body_.cells());
+  outcome_.report.volume_ratio = report.volume_ratio = body_.volumeRatio();
   return report;
-}
-
-void TissueParts::disturb(const std::vector<int>& nodes) {
-  if (disturbed_.empty()) {
-    disturbed_ = nodes;
-    return;
-  }
-  disturbed_.insert(disturbed_.end(), nodes.begin(), nodes.end());
-  std::sort(disturbed_.begin(), disturbed_.end());
-  disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
-}
-
-// For the next solve: ghosts may go meanwhile.
-void TissueParts::rememberDisturbed() {
-  for (int& node : disturbed_) node = body_.cells().original(node);
 }
 
 SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
@@ -215,7 +182,8 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
   // it saves a method that stays finite.
   const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
   const Displacements last_good = keeps_shape ? body_.displacements() : nullptr;
-  const std::vector<LoadingPatch> last_good_patches = patches_;
+  std::vector<LoadingPatch>& patches = loads_.patches();
+  const std::vector<LoadingPatch> last_good_patches = patches;
   LatticeState& state = body_.change();
   limitWays();
   method_->limitTime(mostMs());
@@ -230,14 +198,14 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
        std::all_of(state.displacement.begin(), state.displacement.end(), isFinite));
   if (!is_finite) {
     if (last_good) state.displacement = *last_good;
-    patches_ = last_good_patches;
+    patches = last_good_patches;
     report = SolveReport();
     report.status = SolveStatus::kUnconverged;
-    report.patches.resize(patches_.size());
+    report.patches.resize(patches.size());
   }
-  is_late_ = report.status == SolveStatus::kLate;
-  is_as_solved_ = is_finite;
-  are_contacts_settled_ = true;
+  outcome_.is_late = report.status == SolveStatus::kLate;
+  outcome_.is_as_solved = is_finite;
+  outcome_.are_contacts_settled = true;
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.
   if (converged && isUntouched()) {
@@ -246,45 +214,46 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
     patience_.note(report.iterations, converged, solved(), cost);
   }
   describeShape(report);
-  last_report_ = report;
+  outcome_.report = report;
   return report;
 }
 
 // Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
 // holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
 SolveReport TissueParts::solveFromRest() {
-  const std::vector<LoadingPatch> standing = patches_;
+  const std::vector<LoadingPatch> standing = loads_.patches();
   method_->forget();
   std::vector<Vec3>& displacement = body_.change().displacement;
   std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
   SolveReport report;
   const bool sutured = threads_->anyWhole();
   if (body_.hasBodyLoad() || sutured) {
-    const std::size_t named = std::exchange(named_patches_, 0);
-    patches_.clear();
+    const std::size_t named = loads_.named();
+    loads_.restore({}, 0);
     report = settleFromRest();
-    patches_.insert(patches_.begin(), standing.begin(), standing.end());
-    named_patches_ = named;
+    loads_.putBack(standing, named);
   }
   std::vector<LoadRamp> ramps;
   for (std::size_t patch = 0; patch < standing.size(); ++patch) {
     ramps.push_back(makeRamp(standing[patch], nullptr));
     ramps.back().patch = patch;
     ramps.back().start.force.setZero();
-    patches_[patch] = ramps.back().start;
+    loads_.patches()[patch] = ramps.back().start;
   }
   if (!ramps.empty()) {
     report = stepLoadsByItself(ramps, {});
   } else if (!body_.hasBodyLoad() && !sutured) {
     describeShape(report);
     report.volume_ratio = body_.volumeRatio();
-    last_report_ = report;
-    is_late_ = false;
+    outcome_.report = report;
+    outcome_.is_late = false;
   }
   return report;
 }
 
-void TissueParts::deformSurface(Body::OffPoint of_tools) { body_.deform(patches_, of_tools); }
+void TissueParts::deformSurface(Body::OffPoint of_tools) {
+  body_.deform(loads_.patches(), of_tools);
+}
 
 // On other cells: what threads and ties hang on is found there.
 void TissueParts::rebuildSurface() {

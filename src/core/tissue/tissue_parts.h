@@ -10,6 +10,8 @@
 
 #include "robot_tissue/core/tissue.h"
 #include "tissue/body.h"
+#include "tissue/solve_outcome.h"
+#include "tissue/standing_loads.h"
 
 namespace robot_tissue {
 
@@ -43,21 +45,12 @@ struct TissueParts {
   // Numbers of those that were taken out, as nothing held them any more (tissue.free_pieces).
   const std::vector<int>& droppedPieces() const;
   // No tool touched it in the last solve.
-  bool isUntouched() const { return patches_.size() == named_patches_; }
+  bool isUntouched() const { return loads_.isUntouched(); }
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
   // Of all its solves.
   Patience& patience() { return patience_; }
   const Patience& patience() const { return patience_; }
-  // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
-  const std::vector<LoadingPatch>& patches() const { return patches_; }
-  // How many of patches(), counted from the first, are named loads; the rest are the tools'.
-  std::size_t namedPatches() const { return named_patches_; }
-
-  // What the method said of the present shape.
-  const SolveReport& lastReport() const { return last_report_; }
-  // Of a shape that cannot be right for a reason that the tissue does not know.
-  void noteUnconverged();
   // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
   // its tool.
   Vec3 nodeForce(int node) const;
@@ -117,13 +110,12 @@ struct TissueParts {
             int most_increments = 100000);
   // There was no time to come to balance, whatever else is to be said of the shape, or to bring
   // named patches to their loads.
-  bool isLate() const { return is_late_ || isLoading(); }
+  bool isLate() const { return outcome_.is_late || loads_.isLoading(); }
   // Else the shape is in balance, but was shown before its contacts were settled (LoadStepBound).
-  bool areContactsSettled() const { return are_contacts_settled_ || isUntouched(); }
+  bool areContactsSettled() const { return outcome_.are_contacts_settled || isUntouched(); }
   // Whether that may be, with the contacts as they are.
   bool mayShowUnsettled() const;
   void noteUnsettled();
-  bool isLoading() const { return !due_.empty(); }
   // Brings those patches on.
   void loadOn(const OnIncrement& on_increment = {});
   // What a named patch met in the last solve; zero when there is none of that name.
@@ -193,8 +185,6 @@ struct TissueParts {
   SolveReport loadState(const SavedState& saved);
 
   SolveReport solve(const std::vector<int>& disturbed);
-  void disturb(const std::vector<int>& nodes);
-  void rememberDisturbed();
   SolveReport severAndBalance(const std::vector<Crossing>& crossings,
                               const BladeSurface* blade = nullptr);
   SolveReport goNearer(std::vector<SpringAhead> ahead);
@@ -224,7 +214,6 @@ struct TissueParts {
   const std::vector<TissuePiece>& piecesAtRest() const;
   void dropFreed();
   void dropLetGo();
-  std::vector<LoadingPatch> namedLoads() const;
   SolveReport changeTopology(const std::vector<int>& disturbed);
   bool hasTimeForLevels(double before_ms) const;
   SolveReport leaveToNextCall(const std::vector<int>& disturbed);
@@ -241,7 +230,6 @@ struct TissueParts {
   void switchAside();
   void limitWays();
   bool goBack(const Rounds& rounds);
-  void putToolPatches(std::vector<LoadingPatch> of_tools);
   bool isBounded() const;
   bool isLookForNextCall() const;
   double mostMs() const;
@@ -263,9 +251,7 @@ struct TissueParts {
   void describeShape(SolveReport& report);
   void deformSurface(Body::OffPoint of_tools = drawnOff);
   LoadingPatch makePatch(const PatchConfig& config) const;
-  std::size_t place(const LoadingPatch& patch);
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
-  const LoadingPatch* standingPatch(const std::string& name) const;
   // load_stepping.cpp; reports are the last increment's, with the worst status of all.
   bool stopsOnTheWay(const std::vector<LoadRamp>& ramps);
   double foreseenSteps(const std::vector<LoadRamp>& ramps) const;
@@ -296,14 +282,8 @@ struct TissueParts {
   mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
   mutable std::vector<double> volume_at_node_;       // of cells, per node of the lattice (m^3)
   std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
-  std::vector<LoadingPatch> patches_;
-  std::size_t named_patches_ = 0;
-  std::vector<LoadingPatch> due_;  // targets of named patches that had no time to come there
-  std::vector<int> disturbed_;     // by what the last solve had no time to balance
-  SolveReport last_report_;
-  bool is_late_ = false;       // likewise
-  bool is_as_solved_ = false;  // the shape is the one that the method came to last
-  bool are_contacts_settled_ = true;
+  StandingLoads loads_;
+  SolveOutcome outcome_;
   Patience patience_;
   double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
   std::optional<Deadline> deadline_;

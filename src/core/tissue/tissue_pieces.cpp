@@ -119,7 +119,7 @@ std::vector<char> TissueParts::heldPieces() const {
   for (std::size_t number = 0; number < held.size(); ++number) {
     if (piecesAtRest()[number].fixed) held[at(joined.lowest(static_cast<int>(number)))] = 1;
   }
-  for (const LoadingPatch& patch : patches_) {
+  for (const LoadingPatch& patch : loads_.patches()) {
     std::for_each(patch.nodes.begin(), patch.nodes.end(), hold);
     for (const ContactSpring& contact : patch.contacts) {
       for (const NodeWeight& carrier : contact.carriers) hold(carrier.node);
@@ -162,14 +162,14 @@ bool TissueParts::holdHanging() {
   patch.nodes = hangingNodes();
   if (patch.nodes.empty()) return false;
   for (const int node : patch.nodes) patch.displacement.push_back(body_.displacement()[at(node)]);
-  patches_.push_back(std::move(patch));
+  loads_.patches().push_back(std::move(patch));
   return true;
 }
 
 // What would have to hold them is no answer to a load.
 void TissueParts::letHangingBe(SolveReport& report) {
-  patches_.pop_back();
-  report.patches.resize(patches_.size());
+  loads_.patches().pop_back();
+  report.patches.resize(loads_.patches().size());
 }
 
 // Those that were held when this was asked last, or are new, and are free now. While nothing holds

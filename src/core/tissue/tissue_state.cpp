@@ -88,9 +88,8 @@ bool TissueParts::retune(const TissueConfig& tissue, const SolverConfig& solver)
   const std::unique_ptr<TissueModel> earlier = body_.remake(tissue);
   method_ = makeMethod(solver, body_.lattice(), body_.model());
   renewTies();
-  for (auto* patches : {&patches_, &due_}) {
-    for (LoadingPatch& patch : *patches) scaleRim(body_.state(), *earlier, body_.model(), patch);
-  }
+  loads_.forEach(
+      [&](LoadingPatch& patch) { scaleRim(body_.state(), *earlier, body_.model(), patch); });
   history_->forgetStates();
   if (time_) time_->setTolerance(solver.tolerance);
   return true;
@@ -100,11 +99,10 @@ SavedState TissueParts::stateNow() const {
   SavedState saved;
   saved.lattice = body_.state();
   saved.pieces = piece_numbers_->names();
-  saved.loads.assign(patches_.begin(),
-                     patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_));
+  saved.loads = loads_.namedLoads();
   saved.sutures = threads_->all();
-  saved.report = last_report_;
-  saved.report.patches.resize(named_patches_);  // without the tools
+  saved.report = outcome_.report;
+  saved.report.patches.resize(loads_.named());  // without the tools
   saved.in_balance = isUntouched() && !isLate() && !isMoving();
   return saved;
 }
@@ -130,36 +128,34 @@ void TissueParts::take(const SavedState& saved) {
   endAside();
   other_method_.reset();
   method_->forget();
-  due_.clear();
-  disturbed_.clear();
-  is_late_ = false;
+  outcome_.disturbed.clear();
+  outcome_.is_late = false;
   springs_torn_ = 0;
   body_.change() = saved.lattice;
-  patches_ = saved.loads;
-  named_patches_ = patches_.size();
+  loads_.take(saved.loads);
   history_->clear();
   body_.weigh();
   threads_->clear();
   rebuildSurface();
   threads_->take(saved.sutures);
   takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state(), saved.pieces));
-  last_report_ = saved.report;
+  outcome_.report = saved.report;
   deformSurface();
 }
 
 void TissueParts::takeOver(const TissueParts& other) {
   take(other.stateNow());
-  last_report_ = SolveReport();
-  last_report_.patches.resize(patches_.size());
+  outcome_.report = SolveReport();
+  outcome_.report.patches.resize(loads_.patches().size());
   wakeUnderBodyLoad();
 }
 
 SolveReport TissueParts::loadState(const SavedState& saved) {
   take(saved);
   if (!saved.in_balance) return solve(body_.freeNodes());
-  last_report_.inverted_cells = countInvertedCells(body_.lattice(), body_.state());
-  last_report_.volume_ratio = body_.volumeRatio();
-  return last_report_;
+  outcome_.report.inverted_cells = countInvertedCells(body_.lattice(), body_.state());
+  outcome_.report.volume_ratio = body_.volumeRatio();
+  return outcome_.report;
 }
 
 }  // namespace robot_tissue

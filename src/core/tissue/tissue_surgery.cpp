@@ -39,24 +39,6 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   return state;
 }
 
-// Drops the nodes of the patch that are gone; of ghosts, which tools' patches may be on, the
-// patches that follow tell.
-void loseNodes(const LatticeState& state, LoadingPatch& patch) {
-  std::vector<int> nodes;
-  std::vector<Vec3> displacement;
-  for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
-    if (isGone(state, patch.nodes[i])) continue;
-    nodes.push_back(patch.nodes[i]);
-    if (!byForce(patch)) displacement.push_back(patch.displacement[i]);
-  }
-  patch.nodes = std::move(nodes);
-  patch.displacement = std::move(displacement);
-  patch.rim.erase(
-      std::remove_if(patch.rim.begin(), patch.rim.end(),
-                     [&](const RimSpring& spring) { return isGone(state, spring.node); }),
-      patch.rim.end());
-}
-
 // What these patches were told to answer when they were the earlier ones; nothing of new ones.
 std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
                                 const std::vector<PatchAnswer>& answers,
@@ -72,25 +54,21 @@ std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
 
 }  // namespace
 
-std::vector<LoadingPatch> TissueParts::namedLoads() const {
-  return {patches_.begin(), patches_.begin() + static_cast<std::ptrdiff_t>(named_patches_)};
-}
-
 // Balances what other cells and springs leave. Until contacts are renewed, tools' springs are of
 // the nodes that there were.
 SolveReport TissueParts::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
   body_.change();
-  is_as_solved_ = false;
+  outcome_.is_as_solved = false;
   if (takesNoTime()) body_.model().setInertia(nullptr);  // the last step's was of other nodes
   rebuildSurface();
   deformSurface(
       [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
-  const std::vector<LoadingPatch> earlier = patches_;
+  const std::vector<LoadingPatch> earlier = loads_.patches();
   renewContacts();
   if (takesNoTime()) return asItIs();
   if (hasTimeForLevels(before_ms)) return solve(disturbed);
-  last_report_.patches = asTold(earlier, last_report_.patches, patches_);
+  outcome_.report.patches = asTold(earlier, outcome_.report.patches, loads_.patches());
   return leaveToNextCall(disturbed);
 }
 
@@ -103,14 +81,14 @@ bool TissueParts::hasTimeForLevels(double before_ms) const {
 
 // The shape stays, to be balanced by the next solve.
 SolveReport TissueParts::leaveToNextCall(const std::vector<int>& disturbed) {
-  disturb(disturbed);
-  rememberDisturbed();
-  is_late_ = true;
-  last_report_.status = std::max(last_report_.status, SolveStatus::kLate);
-  last_report_.iterations = 0;
-  last_report_.wall_ms = 0.0;
-  last_report_.volume_ratio = body_.volumeRatio();
-  return last_report_;
+  outcome_.disturb(disturbed);
+  outcome_.forgetGhosts(body_.cells());
+  outcome_.is_late = true;
+  outcome_.worsen(SolveStatus::kLate);
+  outcome_.report.iterations = 0;
+  outcome_.report.wall_ms = 0.0;
+  outcome_.report.volume_ratio = body_.volumeRatio();
+  return outcome_.report;
 }
 
 CutReport TissueParts::cut(const std::vector<Vec3>& corners) {
@@ -119,7 +97,7 @@ CutReport TissueParts::cut(const std::vector<Vec3>& corners) {
   CutReport report;
   report.springs_cut = static_cast<int>(crossing.size());
   report.pieces = body_.state().pieces;
-  report.solve = last_report_;
+  report.solve = outcome_.report;
   if (crossing.empty()) return report;
   const TopologyChange change(*this, History::Kind::kByItself);
   const int torn = springs_torn_;
@@ -150,7 +128,7 @@ RemoveReport TissueParts::drill(const CoveredSpace& space, Stroke stroke) {
 RemoveReport TissueParts::takeAway(const std::vector<std::uint8_t>& within, Stroke stroke) {
   RemoveReport report;
   report.pieces = body_.state().pieces;
-  report.solve = last_report_;
+  report.solve = outcome_.report;
   if (within.empty()) return report;
   const std::vector<std::uint8_t> cells = withCrumbs(body_.lattice(), body_.state(), within);
   const bool leaves_some = std::any_of(
@@ -175,23 +153,10 @@ RemoveReport TissueParts::takeAway(const std::vector<std::uint8_t>& within, Stro
 
 // Names of those of which nothing is left.
 std::vector<std::string> TissueParts::dropLostLoads() {
-  std::vector<std::string> lost;
-  std::vector<PatchAnswer>& answers = last_report_.patches;
-  for (std::size_t i = named_patches_; i-- > 0;) {
-    loseNodes(body_.state(), patches_[i]);
-    if (!patches_[i].nodes.empty()) continue;
-    lost.push_back(patches_[i].name);
-    const auto place = static_cast<std::ptrdiff_t>(i);
-    if (i < answers.size()) answers.erase(answers.begin() + place);
-    patches_.erase(patches_.begin() + place);
-    --named_patches_;
-  }
-  for (std::size_t i = named_patches_; i < patches_.size(); ++i)
-    loseNodes(body_.state(), patches_[i]);
-  for (LoadingPatch& target : due_) loseNodes(body_.state(), target);
-  for (const std::string& name : lost) dropNamed(name, due_);
+  std::vector<std::string> lost = loads_.loseGoneNodes(body_.state(), outcome_.report.patches);
   const auto is_gone = [&](int node) { return isGone(body_.state(), node); };
-  disturbed_.erase(std::remove_if(disturbed_.begin(), disturbed_.end(), is_gone), disturbed_.end());
+  std::vector<int>& disturbed = outcome_.disturbed;
+  disturbed.erase(std::remove_if(disturbed.begin(), disturbed.end(), is_gone), disturbed.end());
   return lost;
 }
 
@@ -205,10 +170,10 @@ SolveReport TissueParts::undo(int count) {
   }
   const std::size_t target = history_->size() - static_cast<std::size_t>(count);
   const History::Entry entry = history_->before(target);
-  const bool same_loads = history_->hasLoadsSince(target, namedLoads());
+  const bool same_loads = history_->hasLoadsSince(target, loads_.namedLoads());
   std::shared_ptr<const SavedState> saved;
   // What is late of the change itself goes with it.
-  if (isUntouched() && !isLoading() && same_loads) saved = entry.state;
+  if (isUntouched() && !loads_.isLoading() && same_loads) saved = entry.state;
   if (saved && saved->in_balance) {
     History kept = *history_;
     kept.dropFrom(target);

@@ -24,11 +24,11 @@ class TissueParts::TopologyChange {
                                tissue_.threads_->all(),
                                tissue_.piece_numbers_,
                                std::make_shared<const SavedState>(tissue_.stateNow())},
-                              tissue_.namedLoads());
+                              tissue_.loads_.namedLoads());
     }
   }
   ~TopologyChange() {
-    if (is_outermost_) tissue_.history_->end(tissue_.namedLoads());
+    if (is_outermost_) tissue_.history_->end(tissue_.loads_.namedLoads());
   }
   TopologyChange(const TopologyChange&) = delete;
   TopologyChange& operator=(const TopologyChange&) = delete;

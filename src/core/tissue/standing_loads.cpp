@@ -1,0 +1,119 @@
+#include "tissue/standing_loads.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace robot_tissue {
+namespace {
+
+// Drops the nodes of the patch that are gone; of ghosts, which tools' patches may be on, the
+// patches that follow tell.
+void loseNodes(const LatticeState& state, LoadingPatch& patch) {
+  std::vector<int> nodes;
+  std::vector<Vec3> displacement;
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
+    if (isGone(state, patch.nodes[i])) continue;
+    nodes.push_back(patch.nodes[i]);
+    if (!byForce(patch)) displacement.push_back(patch.displacement[i]);
+  }
+  patch.nodes = std::move(nodes);
+  patch.displacement = std::move(displacement);
+  patch.rim.erase(
+      std::remove_if(patch.rim.begin(), patch.rim.end(),
+                     [&](const RimSpring& spring) { return isGone(state, spring.node); }),
+      patch.rim.end());
+}
+
+std::ptrdiff_t offset(std::size_t number) { return static_cast<std::ptrdiff_t>(number); }
+
+}  // namespace
+
+std::vector<LoadingPatch> StandingLoads::namedLoads() const {
+  return {patches_.begin(), patches_.begin() + offset(named_)};
+}
+
+std::optional<std::size_t> StandingLoads::numberOf(const std::string& name) const {
+  for (std::size_t number = 0; number < named_; ++number) {
+    if (patches_[number].name == name) return number;
+  }
+  return std::nullopt;
+}
+
+const LoadingPatch* StandingLoads::find(const std::string& name) const {
+  const std::optional<std::size_t> number = numberOf(name);
+  return number ? &patches_[*number] : nullptr;
+}
+
+bool StandingLoads::isOneLeftBy(const std::vector<LoadingPatch>& of_tools) const {
+  return std::any_of(
+      patches_.begin() + offset(named_), patches_.end(), [&](const LoadingPatch& earlier) {
+        return std::none_of(of_tools.begin(), of_tools.end(),
+                            [&](const LoadingPatch& now) { return now.name == earlier.name; });
+      });
+}
+
+std::size_t StandingLoads::place(const LoadingPatch& patch) {
+  if (const std::optional<std::size_t> number = numberOf(patch.name)) {
+    patches_[*number] = patch;
+    return *number;
+  }
+  patches_.insert(patches_.begin() + offset(named_), patch);
+  return named_++;
+}
+
+void StandingLoads::putToolPatches(std::vector<LoadingPatch> of_tools) {
+  patches_.erase(patches_.begin() + offset(named_), patches_.end());
+  std::move(of_tools.begin(), of_tools.end(), std::back_inserter(patches_));
+}
+
+void StandingLoads::remove(std::size_t number) {
+  dropDue(patches_[number].name);
+  patches_.erase(patches_.begin() + offset(number));
+  --named_;
+}
+
+void StandingLoads::take(std::vector<LoadingPatch> named_loads) {
+  patches_ = std::move(named_loads);
+  named_ = patches_.size();
+  due_.clear();
+}
+
+void StandingLoads::restore(const std::vector<LoadingPatch>& patches, std::size_t named) {
+  patches_ = patches;
+  named_ = named;
+}
+
+void StandingLoads::putBack(const std::vector<LoadingPatch>& before, std::size_t named) {
+  patches_.insert(patches_.begin(), before.begin(), before.end());
+  named_ = named;
+}
+
+std::vector<std::string> StandingLoads::loseGoneNodes(const LatticeState& state,
+                                                      std::vector<PatchAnswer>& answers) {
+  forEach([&](LoadingPatch& patch) { loseNodes(state, patch); });
+  std::vector<std::string> lost;
+  for (std::size_t number = named_; number-- > 0;) {
+    if (!patches_[number].nodes.empty()) continue;
+    lost.push_back(patches_[number].name);
+    if (number < answers.size()) answers.erase(answers.begin() + offset(number));
+    remove(number);
+  }
+  return lost;
+}
+
+void StandingLoads::forEach(const std::function<void(LoadingPatch&)>& change) {
+  std::for_each(patches_.begin(), patches_.end(), change);
+  std::for_each(due_.begin(), due_.end(), change);
+}
+
+void StandingLoads::makeDue(const LoadingPatch& target) {
+  dropDue(target.name);
+  due_.push_back(target);
+}
+
+void StandingLoads::dropDue(const std::string& name) {
+  const auto is_it = [&](const LoadingPatch& patch) { return patch.name == name; };
+  due_.erase(std::remove_if(due_.begin(), due_.end(), is_it), due_.end());
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,58 @@
+// The patches that act on the tissue: named loads, then the tools' patches; and named loads that
+// had no time to come to where they go. Lengths in m, forces in N, in the tissue's frame.
+//
+// The order is that of SolveReport::patches. No two named loads have one name, or one node.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot_tissue/core/lattice_state.h"
+#include "robot_tissue/core/loading_patch.h"
+
+namespace robot_tissue {
+
+class StandingLoads {
+ public:
+  const std::vector<LoadingPatch>& patches() const { return patches_; }
+  // For a solve, which moves those by force, and may have others behind them while it lasts.
+  std::vector<LoadingPatch>& patches() { return patches_; }
+  std::size_t named() const { return named_; }  // how many of them, from the first on
+  bool isUntouched() const { return patches_.size() == named_; }
+  std::vector<LoadingPatch> namedLoads() const;
+  std::optional<std::size_t> numberOf(const std::string& name) const;  // of a named load
+  const LoadingPatch* find(const std::string& name) const;             // null: there is none
+  // One of the tools that touch has no patch among these.
+  bool isOneLeftBy(const std::vector<LoadingPatch>& of_tools) const;
+
+  // In the place of the named load of that name, or behind all of these. Its number.
+  std::size_t place(const LoadingPatch& patch);
+  void putToolPatches(std::vector<LoadingPatch> of_tools);  // in the place of the earlier ones
+  void remove(std::size_t number);                          // a named load, with what is due of it
+  void take(std::vector<LoadingPatch> named_loads);         // these alone stand
+  void restore(const std::vector<LoadingPatch>& patches, std::size_t named);
+  // Puts them before what stands.
+  void putBack(const std::vector<LoadingPatch>& before, std::size_t named);
+  // Drops nodes that are gone, and named loads that have no other, with their answers. The names of
+  // those.
+  std::vector<std::string> loseGoneNodes(const LatticeState& state,
+                                         std::vector<PatchAnswer>& answers);
+  void forEach(const std::function<void(LoadingPatch&)>& change);  // those that are due, too
+
+  // Targets of named loads that had no time to come there.
+  bool isLoading() const { return !due_.empty(); }
+  void makeDue(const LoadingPatch& target);
+  void dropDue(const std::string& name);
+  std::vector<LoadingPatch> takeDue() { return std::exchange(due_, {}); }
+
+ private:
+  std::vector<LoadingPatch> patches_;
+  std::size_t named_ = 0;
+  std::vector<LoadingPatch> due_;
+};
+
+}  // namespace robot_tissue
