@@ -13,16 +13,6 @@
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-// The least that another solve would take, of one iteration, about.
-double shortestMs(const SolveReport& solve) {
-  const double ends = tuning::kIterationsOfEnds;
-  return solve.wall_ms * (1.0 + ends) / (std::max(1, solve.iterations) + ends);
-}
-
-}  // namespace
-
 struct TissueParts::Rounds {
   explicit Rounds(const Displacements& start) : before(start), gain(start) {}
 
@@ -45,7 +35,7 @@ struct TissueParts::RoundShape {
 };
 
 SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
-  method_->beginStep(body_.state());
+  methods_.now().beginStep(body_.state());
   if (contact_update_ == nullptr) return solveOnce(disturbed);
   Rounds rounds(body_.displacements());
   rounds.driven_before = drivenPlaces(loads_.patches());
@@ -68,20 +58,20 @@ SolveReport TissueParts::solveInRounds(const std::vector<int>& disturbed) {
 // contacts are renewed, and the report tells what is left open. Where it is to be solved again, the
 // patches are those for it.
 TissueParts::RoundDecision TissueParts::endRound(Rounds& rounds) {
-  const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-  shortest_ms_ = shortestMs(rounds.of_round);
-  const bool no_time = isBounded() && left_ms <= 2.0 * look_ms_ + shortest_ms_;
-  if (rounds.count > 1 && isLookForNextCall()) {
+  const double left_ms = bounds_.leftMs();
+  bounds_.noteSolve(rounds.of_round);
+  const bool no_time = bounds_.isBounded() && bounds_.isTooShort(left_ms);
+  if (rounds.count > 1 && bounds_.isLookForNextCall()) {
     outcome_.is_late = true;
     worsen(rounds, SolveStatus::kUnconverged);
     return RoundDecision::kDone;
   }
-  const RoundShape shape = takeShape(rounds, no_time || patience_.bound().isSpent());
+  const RoundShape shape = takeShape(rounds, no_time || bounds_.patience().bound().isSpent());
   std::vector<LoadingPatch> of_tools;
   const bool renewed = contact_update_->renew(
       of_tools, shape.whole ? ContactUpdate::Shape::kSolved : ContactUpdate::Shape::kOnItsWay,
       shape.last ? ContactUpdate::Round::kLast : ContactUpdate::Round::kNext);
-  if (isBounded()) noteLook(left_ms - deadline_->leftMs());
+  if (bounds_.isBounded()) bounds_.noteLook(left_ms - bounds_.leftMs());
   const bool is_settled = !renewed && !shape.is_on_its_way && (shape.last || !shape.hurried);
   if (is_settled) return RoundDecision::kDone;
   if (shape.whole && mayShowUnsettled()) {
@@ -101,13 +91,14 @@ TissueParts::RoundShape TissueParts::takeShape(Rounds& rounds, bool late) {
   const SolveReport& report = rounds.report;
   RoundShape shape;
   shape.late = late;
-  shape.hurried = isBounded() && report.status == SolveStatus::kLate;
+  shape.hurried = bounds_.isBounded() && report.status == SolveStatus::kLate;
   const bool solved = report.status != SolveStatus::kUnconverged && (late || !shape.hurried);
   shape.is_on_its_way = !goesThroughTime() && goBack(rounds);
   shape.whole = !shape.is_on_its_way && solved;
   if (shape.whole) ++rounds.whole;
   rounds.gain.note(rounds.of_round, body_.displacement(), shape.whole);
-  shape.spent = report.iterations > patience_.mostOfLoadStep() || patience_.left() == 0;
+  shape.spent =
+      report.iterations > bounds_.patience().mostOfLoadStep() || bounds_.patience().left() == 0;
   const bool stands =
       !solved && !shape.hurried && rounds.count > 1 && body_.displacement() == *rounds.before;
   shape.last = late || shape.spent || stands || rounds.gain.isOver() ||
@@ -123,7 +114,7 @@ void TissueParts::tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool r
   }
   const bool stays_away = shape.is_on_its_way && !renewed && !shape.late;
   const bool is_none_to_show =
-      shape.spent || stays_away || (!shape.whole && patience_.bound().isSpent());
+      shape.spent || stays_away || (!shape.whole && bounds_.patience().bound().isSpent());
   if (shape.last && is_none_to_show) worsen(rounds, SolveStatus::kUnconverged);
 }
 
@@ -141,7 +132,7 @@ void TissueParts::limitWays() {
       limits.push_back({body_.surface().carriers[vertex], longest[vertex]});
     }
   }
-  method_->limitWays(std::move(limits));
+  methods_.now().limitWays(std::move(limits));
 }
 
 // Takes the shape back to the share of its way that the contacts allow (ContactUpdate::shareOfWay).
@@ -154,6 +145,29 @@ bool TissueParts::goBack(const Rounds& rounds) {
   takePatchesBack(rounds.driven_before, share, loads_.patches());
   deformSurface();
   return true;
+}
+
+bool TissueParts::mayShowUnsettled() const {
+  const double bearable = bounds_.patience().bound().bearableDepth() * body_.lattice().spacing();
+  return bearable > 0.0 && contact_update_->deepestShown() <= bearable;
+}
+
+void TissueParts::noteUnsettled() {
+  outcome_.are_contacts_settled = false;
+  outcome_.worsen(SolveStatus::kLate);
+}
+
+// Over that of an iteration with few touches, on a lattice that is whole. Where there are more
+// touches than nodes, as of a fine mesh on a coarse lattice, they are most of the work; so are
+// cells that cuts parted.
+double TissueParts::costOfIteration() const {
+  double touches = 0.0;
+  for (const LoadingPatch& patch : loads_.patches())
+    touches += static_cast<double>(patch.contacts.size());
+  const double nodes = body_.lattice().nodeCount();
+  const double ghosts = static_cast<double>(body_.displacement().size()) - nodes;
+  return std::max({1.0, touches / (nodes + ghosts),
+                   (nodes + tuning::kNodesOfGhost * ghosts) / std::max(nodes, tuning::kFewNodes)});
 }
 
 }  // namespace robot_tissue

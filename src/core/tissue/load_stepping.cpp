@@ -53,7 +53,7 @@ int wholeParts(double share) {
 bool TissueParts::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   const bool named = std::all_of(ramps.begin(), ramps.end(),
                                  [&](const LoadRamp& ramp) { return ramp.patch < loads_.named(); });
-  if (!named || !deadline_ || !deadline_->isOver()) return false;
+  if (!named || !bounds_.isTimeOver()) return false;
   for (const LoadRamp& ramp : ramps) loads_.makeDue(ramp.target);
   outcome_.worsen(SolveStatus::kLate);
   return true;
@@ -70,9 +70,10 @@ double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
       double sum = 0.0;
       for (const int node : ramp.target.nodes) sum += body_.nodeStiffness(node);
       const double nodes = static_cast<double>(ramp.target.nodes.size());
-      const double stiffness = method_->findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
+      const double stiffness = methods_.now().findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
       const double force = (ramp.target.force - ramp.start.force).norm();
-      if (stiffness > 0.0) steps = std::max(steps, force / (stiffness * method_->patchStep()));
+      if (stiffness > 0.0)
+        steps = std::max(steps, force / (stiffness * methods_.now().patchStep()));
       continue;
     }
     for (std::size_t i = 0; i < ramp.target.nodes.size(); ++i) {
@@ -80,7 +81,7 @@ double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (ramp.target.free_axis[axis]) way[static_cast<Eigen::Index>(axis)] = 0.0;
       }
-      steps = std::max(steps, way.norm() / method_->patchStep());
+      steps = std::max(steps, way.norm() / methods_.now().patchStep());
     }
   }
   return std::min(steps, tuning::kMostSteps);
@@ -93,7 +94,7 @@ SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
                                            const OnIncrement& on_increment) {
   const bool forced = std::any_of(ramps.begin(), ramps.end(),
                                   [](const LoadRamp& ramp) { return byForce(ramp.target); });
-  if (!forced || !method_->findsEquilibrium())
+  if (!forced || !methods_.now().findsEquilibrium())
     return stepLoads(ramps, wholeParts(foreseenSteps(ramps)), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
@@ -105,7 +106,7 @@ SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     const double to = part < 1.0 - share ? share + part : 1.0;
     report = goTo(ramps, to);
     const double went =
-        farthestWay(ramps, *good.displacement, body_.displacement()) / method_->patchStep();
+        farthestWay(ramps, *good.displacement, body_.displacement()) / methods_.now().patchStep();
     stride = std::max(least, part / std::max(went, 1.0 / tuning::kMostGrowth));
     if (went > tuning::kTooFar && stride < part) {
       restore(good);
@@ -148,7 +149,7 @@ SolveReport TissueParts::stepLoads(const std::vector<LoadRamp>& ramps, int incre
 // own steps: in one go the shape would be that of no way there.
 SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
                                    int increments) {
-  const double steps = method_->findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
+  const double steps = methods_.now().findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
   const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
   for (int part = 1; part <= parts; ++part) {

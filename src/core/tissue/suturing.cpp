@@ -78,7 +78,7 @@ SutureThread TissueParts::threadOf(const SutureConfig& config) const {
 
 SutureResult TissueParts::suture(const SutureConfig& config) {
   requireNumbers(config);
-  if (!method_->findsEquilibrium()) {
+  if (!methods_.now().findsEquilibrium()) {
     std::string allowed;
     for (const std::string& name : methodsFor("elastic")) {
       allowed += (allowed.empty() ? "solver.method " : ", ") + name;
@@ -86,21 +86,21 @@ SutureResult TissueParts::suture(const SutureConfig& config) {
     refuseSuture(config.name, "this method finds no equilibrium that a thread could pull to",
                  allowed);
   }
-  if (threads_->has(config.name)) {
+  if (threads_.has(config.name)) {
     refuseSuture(config.name, "a suture of this name is there", "another name");
   }
   SutureThread thread = threadOf(config);
   const TopologyChange change(*this, History::Kind::kByItself);
   SutureResult result;
-  if (takesNoTime()) {
-    threads_->add(std::move(thread));
+  if (motion_.takesNoTime()) {
+    threads_.add(std::move(thread));
     result.solve = asItIs();
   } else {
     const double now = reportOf(thread, body_.displacement()).length;
     const double same = tuning::kSameDistance * body_.lattice().spacing();
     const bool is_slack = now <= thread.rest_length + same;
     if (!is_slack) thread.length = now;
-    threads_->add(std::move(thread));
+    threads_.add(std::move(thread));
     result.solve = is_slack ? outcome_.report : drawThreadsIn();
   }
   result.suture = sutures().back();
@@ -109,7 +109,7 @@ SutureResult TissueParts::suture(const SutureConfig& config) {
 
 std::vector<SutureReport> TissueParts::sutures() const {
   std::vector<SutureReport> reports;
-  for (const SutureThread& thread : threads_->all()) {
+  for (const SutureThread& thread : threads_.all()) {
     reports.push_back(reportOf(thread, body_.displacement()));
   }
   return reports;
@@ -118,37 +118,37 @@ std::vector<SutureReport> TissueParts::sutures() const {
 // The report is of this solve and those before it. False: the time is over.
 bool TissueParts::solveOnThreads(SolveReport& report) {
   SolveTotal total(report);
-  report = solve(threads_->nodes());
+  report = solve(threads_.nodes());
   total.add(report);
   total.tellIn(report);
-  return !deadline_ || !deadline_->isOver();
+  return !bounds_.isTimeOver();
 }
 
 // To their rest lengths, in steps that the method follows well. Out of time they are there at once,
 // and what is left to balance is due.
 SolveReport TissueParts::drawThreadsIn() {
-  threads_->soften([this](int node) { return tuning::kSoftThread * body_.nodeStiffness(node); },
-                   body_.displacement());
-  const int steps = wholeParts(threads_->wayLeft() / method_->patchStep());
+  threads_.soften([this](int node) { return tuning::kSoftThread * body_.nodeStiffness(node); },
+                  body_.displacement());
+  const int steps = wholeParts(threads_.wayLeft() / methods_.now().patchStep());
   SolveReport report;
   bool in_time = true;
   for (int step = 1; step <= steps && in_time; ++step) {
-    threads_->drawIn(1.0 / (steps - step + 1));
+    threads_.drawIn(1.0 / (steps - step + 1));
     in_time = solveOnThreads(report);
   }
   const double same = tuning::kSameDistance * body_.lattice().spacing();
-  bool changes = threads_->wayLeft() > 0.0;
-  if (!in_time) changes = changes || threads_->correct(body_.displacement()) > same;
+  bool changes = threads_.wayLeft() > 0.0;
+  if (!in_time) changes = changes || threads_.correct(body_.displacement()) > same;
   for (int round = 1; round <= tuning::kRoundsOfThread && in_time; ++round) {
-    if (threads_->correct(body_.displacement()) <= same) break;
+    if (threads_.correct(body_.displacement()) <= same) break;
     changes = true;
     in_time = solveOnThreads(report);
   }
-  threads_->harden();
+  threads_.harden();
   if (in_time && changes) {
     solveOnThreads(report);
   } else if (changes) {
-    const std::vector<int> due = threads_->nodes();
+    const std::vector<int> due = threads_.nodes();
     outcome_.disturbed.insert(outcome_.disturbed.end(), due.begin(), due.end());
     outcome_.forgetGhosts(body_.cells());
     outcome_.is_late = true;
@@ -161,16 +161,16 @@ SolveReport TissueParts::drawThreadsIn() {
 // Under gravity and threads alone, these drawn in from where the rest shape has their ends.
 SolveReport TissueParts::settleFromRest() {
   SolveReport report;
-  threads_->loosen(body_.displacement());
+  threads_.loosen(body_.displacement());
   if (body_.hasBodyLoad()) report = settle();
-  return threads_->anyWhole() ? drawThreadsIn() : report;
+  return threads_.anyWhole() ? drawThreadsIn() : report;
 }
 
 SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed, LatticeState& state) {
-  if (!threads_->act()) return method_->solve(loads_.patches(), disturbed, state);
+  if (!threads_.act()) return methods_.now().solve(loads_.patches(), disturbed, state);
   std::vector<LoadingPatch>& patches = loads_.patches();
-  patches.push_back(threads_->patch());
-  SolveReport report = method_->solve(patches, disturbed, state);
+  patches.push_back(threads_.patch());
+  SolveReport report = methods_.now().solve(patches, disturbed, state);
   patches.pop_back();
   report.patches.resize(patches.size());
   return report;
@@ -180,7 +180,7 @@ SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed, Lat
 SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
   SolveReport report = solveInRounds(disturbed);
   while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
-    const std::vector<int> left = threads_->breakOne(body_.displacement());
+    const std::vector<int> left = threads_.breakOne(body_.displacement());
     if (left.empty()) break;
     SolveTotal total(report);
     report = solveInRounds(left);
@@ -192,11 +192,11 @@ SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
 }
 
 void TissueParts::renewTies() {
-  threads_->tie(tiesOfFronts(body_.lattice(), body_.state(), body_.model()));
+  threads_.tie(tiesOfFronts(body_.lattice(), body_.state(), body_.model()));
 }
 
 void TissueParts::rebindThreads() {
-  for (const int node : threads_->rebind(body_.surface(), body_.lattice().spacing())) {
+  for (const int node : threads_.rebind(body_.surface(), body_.lattice().spacing())) {
     outcome_.disturbed.push_back(body_.cells().original(node));
   }
 }

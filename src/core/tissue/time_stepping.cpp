@@ -13,93 +13,26 @@
 
 namespace robot_tissue {
 
-bool TissueParts::isMoving() const { return time_ && in_time_ && time_->moves(); }
-
 bool TissueParts::goesThroughTime() const {
-  return goesInTime() && method_->goesThroughTimeSteps();
-}
-
-double TissueParts::longestTimeStep() const { return time_->longestStep(); }
-
-// Whether loads that go and cuts leave the shape as it is, to be moved by time.
-bool TissueParts::takesNoTime() const { return time_ && !in_time_step_; }
-
-void TissueParts::expectTimeStep(double duration, Touched touched) {
-  using Scheme = TimeIntegrator::Scheme;
-  const auto& model = dynamic_cast<const ElasticModel&>(body_.model());
-  expects_time_step_ = true;
-  time_->expect(duration,
-                touched == Touched::kByTools ? Scheme::kBackwardEuler : Scheme::kGeneralizedAlpha,
-                body_.state(), model.nodeMasses(body_.cells()));
+  return motion_.goesInTime() && methods_.now().goesThroughTimeSteps();
 }
 
 void TissueParts::beginTimeStep(double duration, Touched touched) {
-  expectTimeStep(duration, touched);
-  const auto& model = dynamic_cast<const ElasticModel&>(body_.model());
-  in_time_ = in_time_step_ = true;
-  body_.model().setInertia(nullptr);
-  const auto cell_forces = [&](const LatticeState& shape) {
-    std::vector<Vec3> forces = method_->cellForces(shape);
-    return forces.empty() ? model.cellForces(shape) : forces;
-  };
-  body_.model().setInertia(&time_->begin(body_.state(), cell_forces));
+  motion_.beginStep(duration, touched, methods_.now());
 }
 
 void TissueParts::endTimeStep() {
-  expects_time_step_ = false;
-  if (!in_time_step_) return;
-  in_time_step_ = false;
-  const std::vector<std::size_t> falling = fallingPieces();
-  for (const std::size_t piece : falling) {
-    shift(free_pieces_[piece], -time_->drift(free_pieces_[piece], body_.state(), body_.gravity()));
+  const bool ends = motion_.isInTimeStep();
+  motion_.leaveStep();
+  if (!ends) return;
+  const TimeIntegrator& integrator = motion_.integrator();
+  const std::vector<const std::vector<int>*> falling = pieces_.falling();
+  for (const std::vector<int>* nodes : falling) {
+    shift(*nodes, -integrator.drift(*nodes, body_.state(), body_.gravity()));
   }
-  time_->end(body_.state(), method_->velocities());
-  if (!time_->moves()) return;
-  for (const std::size_t piece : falling) shift(free_pieces_[piece], -time_->lead(body_.gravity()));
-}
-
-void TissueParts::findFreePieces() {
-  if (free_pieces_of_ == body_.state().cells) return;
-  free_pieces_of_ = body_.state().cells;
-  const std::vector<int>& pieces = pieceOfNodes();
-  std::vector<bool> held;
-  free_pieces_.clear();
-  for (std::size_t node = 0; node < pieces.size(); ++node) {
-    if (pieces[node] < 0) continue;
-    const std::size_t piece = at(pieces[node]);
-    if (free_pieces_.size() <= piece) free_pieces_.resize(piece + 1);
-    held.resize(free_pieces_.size(), false);
-    free_pieces_[piece].push_back(static_cast<int>(node));
-    if (isFixed(body_.lattice(), body_.cells(), static_cast<int>(node))) held[piece] = true;
-  }
-  for (std::size_t piece = 0; piece < held.size(); ++piece) {
-    if (held[piece]) free_pieces_[piece].clear();
-  }
-}
-
-// Of free_pieces_, those that nothing holds or touches: their centers of mass go as gravity says,
-// to rounding.
-std::vector<std::size_t> TissueParts::fallingPieces() {
-  findFreePieces();
-  std::vector<int> touched = threads_->nodes();
-  for (const LoadingPatch& patch : loads_.patches()) {
-    touched.insert(touched.end(), patch.nodes.begin(), patch.nodes.end());
-    for (const ContactSpring& contact : patch.contacts) {
-      for (const NodeWeight& carrier : contact.carriers) touched.push_back(carrier.node);
-    }
-  }
-  std::sort(touched.begin(), touched.end());
-  const auto is_touched = [&](int node) {
-    return std::binary_search(touched.begin(), touched.end(), node);
-  };
-  std::vector<std::size_t> falling;
-  for (std::size_t piece = 0; piece < free_pieces_.size(); ++piece) {
-    const std::vector<int>& nodes = free_pieces_[piece];
-    if (!nodes.empty() && std::none_of(nodes.begin(), nodes.end(), is_touched)) {
-      falling.push_back(piece);
-    }
-  }
-  return falling;
+  motion_.end(methods_.now().velocities());
+  if (!motion_.isMoving()) return;
+  for (const std::vector<int>* nodes : falling) shift(*nodes, -integrator.lead(body_.gravity()));
 }
 
 void TissueParts::shift(const std::vector<int>& nodes, const Vec3& way) {
@@ -109,24 +42,9 @@ void TissueParts::shift(const std::vector<int>& nodes, const Vec3& way) {
   deformSurface();
 }
 
-void TissueParts::stopTime() {
-  if (!time_) return;
-  in_time_ = in_time_step_ = expects_time_step_ = false;
-  time_->rest();
-  body_.model().setInertia(nullptr);
-}
-
-// Until it was solved for, the shape at rest is not the one under gravity or a pressure.
-void TissueParts::wakeUnderBodyLoad() {
-  if (!time_ || !body_.hasBodyLoad()) return;
-  in_time_ = true;
-  time_->wake(body_.state());
-}
-
 // Loads or cuts are others, the shape is not yet.
 SolveReport TissueParts::asItIs() {
-  in_time_ = true;
-  time_->wake(body_.state());
+  motion_.wake();
   outcome_.report.patches.resize(loads_.patches().size());
   return outcome_.report;
 }
@@ -137,40 +55,41 @@ void TissueParts::predict() {
   for (std::size_t node = 0; node < state.displacement.size(); ++node) {
     const int index = static_cast<int>(node);
     if (!isGone(state, index) && !isFixed(body_.lattice(), *state.cells, index)) {
-      state.displacement[node] = time_->predicted(node);
+      state.displacement[node] = motion_.integrator().predicted(node);
     }
   }
 }
 
 SolveReport TissueParts::wait(double duration) {
-  if (in_time_ && !time_->moves()) {
+  if (motion_.isInTime() && !motion_.isMoving()) {
     outcome_.report.iterations = 0;
     outcome_.report.wall_ms = 0.0;
     return outcome_.report;
   }
+  const TimeIntegrator& integrator = motion_.integrator();
   double left = duration;
-  double longest = longestTimeStep();
+  double longest = integrator.longestStep();
   SolveTotal total;
   while (left > 0.0) {
     const double steps = std::ceil(left / longest - tuning::kRounding);
     const double step = left / std::max(1.0, steps);
     const Shape good = shape();
-    beginTimeStep(step);
+    beginTimeStep(step, Touched::kByNone);
     if (loads_.patches().empty()) predict();
     const SolveReport report = solve({});
     endTimeStep();
     total.addWork(report);
-    if (time_->errorRatio() > tuning::kRefusedError && step > tuning::kShortestStep) {
+    if (integrator.errorRatio() > tuning::kRefusedError && step > tuning::kShortestStep) {
       longest = std::max(tuning::kShortestStep, tuning::kMostShrink * step);
       restore(good);
       continue;
     }
     tear();
-    longest = longestTimeStep();
+    longest = integrator.longestStep();
     total.worsen(report.status);
     left = steps > 1.0 ? left - step : 0.0;
-    if (!time_->moves()) break;
-    if (deadline_ && deadline_->isOver() && left > 0.0) {
+    if (!motion_.isMoving()) break;
+    if (bounds_.isTimeOver() && left > 0.0) {
       total.worsen(SolveStatus::kLate);
       break;
     }

@@ -18,14 +18,14 @@ const LatticeState& Tissue::state() const { return parts_->body_.state(); }
 const TissueSurface& Tissue::surface() const { return parts_->body_.surface(); }
 const std::vector<Vec3>& Tissue::vertices() const { return parts_->body_.vertices(); }
 const Box& Tissue::bounds() const { return parts_->body_.bounds(); }
-const std::vector<int>& Tissue::pieceOfNodes() const { return parts_->pieceOfNodes(); }
-std::vector<TissuePiece> Tissue::pieces() const { return parts_->pieces(); }
-std::vector<TissuePiece> Tissue::restingPieces() const { return parts_->restingPieces(); }
-const std::vector<int>& Tissue::droppedPieces() const { return parts_->droppedPieces(); }
+const std::vector<int>& Tissue::pieceOfNodes() const { return parts_->pieces_.ofNodes(); }
+std::vector<TissuePiece> Tissue::pieces() const { return parts_->pieces_.deformed(); }
+std::vector<TissuePiece> Tissue::restingPieces() const { return parts_->pieces_.atRest(); }
+const std::vector<int>& Tissue::droppedPieces() const { return parts_->pieces_.dropped(); }
 bool Tissue::isUntouched() const { return parts_->isUntouched(); }
 double Tissue::stepLength() const { return parts_->stepLength(); }
-Patience& Tissue::patience() { return parts_->patience(); }
-const Patience& Tissue::patience() const { return parts_->patience(); }
+Patience& Tissue::patience() { return parts_->bounds_.patience(); }
+const Patience& Tissue::patience() const { return parts_->bounds_.patience(); }
 const std::vector<LoadingPatch>& Tissue::patches() const { return parts_->loads_.patches(); }
 std::size_t Tissue::namedPatches() const { return parts_->loads_.named(); }
 Tissue::Displacements Tissue::displacements() const { return parts_->body_.displacements(); }
@@ -53,24 +53,26 @@ std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
   return parts_->recessUnder(press);
 }
 void Tissue::setContactUpdate(ContactUpdate* update) { parts_->setContactUpdate(update); }
-void Tissue::setDeadline(std::optional<Deadline> deadline) { parts_->setDeadline(deadline); }
-bool Tissue::isRoundForNextCall() const { return parts_->isRoundForNextCall(); }
+void Tissue::setDeadline(std::optional<Deadline> deadline) {
+  parts_->bounds_.setDeadline(deadline);
+}
+bool Tissue::isRoundForNextCall() const { return parts_->bounds_.isRoundForNextCall(); }
 void Tissue::expectTouch() { parts_->expectTouch(); }
 SolveReport Tissue::settle() { return parts_->settle(); }
-bool Tissue::hasTime() const { return parts_->hasTime(); }
-bool Tissue::isMoving() const { return parts_->isMoving(); }
-double Tissue::longestTimeStep() const { return parts_->longestTimeStep(); }
+bool Tissue::hasTime() const { return parts_->motion_.hasTime(); }
+bool Tissue::isMoving() const { return parts_->motion_.isMoving(); }
+double Tissue::longestTimeStep() const { return parts_->motion_.integrator().longestStep(); }
 void Tissue::expectTimeStep(double duration, Touched touched) {
-  parts_->expectTimeStep(duration, touched);
+  parts_->motion_.expectStep(duration, touched);
 }
 void Tissue::beginTimeStep(double duration, Touched touched) {
   parts_->beginTimeStep(duration, touched);
 }
 void Tissue::endTimeStep() { parts_->endTimeStep(); }
-bool Tissue::isInTimeStep() const { return parts_->isInTimeStep(); }
-bool Tissue::goesInTime() const { return parts_->goesInTime(); }
+bool Tissue::isInTimeStep() const { return parts_->motion_.isInTimeStep(); }
+bool Tissue::goesInTime() const { return parts_->motion_.goesInTime(); }
 bool Tissue::goesThroughTime() const { return parts_->goesThroughTime(); }
-void Tissue::stopTime() { parts_->stopTime(); }
+void Tissue::stopTime() { parts_->motion_.stop(); }
 SolveReport Tissue::wait(double duration) { return parts_->wait(duration); }
 void Tissue::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
   parts_->load(step, on_increment, most_increments);

@@ -37,7 +37,7 @@ SolveReport TissueParts::severAndBalance(const std::vector<Crossing>& crossings,
   } else {
     sever(body_.lattice(), crossings, body_.change(), body_.model().splitCells());
   }
-  if (body_.state().pieces != pieces_before) renumberPieces();
+  if (body_.state().pieces != pieces_before) pieces_.renumber();
   dropFreed();
   return changeTopology(disturbed);
 }
@@ -52,7 +52,7 @@ SolveReport TissueParts::goNearer(std::vector<SpringAhead> ahead) {
     disturbed.push_back(body_.lattice().springs()[at(each.spring)].a);
     disturbed.push_back(body_.lattice().springs()[at(each.spring)].b);
   }
-  return takesNoTime() ? asItIs() : solve(disturbed);
+  return motion_.takesNoTime() ? asItIs() : solve(disturbed);
 }
 
 CutReport TissueParts::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke) {
@@ -114,17 +114,17 @@ SolveReport TissueParts::tear() {
     const std::vector<Crossing> weakest =
         tearingNext(body_.lattice(), body_.state(), tear_strains_);
     if (weakest.empty()) break;
-    if (round == tuning::kMostTearRounds || (any && deadline_ && deadline_->isOver())) {
+    if (round == tuning::kMostTearRounds || (any && bounds_.isTimeOver())) {
       outcome_.is_late = true;
       total.worsen(SolveStatus::kLate);
       break;
     }
-    if (patience_.cutsOff() && outcome_.report.status == SolveStatus::kUnconverged) break;
+    if (bounds_.patience().cutsOff() && outcome_.report.status == SolveStatus::kUnconverged) break;
     if (!any) change.emplace(*this, History::Kind::kTear);
     any = true;
     springs_torn_ += static_cast<int>(weakest.size());
     const SolveReport round_report = severAndBalance(weakest);
-    if (takesNoTime()) break;
+    if (motion_.takesNoTime()) break;
     total.add(round_report);
   }
   if (!any) return outcome_.report;

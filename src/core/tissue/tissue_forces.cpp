@@ -63,7 +63,7 @@ bool isInOne(const StandingLoads& loads, int node) {
 
 Vec3 TissueParts::nodeForce(int node) const {
   return body_.model().nodeForce(body_.state(), node) +
-         threads_->forceOn(node, body_.displacement());
+         threads_.forceOn(node, body_.displacement());
 }
 
 // What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
@@ -78,8 +78,8 @@ Vec3 TissueParts::weight() const {
 // Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
 // them. Where the method does not visit all nodes: by the balance of all forces.
 Vec3 TissueParts::forceOfFixedNodes() const {
-  if (method_->visited() != nullptr) {
-    const Vec3 left = outcome_.is_as_solved ? method_->forceLeft() : Vec3(Vec3::Zero());
+  if (methods_.now().visited() != nullptr) {
+    const Vec3 left = outcome_.is_as_solved ? methods_.now().forceLeft() : Vec3(Vec3::Zero());
     return left - weight() - forceOfPatches(outcome_.report);
   }
   const CellSet& cells = body_.cells();
@@ -90,7 +90,7 @@ Vec3 TissueParts::forceOfFixedNodes() const {
   const std::vector<Vec3> on_fixed = body_.model().forcesOn(body_.state(), fixed);
   Vec3 force = Vec3::Zero();
   for (std::size_t i = 0; i < fixed.size(); ++i) {
-    force -= on_fixed[i] + threads_->forceOn(fixed[i], body_.displacement());
+    force -= on_fixed[i] + threads_.forceOn(fixed[i], body_.displacement());
   }
   for (const LoadingPatch& patch : loads_.patches()) {
     for (const ContactSpring& spring : patch.contacts) {
@@ -104,7 +104,7 @@ Vec3 TissueParts::forceOfFixedNodes() const {
 }
 
 std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) const {
-  if (!method_->findsEquilibrium()) return std::nullopt;
+  if (!methods_.now().findsEquilibrium()) return std::nullopt;
   const CellSet& cells = body_.cells();
   for (const CellSet::Meeting& met : cells.meetings(node)) {
     if (body_.lattice().cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0)
@@ -121,7 +121,7 @@ std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) 
 }
 
 std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
-  if (!method_->findsEquilibrium()) return std::nullopt;
+  if (!methods_.now().findsEquilibrium()) return std::nullopt;
   const CellSet& cells = body_.cells();
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
@@ -134,10 +134,11 @@ std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
 }
 
 double TissueParts::stiffening(int node) const {
-  const bool is_solved = expects_time_step_ && !goesThroughTime();
+  const bool is_solved = motion_.expectsTimeStep() && !goesThroughTime();
   const double stiffness = is_solved ? body_.nodeStiffness(node) : 0.0;
   if (!(stiffness > 0.0)) return 1.0;
-  return time_->stiffness().elastic_scale + time_->inertia(node) / stiffness;
+  const TimeIntegrator& integrator = motion_.integrator();
+  return integrator.stiffness().elastic_scale + integrator.inertia(node) / stiffness;
 }
 
 }  // namespace robot_tissue

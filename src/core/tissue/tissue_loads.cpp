@@ -93,7 +93,7 @@ void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, in
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, loads_.patches());
   const Shape before = shape();
-  stopTime();
+  motion_.stop();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
     ramps.push_back(makeRamp(target, loads_.find(target.name)));
@@ -120,7 +120,7 @@ void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, in
 
 void TissueParts::loadOn(const OnIncrement& on_increment) {
   if (!loads_.isLoading()) return;
-  stopTime();
+  motion_.stop();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : loads_.takeDue()) {
     const LoadingPatch* standing = loads_.find(target.name);
@@ -146,8 +146,8 @@ SolveReport TissueParts::release(const std::vector<std::string>& names) {
     }
     loads_.remove(number);
   }
-  if (takesNoTime()) return asItIs();
-  const bool unique = method_->findsEquilibrium() && !isUntouched();
+  if (motion_.takesNoTime()) return asItIs();
+  const bool unique = methods_.now().findsEquilibrium() && !isUntouched();
   unique ? solve(body_.freeNodes()) : solveFromRest();
   return tear();
 }
@@ -171,13 +171,13 @@ LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
                   [this](int node) { return body_.lattice().isFixed(node); })) {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
-  if (method_->findsEquilibrium()) {
+  if (methods_.now().findsEquilibrium()) {
     patch.rim = rimOf(body_.lattice(), body_.model(), body_.state(), config.box, patch.nodes);
   }
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
-    if (config.turns && !method_->findsEquilibrium()) {
+    if (config.turns && !methods_.now().findsEquilibrium()) {
       refusePatch(config.name, "turns: this method moves patches without turning them",
                   "turns false, or another method");
     }

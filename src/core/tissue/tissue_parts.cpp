@@ -36,32 +36,23 @@ bool hasOnlyFiniteNumbers(const SolveReport& report) {
 
 TissueParts::TissueParts(const TissueConfig& tissue, const SolverConfig& solver)
     : body_(tissue),
-      solver_(solver),
-      balance_fingerprint_(balanceFingerprint(tissue, solver)),
-      history_(std::make_unique<History>()),
-      threads_(std::make_unique<Threads>()),
-      drops_free_(tissue.free_pieces == FreePieces::kDrop),
-      max_ms_(solver.max_ms) {
-  if (tissue.time) {
-    time_ = std::make_unique<TimeIntegrator>(tissue.time->damping_time, tissue.spacing,
-                                             solver.tolerance);
-  }
-  tear_strains_ = tearStrains(body_.lattice(), tissue);
-  method_ = makeMethod(solver, body_.lattice(), body_.model());
-  patience_ = Patience(method_->usualIterations(), body_.lattice().nodeCount());
-  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state()));
-  wakeUnderBodyLoad();
-}
+      tear_strains_(tearStrains(body_.lattice(), tissue)),
+      methods_(solver, body_),
+      motion_(tissue, solver, body_),
+      pieces_(body_, loads_, threads_, tissue.free_pieces == FreePieces::kDrop),
+      bounds_(motion_, Patience(methods_.now().usualIterations(), body_.lattice().nodeCount()),
+              solver.max_ms),
+      balance_fingerprint_(balanceFingerprint(tissue, solver)) {}
 
 TissueParts::~TissueParts() = default;
 
 // Contacts are found anew after each step: what a tool meets on the way must not be far.
 double TissueParts::stepLength() const {
-  return std::min(method_->patchStep(), tuning::kToolStep * body_.lattice().spacing());
+  return std::min(methods_.now().patchStep(), tuning::kToolStep * body_.lattice().spacing());
 }
 
 SolveReport TissueParts::settle() {
-  stopTime();
+  motion_.stop();
   solve(body_.freeNodes());
   return tear();
 }
@@ -71,9 +62,9 @@ SolveReport TissueParts::follow(std::vector<LoadingPatch> tool_patches,
   const bool one_left = loads_.isOneLeftBy(tool_patches);
   loads_.putToolPatches(std::move(tool_patches));
   const bool last_left = one_left && isUntouched();
-  const bool returns = method_->findsEquilibrium() && bedding == Bedding::kFixedNodes;
-  if (in_time_) return in_time_step_ ? solve(disturbed) : asItIs();
-  const bool from_rest = method_->findsEquilibrium() ? last_left && returns : one_left;
+  const bool returns = methods_.now().findsEquilibrium() && bedding == Bedding::kFixedNodes;
+  if (motion_.isInTime()) return motion_.isInTimeStep() ? solve(disturbed) : asItIs();
+  const bool from_rest = methods_.now().findsEquilibrium() ? last_left && returns : one_left;
   if (from_rest) return solveFromRest();
   const bool one_there = !isUntouched();
   const SolveReport report = solve(disturbed);
@@ -90,16 +81,13 @@ TissueParts::Shape TissueParts::shape() const {
           outcome_.report,
           outcome_.is_late,
           outcome_.are_contacts_settled,
-          time_ ? time_->motion() : nullptr,
-          in_time_,
-          threads_->whole()};
+          motion_.nodes(),
+          motion_.isInTime(),
+          threads_.whole()};
 }
 
 void TissueParts::restore(const Shape& shape) {
-  if (time_) time_->take(shape.motion);
-  in_time_ = shape.in_time;
-  in_time_step_ = expects_time_step_ = false;
-  if (time_) body_.model().setInertia(nullptr);  // of the step that is given up
+  motion_.restore(shape.motion, shape.in_time);
   outcome_.is_as_solved = false;
   LatticeState& state = body_.change();
   state.displacement = carriedOver(*shape.cells, *shape.displacement, *state.cells);
@@ -108,53 +96,45 @@ void TissueParts::restore(const Shape& shape) {
   outcome_.report = shape.report;
   outcome_.is_late = shape.is_late;
   outcome_.are_contacts_settled = shape.are_contacts_settled;
-  threads_->mend(shape.whole_sutures);
+  threads_.mend(shape.whole_sutures);
   deformSurface();
 }
 
 void TissueParts::beginAside() {
-  if (is_aside_) return;
-  patience_.beginTrial();
-  switchAside();
+  if (methods_.isAside()) return;
+  bounds_.patience().beginTrial();
+  methods_.switchAside();
 }
 
 void TissueParts::endAside() {
-  if (!is_aside_) return;
-  patience_.endTrial();
-  switchAside();
-}
-
-void TissueParts::switchAside() {
-  is_aside_ = !is_aside_;
-  if (!method_->remembers()) return;
-  if (!other_method_) other_method_ = makeMethod(solver_, body_.lattice(), body_.model());
-  std::swap(method_, other_method_);
+  if (!methods_.isAside()) return;
+  bounds_.patience().endTrial();
+  methods_.switchAside();
 }
 
 void TissueParts::reset() {
   const bool was_cut = !isAsMade(body_.state());
-  stopTime();
+  motion_.stop();
   endAside();
-  patience_.forget();
-  other_method_.reset();
-  method_->forget();
+  bounds_.patience().forget();
+  methods_.forget();
   body_.change() = body_.lattice().restState();
-  threads_->clear();
+  threads_.clear();
   loads_.take({});
   outcome_ = SolveOutcome();
   springs_torn_ = 0;
-  history_->clear();
+  history_.clear();
   if (was_cut) {
     body_.weigh();
     rebuildSurface();
   }
-  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state()));
+  pieces_.take(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state()));
   body_.showRest();
-  wakeUnderBodyLoad();
+  motion_.wakeUnderBodyLoad();
 }
 
 void TissueParts::expectTouch() {
-  if (!hasTime()) method_->expect(body_.state());
+  if (!motion_.hasTime()) methods_.now().expect(body_.state());
 }
 
 // The surface is another one: touches are found anew where it is now.
@@ -167,10 +147,11 @@ void TissueParts::renewContacts() {
 }
 
 SolveReport TissueParts::solve(const std::vector<int>& disturbed) {
-  const Patience::LoadStep load_step(patience_);
+  const Patience::LoadStep load_step(bounds_.patience());
   outcome_.disturb(disturbed);
   SolveReport report = solveAndBreak(outcome_.disturbed);
-  if (in_time_step_) outcome_.is_late = false;  // what it left, the next time step takes up
+  if (motion_.isInTimeStep())
+    outcome_.is_late = false;  // what it left, the next time step takes up
   if (!outcome_.is_late) outcome_.disturbed.clear();
   outcome_.forgetGhosts(body_.cells());
   outcome_.report.volume_ratio = report.volume_ratio = body_.volumeRatio();
@@ -180,21 +161,21 @@ SolveReport TissueParts::solve(const std::vector<int>& disturbed) {
 SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
   // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
   // it saves a method that stays finite.
-  const bool keeps_shape = contact_update_ != nullptr || !method_->staysFinite();
+  const bool keeps_shape = contact_update_ != nullptr || !methods_.now().staysFinite();
   const Displacements last_good = keeps_shape ? body_.displacements() : nullptr;
   std::vector<LoadingPatch>& patches = loads_.patches();
   const std::vector<LoadingPatch> last_good_patches = patches;
   LatticeState& state = body_.change();
   limitWays();
-  method_->limitTime(mostMs());
-  method_->limitIterations(mostIterations());
   const double cost = costOfIteration();
+  methods_.now().limitTime(bounds_.mostMs());
+  methods_.now().limitIterations(bounds_.mostIterations(cost));
   const bool any_hangs = holdHanging();
   SolveReport report = solveWithThreads(disturbed, state);
   if (any_hangs) letHangingBe(report);
   const bool is_finite =
       hasOnlyFiniteNumbers(report) &&
-      (method_->staysFinite() ||
+      (methods_.now().staysFinite() ||
        std::all_of(state.displacement.begin(), state.displacement.end(), isFinite));
   if (!is_finite) {
     if (last_good) state.displacement = *last_good;
@@ -209,9 +190,9 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
   const bool converged = report.status != SolveStatus::kUnconverged;
   // Loads alone are an answer, however long it took.
   if (converged && isUntouched()) {
-    patience_.noteEasy();
+    bounds_.patience().noteEasy();
   } else {
-    patience_.note(report.iterations, converged, solved(), cost);
+    bounds_.patience().note(report.iterations, converged, bounds_.solved(), cost);
   }
   describeShape(report);
   outcome_.report = report;
@@ -222,11 +203,11 @@ SolveReport TissueParts::solveOnce(const std::vector<int>& disturbed) {
 // holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
 SolveReport TissueParts::solveFromRest() {
   const std::vector<LoadingPatch> standing = loads_.patches();
-  method_->forget();
+  methods_.now().forget();
   std::vector<Vec3>& displacement = body_.change().displacement;
   std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
   SolveReport report;
-  const bool sutured = threads_->anyWhole();
+  const bool sutured = threads_.anyWhole();
   if (body_.hasBodyLoad() || sutured) {
     const std::size_t named = loads_.named();
     loads_.restore({}, 0);
@@ -264,7 +245,7 @@ void TissueParts::rebuildSurface() {
 
 void TissueParts::describeShape(SolveReport& report) {
   deformSurface();
-  const GridBox* visited = method_->visited();
+  const GridBox* visited = methods_.now().visited();
   report.inverted_cells = visited == nullptr
                               ? countInvertedCells(body_.lattice(), body_.state())
                               : countInvertedCells(body_.lattice(), body_.state(), *visited);

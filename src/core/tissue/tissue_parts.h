@@ -10,16 +10,17 @@
 
 #include "robot_tissue/core/tissue.h"
 #include "tissue/body.h"
+#include "tissue/history.h"
+#include "tissue/method_pair.h"
+#include "tissue/piece_registry.h"
+#include "tissue/solve_bounds.h"
 #include "tissue/solve_outcome.h"
 #include "tissue/standing_loads.h"
+#include "tissue/threads.h"
+#include "tissue/tissue_motion.h"
 
 namespace robot_tissue {
 
-class History;
-class PieceNumbers;
-class SolverMethod;
-class TimeIntegrator;
-class Threads;
 class BladeSurface;
 struct Crossing;
 struct SpringAhead;
@@ -35,22 +36,10 @@ struct TissueParts {
   TissueParts(const TissueConfig& tissue, const SolverConfig& solver);
   ~TissueParts();
 
-  // Number of the piece that each node is of, the ghosts last, -1: removed. Of a piece that comes
-  // apart the largest part keeps the number, the others get the next ones; undo and loadState bring
-  // numbers back, a reset begins anew.
-  const std::vector<int>& pieceOfNodes() const;
-  std::vector<TissuePiece> pieces() const;  // by their numbers, ascending
-  // The same with centers at rest: only what holds them is found each time.
-  std::vector<TissuePiece> restingPieces() const;
-  // Numbers of those that were taken out, as nothing held them any more (tissue.free_pieces).
-  const std::vector<int>& droppedPieces() const;
   // No tool touched it in the last solve.
   bool isUntouched() const { return loads_.isUntouched(); }
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
-  // Of all its solves.
-  Patience& patience() { return patience_; }
-  const Patience& patience() const { return patience_; }
   // Net force of the springs, of threads (and of gravity) on a node (N): what a patch node hands to
   // its tool.
   Vec3 nodeForce(int node) const;
@@ -71,15 +60,6 @@ struct TissueParts {
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
   void setContactUpdate(ContactUpdate* update) { contact_update_ = update; }
 
-  // Calls that follow begin no further solve after it, and tell what they leave as LATE; each makes
-  // one solve at least, with one cycle of the method, but for a change of the topology, which may
-  // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
-  // solver.max_ms bounds each solve.
-  void setDeadline(std::optional<Deadline> deadline) { deadline_ = deadline; }
-  // Whether a solve and a look at the contacts, as short as the last ones, would end after it, but
-  // not if they were the first that a call does.
-  bool isRoundForNextCall() const;
-
   // Something comes near, but does not touch yet: the solver makes what its first solve needs,
   // where nothing was solved for since the tissue, or its cells, are as they are.
   void expectTouch();
@@ -87,21 +67,10 @@ struct TissueParts {
   // Equilibrium under what acts now, at rest.
   SolveReport settle();
 
-  // Where tissue.time is set. Time goes by in steps: what is called between beginTimeStep and
-  // endTimeStep is of the step, its shape the one at the step's end; between two steps the shape
-  // stays as it is. After stopTime, and before the first step, shapes are equilibria, at rest.
-  bool hasTime() const { return time_ != nullptr; }
-  bool isMoving() const;           // time will change the shape
-  double longestTimeStep() const;  // that the error of the last one allows (s)
-  // What is asked from here on is asked for a step of that length (s), which is about to begin.
-  void expectTimeStep(double duration, Touched touched);
-  void beginTimeStep(double duration, Touched touched = Touched::kByNone);
+  void beginTimeStep(double duration, Touched touched);
   void endTimeStep();
-  bool isInTimeStep() const { return in_time_step_; }
-  bool goesInTime() const { return in_time_step_ || expects_time_step_; }  // in one, or soon
-  // Likewise, and in steps of the method's own: contacts pushed as it says, in the mean.
+  // In steps of the method's own: contacts pushed as it says, in the mean.
   bool goesThroughTime() const;
-  void stopTime();
   // Time goes by while no tool moves, in steps of an error within the tolerance.
   SolveReport wait(double duration);
   // Brings the step's patches to their loads in increments; they stand until released. Refused when
@@ -159,7 +128,7 @@ struct TissueParts {
   // Severs the springs between these nodes and the others, torn in one change, and balances; false:
   // there are none. For what a grasper holds.
   bool tearOut(const std::vector<int>& nodes);
-  bool mayTear() const { return !tear_strains_.empty() || drops_free_; }
+  bool mayTear() const { return !tear_strains_.empty() || pieces_.dropsFree(); }
   int springsTorn() const { return springs_torn_; }  // since rest, or the state that was loaded
   // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut
   // leaves each end on its side; where the tissue of an end goes the thread goes.
@@ -188,9 +157,6 @@ struct TissueParts {
   SolveReport severAndBalance(const std::vector<Crossing>& crossings,
                               const BladeSurface* blade = nullptr);
   SolveReport goNearer(std::vector<SpringAhead> ahead);
-  bool takesNoTime() const;
-  void findFreePieces();
-  std::vector<std::size_t> fallingPieces();
   void shift(const std::vector<int>& nodes, const Vec3& way);
   void predict();
   SolveReport asItIs();
@@ -201,17 +167,11 @@ struct TissueParts {
   bool mayReach(const Box& bounds) const;
   RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
   std::vector<std::string> dropLostLoads();
-  // tissue_pieces.cpp
-  void takePieces(std::shared_ptr<const PieceNumbers> numbers);
-  void renumberPieces();
-  std::vector<char> heldPieces() const;
-  std::vector<int> freePieces() const;
+  // loose_pieces.cpp
   std::vector<int> hangingNodes() const;
   bool holdHanging();
   void letHangingBe(SolveReport& report);
-  std::vector<int> freedPieces();
   void takeOut(const std::vector<int>& pieces);
-  const std::vector<TissuePiece>& piecesAtRest() const;
   void dropFreed();
   void dropLetGo();
   SolveReport changeTopology(const std::vector<int>& disturbed);
@@ -227,16 +187,8 @@ struct TissueParts {
   void tellWhatIsOpen(Rounds& rounds, const RoundShape& shape, bool renewed);
   void worsen(Rounds& rounds, SolveStatus status);
   void renewContacts();
-  void switchAside();
   void limitWays();
   bool goBack(const Rounds& rounds);
-  bool isBounded() const;
-  bool isLookForNextCall() const;
-  double mostMs() const;
-  void noteLook(double ms);
-  int mostIterations() const;
-  Patience::Of solved() const;
-  void wakeUnderBodyLoad();
   double costOfIteration() const;
   SolveReport solveOnce(const std::vector<int>& disturbed);
   // suturing.cpp
@@ -266,38 +218,18 @@ struct TissueParts {
   void rebuildSurface();
 
   Body body_;
-  SolverConfig solver_;
-  std::uint64_t balance_fingerprint_ = 0;  // of the scene
-  std::unique_ptr<SolverMethod> method_;
-  std::unique_ptr<SolverMethod> other_method_;  // that solves aside; swapped while it does
-  bool is_aside_ = false;
-  std::unique_ptr<History> history_;  // of what changed the topology
-  std::vector<double> tear_strains_;  // per spring (tearStrains)
-  int springs_torn_ = 0;
-  std::unique_ptr<Threads> threads_;
-  std::shared_ptr<const PieceNumbers> piece_numbers_;
-  mutable std::vector<int> piece_of_nodes_;                   // by number
-  mutable std::shared_ptr<const CellSet> piece_of_nodes_of_;  // null: to be found
-  bool drops_free_ = false;
-  mutable std::vector<TissuePiece> pieces_at_rest_;  // with piece_of_nodes_; by number
-  mutable std::vector<double> volume_at_node_;       // of cells, per node of the lattice (m^3)
-  std::vector<int> left_free_;                       // pieces that nothing holds, and that stay
   StandingLoads loads_;
   SolveOutcome outcome_;
-  Patience patience_;
-  double max_ms_ = 0.0;  // of a solve without a deadline; 0: none
-  std::optional<Deadline> deadline_;
-  double look_ms_ = 0.0;      // that looks at the contacts took lately
-  double shortest_ms_ = 0.0;  // that the last solve would have taken with one iteration, about
+  Threads threads_;
+  History history_;                   // of what changed the topology
+  std::vector<double> tear_strains_;  // per spring (tearStrains)
+  int springs_torn_ = 0;
+  MethodPair methods_;
+  TissueMotion motion_;
+  PieceRegistry pieces_;
+  SolveBounds bounds_;
   ContactUpdate* contact_update_ = nullptr;
-  std::unique_ptr<TimeIntegrator> time_;  // null: there is none
-  // Nodes of each piece that no fixed node holds, and the cells that they were found for.
-  std::vector<std::vector<int>> free_pieces_;
-  std::shared_ptr<const CellSet> free_pieces_of_;
-  bool in_time_ =
-      false;  // since the last stopTime there was a time step, or there are forces for one
-  bool in_time_step_ = false;
-  bool expects_time_step_ = false;
+  std::uint64_t balance_fingerprint_ = 0;  // of the scene
 };
 
 }  // namespace robot_tissue

@@ -77,33 +77,32 @@ std::uint64_t balanceFingerprint(const TissueConfig& tissue, const SolverConfig&
 
 // What the method learned was of the other material.
 bool TissueParts::retune(const TissueConfig& tissue, const SolverConfig& solver) {
-  solver_ = solver;
-  max_ms_ = solver.max_ms;
+  methods_.setConfig(solver);
+  bounds_.setMaxMs(solver.max_ms);
   const std::uint64_t fingerprint = balanceFingerprint(tissue, solver);
   if (fingerprint == balance_fingerprint_) return false;
   balance_fingerprint_ = fingerprint;
   endAside();
-  other_method_.reset();
-  method_.reset();  // it refers to the model
+  methods_.drop();
   const std::unique_ptr<TissueModel> earlier = body_.remake(tissue);
-  method_ = makeMethod(solver, body_.lattice(), body_.model());
+  methods_.make(solver);
   renewTies();
   loads_.forEach(
       [&](LoadingPatch& patch) { scaleRim(body_.state(), *earlier, body_.model(), patch); });
-  history_->forgetStates();
-  if (time_) time_->setTolerance(solver.tolerance);
+  history_.forgetStates();
+  motion_.setTolerance(solver.tolerance);
   return true;
 }
 
 SavedState TissueParts::stateNow() const {
   SavedState saved;
   saved.lattice = body_.state();
-  saved.pieces = piece_numbers_->names();
+  saved.pieces = pieces_.numbers()->names();
   saved.loads = loads_.namedLoads();
-  saved.sutures = threads_->all();
+  saved.sutures = threads_.all();
   saved.report = outcome_.report;
   saved.report.patches.resize(loads_.named());  // without the tools
-  saved.in_balance = isUntouched() && !isLate() && !isMoving();
+  saved.in_balance = isUntouched() && !isLate() && !motion_.isMoving();
   return saved;
 }
 
@@ -124,21 +123,20 @@ std::shared_ptr<const SavedState> TissueParts::readState(const std::string& byte
 
 // Nothing of what was there stays, nor of what the method learned of it.
 void TissueParts::take(const SavedState& saved) {
-  stopTime();
+  motion_.stop();
   endAside();
-  other_method_.reset();
-  method_->forget();
+  methods_.forget();
   outcome_.disturbed.clear();
   outcome_.is_late = false;
   springs_torn_ = 0;
   body_.change() = saved.lattice;
   loads_.take(saved.loads);
-  history_->clear();
+  history_.clear();
   body_.weigh();
-  threads_->clear();
+  threads_.clear();
   rebuildSurface();
-  threads_->take(saved.sutures);
-  takePieces(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state(), saved.pieces));
+  threads_.take(saved.sutures);
+  pieces_.take(std::make_shared<const PieceNumbers>(body_.lattice(), body_.state(), saved.pieces));
   outcome_.report = saved.report;
   deformSurface();
 }
@@ -147,7 +145,7 @@ void TissueParts::takeOver(const TissueParts& other) {
   take(other.stateNow());
   outcome_.report = SolveReport();
   outcome_.report.patches.resize(loads_.patches().size());
-  wakeUnderBodyLoad();
+  motion_.wakeUnderBodyLoad();
 }
 
 SolveReport TissueParts::loadState(const SavedState& saved) {

@@ -57,16 +57,16 @@ std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
 // Balances what other cells and springs leave. Until contacts are renewed, tools' springs are of
 // the nodes that there were.
 SolveReport TissueParts::changeTopology(const std::vector<int>& disturbed) {
-  const double before_ms = isBounded() ? deadline_->leftMs() : 0.0;
+  const double before_ms = bounds_.leftMs();
   body_.change();
   outcome_.is_as_solved = false;
-  if (takesNoTime()) body_.model().setInertia(nullptr);  // the last step's was of other nodes
+  motion_.noteOtherCells();
   rebuildSurface();
   deformSurface(
       [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
   const std::vector<LoadingPatch> earlier = loads_.patches();
   renewContacts();
-  if (takesNoTime()) return asItIs();
+  if (motion_.takesNoTime()) return asItIs();
   if (hasTimeForLevels(before_ms)) return solve(disturbed);
   outcome_.report.patches = asTold(earlier, outcome_.report.patches, loads_.patches());
   return leaveToNextCall(disturbed);
@@ -74,8 +74,8 @@ SolveReport TissueParts::changeTopology(const std::vector<int>& disturbed) {
 
 // before_ms: what was left before the surface was made.
 bool TissueParts::hasTimeForLevels(double before_ms) const {
-  const double left_ms = isBounded() ? deadline_->leftMs() : 0.0;
-  if (!isBounded() || !std::isfinite(left_ms)) return true;
+  const double left_ms = bounds_.leftMs();
+  if (!bounds_.isBounded() || !std::isfinite(left_ms)) return true;
   return left_ms >= tuning::kLevelsOverSurface * (before_ms - left_ms);
 }
 
@@ -142,7 +142,7 @@ RemoveReport TissueParts::takeAway(const std::vector<std::uint8_t>& within, Stro
   removeCells(body_.lattice(), cells, body_.model().splitCells(), body_.change());
   body_.weigh();
   report.volume = volumeOf(body_.lattice(), body_.state(), cells);
-  renumberPieces();
+  pieces_.renumber();
   report.loads = dropLostLoads();
   dropFreed();
   changeTopology(nodesAround(body_.lattice(), cells, body_.state()));
@@ -160,7 +160,7 @@ std::vector<std::string> TissueParts::dropLostLoads() {
   return lost;
 }
 
-int TissueParts::undoable() const { return static_cast<int>(history_->size()); }
+int TissueParts::undoable() const { return static_cast<int>(history_.size()); }
 
 SolveReport TissueParts::undo(int count) {
   if (count < 1 || count > undoable()) {
@@ -168,32 +168,32 @@ SolveReport TissueParts::undo(int count) {
                      (undoable() == 0 ? "none, as nothing was cut, removed, torn or sutured"
                                       : "1 to " + std::to_string(undoable())));
   }
-  const std::size_t target = history_->size() - static_cast<std::size_t>(count);
-  const History::Entry entry = history_->before(target);
-  const bool same_loads = history_->hasLoadsSince(target, loads_.namedLoads());
+  const std::size_t target = history_.size() - static_cast<std::size_t>(count);
+  const History::Entry entry = history_.before(target);
+  const bool same_loads = history_.hasLoadsSince(target, loads_.namedLoads());
   std::shared_ptr<const SavedState> saved;
   // What is late of the change itself goes with it.
   if (isUntouched() && !loads_.isLoading() && same_loads) saved = entry.state;
   if (saved && saved->in_balance) {
-    History kept = *history_;
+    History kept = history_;
     kept.dropFrom(target);
     const int torn = springs_torn_;
     const SolveReport report = loadState(*saved);
     springs_torn_ = torn;
-    *history_ = std::move(kept);
+    history_ = std::move(kept);
     return report;
   }
-  stopTime();
+  motion_.stop();
   body_.change() = asBefore(body_.lattice(), entry, body_.model().splitCells(), body_.state());
   body_.weigh();
-  threads_->take(entry.sutures);
-  if (threads_->anyWhole()) rebuildSurface();  // nodes may have other numbers than there
-  takePieces(entry.pieces);
-  history_->dropFrom(target);
-  if (takesNoTime()) return changeTopology({});
-  threads_->loosen(body_.displacement());
+  threads_.take(entry.sutures);
+  if (threads_.anyWhole()) rebuildSurface();  // nodes may have other numbers than there
+  pieces_.take(entry.pieces);
+  history_.dropFrom(target);
+  if (motion_.takesNoTime()) return changeTopology({});
+  threads_.loosen(body_.displacement());
   changeTopology(body_.freeNodes());
-  if (threads_->anyWhole()) drawThreadsIn();
+  if (threads_.anyWhole()) drawThreadsIn();
   return tear();
 }
 

@@ -13,22 +13,22 @@ class TissueParts::TopologyChange {
  public:
   // To be made before the change, where something will change. One within another is part of it.
   TopologyChange(TissueParts& tissue, History::Kind kind)
-      : tissue_(tissue), is_outermost_(!tissue.history_->isUnderWay()) {
-    if (is_outermost_ && tissue_.history_->begins(kind)) {
+      : tissue_(tissue), is_outermost_(!tissue.history_.isUnderWay()) {
+    if (is_outermost_ && tissue_.history_.begins(kind)) {
       const LatticeState& state = tissue_.body_.state();
-      tissue_.history_->begin(kind,
-                              {{state.severed.begin(), state.severed.end()},
-                               partingsOf(state),
-                               state.ahead,
-                               state.taken,
-                               tissue_.threads_->all(),
-                               tissue_.piece_numbers_,
-                               std::make_shared<const SavedState>(tissue_.stateNow())},
-                              tissue_.loads_.namedLoads());
+      tissue_.history_.begin(kind,
+                             {{state.severed.begin(), state.severed.end()},
+                              partingsOf(state),
+                              state.ahead,
+                              state.taken,
+                              tissue_.threads_.all(),
+                              tissue_.pieces_.numbers(),
+                              std::make_shared<const SavedState>(tissue_.stateNow())},
+                             tissue_.loads_.namedLoads());
     }
   }
   ~TopologyChange() {
-    if (is_outermost_) tissue_.history_->end(tissue_.loads_.namedLoads());
+    if (is_outermost_) tissue_.history_.end(tissue_.loads_.namedLoads());
   }
   TopologyChange(const TopologyChange&) = delete;
   TopologyChange& operator=(const TopologyChange&) = delete;

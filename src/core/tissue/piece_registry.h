@@ -1,0 +1,65 @@
+// The tissue's pieces: their numbers, and which of them something holds.
+//
+// A piece has its number for as long as it lasts. What is found once for the cells there are is
+// kept until these are others; whoever changes the cells calls `renumber` where pieces come apart.
+// Centers in m, in the tissue's frame; volumes in m^3.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lattice/piece_numbers.h"
+#include "robot_tissue/core/tissue.h"
+#include "tissue/body.h"
+#include "tissue/standing_loads.h"
+#include "tissue/threads.h"
+
+namespace robot_tissue {
+
+class PieceRegistry {
+ public:
+  // drops_free: pieces that nothing holds any more are to be taken out.
+  PieceRegistry(const Body& body, const StandingLoads& loads, const Threads& threads,
+                bool drops_free);
+
+  const std::shared_ptr<const PieceNumbers>& numbers() const { return numbers_; }
+  const std::vector<int>& dropped() const { return numbers_->names().dropped; }
+  const std::vector<int>& ofNodes() const;    // Tissue::pieceOfNodes
+  std::vector<TissuePiece> atRest() const;    // by number; centers at rest
+  std::vector<TissuePiece> deformed() const;  // by number
+  std::vector<int> nodesOfFree() const;       // of pieces that nothing holds; ascending
+  // Nodes of each piece that no fixed node holds and nothing holds or touches; its center of mass
+  // goes as gravity says.
+  std::vector<const std::vector<int>*> falling();
+
+  // What is free now stays so: nothing was let go of.
+  void take(std::shared_ptr<const PieceNumbers> numbers);
+  void renumber();
+  void renumberWithout(const std::vector<int>& pieces);
+  bool dropsFree() const { return drops_free_; }
+  // Those that were held when this was asked last, or are new, and are free now; none where free
+  // pieces stay. While nothing holds any of the tissue it floats, and all of it stays.
+  std::vector<int> freed();
+
+ private:
+  const std::vector<TissuePiece>& allAtRest() const;
+  std::vector<char> heldPieces() const;
+  std::vector<int> freePieces() const;
+  void findLoose();
+
+  const Body& body_;
+  const StandingLoads& loads_;
+  const Threads& threads_;
+  bool drops_free_;
+  std::shared_ptr<const PieceNumbers> numbers_;
+  mutable std::vector<int> of_nodes_;                   // by number
+  mutable std::shared_ptr<const CellSet> of_nodes_of_;  // null: to be found
+  mutable std::vector<TissuePiece> at_rest_;            // with of_nodes_; by number
+  mutable std::vector<double> volume_at_node_;          // of cells, per node of the lattice
+  std::vector<int> left_free_;                          // that nothing holds, and that stay
+  // Nodes of each piece that no fixed node holds, and the cells that they were found for.
+  std::vector<std::vector<int>> loose_;
+  std::shared_ptr<const CellSet> loose_of_;
+};
+
+}  // namespace robot_tissue
