@@ -109,8 +109,12 @@ robot_tissue_room(tissue
     solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC load_step_bound.h method_names.h patience.h tissue.h
-  FILES body.cpp body.h contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h load_ramp.h load_step_bound.cpp
-    load_stepping.cpp loose_pieces.cpp method_pair.cpp method_pair.h partings.h patience.cpp piece_registry.cpp piece_registry.h registry.cpp registry.h round_gain.h solve_bounds.cpp solve_bounds.h solve_outcome.h solve_total.h standing_loads.cpp standing_loads.h
-    suturing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h time_stepping.cpp tissue.cpp
-    tissue_blade.cpp tissue_forces.cpp tissue_loads.cpp tissue_parts.cpp tissue_parts.h tissue_motion.cpp tissue_motion.h
-    tissue_state.cpp tissue_state.h tissue_surgery.cpp topology_change.h tuning.h)
+  FILES body.cpp body.h contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h
+    load_program.cpp load_program.h load_ramp.h load_step_bound.cpp load_step_solver.cpp load_step_solver.h
+    load_stepping.cpp load_stepping.h method_pair.cpp method_pair.h partings.h patience.cpp
+    piece_registry.cpp piece_registry.h registry.cpp registry.h removals.cpp round_gain.h solve_bounds.cpp
+    solve_bounds.h solve_outcome.h solve_total.h standing_loads.cpp standing_loads.h surgery.cpp surgery.h
+    suturing.cpp suturing.h tearing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h
+    time_stepping.cpp time_stepping.h tissue.cpp tissue_data.cpp tissue_data.h tissue_forces.cpp
+    tissue_forces.h tissue_motion.cpp tissue_motion.h tissue_parts.h tissue_states.cpp tissue_states.h
+    topology_change.h tuning.h)

@@ -1,12 +1,9 @@
-// Tissue: how loads are brought on, in increments of a size that the method follows well.
+#include "tissue/load_stepping.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "material/tissue_model.h"
-#include "solvers/solver_method.h"
-#include "tissue/load_ramp.h"
 #include "tissue/solve_total.h"
-#include "tissue/tissue_parts.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
@@ -50,12 +47,13 @@ int wholeParts(double share) {
 }
 
 // Out of time on the way of named patches: they stand there, and what they go to is due.
-bool TissueParts::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
-  const bool named = std::all_of(ramps.begin(), ramps.end(),
-                                 [&](const LoadRamp& ramp) { return ramp.patch < loads_.named(); });
-  if (!named || !bounds_.isTimeOver()) return false;
-  for (const LoadRamp& ramp : ramps) loads_.makeDue(ramp.target);
-  outcome_.worsen(SolveStatus::kLate);
+bool LoadStepping::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
+  const bool named = std::all_of(ramps.begin(), ramps.end(), [&](const LoadRamp& ramp) {
+    return ramp.patch < data_.loads.named();
+  });
+  if (!named || !data_.bounds.isTimeOver()) return false;
+  for (const LoadRamp& ramp : ramps) data_.loads.makeDue(ramp.target);
+  data_.outcome.worsen(SolveStatus::kLate);
   return true;
 }
 
@@ -63,17 +61,18 @@ bool TissueParts::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
 // A patch by force: the force over k s, k the stiffness of the patch. In equilibrium a hard patch
 // of n nodes answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes
 // do (own); the paper's moves while the tissue around it stands, so all n nodes answer.
-double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
+double LoadStepping::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
   double steps = 1.0;
   for (const LoadRamp& ramp : ramps) {
     if (byForce(ramp.target)) {
       double sum = 0.0;
-      for (const int node : ramp.target.nodes) sum += body_.nodeStiffness(node);
+      for (const int node : ramp.target.nodes) sum += data_.body.nodeStiffness(node);
       const double nodes = static_cast<double>(ramp.target.nodes.size());
-      const double stiffness = methods_.now().findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
+      const double stiffness =
+          data_.methods.now().findsEquilibrium() ? sum / std::sqrt(nodes) : sum;
       const double force = (ramp.target.force - ramp.start.force).norm();
       if (stiffness > 0.0)
-        steps = std::max(steps, force / (stiffness * methods_.now().patchStep()));
+        steps = std::max(steps, force / (stiffness * data_.methods.now().patchStep()));
       continue;
     }
     for (std::size_t i = 0; i < ramp.target.nodes.size(); ++i) {
@@ -81,7 +80,7 @@ double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (ramp.target.free_axis[axis]) way[static_cast<Eigen::Index>(axis)] = 0.0;
       }
-      steps = std::max(steps, way.norm() / methods_.now().patchStep());
+      steps = std::max(steps, way.norm() / data_.methods.now().patchStep());
     }
   }
   return std::min(steps, tuning::kMostSteps);
@@ -90,31 +89,31 @@ double TissueParts::foreseenSteps(const std::vector<LoadRamp>& ramps) const {
 // With increments of its own choice. Those of a displacement are equal. Those of a force follow the
 // stiffness that the last one met, so that the next moves its patch by one step, and one that went
 // too far is made anew, where the method finds equilibria.
-SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
-                                           const OnIncrement& on_increment) {
+SolveReport LoadStepping::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
+                                            const Tissue::OnIncrement& on_increment) {
   const bool forced = std::any_of(ramps.begin(), ramps.end(),
                                   [](const LoadRamp& ramp) { return byForce(ramp.target); });
-  if (!forced || !methods_.now().findsEquilibrium())
+  if (!forced || !data_.methods.now().findsEquilibrium())
     return stepLoads(ramps, wholeParts(foreseenSteps(ramps)), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   const double first = 1.0 / foreseenSteps(ramps), least = tuning::kLeastOfFirst * first;
   double share = 0.0, stride = first;
   for (int increment = 1; share < 1.0; ++increment) {
-    const Shape good = shape();
+    const Tissue::Shape good = data_.shape();
     const double part = (1.0 - share) / wholeParts((1.0 - share) / stride);
     const double to = part < 1.0 - share ? share + part : 1.0;
     report = goTo(ramps, to);
-    const double went =
-        farthestWay(ramps, *good.displacement, body_.displacement()) / methods_.now().patchStep();
+    const double went = farthestWay(ramps, *good.displacement, data_.body.displacement()) /
+                        data_.methods.now().patchStep();
     stride = std::max(least, part / std::max(went, 1.0 / tuning::kMostGrowth));
     if (went > tuning::kTooFar && stride < part) {
-      restore(good);
+      data_.restore(good);
       --increment;
       continue;
     }
     share = to;
-    report = tear();
+    report = surgery_.tear();
     worst = std::max(worst, report.status);
     const int left = share < 1.0 ? wholeParts((1.0 - share) / stride) : 0;
     if (on_increment) on_increment(increment, increment + left, report);
@@ -127,14 +126,14 @@ SolveReport TissueParts::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
   return report;
 }
 
-SolveReport TissueParts::stepLoads(const std::vector<LoadRamp>& ramps, int increments,
-                                   const OnIncrement& on_increment) {
+SolveReport LoadStepping::stepLoads(const std::vector<LoadRamp>& ramps, int increments,
+                                    const Tissue::OnIncrement& on_increment) {
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
     report = goInSteps(ramps, increment, increments);
     worst = std::max(worst, report.status);
-    const bool stopped = report.status == SolveStatus::kLate && loads_.isLoading();
+    const bool stopped = report.status == SolveStatus::kLate && data_.loads.isLoading();
     if (on_increment) on_increment(increment, increments, report);
     if (stopped || (increment < increments && stopsOnTheWay(ramps))) {
       worst = std::max(worst, SolveStatus::kLate);
@@ -147,9 +146,10 @@ SolveReport TissueParts::stepLoads(const std::vector<LoadRamp>& ramps, int incre
 
 // An increment that would turn cells over, were only the patch to move, is walked in the method's
 // own steps: in one go the shape would be that of no way there.
-SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
-                                   int increments) {
-  const double steps = methods_.now().findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
+SolveReport LoadStepping::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
+                                    int increments) {
+  const double steps =
+      data_.methods.now().findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
   const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
   SolveReport report;
   for (int part = 1; part <= parts; ++part) {
@@ -157,19 +157,19 @@ SolveReport TissueParts::goInSteps(const std::vector<LoadRamp>& ramps, int incre
     report = goTo(ramps, (increment - 1 + static_cast<double>(part) / parts) / increments);
     total.add(report);
     total.tellIn(report);
-    outcome_.report = report;
-    report = tear();
+    data_.outcome.report = report;
+    report = surgery_.tear();
     if (part < parts && stopsOnTheWay(ramps)) {
-      report.status = outcome_.report.status;
+      report.status = data_.outcome.report.status;
       break;
     }
   }
   return report;
 }
 
-SolveReport TissueParts::goTo(const std::vector<LoadRamp>& ramps, double share) {
-  for (const LoadRamp& ramp : ramps) goAlong(ramp, share, loads_.patches()[ramp.patch]);
-  return solve({});
+SolveReport LoadStepping::goTo(const std::vector<LoadRamp>& ramps, double share) {
+  for (const LoadRamp& ramp : ramps) goAlong(ramp, share, data_.loads.patches()[ramp.patch]);
+  return solver_.solve({});
 }
 
 }  // namespace robot_tissue

@@ -44,6 +44,11 @@ const LoadingPatch* StandingLoads::find(const std::string& name) const {
   return number ? &patches_[*number] : nullptr;
 }
 
+PatchAnswer StandingLoads::answerOf(const std::string& name, const SolveReport& report) const {
+  const std::optional<std::size_t> number = numberOf(name);
+  return number && *number < report.patches.size() ? report.patches[*number] : PatchAnswer();
+}
+
 bool StandingLoads::isOneLeftBy(const std::vector<LoadingPatch>& of_tools) const {
   return std::any_of(
       patches_.begin() + offset(named_), patches_.end(), [&](const LoadingPatch& earlier) {

@@ -13,6 +13,7 @@
 
 #include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/loading_patch.h"
+#include "robot_tissue/core/solve_report.h"
 
 namespace robot_tissue {
 
@@ -26,6 +27,8 @@ class StandingLoads {
   std::vector<LoadingPatch> namedLoads() const;
   std::optional<std::size_t> numberOf(const std::string& name) const;  // of a named load
   const LoadingPatch* find(const std::string& name) const;             // null: there is none
+  // What the named load met, of a report of a solve of these; zero when there is none of that name.
+  PatchAnswer answerOf(const std::string& name, const SolveReport& report) const;
   // One of the tools that touch has no patch among these.
   bool isOneLeftBy(const std::vector<LoadingPatch>& of_tools) const;
 

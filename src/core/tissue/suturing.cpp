@@ -1,16 +1,14 @@
-// Tissue: sutures, and how solves have their threads.
+#include "tissue/suturing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
-#include "solvers/solver_method.h"
 #include "surface/nearest_point.h"
-#include "tissue/front_ties.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
 #include "tissue/solve_total.h"
-#include "tissue/threads.h"
-#include "tissue/tissue_parts.h"
 #include "tissue/topology_change.h"
 #include "tissue/tuning.h"
 
@@ -47,21 +45,53 @@ void requireNumbers(const SutureConfig& config) {
 
 }  // namespace
 
+SutureResult Suturing::suture(const SutureConfig& config) {
+  requireNumbers(config);
+  if (!data_.methods.now().findsEquilibrium()) {
+    std::string allowed;
+    for (const std::string& name : methodsFor("elastic")) {
+      allowed += (allowed.empty() ? "solver.method " : ", ") + name;
+    }
+    refuseSuture(config.name, "this method finds no equilibrium that a thread could pull to",
+                 allowed);
+  }
+  if (data_.threads.has(config.name)) {
+    refuseSuture(config.name, "a suture of this name is there", "another name");
+  }
+  SutureThread thread = threadOf(config);
+  const TopologyChange change(data_, History::Kind::kByItself);
+  SutureResult result;
+  if (data_.motion.takesNoTime()) {
+    data_.threads.add(std::move(thread));
+    result.solve = data_.asItIs();
+  } else {
+    const double now = reportOf(thread, data_.body.displacement()).length;
+    const double same = tuning::kSameDistance * data_.body.lattice().spacing();
+    const bool is_slack = now <= thread.rest_length + same;
+    if (!is_slack) thread.length = now;
+    data_.threads.add(std::move(thread));
+    result.solve = is_slack ? data_.outcome.report : drawThreadsIn();
+  }
+  result.suture = sutures().back();
+  return result;
+}
+
 // The end at the surface's point that is nearest in the deformed shape.
-SutureThread TissueParts::threadOf(const SutureConfig& config) const {
-  const double spacing = body_.lattice().spacing();
+SutureThread Suturing::threadOf(const SutureConfig& config) const {
+  const double spacing = data_.body.lattice().spacing();
   SutureThread thread;
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
-    const auto nearest = nearestPoint(body_.surface(), body_.vertices(), point);
+    const auto nearest = nearestPoint(data_.body.surface(), data_.body.vertices(), point);
     if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
       std::ostringstream where;
       where << key << " = (" << point.x() << ", " << point.y() << ", " << point.z()
             << ") m is nowhere at the tissue's surface";
       refuseSuture(config.name, where.str(), "a point within a spacing of it");
     }
-    end.rest = restOf(body_.surface(), nearest->on);
-    end.inside = innerPlace(body_.surface(), nearest->on.triangle, tuning::kInnerDepth * spacing);
-    bindEnd(body_.surface(), spacing, config.bite, end);
+    end.rest = restOf(data_.body.surface(), nearest->on);
+    end.inside =
+        innerPlace(data_.body.surface(), nearest->on.triangle, tuning::kInnerDepth * spacing);
+    bindEnd(data_.body.surface(), spacing, config.bite, end);
   };
   place("from", config.from, thread.from);
   place("to", config.to, thread.to);
@@ -76,129 +106,56 @@ SutureThread TissueParts::threadOf(const SutureConfig& config) const {
   return thread;
 }
 
-SutureResult TissueParts::suture(const SutureConfig& config) {
-  requireNumbers(config);
-  if (!methods_.now().findsEquilibrium()) {
-    std::string allowed;
-    for (const std::string& name : methodsFor("elastic")) {
-      allowed += (allowed.empty() ? "solver.method " : ", ") + name;
-    }
-    refuseSuture(config.name, "this method finds no equilibrium that a thread could pull to",
-                 allowed);
-  }
-  if (threads_.has(config.name)) {
-    refuseSuture(config.name, "a suture of this name is there", "another name");
-  }
-  SutureThread thread = threadOf(config);
-  const TopologyChange change(*this, History::Kind::kByItself);
-  SutureResult result;
-  if (motion_.takesNoTime()) {
-    threads_.add(std::move(thread));
-    result.solve = asItIs();
-  } else {
-    const double now = reportOf(thread, body_.displacement()).length;
-    const double same = tuning::kSameDistance * body_.lattice().spacing();
-    const bool is_slack = now <= thread.rest_length + same;
-    if (!is_slack) thread.length = now;
-    threads_.add(std::move(thread));
-    result.solve = is_slack ? outcome_.report : drawThreadsIn();
-  }
-  result.suture = sutures().back();
-  return result;
-}
-
-std::vector<SutureReport> TissueParts::sutures() const {
+std::vector<SutureReport> Suturing::sutures() const {
   std::vector<SutureReport> reports;
-  for (const SutureThread& thread : threads_.all()) {
-    reports.push_back(reportOf(thread, body_.displacement()));
+  for (const SutureThread& thread : data_.threads.all()) {
+    reports.push_back(reportOf(thread, data_.body.displacement()));
   }
   return reports;
 }
 
-// The report is of this solve and those before it. False: the time is over.
-bool TissueParts::solveOnThreads(SolveReport& report) {
-  SolveTotal total(report);
-  report = solve(threads_.nodes());
-  total.add(report);
-  total.tellIn(report);
-  return !bounds_.isTimeOver();
-}
-
 // To their rest lengths, in steps that the method follows well. Out of time they are there at once,
 // and what is left to balance is due.
-SolveReport TissueParts::drawThreadsIn() {
-  threads_.soften([this](int node) { return tuning::kSoftThread * body_.nodeStiffness(node); },
-                  body_.displacement());
-  const int steps = wholeParts(threads_.wayLeft() / methods_.now().patchStep());
+SolveReport Suturing::drawThreadsIn() {
+  data_.threads.soften(
+      [this](int node) { return tuning::kSoftThread * data_.body.nodeStiffness(node); },
+      data_.body.displacement());
+  const int steps = wholeParts(data_.threads.wayLeft() / data_.methods.now().patchStep());
   SolveReport report;
   bool in_time = true;
   for (int step = 1; step <= steps && in_time; ++step) {
-    threads_.drawIn(1.0 / (steps - step + 1));
+    data_.threads.drawIn(1.0 / (steps - step + 1));
     in_time = solveOnThreads(report);
   }
-  const double same = tuning::kSameDistance * body_.lattice().spacing();
-  bool changes = threads_.wayLeft() > 0.0;
-  if (!in_time) changes = changes || threads_.correct(body_.displacement()) > same;
+  const double same = tuning::kSameDistance * data_.body.lattice().spacing();
+  bool changes = data_.threads.wayLeft() > 0.0;
+  if (!in_time) changes = changes || data_.threads.correct(data_.body.displacement()) > same;
   for (int round = 1; round <= tuning::kRoundsOfThread && in_time; ++round) {
-    if (threads_.correct(body_.displacement()) <= same) break;
+    if (data_.threads.correct(data_.body.displacement()) <= same) break;
     changes = true;
     in_time = solveOnThreads(report);
   }
-  threads_.harden();
+  data_.threads.harden();
   if (in_time && changes) {
     solveOnThreads(report);
   } else if (changes) {
-    const std::vector<int> due = threads_.nodes();
-    outcome_.disturbed.insert(outcome_.disturbed.end(), due.begin(), due.end());
-    outcome_.forgetGhosts(body_.cells());
-    outcome_.is_late = true;
+    const std::vector<int> due = data_.threads.nodes();
+    data_.outcome.disturbed.insert(data_.outcome.disturbed.end(), due.begin(), due.end());
+    data_.outcome.forgetGhosts(data_.body.cells());
+    data_.outcome.is_late = true;
     report.status = std::max(report.status, SolveStatus::kLate);
   }
-  outcome_.report = report;
+  data_.outcome.report = report;
   return report;
 }
 
-// Under gravity and threads alone, these drawn in from where the rest shape has their ends.
-SolveReport TissueParts::settleFromRest() {
-  SolveReport report;
-  threads_.loosen(body_.displacement());
-  if (body_.hasBodyLoad()) report = settle();
-  return threads_.anyWhole() ? drawThreadsIn() : report;
-}
-
-SolveReport TissueParts::solveWithThreads(const std::vector<int>& disturbed, LatticeState& state) {
-  if (!threads_.act()) return methods_.now().solve(loads_.patches(), disturbed, state);
-  std::vector<LoadingPatch>& patches = loads_.patches();
-  patches.push_back(threads_.patch());
-  SolveReport report = methods_.now().solve(patches, disturbed, state);
-  patches.pop_back();
-  report.patches.resize(patches.size());
-  return report;
-}
-
-// Threads break in balance, one after the other: what one leaves, the others may bear.
-SolveReport TissueParts::solveAndBreak(const std::vector<int>& disturbed) {
-  SolveReport report = solveInRounds(disturbed);
-  while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
-    const std::vector<int> left = threads_.breakOne(body_.displacement());
-    if (left.empty()) break;
-    SolveTotal total(report);
-    report = solveInRounds(left);
-    total.addWork(report);
-    total.tellWorkIn(report);
-    outcome_.report = report;
-  }
-  return report;
-}
-
-void TissueParts::renewTies() {
-  threads_.tie(tiesOfFronts(body_.lattice(), body_.state(), body_.model()));
-}
-
-void TissueParts::rebindThreads() {
-  for (const int node : threads_.rebind(body_.surface(), body_.lattice().spacing())) {
-    outcome_.disturbed.push_back(body_.cells().original(node));
-  }
+// The report is of this solve and those before it. False: the time is over.
+bool Suturing::solveOnThreads(SolveReport& report) {
+  SolveTotal total(report);
+  report = solver_.solve(data_.threads.nodes());
+  total.add(report);
+  total.tellIn(report);
+  return !data_.bounds.isTimeOver();
 }
 
 }  // namespace robot_tissue

@@ -1,14 +1,10 @@
-// Tissue: forces on it.
+#include "tissue/tissue_forces.h"
+
 #include <algorithm>
-#include <optional>
 
 #include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
 #include "material/tissue_model.h"
-#include "solvers/solver_method.h"
-#include "tissue/threads.h"
-#include "tissue/time_integrator.h"
-#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -61,84 +57,87 @@ bool isInOne(const StandingLoads& loads, int node) {
 
 }  // namespace
 
-Vec3 TissueParts::nodeForce(int node) const {
-  return body_.model().nodeForce(body_.state(), node) +
-         threads_.forceOn(node, body_.displacement());
+Vec3 TissueForces::nodeForce(int node) const {
+  return data_.body.model().nodeForce(data_.body.state(), node) +
+         data_.threads.forceOn(node, data_.body.displacement());
 }
 
 // What pulls at all of a piece's nodes is its weight, as its cells' forces add up to zero.
-Vec3 TissueParts::weight() const {
-  const std::vector<int> hanging = hangingNodes();
-  if (hanging.empty()) return body_.weight();
-  Vec3 weight = body_.weight();
-  for (const Vec3& force : body_.model().forcesOn(body_.state(), hanging)) weight -= force;
+Vec3 TissueForces::weight() const {
+  const std::vector<int> hanging = data_.hangingNodes();
+  if (hanging.empty()) return data_.body.weight();
+  Vec3 weight = data_.body.weight();
+  for (const Vec3& force : data_.body.model().forcesOn(data_.body.state(), hanging))
+    weight -= force;
   return weight;
 }
 
 // Sum of what holds the fixed nodes: minus the forces of the tissue and of springs in contact on
 // them. Where the method does not visit all nodes: by the balance of all forces.
-Vec3 TissueParts::forceOfFixedNodes() const {
-  if (methods_.now().visited() != nullptr) {
-    const Vec3 left = outcome_.is_as_solved ? methods_.now().forceLeft() : Vec3(Vec3::Zero());
-    return left - weight() - forceOfPatches(outcome_.report);
+Vec3 TissueForces::forceOfFixedNodes() const {
+  if (data_.methods.now().visited() != nullptr) {
+    const Vec3 left =
+        data_.outcome.is_as_solved ? data_.methods.now().forceLeft() : Vec3(Vec3::Zero());
+    return left - weight() - forceOfPatches(data_.outcome.report);
   }
-  const CellSet& cells = body_.cells();
+  const CellSet& cells = data_.body.cells();
   std::vector<int> fixed;
   for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(body_.lattice(), cells, node)) fixed.push_back(node);
+    if (isFixed(data_.body.lattice(), cells, node)) fixed.push_back(node);
   }
-  const std::vector<Vec3> on_fixed = body_.model().forcesOn(body_.state(), fixed);
+  const std::vector<Vec3> on_fixed = data_.body.model().forcesOn(data_.body.state(), fixed);
   Vec3 force = Vec3::Zero();
   for (std::size_t i = 0; i < fixed.size(); ++i) {
-    force -= on_fixed[i] + threads_.forceOn(fixed[i], body_.displacement());
+    force -= on_fixed[i] + data_.threads.forceOn(fixed[i], data_.body.displacement());
   }
-  for (const LoadingPatch& patch : loads_.patches()) {
+  for (const LoadingPatch& patch : data_.loads.patches()) {
     for (const ContactSpring& spring : patch.contacts) {
       for (const NodeWeight& carrier : spring.carriers) {
-        if (!isFixed(body_.lattice(), cells, carrier.node)) continue;
-        force -= carrier.weight * robot_tissue::forceOf(spring, body_.displacement());
+        if (!isFixed(data_.body.lattice(), cells, carrier.node)) continue;
+        force -= carrier.weight * robot_tissue::forceOf(spring, data_.body.displacement());
       }
     }
   }
   return force;
 }
 
-std::optional<RimCompliance> TissueParts::rimCompliance(int node, double depth) const {
-  if (!methods_.now().findsEquilibrium()) return std::nullopt;
-  const CellSet& cells = body_.cells();
+double TissueForces::stiffening(int node) const {
+  const bool is_solved = data_.motion.expectsTimeStep() && !data_.goesThroughTime();
+  const double stiffness = is_solved ? data_.body.nodeStiffness(node) : 0.0;
+  if (!(stiffness > 0.0)) return 1.0;
+  const TimeIntegrator& integrator = data_.motion.integrator();
+  return integrator.stiffness().elastic_scale + integrator.inertia(node) / stiffness;
+}
+
+std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth) const {
+  if (!data_.methods.now().findsEquilibrium()) return std::nullopt;
+  const CellSet& cells = data_.body.cells();
   for (const CellSet::Meeting& met : cells.meetings(node)) {
-    if (body_.lattice().cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0)
+    if (data_.body.lattice().cells()[at(cells.all()[at(met.cell)].place)].share() < 1.0)
       return std::nullopt;
   }
-  const Moduli moduli = body_.model().moduliAt(body_.state(), node);
+  const Moduli moduli = data_.body.model().moduliAt(data_.body.state(), node);
   if (moduli.shear <= 0.0) return std::nullopt;
   const RimLaw law = rimLaw(poissonRatio(moduli));
-  const double unit = moduli.shear * body_.lattice().spacing();
+  const double unit = moduli.shear * data_.body.lattice().spacing();
   const auto compliance = [&](const RimMode& mode) {
     return 1.0 / (unit * rimStiffness(mode, depth));
   };
   return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
 }
 
-std::optional<Recess> TissueParts::recessUnder(const BallPress& press) const {
-  if (!methods_.now().findsEquilibrium()) return std::nullopt;
-  const CellSet& cells = body_.cells();
+std::optional<Recess> TissueForces::recessUnder(const BallPress& press) const {
+  if (!data_.methods.now().findsEquilibrium()) return std::nullopt;
+  const CellSet& cells = data_.body.cells();
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;
-    if (isInOne(loads_, share.node)) return std::nullopt;
-    if (!isUniformAround(cells, body_.model(), share.node)) return std::nullopt;
+    if (isInOne(data_.loads, share.node)) return std::nullopt;
+    if (!isUniformAround(cells, data_.body.model(), share.node)) return std::nullopt;
   }
-  const Moduli moduli = body_.model().moduliAt(body_.state(), press.shares.front().node);
+  const Moduli moduli = data_.body.model().moduliAt(data_.body.state(), press.shares.front().node);
   if (moduli.shear <= 0.0) return std::nullopt;
-  return robot_tissue::recessUnder(press, body_.lattice(), {moduli.shear, poissonRatio(moduli)});
-}
-
-double TissueParts::stiffening(int node) const {
-  const bool is_solved = motion_.expectsTimeStep() && !goesThroughTime();
-  const double stiffness = is_solved ? body_.nodeStiffness(node) : 0.0;
-  if (!(stiffness > 0.0)) return 1.0;
-  const TimeIntegrator& integrator = motion_.integrator();
-  return integrator.stiffness().elastic_scale + integrator.inertia(node) / stiffness;
+  return robot_tissue::recessUnder(press, data_.body.lattice(),
+                                   {moduli.shear, poissonRatio(moduli)});
 }
 
 }  // namespace robot_tissue

@@ -2,39 +2,39 @@
 // take back.
 #pragma once
 
-#include "tissue/history.h"
+#include <memory>
+
 #include "tissue/partings.h"
-#include "tissue/threads.h"
-#include "tissue/tissue_parts.h"
+#include "tissue/tissue_data.h"
 
 namespace robot_tissue {
 
-class TissueParts::TopologyChange {
+class TopologyChange {
  public:
   // To be made before the change, where something will change. One within another is part of it.
-  TopologyChange(TissueParts& tissue, History::Kind kind)
-      : tissue_(tissue), is_outermost_(!tissue.history_.isUnderWay()) {
-    if (is_outermost_ && tissue_.history_.begins(kind)) {
-      const LatticeState& state = tissue_.body_.state();
-      tissue_.history_.begin(kind,
-                             {{state.severed.begin(), state.severed.end()},
-                              partingsOf(state),
-                              state.ahead,
-                              state.taken,
-                              tissue_.threads_.all(),
-                              tissue_.pieces_.numbers(),
-                              std::make_shared<const SavedState>(tissue_.stateNow())},
-                             tissue_.loads_.namedLoads());
+  TopologyChange(TissueData& data, History::Kind kind)
+      : data_(data), is_outermost_(!data.history.isUnderWay()) {
+    if (is_outermost_ && data_.history.begins(kind)) {
+      const LatticeState& state = data_.body.state();
+      data_.history.begin(kind,
+                          {{state.severed.begin(), state.severed.end()},
+                           partingsOf(state),
+                           state.ahead,
+                           state.taken,
+                           data_.threads.all(),
+                           data_.pieces.numbers(),
+                           std::make_shared<const SavedState>(data_.saved())},
+                          data_.loads.namedLoads());
     }
   }
   ~TopologyChange() {
-    if (is_outermost_) tissue_.history_.end(tissue_.loads_.namedLoads());
+    if (is_outermost_) data_.history.end(data_.loads.namedLoads());
   }
   TopologyChange(const TopologyChange&) = delete;
   TopologyChange& operator=(const TopologyChange&) = delete;
 
  private:
-  TissueParts& tissue_;
+  TissueData& data_;
   bool is_outermost_;
 };
 

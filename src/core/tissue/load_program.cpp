@@ -1,4 +1,5 @@
-// Tissue: named loading patches and the way to their loads.
+#include "tissue/load_program.h"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -8,9 +9,6 @@
 
 #include "loads/patch_rim.h"
 #include "material/tissue_model.h"
-#include "solvers/solver_method.h"
-#include "tissue/load_ramp.h"
-#include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -88,106 +86,170 @@ void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
 
 }  // namespace
 
-void TissueParts::load(const LoadStep& step, const OnIncrement& on_increment, int most_increments) {
+void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
+                       int most_increments) {
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
-  requireOwnNodes(targets, loads_.patches());
-  const Shape before = shape();
-  motion_.stop();
+  requireOwnNodes(targets, data_.loads.patches());
+  const Tissue::Shape before = data_.shape();
+  data_.motion.stop();
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
-    ramps.push_back(makeRamp(target, loads_.find(target.name)));
+    ramps.push_back(makeRamp(target, data_.loads.find(target.name)));
   }
-  const int increments = step.increments.value_or(wholeParts(foreseenSteps(ramps)));
+  const int increments = step.increments.value_or(wholeParts(stepping_.foreseenSteps(ramps)));
   if (increments > most_increments) {
-    restore(before);
+    data_.restore(before);
     refusePatch(targets.front().name,
                 "the load needs " + std::to_string(increments) + " increments",
                 "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
   for (LoadRamp& ramp : ramps) {
-    loads_.dropDue(ramp.target.name);
-    ramp.patch = loads_.place(ramp.start);
+    data_.loads.dropDue(ramp.target.name);
+    ramp.patch = data_.loads.place(ramp.start);
   }
-  leaveRimsToOwners(loads_.patches());
-  if (isUntouched()) renewContacts();  // a support that it rests on holds it from the first on
+  leaveRimsToOwners(data_.loads.patches());
+  // A support that it rests on holds it from the first on.
+  if (data_.loads.isUntouched()) solver_.renewContacts();
   if (step.increments) {
-    stepLoads(ramps, increments, on_increment);
+    stepping_.stepLoads(ramps, increments, on_increment);
   } else {
-    stepLoadsByItself(ramps, on_increment);
+    stepping_.stepLoadsByItself(ramps, on_increment);
   }
 }
 
-void TissueParts::loadOn(const OnIncrement& on_increment) {
-  if (!loads_.isLoading()) return;
-  motion_.stop();
+void LoadProgram::loadOn(const Tissue::OnIncrement& on_increment) {
+  if (!data_.loads.isLoading()) return;
+  data_.motion.stop();
   std::vector<LoadRamp> ramps;
-  for (const LoadingPatch& target : loads_.takeDue()) {
-    const LoadingPatch* standing = loads_.find(target.name);
+  for (const LoadingPatch& target : data_.loads.takeDue()) {
+    const LoadingPatch* standing = data_.loads.find(target.name);
     if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
   }
   if (ramps.empty()) return;
-  for (LoadRamp& ramp : ramps) ramp.patch = loads_.place(ramp.start);
-  leaveRimsToOwners(loads_.patches());
-  stepLoadsByItself(ramps, on_increment);
+  for (LoadRamp& ramp : ramps) ramp.patch = data_.loads.place(ramp.start);
+  leaveRimsToOwners(data_.loads.patches());
+  stepping_.stepLoadsByItself(ramps, on_increment);
 }
 
-SolveReport TissueParts::release(const std::vector<std::string>& names) {
+SolveReport LoadProgram::release(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (loads_.find(name) == nullptr) {
+    if (data_.loads.find(name) == nullptr) {
       refusePatch(name, "no standing patch has this name", "the name of a patch that was loaded");
     }
   }
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
-    const std::size_t number = *loads_.numberOf(name);
-    std::vector<PatchAnswer>& answers = outcome_.report.patches;
+    const std::size_t number = *data_.loads.numberOf(name);
+    std::vector<PatchAnswer>& answers = data_.outcome.report.patches;
     if (number < answers.size()) {
       answers.erase(answers.begin() + static_cast<std::ptrdiff_t>(number));
     }
-    loads_.remove(number);
+    data_.loads.remove(number);
   }
-  if (motion_.takesNoTime()) return asItIs();
-  const bool unique = methods_.now().findsEquilibrium() && !isUntouched();
-  unique ? solve(body_.freeNodes()) : solveFromRest();
-  return tear();
+  if (data_.motion.takesNoTime()) return data_.asItIs();
+  const bool unique = data_.methods.now().findsEquilibrium() && !data_.loads.isUntouched();
+  unique ? solver_.solve(data_.body.freeNodes()) : solveFromRest();
+  return surgery_.tear();
 }
 
-PatchAnswer TissueParts::answerOf(const std::string& name, const SolveReport& report) const {
-  const std::optional<std::size_t> number = loads_.numberOf(name);
-  return number && *number < report.patches.size() ? report.patches[*number] : PatchAnswer();
+SolveReport LoadProgram::follow(std::vector<LoadingPatch> tool_patches,
+                                const std::vector<int>& disturbed, Bedding bedding) {
+  const bool one_left = data_.loads.isOneLeftBy(tool_patches);
+  data_.loads.putToolPatches(std::move(tool_patches));
+  const bool last_left = one_left && data_.loads.isUntouched();
+  const bool returns = data_.methods.now().findsEquilibrium() && bedding == Bedding::kFixedNodes;
+  if (data_.motion.isInTimeStep()) return solver_.solve(disturbed);
+  if (data_.motion.isInTime()) return data_.asItIs();
+  const bool from_rest = data_.methods.now().findsEquilibrium() ? last_left && returns : one_left;
+  if (from_rest) return solveFromRest();
+  const bool one_there = !data_.loads.isUntouched();
+  const SolveReport report = solver_.solve(disturbed);
+  // The tissue left the last tool behind in the solve.
+  const bool one_lost = one_there && data_.loads.isUntouched();
+  return one_lost && returns ? solveFromRest() : report;
 }
 
-LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
+SolveReport LoadProgram::settle() {
+  data_.motion.stop();
+  solver_.solve(data_.body.freeNodes());
+  return surgery_.tear();
+}
+
+// Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
+// holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
+SolveReport LoadProgram::solveFromRest() {
+  StandingLoads& loads = data_.loads;
+  const std::vector<LoadingPatch> standing = loads.patches();
+  data_.methods.now().forget();
+  std::vector<Vec3>& displacement = data_.body.change().displacement;
+  std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
+  SolveReport report;
+  const bool sutured = data_.threads.anyWhole();
+  if (data_.body.hasBodyLoad() || sutured) {
+    const std::size_t named = loads.named();
+    loads.restore({}, 0);
+    report = settleFromRest();
+    loads.putBack(standing, named);
+  }
+  std::vector<LoadRamp> ramps;
+  for (std::size_t patch = 0; patch < standing.size(); ++patch) {
+    ramps.push_back(makeRamp(standing[patch], nullptr));
+    ramps.back().patch = patch;
+    ramps.back().start.force.setZero();
+    loads.patches()[patch] = ramps.back().start;
+  }
+  if (!ramps.empty()) {
+    report = stepping_.stepLoadsByItself(ramps, {});
+  } else if (!data_.body.hasBodyLoad() && !sutured) {
+    solver_.describeShape(report);
+    report.volume_ratio = data_.body.volumeRatio();
+    data_.outcome.report = report;
+    data_.outcome.is_late = false;
+  }
+  return report;
+}
+
+// Under gravity and threads alone, these drawn in from where the rest shape has their ends.
+SolveReport LoadProgram::settleFromRest() {
+  SolveReport report;
+  data_.threads.loosen(data_.body.displacement());
+  if (data_.body.hasBodyLoad()) report = settle();
+  return data_.threads.anyWhole() ? suturing_.drawThreadsIn() : report;
+}
+
+LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
+  const Lattice& lattice = data_.body.lattice();
+  const LatticeState& state = data_.body.state();
   LoadingPatch patch;
   patch.name = config.name;
-  patch.nodes = body_.lattice().nodesIn(config.box);
+  patch.nodes = lattice.nodesIn(config.box);
   patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
-                                   [this](int node) { return isRemoved(body_.state(), node); }),
+                                   [&](int node) { return isRemoved(state, node); }),
                     patch.nodes.end());
   if (patch.nodes.empty())
     refusePatch(config.name, "no node in its box, " + textOf(config.box),
                 "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
-                  [this](int node) { return body_.lattice().isFixed(node); })) {
+                  [&](int node) { return lattice.isFixed(node); })) {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
-  if (methods_.now().findsEquilibrium()) {
-    patch.rim = rimOf(body_.lattice(), body_.model(), body_.state(), config.box, patch.nodes);
+  if (data_.methods.now().findsEquilibrium()) {
+    patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
   }
   if (config.force) {
     patch.drive = LoadingPatch::Drive::kForce;
     patch.force = *config.force;
-    if (config.turns && !methods_.now().findsEquilibrium()) {
+    if (config.turns && !data_.methods.now().findsEquilibrium()) {
       refusePatch(config.name, "turns: this method moves patches without turning them",
                   "turns false, or another method");
     }
-    if (config.turns && areOnALine(body_.lattice(), patch.nodes)) {
+    if (config.turns && areOnALine(lattice, patch.nodes)) {
       refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
                   "turns false, or a box of nodes on more than one line");
     }
     patch.turns = config.turns;
     for (const int node : patch.nodes) {
-      patch.center += body_.lattice().restPosition(node) / static_cast<double>(patch.nodes.size());
+      patch.center += lattice.restPosition(node) / static_cast<double>(patch.nodes.size());
     }
     return patch;
   }
@@ -208,11 +270,12 @@ LoadingPatch TissueParts::makePatch(const PatchConfig& config) const {
 }
 
 // Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
-LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
+LoadRamp LoadProgram::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
   LoadRamp ramp;
   ramp.target = target;
   ramp.start = target;
-  for (RimSpring& spring : ramp.start.rim) spring.anchor = body_.displacement()[at(spring.node)];
+  const std::vector<Vec3>& displacement = data_.body.displacement();
+  for (RimSpring& spring : ramp.start.rim) spring.anchor = displacement[at(spring.node)];
   ramp.start.place = PatchPlace();
   if (standing != nullptr) {
     for (RimSpring& spring : ramp.start.rim) {
@@ -226,17 +289,18 @@ LoadRamp TissueParts::makeRamp(const LoadingPatch& target, const LoadingPatch* s
     ramp.start.force = patchForce(ramp.start);
     return ramp;
   }
-  ramp.start.displacement = ownDisplacement(ramp.start, body_.displacement());
+  ramp.start.displacement = ownDisplacement(ramp.start, displacement);
   return ramp;
 }
 
-Vec3 TissueParts::patchForce(const LoadingPatch& patch) const {
-  std::vector<Vec3> forces(body_.displacement().size(), Vec3::Zero());
-  for (const int node : patch.nodes) forces[at(node)] = nodeForce(node);
-  for (const LoadingPatch& other : loads_.patches())
-    addContactForces(other, body_.displacement(), forces);
-  return robot_tissue::answerOf(body_.lattice(), body_.state(), patch, onHardNodes(patch, forces))
-      .force;
+Vec3 LoadProgram::patchForce(const LoadingPatch& patch) const {
+  const LatticeState& state = data_.body.state();
+  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
+  for (const int node : patch.nodes) forces[at(node)] = forces_.nodeForce(node);
+  for (const LoadingPatch& other : data_.loads.patches()) {
+    addContactForces(other, state.displacement, forces);
+  }
+  return answerOf(data_.body.lattice(), state, patch, onHardNodes(patch, forces)).force;
 }
 
 }  // namespace robot_tissue

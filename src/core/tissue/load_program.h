@@ -1,0 +1,48 @@
+// What acts on the tissue, one after the other: named loads that come and go, the tools' patches,
+// and the way from rest to the loads that stand. Lengths in m, forces in N, in the tissue's frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue/load_stepping.h"
+#include "tissue/suturing.h"
+#include "tissue/tissue_forces.h"
+
+namespace robot_tissue {
+
+class LoadProgram {
+ public:
+  LoadProgram(TissueData& data, const TissueForces& forces, LoadStepSolver& solver,
+              Surgery& surgery, Suturing& suturing)
+      : data_(data),
+        forces_(forces),
+        solver_(solver),
+        surgery_(surgery),
+        suturing_(suturing),
+        stepping_(data, solver, surgery) {}
+
+  // As of Tissue.
+  void load(const LoadStep& step, const Tissue::OnIncrement& on_increment, int most_increments);
+  void loadOn(const Tissue::OnIncrement& on_increment);
+  SolveReport release(const std::vector<std::string>& names);
+  SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed,
+                     Bedding bedding);
+  SolveReport settle();
+
+ private:
+  SolveReport solveFromRest();
+  SolveReport settleFromRest();
+  LoadingPatch makePatch(const PatchConfig& config) const;
+  LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
+  Vec3 patchForce(const LoadingPatch& patch) const;
+
+  TissueData& data_;
+  const TissueForces& forces_;
+  LoadStepSolver& solver_;
+  Surgery& surgery_;
+  Suturing& suturing_;
+  LoadStepping stepping_;
+};
+
+}  // namespace robot_tissue

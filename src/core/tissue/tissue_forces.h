@@ -1,0 +1,27 @@
+// Forces on the tissue as it is (N, tissue frame), and how it gives way to them; it changes
+// nothing. What each function tells: as of Tissue.
+#pragma once
+
+#include <optional>
+
+#include "robot_tissue/core/narrow_contact.h"
+#include "tissue/tissue_data.h"
+
+namespace robot_tissue {
+
+class TissueForces {
+ public:
+  explicit TissueForces(const TissueData& data) : data_(data) {}
+
+  Vec3 nodeForce(int node) const;
+  Vec3 weight() const;
+  Vec3 forceOfFixedNodes() const;
+  double stiffening(int node) const;
+  std::optional<RimCompliance> rimCompliance(int node, double depth) const;
+  std::optional<Recess> recessUnder(const BallPress& press) const;
+
+ private:
+  const TissueData& data_;
+};
+
+}  // namespace robot_tissue
