@@ -36,11 +36,6 @@ void Blades::endStrokes() {
   for (BladeState& state : states_) state.since_cut = std::numeric_limits<double>::infinity();
 }
 
-void Blades::restore(const std::vector<BladeState>& states) {
-  states_ = states;
-  for (std::size_t tool = 0; tool < states_.size(); ++tool) setPhase(tool, states_[tool].phase);
-}
-
 bool Blades::goTo(RobotPose& pose) {
   bool all = true;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {

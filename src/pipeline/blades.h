@@ -53,14 +53,14 @@ struct BladeState {
 
 class Blades {
  public:
-  Blades(World& world, LoadStepper& load_step) : world_(world), load_step_(load_step) {}
+  // The states, one a tool, are kept by the caller.
+  Blades(World& world, LoadStepper& load_step, std::vector<BladeState>& states)
+      : world_(world), load_step_(load_step), states_(states) {}
 
   // They stand nowhere.
   void forget();
   // What they cut from here on is another stroke.
   void endStrokes();
-  const std::vector<BladeState>& states() const { return states_; }
-  void restore(const std::vector<BladeState>& states);
 
   // Those that come anew to where tissue is are inside: they do not part what they appear in.
   void comeIn(const RobotPose& pose);
@@ -110,7 +110,7 @@ class Blades {
 
   World& world_;
   LoadStepper& load_step_;
-  std::vector<BladeState> states_;
+  std::vector<BladeState>& states_;
 };
 
 }  // namespace robot_tissue

@@ -23,7 +23,8 @@ struct BurrState {
 
 class Burrs {
  public:
-  explicit Burrs(World& world) : world_(world) {}
+  // The states, one a tool, are kept by the caller.
+  Burrs(World& world, std::vector<BurrState>& states) : world_(world), states_(states) {}
 
   // They stand nowhere.
   void forget() {
@@ -32,8 +33,6 @@ class Burrs {
   }
   // What is removed next is a change of its own.
   void endStrokes();
-  const std::vector<BurrState>& states() const { return states_; }
-  void restore(const std::vector<BurrState>& states) { states_ = states; }
 
   // As Blades::goTo. A tool that would take all that is left removes nothing more until it comes in
   // anew.
@@ -45,7 +44,7 @@ class Burrs {
   void drill(std::size_t tool, BurrState& state);
 
   World& world_;
-  std::vector<BurrState> states_;
+  std::vector<BurrState>& states_;
 };
 
 }  // namespace robot_tissue

@@ -18,8 +18,8 @@ void Pipeline::expectTouch() {
     is_near = distance(world_.finder.bounds(link, pose), tissue.bounds()) <
               tuning::kExpectedFrom * tissue.lattice().spacing();
   }
-  if (is_near && was_near_) world_.tissue.expectTouch();
-  was_near_ = is_near;
+  if (is_near && state_.was_near) world_.tissue.expectTouch();
+  state_.was_near = is_near;
 }
 
 }  // namespace robot_tissue

@@ -31,7 +31,8 @@ struct Jaws {
 
 class Grasping {
  public:
-  explicit Grasping(World& world) : world_(world) {}
+  // The jaws, of each tool, are kept by the caller.
+  Grasping(World& world, std::vector<Jaws>& jaws) : world_(world), jaws_(jaws) {}
 
   void setTools(std::size_t count) { jaws_.assign(count, {}); }
   const std::vector<Jaws>& jaws() const { return jaws_; }
@@ -74,7 +75,7 @@ class Grasping {
   bool pushesWith(std::size_t link) const;
 
   World& world_;
-  std::vector<Jaws> jaws_;  // per tool
+  std::vector<Jaws>& jaws_;  // per tool
 };
 
 }  // namespace robot_tissue

@@ -11,7 +11,7 @@ namespace robot_tissue {
 Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
   World& world = pipeline.world_;
-  world.deadline = Deadline(pipeline.budget_s_ - 1e-3 * pipeline.reporting_ms_);
+  world.deadline = Deadline(pipeline.budget_s_ - 1e-3 * pipeline.state_.reporting_ms);
   if (end && end->leftMs() < world.deadline.leftMs()) world.deadline = *end;
   if (end || std::isfinite(pipeline.budget_s_)) world.tissue.setDeadline(world.deadline);
 }
@@ -32,19 +32,20 @@ const StepReport& Pipeline::carryOn() {
 // Counts the iterations since the tools stand; a solve that never converges is given up in the end,
 // with a budget or without.
 void Pipeline::countLate() {
-  late_iterations_ +=
+  state_.late_iterations +=
       world_.tissue.isLoading() ? 0 : std::max(1, world_.tissue.lastReport().iterations);
-  gave_up_ = late_iterations_ > tuning::kMostLateIterations;
+  state_.gave_up = state_.late_iterations > tuning::kMostLateIterations;
 }
 
 void Pipeline::setMostIterations(int iterations) { world_.most_iterations = iterations; }
 
 bool Pipeline::isBehind() const {
-  return world_.tissue.isLoading() || (!gave_up_ && (world_.unfinished || world_.tissue.isLate()));
+  return world_.tissue.isLoading() ||
+         (!state_.gave_up && (world_.unfinished || world_.tissue.isLate()));
 }
 
 bool Pipeline::isLate() const {
-  return isBehind() || (!gave_up_ && !world_.tissue.areContactsSettled());
+  return isBehind() || (!state_.gave_up && !world_.tissue.areContactsSettled());
 }
 
 bool Pipeline::hasArrived() const {

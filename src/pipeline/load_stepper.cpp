@@ -20,7 +20,7 @@ Bedding beddingOf(const World& world) {
 
 // One load step, the line of the package.
 bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
-  under_way_.reset();
+  state_.under_way.reset();
   world_.unfinished = false;
   ++world_.report.substeps;
   if (!takesShapeOrLeaves(pose, otherwise)) return false;

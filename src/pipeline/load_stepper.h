@@ -27,14 +27,31 @@ struct Checkpoint {
 // What is done with a shape that did not converge.
 enum class IfUnconverged { kTake, kRefuse };
 
+// A load step that time ran out in.
+struct UnfinishedLoadStep {
+  Checkpoint came_to;
+  IfUnconverged otherwise = IfUnconverged::kTake;
+  int iterations = 0;                  // so far
+  Tissue::Displacements from;          // the last good shape
+  std::uint64_t surface_revision = 0;  // of that shape
+};
+
+// What a load step leaves to the next.
+struct LoadStepState {
+  bool ran_out_of_time = false;  // the last one that no shape followed
+  std::optional<UnfinishedLoadStep> under_way;
+};
+
 class LoadStepper {
  public:
+  // The state is kept by the caller.
   LoadStepper(World& world, TouchFinder& touch_finder, ToolContactUpdate& contact_update,
-              Grasping& grasping)
+              Grasping& grasping, LoadStepState& state)
       : world_(world),
         touch_finder_(touch_finder),
         contact_update_(contact_update),
-        grasping_(grasping) {}
+        grasping_(grasping),
+        state_(state) {}
 
   // The tools go there. False: no shape could follow, all is as it was.
   bool advance(const RobotPose& pose, IfUnconverged otherwise = IfUnconverged::kTake);
@@ -48,26 +65,19 @@ class LoadStepper {
   void goBackTo(const Checkpoint& good);
 
   // As the last load step that no shape followed ended.
-  bool ranOutOfTime() const { return ran_out_of_time_; }
+  bool ranOutOfTime() const { return state_.ran_out_of_time; }
   // Whether time ran out in it, and it can be gone on with from what it came to.
   bool isUnderWay() const;
-  const RobotPose& goesTo() const { return under_way_->came_to.pose; }  // only while it is
+  const RobotPose& goesTo() const { return state_.under_way->came_to.pose; }  // only while it is
   // Goes on with it, to where it led; where there is none, as advance to the pose.
   bool finish(const RobotPose& pose) { return isUnderWay() ? goOn() : advance(pose); }
-  void forgetUnderWay() { under_way_.reset(); }
+  void forgetUnderWay() { state_.under_way.reset(); }
+  // The shape that it began at is the one that there is, though taken back.
+  void keepUnderWay();
   // Whether one of these links stands deeper in the surface than tissue that gives way lets it.
   bool isAnyThrough(const std::vector<std::size_t>& links, const RobotPose& pose) const;
 
  private:
-  // A load step that time ran out in.
-  struct UnderWay {
-    Checkpoint came_to;
-    IfUnconverged otherwise = IfUnconverged::kTake;
-    int iterations = 0;                  // so far
-    Tissue::Displacements from;          // the last good shape
-    std::uint64_t surface_revision = 0;  // likewise
-  };
-
   bool goOn();
   bool takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherwise);
   bool goesOnOrLeaves();
@@ -104,9 +114,8 @@ class LoadStepper {
   TouchFinder& touch_finder_;
   ToolContactUpdate& contact_update_;
   Grasping& grasping_;
-  bool ran_out_of_time_ = false;
+  LoadStepState& state_;
   bool waits_for_call_ = false;  // the load step under way, before its first solve
-  std::optional<UnderWay> under_way_;
 };
 
 }  // namespace robot_tissue

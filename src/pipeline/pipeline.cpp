@@ -14,7 +14,10 @@ namespace robot_tissue {
 Pipeline::Pipeline(const TissueConfig& tissue, const SolverConfig& solver,
                    const std::vector<ToolGeometry>& tools,
                    const std::vector<SupportConfig>& supports)
-    : parts_(std::make_unique<Parts>(tissue, solver)), world_(parts_->world), supports_(supports) {
+    : parts_(std::make_unique<Parts>(tissue, solver)),
+      world_(parts_->world),
+      state_(parts_->state),
+      supports_(supports) {
   takeTools(tools);
   world_.tissue.setContactUpdate(&parts_->contact_update);
   landing_ = Landing::ofScene(tissue, solver, supports_);
@@ -24,22 +27,23 @@ Pipeline::~Pipeline() = default;
 
 void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   world_.setTools(tools, supports_);
-  parts_->drive.setTools(tools.size());
+  state_.drive.setTools(tools.size());
   parts_->grasping.setTools(tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();
   parts_->scissors.forget();
-  gave_up_ = false;
-  late_iterations_ = 0;
+  state_.gave_up = false;
+  state_.late_iterations = 0;
 }
 
 void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
+  endTrial();
   takeTools(tools);
   parts_->load_step.lieDown();
   world_.last_pose.reset();
   parts_->motion.forget();
   parts_->load_step.forgetUnderWay();
-  touched_ = true;
+  state_.touched = true;
 }
 
 Pose Pipeline::away() { return ToolSet::away(); }
@@ -64,8 +68,8 @@ void Pipeline::setEnd(const Deadline& end) {
 }
 
 const StepReport& Pipeline::step(const RobotPose& pose) {
-  const RobotPose goal = parts_->drive.driven(world_.tools.complete(pose), world_.tools);
-  const bool stands = parts_->motion.standsStill(goal) && !touched_;
+  const RobotPose goal = state_.drive.driven(world_.tools.complete(pose), world_.tools);
+  const bool stands = parts_->motion.standsStill(goal) && !state_.touched;
   // Not once all are where the robot has them, as where the tissue let go of them.
   const bool was_lost = stands && world_.report.lost && !world_.report.behind.empty();
   const std::vector<std::size_t> behind = world_.report.behind;
@@ -80,44 +84,38 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
     return world_.report;
   }
   const Bounded bounded(*this);
-  world_.tools_move = !stands && !parts_->drive.drivesAny();
+  world_.tools_move = !stands && !state_.drive.drivesAny();
   if (world_.tissue.isLoading()) loadOn();
   if (stands && !world_.tissue.isMoving()) {
     finish();
     countLate();
   } else {
-    late_iterations_ = 0;
-    gave_up_ = false;
+    state_.late_iterations = 0;
+    state_.gave_up = false;
     stepTo(goal, pose);
   }
   return endReport();
 }
 
 void Pipeline::beginReport() {
-  world_.report.changed = touched_;
-  world_.report.too_fast = world_.report.lost = world_.report.hopeless = false;
-  world_.report.late = false;
-  world_.report.gave_up = gave_up_;
-  for (auto* tools : {&world_.report.behind, &world_.report.jumped, &world_.report.were_inside,
-                      &world_.report.torn_off, &world_.report.torn_out}) {
-    tools->clear();
-  }
-  world_.report.contact_ms = world_.report.solve_ms = 0.0;
-  world_.report.substeps = world_.report.springs_cut = world_.report.springs_torn = 0;
-  world_.report.area_cut = world_.report.volume_removed = 0.0;
-  world_.report.lost_loads.clear();
+  StepReport report;
+  report.changed = state_.touched;
+  report.gave_up = state_.gave_up;
+  report.tools = std::move(world_.report.tools);                    // till they are described anew
+  report.would_take_all = std::move(world_.report.would_take_all);  // till burrs go on
+  world_.report = std::move(report);
 }
 
 const StepReport& Pipeline::endReport() {
   world_.report.late = isLate();
-  world_.report.gave_up = gave_up_;
+  world_.report.gave_up = state_.gave_up;
   world_.report.hopeless = world_.tissue.patience().cutsOff();
   return world_.report;
 }
 
 // goal: the pose, with the ways of tools that a force drives.
 void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
-  if (touched_) world_.dead_end.reset();
+  if (state_.touched) world_.dead_end.reset();
   world_.report.changed = world_.report.changed || !world_.tissue.isUntouched();
   const std::size_t dropped = world_.tissue.droppedPieces().size();
   RobotPose there = goal;  // but for tools that wait outside
@@ -131,7 +129,7 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   world_.asked = goal;
   // Shapes to go back to may have patches on what was dropped.
   if (world_.tissue.droppedPieces().size() > dropped) parts_->motion.checkInAnew();
-  touched_ = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
+  state_.touched = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
   if (world_.report.too_fast || world_.report.lost) {
     world_.report.behind = parts_->motion.toolsBehind();
   } else {
@@ -160,7 +158,7 @@ void Pipeline::startClock(double seconds) { world_.reached_s = seconds; }
 void Pipeline::stopTime() {
   if (!world_.tissue.hasTime()) return;
   world_.tissue.stopTime();
-  touched_ = true;
+  state_.touched = true;
 }
 
 void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
@@ -237,21 +235,21 @@ void Pipeline::setFriction(double friction) {
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.stepsBetween(
                                 *world_.last_pose,
-                                parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+                                state_.drive.driven(world_.tools.complete(pose), world_.tools))
                           : 0.0;
 }
 
 std::vector<std::size_t> Pipeline::jumpsTo(const RobotPose& pose) const {
   return world_.last_pose
              ? parts_->ways.farFrom(*world_.last_pose,
-                                    parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+                                    state_.drive.driven(world_.tools.complete(pose), world_.tools))
              : std::vector<std::size_t>();
 }
 
 double Pipeline::freeStepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.freeSteps(
                                 *world_.last_pose,
-                                parts_->drive.driven(world_.tools.complete(pose), world_.tools))
+                                state_.drive.driven(world_.tools.complete(pose), world_.tools))
                           : 0.0;
 }
 
@@ -260,8 +258,8 @@ bool Pipeline::isInTissue(std::size_t tool, const RobotPose& pose) const {
 }
 
 std::optional<StillPose> Pipeline::stillPose() const {
-  const bool is_driven = parts_->drive.drivesAny();
-  const bool stands = !touched_ && !isLate() && !is_driven && !world_.tissue.isMoving();
+  const bool is_driven = state_.drive.drivesAny();
+  const bool stands = !state_.touched && !isLate() && !is_driven && !world_.tissue.isMoving();
   if (!world_.last_pose || !stands) return std::nullopt;
   RobotPose of_tools = world_.asked;
   of_tools.links.resize(world_.tools.linkCount());
@@ -299,14 +297,14 @@ void Pipeline::takeOver(const Tissue& other, Tissue::Displacements displacement)
 
 // They hold and touch nothing, and come in from outside.
 void Pipeline::forgetTools() {
-  trial_from_.reset();
+  endTrial();
   world_.sticking.clear();
   world_.sliding.clear();
   parts_->grasping.forgetLetGo();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     parts_->grasping.forgetJaws(tool);
   }
-  parts_->drive.setTools(world_.tools.size());
+  state_.drive.setTools(world_.tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();
   parts_->scissors.forget();
@@ -314,10 +312,10 @@ void Pipeline::forgetTools() {
   parts_->load_step.forgetUnderWay();
   world_.last_pose.reset();
   world_.pose = world_.tools.complete({});
-  world_.unfinished = gave_up_ = false;
-  late_iterations_ = 0;
-  touched_ = true;
-  was_near_ = false;
+  world_.unfinished = state_.gave_up = false;
+  state_.late_iterations = 0;
+  state_.touched = true;
+  state_.was_near = false;
 }
 
 // After the tissue changed by other means than the tools' motion.
@@ -325,9 +323,9 @@ void Pipeline::touch() {
   // A shape that is taken back bit for bit is not solved for, so nobody asked for its contacts.
   parts_->contact_update.takeSurface();
   world_.sliding.commit(world_.pose, world_.tissue);
-  touched_ = true;
-  gave_up_ = false;
-  late_iterations_ = 0;
+  state_.touched = true;
+  state_.gave_up = false;
+  state_.late_iterations = 0;
   parts_->motion.checkInAnew();
   parts_->blades.endStrokes();
   parts_->burrs.endStrokes();
@@ -342,13 +340,13 @@ void Pipeline::describeTools() {
     for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
       ToolReport& report = world_.report.tools[tool];
       report = describeTool(world_, parts_->grasping, tool);
-      report.offset = parts_->drive.offset(tool);
+      report.offset = state_.drive.offset(tool);
       parts_->blades.describe(tool, report);
     }
   }
   world_.depths_are_due = true;
   if (!leaves_depths_) findDepths();
-  reporting_ms_ = world_.report.contact_ms - before_ms;
+  state_.reporting_ms = world_.report.contact_ms - before_ms;
 }
 
 void Pipeline::findDepths() const {

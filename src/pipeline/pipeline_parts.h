@@ -17,21 +17,40 @@
 
 namespace robot_tissue {
 
+// What steps change, but for the world's and the tissue: what a trial does is undone by taking a
+// copy back. The classes below keep here what they remember from one step to the next, and have
+// nothing else that later steps depend on.
+struct Pipeline::State {
+  ForceDrive drive;
+  TouchState touches;
+  std::vector<Jaws> jaws;
+  LoadStepState load_step;
+  std::vector<BladeState> blades;
+  std::vector<BurrState> burrs;
+  std::vector<ScissorsState> scissors;
+  WayBehind way_behind;
+  int late_iterations = 0;    // of the method, where the tools stand
+  bool gave_up = false;       // there
+  bool touched = true;        // the reports are to be brought up to date
+  bool was_near = false;      // a tool, in the last step in which nothing was solved
+  double reporting_ms = 0.0;  // that the last reports on the tools took
+};
+
 struct Pipeline::Parts {
   Parts(const TissueConfig& tissue, const SolverConfig& solver) : world(tissue, solver) {}
 
   World world;
-  ForceDrive drive;
+  State state;
   WayLengths ways{world};
-  TouchFinder touch_finder{world};
+  TouchFinder touch_finder{world, state.touches};
   ToolContactUpdate contact_update{world, touch_finder};
-  Grasping grasping{world};
+  Grasping grasping{world, state.jaws};
   OverlapResolver overlap{world};
-  LoadStepper load_step{world, touch_finder, contact_update, grasping};
-  Blades blades{world, load_step};
-  Burrs burrs{world};
-  Scissors scissors{world};
-  ToolMotion motion{world, ways, overlap, grasping, load_step};
+  LoadStepper load_step{world, touch_finder, contact_update, grasping, state.load_step};
+  Blades blades{world, load_step, state.blades};
+  Burrs burrs{world, state.burrs};
+  Scissors scissors{world, state.scissors};
+  ToolMotion motion{world, ways, overlap, grasping, load_step, state.way_behind};
 };
 
 }  // namespace robot_tissue

@@ -31,14 +31,13 @@ struct ScissorsState {
 
 class Scissors {
  public:
-  explicit Scissors(World& world) : world_(world) {}
+  // The states, one a tool, are kept by the caller.
+  Scissors(World& world, std::vector<ScissorsState>& states) : world_(world), states_(states) {}
 
   // They stand nowhere.
   void forget() { states_.assign(world_.tools.size(), ScissorsState()); }
   // What is cut next is a change of its own.
   void endStrokes();
-  const std::vector<ScissorsState>& states() const { return states_; }
-  void restore(const std::vector<ScissorsState>& states) { states_ = states; }
 
   // As Blades::goTo.
   bool goTo(RobotPose& pose);
@@ -61,7 +60,7 @@ class Scissors {
   std::vector<Piece> piecesOf(std::size_t tool) const;
 
   World& world_;
-  std::vector<ScissorsState> states_;
+  std::vector<ScissorsState>& states_;
 };
 
 }  // namespace robot_tissue

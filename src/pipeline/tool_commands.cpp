@@ -22,11 +22,11 @@ void Pipeline::grasp(std::size_t tool) {
                      (why.empty() ? "its jaws stand nowhere or have no shapes" : why) +
                      "; allowed: jaws around tissue");
   }
-  touched_ = true;
+  state_.touched = true;
 }
 
 void Pipeline::letGo(std::size_t tool) {
-  if (parts_->grasping.letGo(tool)) touched_ = true;
+  if (parts_->grasping.letGo(tool)) state_.touched = true;
 }
 
 void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
@@ -39,8 +39,8 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
     throw InputError("tool '" + world_.tools.nameOf(tool) + "': role " + role.name + " only " +
                      role.deed() + "; allowed: a tool that pushes");
   }
-  parts_->drive.push(tool, force);
-  touched_ = true;
+  state_.drive.push(tool, force);
+  state_.touched = true;
 }
 
 // True: a driven tool has a way left to go.
@@ -48,17 +48,17 @@ bool Pipeline::drive(const RobotPose& pose) {
   bool goes_on = false;
   const StepReport& report = world_.report;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (!parts_->drive.drives(tool)) continue;
-    if (parts_->drive.waits(tool, isLate())) {
+    if (!state_.drive.drives(tool)) continue;
+    if (state_.drive.waits(tool, isLate())) {
       goes_on = true;
       continue;
     }
     const auto walk = [&] {
       world_.last_pose =
-          parts_->motion.walk(parts_->drive.driven(world_.tools.complete(pose), world_.tools));
+          parts_->motion.walk(state_.drive.driven(world_.tools.complete(pose), world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();
     };
-    const bool on = parts_->drive.meetForce(
+    const bool on = state_.drive.meetForce(
         tool, {parts_->ways.stepOf(world_.tools.firstLink(tool)),
                [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
     goes_on = goes_on || on;

@@ -22,9 +22,15 @@ struct WayBehind {
 
 class ToolMotion {
  public:
+  // `behind` is kept by the caller.
   ToolMotion(World& world, const WayLengths& ways, const OverlapResolver& overlap,
-             Grasping& grasping, LoadStepper& load_step)
-      : world_(world), ways_(ways), overlap_(overlap), grasping_(grasping), load_step_(load_step) {}
+             Grasping& grasping, LoadStepper& load_step, WayBehind& behind)
+      : world_(world),
+        ways_(ways),
+        overlap_(overlap),
+        grasping_(grasping),
+        load_step_(load_step),
+        behind_(behind) {}
 
   RobotPose walk(const RobotPose& pose);
   void startAnew(RobotPose& pose);
@@ -45,8 +51,6 @@ class ToolMotion {
   bool hasCheckpoints() const { return !behind_.checkpoints.empty(); }
   // The last pose is one to come back to, and the only one.
   void checkInAnew();
-  const WayBehind& wayBehind() const { return behind_; }
-  void restore(const WayBehind& behind) { behind_ = behind; }
   void forget() { behind_ = WayBehind(); }
 
  private:
@@ -74,7 +78,7 @@ class ToolMotion {
   const OverlapResolver& overlap_;
   Grasping& grasping_;
   LoadStepper& load_step_;
-  WayBehind behind_;
+  WayBehind& behind_;
 };
 
 }  // namespace robot_tissue

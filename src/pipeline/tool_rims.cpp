@@ -32,12 +32,12 @@ double widthOf(const FlatFace& face) {
 }  // namespace
 
 void ToolRims::beginStep() {
-  shares_.clear();
-  last_shares_.clear();
-  firm_.clear();
+  state_.shares.clear();
+  state_.last_shares.clear();
+  state_.firm.clear();
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (touch.contact.rim.edges.empty()) continue;
-    last_shares_[{touch.contact.link, touch.vertex}] = touch.contact.rim.share;
+    state_.last_shares[{touch.contact.link, touch.vertex}] = touch.contact.rim.share;
   }
 }
 
@@ -58,8 +58,8 @@ void ToolRims::takeSurface() {
 
 void ToolRims::look(const RobotPose& pose, const std::vector<Vec3>& vertices,
                     const ContactSet& contacts) {
-  at_rims_.clear();
-  drawn_.clear();
+  state_.at_rims.clear();
+  state_.drawn.clear();
   std::map<int, Link> links;
   for (const Contact& contact : contacts.contacts) {
     const std::size_t number = at(contact.link);
@@ -95,8 +95,8 @@ void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
     if (surface.carriers[at(vertex)].size() == 1) touching.insert(vertex);
   }
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    const auto at_rim = at_rims_.find({link.number, touch.vertex});
-    if (touch.contact.link != link.number || at_rim == at_rims_.end()) continue;
+    const auto at_rim = state_.at_rims.find({link.number, touch.vertex});
+    if (touch.contact.link != link.number || at_rim == state_.at_rims.end()) continue;
     if (!touch.contact.rim.edges.empty() || !at_rim->second.rim.is_beyond) {
       touching.insert(touch.vertex);
     }
@@ -106,25 +106,26 @@ void ToolRims::drawEdges(const std::vector<Vec3>& vertices, const Link& link) {
                                   vertices[at(vertex)], tuning::kRimReach * spacing);
   };
   for (auto& [vertex, drawn] : drawnAtEdges(touching, neighbors_, vertices, face_under, spacing)) {
-    const auto at_rim = at_rims_.find({link.number, vertex});
-    const double share =
-        at_rim != at_rims_.end() ? at_rim->second.rim.share : shareAt(*face_under(vertex), link);
+    const auto at_rim = state_.at_rims.find({link.number, vertex});
+    const double share = at_rim != state_.at_rims.end() ? at_rim->second.rim.share
+                                                        : shareAt(*face_under(vertex), link);
     drawn.aside *= fade(share, 0.0, tuning::kSomeOfIt);
-    drawn_[{link.number, vertex}] = drawn;
+    state_.drawn[{link.number, vertex}] = drawn;
   }
 }
 
 // How much rims bear changes little in a load step, and stays in its rounds.
 void ToolRims::steadyShares(int link) {
-  const auto first = at_rims_.lower_bound({link, 0}), last = at_rims_.lower_bound({link + 1, 0});
+  const auto first = state_.at_rims.lower_bound({link, 0}),
+             last = state_.at_rims.lower_bound({link + 1, 0});
   for (auto at_rim = first; at_rim != last; ++at_rim) {
     double& share = at_rim->second.rim.share;
-    const auto last_share = last_shares_.find(at_rim->first);
-    if (last_share != last_shares_.end()) {
+    const auto last_share = state_.last_shares.find(at_rim->first);
+    if (last_share != state_.last_shares.end()) {
       share = std::max(share, last_share->second - tuning::kMostOfShare);
       share = std::min(share, last_share->second + tuning::kMostOfShare);
     }
-    share = shares_.try_emplace(at_rim->first, share).first->second;
+    share = state_.shares.try_emplace(at_rim->first, share).first->second;
   }
 }
 
@@ -187,11 +188,11 @@ void ToolRims::findFirm(const ContactSet& contacts, Link& link) {
     const auto face = faceUnder(contact, link, link.facing);
     if (!face) continue;
     const int vertex = vertexAt(world_.tissue.surface(), contact.place);
-    const bool was_firm = firm_.count({link.number, vertex}) != 0;
+    const bool was_firm = state_.firm.count({link.number, vertex}) != 0;
     const double least = was_firm ? 0.0 : tuning::kFirmDepth * spacing;
     if (leastDepth(*face) >= least) link.firm.insert(vertex);
   }
-  for (const int vertex : link.firm) firm_.emplace(link.number, vertex);
+  for (const int vertex : link.firm) state_.firm.emplace(link.number, vertex);
 }
 
 // Rotation that takes them from rest to where they are (Kabsch 1976). False: they are on a line.
@@ -280,7 +281,7 @@ void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& verti
   if (at_rim.rim.edges.empty()) return;
   const int node = world_.tissue.surface().carriers[at(vertex)].front().node;
   if (!world_.tissue.rimCompliance(node, 0.0)) return;  // here it has none
-  at_rims_[{link.number, vertex}] = at_rim;
+  state_.at_rims[{link.number, vertex}] = at_rim;
 }
 
 // The law is of sharp edges, of a wide face that lies flat on the tissue.
@@ -308,8 +309,8 @@ void ToolRims::mark(Contact& contact) const {
     contact.rim.share = shareOf(contact);
     return;
   }
-  const auto found = at_rims_.find({contact.link, vertex});
-  if (found != at_rims_.end()) {
+  const auto found = state_.at_rims.find({contact.link, vertex});
+  if (found != state_.at_rims.end()) {
     const AtRim& at_rim = found->second;
     if (at_rim.rim.is_beyond || at_rim.rim.share <= 0.0) return;
     contact.rim = at_rim.rim;
@@ -320,20 +321,20 @@ void ToolRims::mark(Contact& contact) const {
 }
 
 void ToolRims::markDrawn(int vertex, Contact& contact) const {
-  const auto drawn = drawn_.find({contact.link, vertex});
-  if (drawn == drawn_.end()) return;
+  const auto drawn = state_.drawn.find({contact.link, vertex});
+  if (drawn == state_.drawn.end()) return;
   contact.rim.drawn_at = drawn->second.place;
   contact.rim.drawn_aside = drawn->second.aside;
 }
 
 double ToolRims::shareOf(const Contact& contact) const {
-  if (at_rims_.empty()) return 0.0;
+  if (state_.at_rims.empty()) return 0.0;
   const TissueSurface& surface = world_.tissue.surface();
   double share = 0.0, weight = 0.0;
   for (int corner = 0; corner < 3; ++corner) {
     const int vertex = surface.triangles[at(contact.place.triangle)][at(corner)];
-    const auto found = at_rims_.find({contact.link, vertex});
-    if (found == at_rims_.end()) continue;
+    const auto found = state_.at_rims.find({contact.link, vertex});
+    if (found == state_.at_rims.end()) continue;
     const double part = std::max(0.0, contact.place.barycentric[corner]);
     share += part * found->second.rim.share;
     weight += part;
@@ -366,7 +367,7 @@ Contact ToolRims::contactOf(int link, int vertex, const AtRim& at_rim,
 ContactSet ToolRims::beyond(const std::vector<Vec3>& vertices) const {
   ContactSet contacts;
   const double near = tuning::kNearGap * world_.tissue.lattice().spacing();
-  for (const auto& [key, at_rim] : at_rims_) {
+  for (const auto& [key, at_rim] : state_.at_rims) {
     if (!at_rim.rim.is_beyond || at_rim.rim.share <= 0.0 || at_rim.height > near) continue;
     contacts.contacts.push_back(contactOf(key.first, key.second, at_rim, vertices));
   }
@@ -377,8 +378,8 @@ ContactSet ToolRims::beyond(const std::vector<Vec3>& vertices) const {
 std::optional<Contact> ToolRims::atRim(const Contact& known,
                                        const std::vector<Vec3>& vertices) const {
   const int vertex = vertexAt(world_.tissue.surface(), known.place);
-  const auto found = at_rims_.find({known.link, vertex});
-  if (found == at_rims_.end() || found->second.rim.share <= 0.0) return std::nullopt;
+  const auto found = state_.at_rims.find({known.link, vertex});
+  if (found == state_.at_rims.end() || found->second.rim.share <= 0.0) return std::nullopt;
   return contactOf(known.link, vertex, found->second, vertices);
 }
 

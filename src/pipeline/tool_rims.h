@@ -17,9 +17,25 @@
 
 namespace robot_tissue {
 
+// What a look at the rims leaves to the next; of links and vertices.
+struct RimState {
+  struct AtRim {
+    int tool = 0;
+    Vec3 normal = Vec3::Zero();  // of the face
+    double height = 0.0;         // over it (m)
+    Rim rim;
+  };
+  std::map<std::pair<int, int>, AtRim> at_rims;
+  std::map<std::pair<int, int>, DrawnAt> drawn;
+  std::map<std::pair<int, int>, double> shares;       // of the load step
+  std::map<std::pair<int, int>, double> last_shares;  // of the touches when it began
+  std::set<std::pair<int, int>> firm;                 // stood firmly in the load step
+};
+
 class ToolRims {
  public:
-  explicit ToolRims(const World& world) : world_(world) {}
+  // The state is kept by the caller.
+  ToolRims(const World& world, RimState& state) : world_(world), state_(state) {}
 
   // A load step begins: how much rims bear is of the shape that there is.
   void beginStep();
@@ -46,12 +62,7 @@ class ToolRims {
   bool isSticking(int tool) const;
 
  private:
-  struct AtRim {
-    int tool = 0;
-    Vec3 normal = Vec3::Zero();  // of the face
-    double height = 0.0;         // over it (m)
-    Rim rim;
-  };
+  using AtRim = RimState::AtRim;
   // Of one link.
   struct Link {
     int tool = 0, number = 0;
@@ -81,11 +92,7 @@ class ToolRims {
                     const std::vector<Vec3>& vertices) const;
 
   const World& world_;
-  std::map<std::pair<int, int>, AtRim> at_rims_;       // of link and vertex
-  std::map<std::pair<int, int>, DrawnAt> drawn_;       // likewise
-  std::map<std::pair<int, int>, double> shares_;       // likewise, of the load step
-  std::map<std::pair<int, int>, double> last_shares_;  // of the touches when it began
-  std::set<std::pair<int, int>> firm_;                 // likewise: stood firmly in the load step
+  RimState& state_;
   // Of the surface with that number.
   std::uint64_t revision_ = 0;
   std::vector<std::vector<int>> neighbors_;  // of vertices, along edges

@@ -69,7 +69,7 @@ Vec3 TouchFinder::inwardsAt(const Contact& contact) const {
 // The same between vertices, of the curved surface: what slides along triangles would catch on
 // facets as on teeth.
 Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
-  const double share = smooth_[at(contact.link)];
+  const double share = state_.smooth[at(contact.link)];
   const Vec3 smooth = curved_.normalAt(contact.place);
   return ((1.0 - share) * inwardsAt(contact) - share * smooth).normalized();
 }
@@ -78,7 +78,7 @@ Vec3 TouchFinder::inwardsBetween(const Contact& contact) const {
 // first order.
 void TouchFinder::curve(Contact& contact) const {
   const TissueSurface& surface = world_.tissue.surface();
-  const double share = smooth_[at(contact.link)];
+  const double share = state_.smooth[at(contact.link)];
   contact.bulge.setZero();
   if (share == 0.0 || vertexAt(surface, contact.place) >= 0) return;
   contact.bulge = share * curved_.bulgeAt(contact.place);
@@ -90,7 +90,7 @@ void TouchFinder::curve(Contact& contact) const {
 // False: it stays.
 bool TouchFinder::deepen(const RobotPose& pose, const std::vector<Vec3>& vertices,
                          Contact& contact) const {
-  const double share = smooth_[at(contact.link)];
+  const double share = state_.smooth[at(contact.link)];
   const bool is_off = contact.depth_m < -tuning::kDeepenedFrom * world_.tissue.lattice().spacing();
   if (share == 0.0 || is_off || vertexAt(world_.tissue.surface(), contact.place) >= 0) return false;
   const DeepestPlace deepest(world_, curved_, share, pose, vertices, contact);
@@ -140,7 +140,8 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   if (!nearest) return false;
   const double farthest = tuning::kDetour * std::max(nearest->depth_m, 0.0) +
                           tuning::kDetourBeyond * std::min(spacing, world_.finder.thickness(link));
-  const double off = tuning::kOffEdge + smooth_[link] * (tuning::kOffSharpEdge - tuning::kOffEdge);
+  const double off =
+      tuning::kOffEdge + state_.smooth[link] * (tuning::kOffSharpEdge - tuning::kOffEdge);
   const auto along = world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,
                                                off * spacing, tuning::kReach * spacing, farthest);
   const WayOut& out = along ? *along : *nearest;
@@ -150,7 +151,7 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   const double cosine = out.normal.dot(inwards);
   if (!is_vertex && cosine > tuning::kSameSide) {
     const bool is_on_edge = contact.place.barycentric.minCoeff() <= tuning::kInsideTriangle;
-    const double share = is_on_edge ? smooth_[link] : 1.0;
+    const double share = is_on_edge ? state_.smooth[link] : 1.0;
     contact.normal = (share * inwards + (1.0 - share) * out.normal).normalized();
     contact.depth_m = out.depth_m / contact.normal.dot(out.normal);
   }
@@ -195,7 +196,7 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
 ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) {
   ContactSet contacts = flatContacts(pose, vertices);
   curved_.take(world_.tissue.surface(), vertices);
-  smooth_.resize(pose.links.size(), 0.0);
+  state_.smooth.resize(pose.links.size(), 0.0);
   for (Contact& contact : contacts.contacts) {
     curve(contact);
     if (contact.depth_m > 0.0) deepen(pose, vertices, contact);
@@ -232,7 +233,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
   const Stopwatch watch(world_.report.contact_ms);
   curved_.take(world_.tissue.surface(), vertices_);
-  smooth_ = smoothnesses(pose, contacts, vertices_);
+  state_.smooth = smoothnesses(pose, contacts, vertices_);
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay
   std::size_t kept = 0;
   for (Contact& contact : all) {
@@ -251,11 +252,11 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   }
   all.resize(kept);
   rims_.look(pose, vertices_, contacts);
-  depths_.assign(pose.links.size(), 0.0);
+  state_.depths.assign(pose.links.size(), 0.0);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (world_.isInWound(at(all[i].link))) continue;
     const double depth = ownDepth(all[i], nearest[i]);
-    depths_[at(all[i].link)] = std::max(depths_[at(all[i].link)], depth);
+    state_.depths[at(all[i].link)] = std::max(state_.depths[at(all[i].link)], depth);
   }
   takeRims(held, contacts);
   return contacts;

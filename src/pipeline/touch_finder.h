@@ -15,9 +15,18 @@
 
 namespace robot_tissue {
 
+// What a look at the touches leaves to the next.
+struct TouchState {
+  std::vector<double> depths;  // in each link, of the deepest point, by the nearest way out (m)
+  std::vector<double> smooth;  // per link (1): how much of the surface that it touches is smooth
+  RimState rims;
+};
+
 class TouchFinder {
  public:
-  explicit TouchFinder(World& world) : world_(world), rims_(world) {}
+  // The state is kept by the caller.
+  TouchFinder(World& world, TouchState& state)
+      : world_(world), state_(state), rims_(world, state.rims) {}
 
   // With gaps that a solve may close: of the triangles. Where no tool went farther than `way` (m)
   // since the last search of this shape, at the places that it found; so touchesAt.
@@ -47,8 +56,8 @@ class TouchFinder {
   double ownDepth(const Contact& contact, double depth) const;
 
   // In each link, of the deepest point of the last touchesAt, by the nearest way out (m).
-  const std::vector<double>& depths() const { return depths_; }
-  void restoreDepths(const std::vector<double>& depths) { depths_ = depths; }
+  const std::vector<double>& depths() const { return state_.depths; }
+  void restoreDepths(const std::vector<double>& depths) { state_.depths = depths; }
 
  private:
   // Of the surface's triangles: numbers of its ends, the lower first, and which corners these are.
@@ -82,11 +91,10 @@ class TouchFinder {
   void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
   World& world_;
+  TouchState& state_;
   ToolRims rims_;
   std::vector<Vec3> vertices_;  // of the last contacts
   CurvedSurface curved_;
-  std::vector<double> depths_;
-  std::vector<double> smooth_;  // per link (1): how much of the surface that it touches is smooth
 };
 
 }  // namespace robot_tissue

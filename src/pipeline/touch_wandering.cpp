@@ -43,7 +43,7 @@ double highestAt(const Function& value) {
 bool TouchFinder::wanders(const RobotPose& pose, const Contact& contact) const {
   const std::size_t link = at(contact.link);
   const double aside = tuning::kBesideEdge * world_.tissue.lattice().spacing();
-  if (smooth_[link] < tuning::kMostlySmooth || world_.isInWound(link)) return false;
+  if (state_.smooth[link] < tuning::kMostlySmooth || world_.isInWound(link)) return false;
   if (vertexAt(world_.tissue.surface(), contact.place) >= 0) return false;
   const Vec3 off = contact.point + (contact.depth_m + aside) * contact.normal;
   const auto normalAt = [&](const Vec3& point) {

@@ -22,21 +22,26 @@ bool LoadStepper::takesShapeOrLeaves(const RobotPose& pose, IfUnconverged otherw
 // All is as it was before the load step. What it came to is kept where more time may help: a slip
 // takes many updates' time, and begun anew it would never be through.
 void LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, int iterations) {
-  ran_out_of_time_ = std::exchange(waits_for_call_, false) || isOutOfTime();
+  state_.ran_out_of_time = std::exchange(waits_for_call_, false) || isOutOfTime();
   iterations += std::max(1, world_.tissue.lastReport().iterations);
-  const bool is_late = ran_out_of_time_ && iterations <= tuning::kMostUnderWay;
+  const bool is_late = state_.ran_out_of_time && iterations <= tuning::kMostUnderWay;
   std::optional<Checkpoint> came_to;
   if (is_late && !world_.tools.anyRigid() && !world_.is_trial) came_to = checkpoint();
   goBackTo(good);
   if (!came_to) return;
-  under_way_ = UnderWay{std::move(*came_to), otherwise, iterations, world_.tissue.displacements(),
-                        world_.tissue.surface().revision};
+  state_.under_way =
+      UnfinishedLoadStep{std::move(*came_to), otherwise, iterations, world_.tissue.displacements(),
+                         world_.tissue.surface().revision};
 }
 
 // Unless something else moved or cut the tissue since.
 bool LoadStepper::isUnderWay() const {
-  return under_way_ && under_way_->from == world_.tissue.displacements() &&
-         under_way_->surface_revision == world_.tissue.surface().revision;
+  return state_.under_way && state_.under_way->from == world_.tissue.displacements() &&
+         state_.under_way->surface_revision == world_.tissue.surface().revision;
+}
+
+void LoadStepper::keepUnderWay() {
+  if (state_.under_way) state_.under_way->from = world_.tissue.displacements();
 }
 
 bool LoadStepper::goOn() {
@@ -49,8 +54,8 @@ bool LoadStepper::goOn() {
 bool LoadStepper::goesOnOrLeaves() {
   const LoadStepBound::Scope bound(world_.tissue.patience().bound(), world_.mostIterations());
   const Checkpoint good = checkpoint();
-  const UnderWay step = std::move(*under_way_);
-  under_way_.reset();
+  const UnfinishedLoadStep step = std::move(*state_.under_way);
+  state_.under_way.reset();
   goBackTo(step.came_to);
   Patience& patience = world_.tissue.patience();
   const Patience::LoadStep load_step(patience);
@@ -58,7 +63,7 @@ bool LoadStepper::goesOnOrLeaves() {
   if (settlesFrom(good, step.otherwise)) return true;
   patience.noteLost();
   leave(good, step.otherwise, step.iterations);
-  if (!under_way_ && step.otherwise == IfUnconverged::kTake) {
+  if (!state_.under_way && step.otherwise == IfUnconverged::kTake) {
     world_.report.lost = true;
     world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
   }

@@ -21,13 +21,7 @@ std::vector<ToolGeometry> shapesOf(std::vector<ToolGeometry> tools, const HasSha
 }  // namespace
 
 World::World(const TissueConfig& tissue_config, const SolverConfig& solver)
-    : tissue(tissue_config, solver),
-      tools({}, {}),
-      finder({}),
-      drills({}),
-      edges({}),
-      sticking(tissue.lattice(), {}),
-      sliding({}, {}) {}
+    : tissue(tissue_config, solver), tools({}, {}), finder({}), drills({}), edges({}) {}
 
 void World::setTools(const std::vector<ToolGeometry>& geometry,
                      const std::vector<SupportConfig>& supports) {
@@ -39,7 +33,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   finder.followPlaces();
   drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
   edges = ContactFinder(edgesOf(all));
-  in_wound_.assign(tools.linkCount(), false);
+  edge_of.assign(tools.linkCount(), Edge::kTouches);
   warnings = finder.warnings();
   warnings.insert(warnings.end(), drills.warnings().begin(), drills.warnings().end());
   warnOfSizes(geometry);
@@ -84,14 +78,23 @@ void World::setEdge(std::size_t tool, Edge edge) {
   const std::size_t link = tools.firstLink(tool);
   const std::size_t sides = tools[tool].links.front().shapes.size();
   const std::size_t bars = tools[tool].blade.edge.size() - 1;
-  in_wound_[link] = edge == Edge::kInside;
+  edge_of[link] = edge;
   finder.useShapes(link, sides + (edge == Edge::kTouches ? bars : 0));
 }
 
-bool World::isInWound(std::size_t link) const { return link < in_wound_.size() && in_wound_[link]; }
+void World::takeBack(const WorldState& state) {
+  static_cast<WorldState&>(*this) = state;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (mayEdgeTouch(tool)) setEdge(tool, edge_of[tools.firstLink(tool)]);
+  }
+}
+
+bool World::isInWound(std::size_t link) const {
+  return link < edge_of.size() && edge_of[link] == Edge::kInside;
+}
 
 bool World::anyInWound() const {
-  return std::any_of(in_wound_.begin(), in_wound_.end(), [](bool is_in) { return is_in; });
+  return std::find(edge_of.begin(), edge_of.end(), Edge::kInside) != edge_of.end();
 }
 
 // A blade is flat: it goes from its edge to the middle of its shapes.

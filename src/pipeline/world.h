@@ -21,7 +21,34 @@ struct DeadEnd {
   RobotPose to;
 };
 
-struct World {
+// What steps change of it, but for the tissue: what a trial does is undone by taking a copy back
+// (World::takeBack).
+struct WorldState {
+  // kFar: there is nothing to touch, so it asks for no short load steps. kInside: in tissue, in a
+  // wound.
+  enum class Edge { kTouches, kFar, kInside };
+
+  // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
+  StickingContacts sticking;
+  // Of the other tools, and supports. [LoadStepper, ToolContactUpdate, ToolMotion, Grasping]
+  SlidingContacts sliding;
+  // Of the load step under way, or the last that a shape followed. [LoadStepper, ToolMotion]
+  RobotPose pose;
+  RobotPose asked;  // where the robot has the tools, which may be farther [ToolMotion]
+  // Where the tools are for the tissue, as Pipeline::pose tells; none before the first step.
+  // [ToolMotion]
+  std::optional<RobotPose> last_pose;
+  // The stamp that the tissue has come to (s); none before the first. [LoadStepper, ToolMotion]
+  std::optional<double> reached_s;
+  // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
+  std::optional<DeadEnd> dead_end;
+  bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
+  StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
+  bool depths_are_due = false;  // of the tools' reports [Pipeline]
+  std::vector<Edge> edge_of;    // per link; of those that have one that may touch
+};
+
+struct World : WorldState {
   World(const TissueConfig& tissue, const SolverConfig& solver);
 
   // Of the link's shapes and its edge: the farthest point from the
@@ -32,9 +59,9 @@ struct World {
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
-  // kFar: there is nothing to touch, so it asks for no short load steps. kInside: in tissue, in a
-  // wound.
-  enum class Edge { kTouches, kFar, kInside };
+  // All is as it was when the state was copied; the tissue and its tools are those of then.
+  void takeBack(const WorldState& state);
+
   // A tool with an edge touches with it, or only with the shapes of its links.
   void setEdge(std::size_t tool, Edge edge);
   // Of a tool whose edge is inside, the first link: its shapes push the lips of the wound aside.
@@ -65,34 +92,14 @@ struct World {
   ContactFinder drills;               // of the shapes of tools that drill; links as in `finder`
   ContactFinder edges;                // of the bars along edges alone; links likewise
   std::vector<std::string> warnings;  // of both
-  // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
-  StickingContacts sticking;
-  // Of the other tools, and supports. [LoadStepper, ToolContactUpdate, ToolMotion, Grasping]
-  SlidingContacts sliding;
   bool has_supports = false;
-  // Of the load step under way, or the last that a shape followed. [LoadStepper, ToolMotion]
-  RobotPose pose;
-  RobotPose asked;  // where the robot has the tools, which may be farther [ToolMotion]
-  // Where the tools are for the tissue, as Pipeline::pose tells; none before the first step.
-  // [ToolMotion]
-  std::optional<RobotPose> last_pose;
-  // The stamp that the tissue has come to (s); none before the first. [LoadStepper, ToolMotion]
-  std::optional<double> reached_s;
-  // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
-  std::optional<DeadEnd> dead_end;
-  bool is_trial = false;        // what is done is undone, so nothing may sever
-  bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
-  Deadline deadline;            // of the call under way
-  int most_iterations = 0;      // of a load step while tools are followed; 0: any number [Pipeline]
-  bool tools_move = false;      // of themselves, in the call under way [Pipeline]
-  StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
-  bool depths_are_due = false;  // of the tools' reports [Pipeline]
+  bool is_trial = false;    // what is done is undone, so nothing may sever
+  Deadline deadline;        // of the call under way
+  int most_iterations = 0;  // of a load step while tools are followed; 0: any number [Pipeline]
+  bool tools_move = false;  // of themselves, in the call under way [Pipeline]
 
  private:
   void warnOfSizes(const std::vector<ToolGeometry>& geometry);
-
-  std::vector<bool> in_wound_;  // per link; supports have none
-
   std::vector<ToolShape> barsAlong(const std::vector<Vec3>& edge) const;
   std::vector<ToolGeometry> withEdges(std::vector<ToolGeometry> all) const;
   std::vector<ToolGeometry> edgesOf(std::vector<ToolGeometry> all) const;

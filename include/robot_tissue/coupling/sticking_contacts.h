@@ -26,6 +26,7 @@ namespace robot_tissue {
 
 class StickingContacts {
  public:
+  StickingContacts() = default;  // of no tools
   StickingContacts(const Lattice& lattice, std::vector<std::string> tool_names);
 
   // Moves the patches with their tools; nodes that the tool has left stay behind.
@@ -101,7 +102,7 @@ class StickingContacts {
   void findOutwardNormals(const Tissue& tissue);
   bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue);
 
-  const Lattice* lattice_;  // a pointer, so that patches can be assigned
+  const Lattice* lattice_ = nullptr;  // a pointer, so that patches can be assigned
   std::vector<std::string> names_;
   Attachments attachments_;
   std::map<int, Vec3> places_;            // displacement of nodes with a seat (m)

@@ -146,8 +146,8 @@ class Pipeline {
 
  private:
   struct Parts;  // the classes behind it, see doc/architecture.md
-  // All that the next step depends on.
-  struct Mark;
+  struct State;  // what steps change of them
+  struct Mark;   // of when a trial began
   // While one lives, solves have the budget from its construction on, and end by setEnd's time.
   class Bounded {
    public:
@@ -162,6 +162,7 @@ class Pipeline {
 
   void takeTools(const std::vector<ToolGeometry>& tools);
   void forgetTools();
+  void endTrial();
   void beginReport();
   const StepReport& endReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
@@ -187,16 +188,12 @@ class Pipeline {
 
   std::unique_ptr<Parts> parts_;
   World& world_;
+  State& state_;
   std::vector<SupportConfig> supports_;
   std::unique_ptr<const Landing> landing_;  // null: the scene needs none
   double budget_s_ = std::numeric_limits<double>::infinity();
-  double reporting_ms_ = 0.0;    // that the last reports on the tools took
   std::optional<Deadline> end_;  // of all calls
-  int late_iterations_ = 0;      // of the method, where the tools stand
-  bool gave_up_ = false;         // there
-  bool touched_ = true;          // the reports are to be brought up to date
   bool leaves_depths_ = false;
-  bool was_near_ = false;                   // a tool, in the last step in which nothing was solved
   std::shared_ptr<const Mark> trial_from_;  // null: none is under way
 };
 
