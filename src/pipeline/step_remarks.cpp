@@ -65,6 +65,16 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
     remarks.push_back({Kind::kInside, names(report.were_inside) +
                                           " appeared inside the tissue: walked in from outside"});
   }
+  if (!report.hooked.empty()) {
+    remarks.push_back({Kind::kHooked, names(report.hooked) +
+                                          " dragged tissue away that was hooked on it: let go of "
+                                          "it"});
+  }
+  if (!report.jammed.empty()) {
+    remarks.push_back({Kind::kJammed, names(report.jammed) +
+                                          " let go where no shape followed, as between tools "
+                                          "that meet: walked in anew from outside"});
+  }
   if (!report.torn_off.empty()) {
     remarks.push_back({Kind::kTornOff, names(report.torn_off) +
                                            " lost the tissue: pulled harder than it holds "

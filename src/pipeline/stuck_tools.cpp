@@ -20,7 +20,7 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
   world_.last_pose = from;
   if (!load_step_.advance(from)) {
     if (world_.tissue.patience().cutsOff()) return;  // all would meet the jam anew
-    startAnew(pose);
+    startAnew(pose, Entry::kLetGo);
   }
   world_.last_pose = walk(pose);
 }
@@ -56,7 +56,7 @@ void ToolMotion::unhook(RobotPose& pose) {
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!isHooked(tool)) continue;
     hooked.push_back(tool);
-    addOnce(tool, world_.report.were_inside);
+    addOnce(tool, world_.report.hooked);
   }
   if (!hooked.empty()) comeAnew(hooked, pose);
 }
@@ -85,7 +85,7 @@ void ToolMotion::leaveJam(RobotPose& pose) {
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (ways_.isAt(tool, *world_.last_pose, pose) || isAttached(tool)) continue;
     jammed.push_back(tool);
-    addOnce(tool, world_.report.were_inside);
+    addOnce(tool, world_.report.jammed);
   }
   if (jammed.empty()) return;
   world_.report.lost = false;
@@ -110,12 +110,12 @@ void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose
   }
   world_.last_pose = without;
   if (load_step_.advance(without)) {
-    comeAndGo(pose);
+    comeAndGo(pose, Entry::kLetGo);
   } else if (world_.tissue.patience().cutsOff()) {
     world_.report.lost = true;
     return;  // as in leaveStuck
   } else {
-    startAnew(pose);
+    startAnew(pose, Entry::kLetGo);
   }
   world_.last_pose = walk(pose);
 }

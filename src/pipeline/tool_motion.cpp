@@ -183,7 +183,7 @@ void ToolMotion::checkIn(const RobotPose& pose) {
 
 // The tools let go, and come in from outside. Those that wait for the next step stay away in the
 // pose.
-void ToolMotion::startAnew(RobotPose& pose) {
+void ToolMotion::startAnew(RobotPose& pose, Entry entry) {
   world_.dead_end.reset();
   world_.sticking.clear();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -201,7 +201,7 @@ void ToolMotion::startAnew(RobotPose& pose) {
     if (waitsOutside(tool, tool > 0 ? Others::kCame : Others::kNone, pose)) {
       world_.last_pose = world_.tools.withTool(tool, pose, *world_.last_pose);
     } else {
-      resolveOverlap(tool, *world_.last_pose);
+      resolveOverlap(tool, entry, *world_.last_pose);
     }
   }
   // Nothing sticks to where they were before.
@@ -209,14 +209,18 @@ void ToolMotion::startAnew(RobotPose& pose) {
   checkIn(*world_.last_pose);
 }
 
-// A tool that is in the tissue there is outside of it in the pose, and told to have been inside.
-void ToolMotion::resolveOverlap(std::size_t tool, RobotPose& pose) {
-  if (overlap_.resolveOverlap(tool, pose)) addOnce(tool, world_.report.were_inside);
+// A tool that is in the tissue there is outside of it in the pose, and told to come in from there.
+void ToolMotion::resolveOverlap(std::size_t tool, Entry entry, RobotPose& pose) {
+  if (!overlap_.resolveOverlap(tool, pose)) return;
+  StepReport& report = world_.report;
+  const auto& hooked = report.hooked;
+  if (std::find(hooked.begin(), hooked.end(), tool) != hooked.end()) return;
+  addOnce(tool, entry == Entry::kAppears ? report.were_inside : report.jammed);
 }
 
 // A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
 // stay as they are.
-void ToolMotion::comeAndGo(RobotPose& pose) {
+void ToolMotion::comeAndGo(RobotPose& pose, Entry entry) {
   RobotPose from = *world_.last_pose;
   bool any = false;
   Others came = Others::kNone;
@@ -230,7 +234,7 @@ void ToolMotion::comeAndGo(RobotPose& pose) {
     if (!ToolSet::isAway(pose.links[first])) came = Others::kCame;
     from = world_.tools.withTool(tool, pose, from);
     letGoOf(tool);
-    resolveOverlap(tool, from);
+    resolveOverlap(tool, entry, from);
   }
   if (!any) return;
   world_.last_pose = from;

@@ -22,6 +22,9 @@ struct WayBehind {
 
 class ToolMotion {
  public:
+  // Why tools come in from outside: they were nowhere, or jumped; or no shape followed them.
+  enum class Entry { kAppears, kLetGo };
+
   // `behind` is kept by the caller.
   ToolMotion(World& world, const WayLengths& ways, const OverlapResolver& overlap,
              Grasping& grasping, LoadStepper& load_step, WayBehind& behind)
@@ -33,8 +36,8 @@ class ToolMotion {
         behind_(behind) {}
 
   RobotPose walk(const RobotPose& pose);
-  void startAnew(RobotPose& pose);
-  void comeAndGo(RobotPose& pose);
+  void startAnew(RobotPose& pose, Entry entry = Entry::kAppears);
+  void comeAndGo(RobotPose& pose, Entry entry = Entry::kAppears);
   void goBackTo(RobotPose& pose);
   // Where the tools are now, to stay there if no shape follows from a checkpoint; absent: these
   // tools have none.
@@ -67,7 +70,7 @@ class ToolMotion {
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);
   bool isHooked(std::size_t tool) const;
-  void resolveOverlap(std::size_t tool, RobotPose& pose);
+  void resolveOverlap(std::size_t tool, Entry entry, RobotPose& pose);
   void letGoOf(std::size_t tool);
   bool isAttached(std::size_t tool) const;
   void comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose);

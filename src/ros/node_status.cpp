@@ -20,6 +20,10 @@ std::string wordOf(StepRemark::Kind kind) {
   switch (kind) {
     case StepRemark::Kind::kInside:
       return "INSIDE";
+    case StepRemark::Kind::kHooked:
+      return "HOOKED";
+    case StepRemark::Kind::kJammed:
+      return "JAMMED";
     case StepRemark::Kind::kTornOff:
       return "TORN_OFF";
     case StepRemark::Kind::kTooFast:

@@ -12,6 +12,8 @@ namespace robot_tissue {
 struct StepRemark {
   enum class Kind {
     kInside,
+    kHooked,
+    kJammed,
     kTornOff,
     kTooFast,
     kLost,

@@ -45,12 +45,15 @@ struct StepReport {
   std::vector<std::size_t> behind;
   std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
   std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
-  std::vector<std::size_t> torn_off;     // graspers that lost what they held
-  std::vector<std::size_t> torn_out;     // graspers that took out what they held
-  int springs_cut = 0;                   // by blades
-  double area_cut = 0.0;                 // new surface of these cuts (m^2)
-  double volume_removed = 0.0;           // by burrs, at rest (m^3)
-  std::vector<std::string> lost_loads;   // named loads of which they left nothing
+  std::vector<std::size_t> hooked;  // dragged tissue away that they stood through, and let go of it
+  // No shape followed them, or those that they meet: let go, and came in anew from outside.
+  std::vector<std::size_t> jammed;
+  std::vector<std::size_t> torn_off;    // graspers that lost what they held
+  std::vector<std::size_t> torn_out;    // graspers that took out what they held
+  int springs_cut = 0;                  // by blades
+  double area_cut = 0.0;                // new surface of these cuts (m^2)
+  double volume_removed = 0.0;          // by burrs, at rest (m^3)
+  std::vector<std::string> lost_loads;  // named loads of which they left nothing
   std::vector<std::size_t>
       would_take_all;  // burrs that removed nothing, as it was all that is left
   int springs_torn = 0;

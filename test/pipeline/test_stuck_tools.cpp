@@ -1,0 +1,64 @@
+// Tools that let go of tissue that no shape follows, or that hangs on them: what is told of them.
+#include <string>
+
+#include "pipeline_fixtures.h"
+#include "robot_tissue/pipeline/step_remarks.h"
+
+namespace robot_tissue::test_stuck_tools {
+namespace {
+
+using Tools = std::vector<std::size_t>;
+
+// What is said of that kind; empty: nothing.
+std::string saidOf(StepRemark::Kind kind, const Pipeline& pipeline) {
+  for (const StepRemark& remark : remarksOn(pipeline)) {
+    if (remark.kind == kind) return remark.text;
+  }
+  return "";
+}
+
+// Its tissue is pulled into it, farther from the block's place at rest than a spacing.
+TEST(HookedTool, LetsGoAndIsToldSo) {
+  Pipeline pipeline(block(), SolverConfig(), {probe()});
+  pipeline.step(pressed(-0.006));
+  PatchConfig pulled;
+  pulled.name = "pulled";
+  const Vec3 reach(0.004, 0.004, 1e-6), middle(kMiddle, kMiddle, kTop);
+  pulled.box = {middle - reach, middle + reach};
+  pulled.displacement = {{0.0, 0.0, 0.012}};
+  pipeline.load({1, {pulled}});
+  ASSERT_GT(pipeline.report().tools.front().force_on_tool.norm(), 0.0);
+  const StepReport& report = pipeline.step(pressed(-0.0063));
+  EXPECT_EQ(report.hooked, Tools{0});
+  EXPECT_TRUE(report.were_inside.empty()) << "it did not appear";
+  EXPECT_TRUE(report.jammed.empty());
+  EXPECT_NE(saidOf(StepRemark::Kind::kHooked, pipeline).find("'probe'"), std::string::npos);
+  EXPECT_EQ(saidOf(StepRemark::Kind::kInside, pipeline), "");
+  pipeline.step(pressed(-0.03));
+  EXPECT_TRUE(report.hooked.empty()) << "for one update";
+}
+
+TEST(JammedTools, LetGoAndAreToldSo) {
+  const ToolShape box = boxOf(Vec3(0.02, 0.02, 0.02));
+  Pipeline pipeline(block("elastic", 0.01), {}, {toolOf(box, "left"), toolOf(box, "right")});
+  const auto apart = [](double gap) {
+    const double off = 0.5 * gap + 0.01;
+    return at({Vec3(kMiddle - off, kMiddle, 0.03), Vec3(kMiddle + off, kMiddle, 0.03)});
+  };
+  const StepReport& report = pipeline.report();
+  int lost = 0;
+  for (double gap = 0.062; gap > -0.01 && report.jammed.empty(); gap -= 0.002) {
+    pipeline.step(apart(gap));
+    EXPECT_TRUE(report.were_inside.empty()) << gap;
+    EXPECT_TRUE(report.hooked.empty()) << gap;
+    lost += report.lost ? 1 : 0;
+  }
+  EXPECT_EQ(report.jammed, (Tools{0, 1}));
+  EXPECT_GE(lost, 2) << "updates before";
+  EXPECT_NE(saidOf(StepRemark::Kind::kJammed, pipeline).find("'left' and 'right'"),
+            std::string::npos);
+  EXPECT_EQ(saidOf(StepRemark::Kind::kInside, pipeline), "");
+}
+
+}  // namespace
+}  // namespace robot_tissue::test_stuck_tools
