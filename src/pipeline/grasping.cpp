@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "stopwatch.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -287,6 +288,7 @@ void Grasping::forgetLetGo() {
   for (Jaws& jaws : jaws_) jaws.let_go = false;
 }
 
+// Those that are pulled harder than they hold.
 std::vector<std::size_t> Grasping::overpulled() const {
   std::vector<std::size_t> tools;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
@@ -298,9 +300,37 @@ std::vector<std::size_t> Grasping::overpulled() const {
   return tools;
 }
 
+void Grasping::endOverpulled() {
+  bool any_lost = false;
+  for (const std::size_t tool : overpulled()) {
+    if (world_.tools[tool].grasp.tears_out && tearOut(tool)) continue;
+    lose(tool);
+    any_lost = true;
+  }
+  if (!any_lost) return;
+  world_.sticking.ride(world_.pose, world_.tissue);
+  world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
+  world_.sliding.commit(world_.pose, world_.tissue);
+}
+
+// What it holds is severed from the rest, not on a trial. False: it is nowhere joined to that.
+bool Grasping::tearOut(std::size_t tool) {
+  if (world_.is_trial) return true;
+  const int before = world_.tissue.springsTorn();
+  const Stopwatch watch(world_.report.solve_ms);
+  if (!world_.tissue.tearOut(world_.sticking.nodes(static_cast<int>(tool)))) return false;
+  world_.report.springs_torn += world_.tissue.springsTorn() - before;
+  world_.report.changed = true;
+  addOnce(tool, world_.report.torn_out);
+  world_.sliding.commit(world_.pose, world_.tissue);
+  return true;
+}
+
+// What it held slips out of its jaws.
 void Grasping::lose(std::size_t tool) {
   world_.sticking.letGo(static_cast<int>(tool));
   jaws_[tool].loss = Jaws::Loss::kTorn;
+  addOnce(tool, world_.report.torn_off);
 }
 
 }  // namespace robot_tissue

@@ -47,10 +47,8 @@ class Grasping {
   bool letGo(std::size_t tool);
   // Of letting go since the last step.
   void forgetLetGo();
-  // Those that are pulled harder than they hold.
-  std::vector<std::size_t> overpulled() const;
-  // What it held slips out of its jaws.
-  void lose(std::size_t tool);
+  // Those that are pulled harder than they hold lose the tissue, or tear out what they hold of it.
+  void endOverpulled();
 
   bool grasps(std::size_t tool) const;
   bool hasJaws(std::size_t tool, const RobotPose& pose) const;
@@ -73,6 +71,9 @@ class Grasping {
   std::size_t hold(std::size_t tool);
   std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
   bool pushesWith(std::size_t link) const;
+  std::vector<std::size_t> overpulled() const;
+  bool tearOut(std::size_t tool);
+  void lose(std::size_t tool);
 
   World& world_;
   std::vector<Jaws>& jaws_;  // per tool

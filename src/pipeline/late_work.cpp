@@ -58,9 +58,10 @@ void Pipeline::finish() {
   world_.unfinished = false;
   if (anyToolIn(world_.tissue.patches(), world_)) {
     LoadStepper& load_step = parts_->load_step;
-    const bool arrived = load_step.finish(world_.last_pose.value_or(world_.pose));
-    if (!arrived && !load_step.isUnderWay()) world_.report.lost = true;
-    world_.unfinished = world_.unfinished || load_step.isUnderWay();
+    const LoadStepEnd end = load_step.finish(world_.last_pose.value_or(world_.pose));
+    const bool is_under_way = end == LoadStepEnd::kUnderWay;
+    if (end != LoadStepEnd::kArrived && !is_under_way) world_.report.lost = true;
+    world_.unfinished = world_.unfinished || is_under_way;
     if (world_.report.lost) world_.report.behind = parts_->motion.toolsBehind();
   } else if (world_.tissue.isLate() && !world_.tissue.isLoading()) {
     const Stopwatch watch(world_.report.solve_ms);

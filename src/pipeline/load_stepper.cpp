@@ -1,31 +1,67 @@
 #include "load_stepper.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "stopwatch.h"
+#include "tearing.h"
 #include "tuning.h"
 #include "way_lengths.h"
 
 namespace robot_tissue {
-namespace {
 
-Bedding beddingOf(const World& world) {
-  return world.has_supports ? Bedding::kSupports : Bedding::kFixedNodes;
-}
-
-}  // namespace
-
-// One load step, the line of the package.
-bool LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
-  state_.under_way.reset();
+LoadStepEnd LoadStepper::advance(const RobotPose& pose, IfUnconverged otherwise) {
+  under_way_.forget();
   world_.unfinished = false;
   ++world_.report.substeps;
-  if (!takesShapeOrLeaves(pose, otherwise)) return false;
-  arrive();
-  return true;
+  const LoadStepEnd end = goTo(pose, otherwise);
+  if (end == LoadStepEnd::kArrived) arrive();
+  return end;
+}
+
+LoadStepEnd LoadStepper::finish(const RobotPose& pose) {
+  if (!isUnderWay()) return advance(pose);
+  ++world_.report.substeps;
+  const LoadStepEnd end = goOn();
+  if (end == LoadStepEnd::kArrived) arrive();
+  return end;
+}
+
+LoadStepEnd LoadStepper::goTo(const RobotPose& pose, IfUnconverged otherwise) {
+  Patience& patience = world_.tissue.patience();
+  const LoadStepBound::Scope bound(patience.bound(), world_.mostIterations());
+  Checkpoint good = toolsCheckpoint();  // its shape where there is something to solve
+  world_.pose = pose;
+  grasping_.openJaws();
+  world_.sliding.ride(pose, world_.tissue);  // patches move with their tools
+  Solved solved = Solved::kFollows;
+  {
+    const Patience::LoadStep load_step(patience);
+    solved = followTools(pose, good, otherwise);
+    if (solved == Solved::kLost) patience.noteLost();
+  }
+  return solved == Solved::kFollows ? LoadStepEnd::kArrived : leave(good, otherwise, solved, 0);
+}
+
+LoadStepEnd LoadStepper::goOn() {
+  Patience& patience = world_.tissue.patience();
+  const LoadStepBound::Scope bound(patience.bound(), world_.mostIterations());
+  const Checkpoint good = checkpoint();
+  const UnfinishedLoadStep::Rest step = under_way_.take();
+  goBackTo(step.came_to);
+  const Patience::LoadStep load_step(patience);
+  solveOn();
+  const Solved solved = settle(good, step.otherwise);
+  if (solved == Solved::kFollows) return LoadStepEnd::kArrived;
+  patience.noteLost();
+  const LoadStepEnd end = leave(good, step.otherwise, solved, step.iterations);
+  if (end != LoadStepEnd::kUnderWay && step.otherwise == IfUnconverged::kTake) {
+    world_.report.lost = true;
+    world_.dead_end = DeadEnd{good.pose, step.came_to.pose};
+  }
+  return end;
 }
 
 void LoadStepper::arrive() {
@@ -33,22 +69,30 @@ void LoadStepper::arrive() {
   world_.reached_s = world_.pose.stamp_s;
   grasping_.closeJaws();
   world_.sliding.commit(world_.pose, world_.tissue);
-  endOverpulled();
-  tear();
+  grasping_.endOverpulled();
+  tearStretched(world_);
   world_.dead_end.reset();
 }
 
-bool LoadStepper::takesShape(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
-  Patience& patience = world_.tissue.patience();
-  const Patience::LoadStep load_step(patience);
-  const bool follows = followTools(pose, good, otherwise);
-  if (!follows && !waits_for_call_) patience.noteLost();
-  return follows;
+// All is as it was before the load step. What it came to is kept where more time may help.
+LoadStepEnd LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, Solved solved,
+                               int iterations_before) {
+  const bool ran_out_of_time = solved == Solved::kLeftToNextCall || world_.isOutOfTime();
+  const int iterations = iterations_before + std::max(1, world_.tissue.lastReport().iterations);
+  const bool is_kept = ran_out_of_time && iterations <= tuning::kMostUnderWay &&
+                       !world_.tools.anyRigid() && !world_.is_trial;
+  std::optional<Checkpoint> came_to;
+  if (is_kept) came_to = checkpoint();
+  goBackTo(good);
+  if (!came_to) return ran_out_of_time ? LoadStepEnd::kOutOfTime : LoadStepEnd::kNoShape;
+  under_way_.keep({std::move(*came_to), otherwise, iterations}, world_.tissue);
+  return LoadStepEnd::kUnderWay;
 }
 
 // Later rounds only if the solve moved nodes into a tool with a rigid patch; for the others the
-// solver asks for the contacts itself (ContactUpdate). False: no shape followed.
-bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise) {
+// solver asks for the contacts itself (ContactUpdate).
+LoadStepper::Solved LoadStepper::followTools(const RobotPose& pose, Checkpoint& good,
+                                             IfUnconverged otherwise) {
   const double spacing = world_.tissue.lattice().spacing();
   for (int round = 1;; ++round) {
     world_.sticking.ride(pose, world_.tissue);
@@ -60,24 +104,57 @@ bool LoadStepper::followTools(const RobotPose& pose, Checkpoint& good, IfUnconve
     std::vector<LoadingPatch> patches = patchesOfTools(world_);
     const std::vector<LoadingPatch>& before = world_.tissue.patches();
     const bool stands = round == 1 && !world_.tissue.isMoving();
-    if (stands && !anyToolIn(patches, world_) && !anyToolIn(before, world_)) return true;
+    if (stands && !anyToolIn(patches, world_) && !anyToolIn(before, world_)) {
+      return Solved::kFollows;
+    }
     if (patches.empty()) patches = touchesAtRest(pose);
     if (round == 1) {
       good.shape = world_.tissue.shape();
       beginTimeStep(durationOf(good.pose, pose),
                     patches.empty() ? Touched::kByNone : Touched::kByTools);
+      if (isRoundForNextCall()) return Solved::kLeftToNextCall;
     }
-    if (round == 1 && leavesToNextCall()) return false;
     follow(std::move(patches));  // loading patches -> solve
-    if (!settlesFrom(good, otherwise)) return false;
-    if (!world_.tools.anyRigid() || world_.unfinished) return true;
+    if (settle(good, otherwise) == Solved::kLost) return Solved::kLost;
+    if (!world_.tools.anyRigid() || world_.unfinished) return Solved::kFollows;
     const double deepest = deepestInRigid(pose);
-    if (deepest <= tuning::kDeepEnough * spacing) return true;
+    if (deepest <= tuning::kDeepEnough * spacing) return Solved::kFollows;
     const bool is_last = round == tuning::kRigidRounds || world_.tissue.patience().left() == 0;
-    if (is_last) return deepest <= tuning::kThrough * spacing;
-    world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
-    if (world_.unfinished) return true;
+    if (is_last) return deepest <= tuning::kThrough * spacing ? Solved::kFollows : Solved::kLost;
+    world_.unfinished = !world_.tissue.isInTimeStep() && world_.isOutOfTime();
+    if (world_.unfinished) return Solved::kFollows;
   }
+}
+
+// Solves on, kMoreSolves times at most, while the solve has not settled (ShapeJudge::isUnsettled).
+// kLost, too, where a shape did not converge and that is refused.
+LoadStepper::Solved LoadStepper::settle(const Checkpoint& good, IfUnconverged otherwise) {
+  for (int more = 0;; ++more) {
+    if (judge_.isLost(good) || isRefused(otherwise)) return Solved::kLost;
+    const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
+    if (is_last || !judge_.isUnsettled()) return Solved::kFollows;
+    const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
+    if (converged && world_.tissue.mayShowUnsettled()) {
+      world_.tissue.noteUnsettled();
+      return Solved::kFollows;
+    }
+    world_.unfinished = !world_.tissue.isInTimeStep() && world_.isOutOfTime();
+    if (world_.unfinished) return Solved::kFollows;
+    solveOn();
+  }
+}
+
+void LoadStepper::solveOn() {
+  std::vector<LoadingPatch> patches = patchesOfTools(world_);
+  if (patches.empty()) patches = touchesAtRest(world_.pose);
+  follow(std::move(patches));
+}
+
+// Finding the contacts, as of a mesh, may take so much of a call's time that solving for them would
+// end after it: they are solved for first of all in the next one.
+bool LoadStepper::isRoundForNextCall() const {
+  return !world_.tools.anyRigid() && !world_.is_trial && !world_.tissue.isInTimeStep() &&
+         world_.tissue.isRoundForNextCall();
 }
 
 // s: time between the poses. A robot that jumps would throw the tissue away: a tool that goes
@@ -99,124 +176,16 @@ void LoadStepper::beginTimeStep(double duration, Touched touched) {
   if (world_.tissue.hasTime() && duration > 0.0) world_.tissue.beginTimeStep(duration, touched);
 }
 
-// Solves on, kMoreSolves times at most, while the solve has not settled (isUnsettled). False: the
-// shape is lost, or did not converge where that is refused.
-bool LoadStepper::settlesFrom(const Checkpoint& good, IfUnconverged otherwise) {
-  for (int more = 0;; ++more) {
-    if (isLost(good) || isRefused(otherwise)) return false;
-    const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
-    if (is_last || !isUnsettled()) return true;
-    const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
-    if (converged && world_.tissue.mayShowUnsettled()) {
-      world_.tissue.noteUnsettled();
-      return true;
-    }
-    world_.unfinished = !world_.tissue.isInTimeStep() && isOutOfTime();
-    if (world_.unfinished) return true;
-    solveOn();
-  }
-}
-
 // Where time ran out on the way through rounds, the forces are of no shape that the tissue takes.
 bool LoadStepper::isRefused(IfUnconverged otherwise) const {
   return world_.tissue.lastReport().status == SolveStatus::kUnconverged &&
-         (otherwise == IfUnconverged::kRefuse || isOutOfTime());
+         (otherwise == IfUnconverged::kRefuse || world_.isOutOfTime());
 }
 
 void LoadStepper::follow(std::vector<LoadingPatch> patches) {
   const Stopwatch watch(world_.report.solve_ms);
   world_.tissue.follow(std::move(patches), world_.sticking.left(), beddingOf(world_));
   world_.report.changed = true;
-}
-
-// Whether a vertex of the surface went farther than kMostLeap spacings: no load step moves tissue
-// that tools hold so far, so the solve threw it away.
-bool LoadStepper::leaptFrom(const Checkpoint& good) const {
-  if (world_.tissue.isUntouched()) return false;
-  const std::vector<Vec3>& now = world_.tissue.state().displacement;
-  const std::vector<Vec3>& before = *good.shape.displacement;
-  double farthest = 0.0;
-  for (const CarrierRange carriers : world_.tissue.surface().carriers) {
-    const Vec3 way = carriedFrom(
-        Vec3::Zero(), carriers, [&](int node) -> Vec3 { return now[at(node)] - before[at(node)]; });
-    farthest = std::max(farthest, way.squaredNorm());
-  }
-  const double leap = tuning::kMostLeap * world_.tissue.lattice().spacing();
-  return farthest > leap * leap;
-}
-
-// Whether the shape is none that tissue gets into from the last good one: it leapt, has more
-// inverted cells, a link went through its surface, or a touch pushes harder than any tissue does.
-bool LoadStepper::isLost(const Checkpoint& good) const {
-  return leaptFrom(good) || turnedOver(good) || wentThrough(good) || isSwallowed(good) ||
-         SlidingContacts::pushesAbsurdly(world_.tissue);
-}
-
-// More cells than before are inside out.
-bool LoadStepper::turnedOver(const Checkpoint& good) const {
-  return world_.tissue.resistsInversion() &&
-         world_.tissue.lastReport().inverted_cells > good.shape.report.inverted_cells;
-}
-
-// Whether a link or support is deeper in tissue that gives way than throughAt, and than it was. Of
-// rigid tools deepestInRigid tells.
-bool LoadStepper::wentThrough(const Checkpoint& good) const {
-  const std::vector<double>& depths = touch_finder_.depths();
-  for (std::size_t tool = 0; tool < world_.tools.sizeWithSupports(); ++tool) {
-    if (world_.tools.isRigid(static_cast<int>(tool))) continue;
-    const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
-    for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
-      const double before = link < good.depths.size() ? good.depths[link] : 0.0;
-      if (depths[link] > std::max(throughAt(link), before)) return true;
-    }
-  }
-  return false;
-}
-
-// Whether a link that touched touches nothing any more and stands in the tissue all the same:
-// contacts are found beside the surface, so one that is all inside has none.
-bool LoadStepper::isSwallowed(const Checkpoint& good) const {
-  std::vector<std::size_t> links;
-  for (const SlidingContacts::ContactConstraint& touch : good.contacts.touches()) {
-    const auto link = at(touch.contact.link);
-    if (!world_.isInWound(link)) links.push_back(link);
-  }
-  std::sort(links.begin(), links.end());
-  links.erase(std::unique(links.begin(), links.end()), links.end());
-  const auto touches = [&](std::size_t link) {
-    const auto& all = world_.sliding.touches();
-    return std::any_of(all.begin(), all.end(),
-                       [&](const auto& touch) -> bool { return at(touch.contact.link) == link; });
-  };
-  links.erase(std::remove_if(links.begin(), links.end(), touches), links.end());
-  return !links.empty() && isAnyThrough(links, world_.pose);
-}
-
-bool LoadStepper::isAnyThrough(const std::vector<std::size_t>& links, const RobotPose& pose) const {
-  const std::vector<double> depths =
-      world_.finder.penetrations(links, pose, world_.tissue.surface(), world_.tissue.vertices());
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (depths[i] > throughAt(links[i])) return true;
-  }
-  return false;
-}
-
-// Depth in the surface (m) beyond which a link is on its way to the other side of it.
-double LoadStepper::throughAt(std::size_t link) const {
-  return std::min(tuning::kThrough * world_.tissue.lattice().spacing(),
-                  tuning::kThroughOfThickness * world_.finder.thickness(link));
-}
-
-// Whether the solve ended before it was done, as where tissue slips far: a point is left too deep
-// or, unconverged, the forces on the tissue do not add up to zero.
-bool LoadStepper::isUnsettled() const {
-  if (world_.tissue.goesThroughTime() || !world_.tissue.areContactsSettled()) return false;
-  if (contact_update_.leftInside() > tuning::kTooDeep * world_.tissue.lattice().spacing()) {
-    return true;
-  }
-  if (world_.tissue.lastReport().status != SolveStatus::kUnconverged) return false;
-  const ForceBalance forces = forceBalanceOf(world_);
-  return forces.unbalanced().norm() > tuning::kMostUnbalanced * forces.tools.norm();
 }
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
@@ -253,10 +222,8 @@ SolveReport LoadStepper::balance() {
   world_.sticking.ride(world_.pose, world_.tissue);
   meet(world_.pose);
   world_.tissue.follow(patchesOfTools(world_), world_.tissue.freeNodes(), Bedding::kSupports);
-  tear();
-  if (wentThrough({}) || SlidingContacts::pushesAbsurdly(world_.tissue)) {
-    world_.tissue.noteUnconverged();
-  }
+  tearStretched(world_);
+  if (judge_.isOfNoTissue()) world_.tissue.noteUnconverged();
   return world_.tissue.lastReport();
 }
 
@@ -307,53 +274,11 @@ Checkpoint LoadStepper::checkpoint() const {
   return all;
 }
 
-// Balance where a tool, or all of them, let go.
 void LoadStepper::lieDown() {
   if (world_.tissue.isUntouched()) return;
   world_.sliding.ride(world_.pose, world_.tissue);
   meet(world_.pose);
   world_.tissue.follow(patchesOfTools(world_), {}, beddingOf(world_));
-}
-
-// Graspers that are pulled harder than they hold lose the tissue, or take out what they hold of it.
-void LoadStepper::endOverpulled() {
-  bool any_lost = false;
-  for (const std::size_t tool : grasping_.overpulled()) {
-    if (takesOut(tool)) continue;
-    grasping_.lose(tool);
-    addOnce(tool, world_.report.torn_off);
-    any_lost = true;
-  }
-  if (!any_lost) return;
-  world_.sticking.ride(world_.pose, world_.tissue);
-  world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
-  world_.sliding.commit(world_.pose, world_.tissue);
-}
-
-// False: it lets go, as what it holds is nowhere joined to the rest, too.
-bool LoadStepper::takesOut(std::size_t tool) {
-  if (!world_.tools[tool].grasp.tears_out) return false;
-  if (world_.is_trial) return true;
-  const int before = world_.tissue.springsTorn();
-  const Stopwatch watch(world_.report.solve_ms);
-  if (!world_.tissue.tearOut(world_.sticking.nodes(static_cast<int>(tool)))) return false;
-  world_.report.springs_torn += world_.tissue.springsTorn() - before;
-  world_.report.changed = true;
-  addOnce(tool, world_.report.torn_out);
-  world_.sliding.commit(world_.pose, world_.tissue);
-  return true;
-}
-
-void LoadStepper::tear() {
-  if (world_.is_trial || !world_.tissue.mayTear()) return;
-  const int before = world_.tissue.springsTorn();
-  const std::uint64_t topology = world_.tissue.surface().revision;
-  const Stopwatch watch(world_.report.solve_ms);
-  world_.tissue.tear();
-  if (world_.tissue.surface().revision == topology) return;
-  world_.report.springs_torn += world_.tissue.springsTorn() - before;
-  world_.report.changed = true;
-  world_.sliding.commit(world_.pose, world_.tissue);
 }
 
 void LoadStepper::goBackTo(const Checkpoint& good) {

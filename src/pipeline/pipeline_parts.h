@@ -9,9 +9,11 @@
 #include "overlap_resolver.h"
 #include "robot_tissue/pipeline/pipeline.h"
 #include "scissors.h"
+#include "shape_judge.h"
 #include "tool_contact_update.h"
 #include "tool_motion.h"
 #include "touch_finder.h"
+#include "unfinished_load_step.h"
 #include "way_lengths.h"
 #include "world.h"
 
@@ -24,7 +26,7 @@ struct Pipeline::State {
   ForceDrive drive;
   TouchState touches;
   std::vector<Jaws> jaws;
-  LoadStepState load_step;
+  UnfinishedLoadStep under_way;
   std::vector<BladeState> blades;
   std::vector<BurrState> burrs;
   std::vector<ScissorsState> scissors;
@@ -46,11 +48,12 @@ struct Pipeline::Parts {
   ToolContactUpdate contact_update{world, touch_finder};
   Grasping grasping{world, state.jaws};
   OverlapResolver overlap{world};
-  LoadStepper load_step{world, touch_finder, contact_update, grasping, state.load_step};
+  ShapeJudge judge{world, touch_finder, contact_update};
+  LoadStepper load_step{world, touch_finder, judge, grasping, state.under_way};
   Blades blades{world, load_step, state.blades};
   Burrs burrs{world, state.burrs};
   Scissors scissors{world, state.scissors};
-  ToolMotion motion{world, ways, overlap, grasping, load_step, state.way_behind};
+  ToolMotion motion{world, ways, overlap, grasping, judge, load_step, state.way_behind};
 };
 
 }  // namespace robot_tissue

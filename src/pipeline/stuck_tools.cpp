@@ -18,7 +18,7 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
   }
   if (!any) return;
   world_.last_pose = from;
-  if (!load_step_.advance(from)) {
+  if (load_step_.advance(from) != LoadStepEnd::kArrived) {
     if (world_.tissue.patience().cutsOff()) return;  // all would meet the jam anew
     startAnew(pose, Entry::kLetGo);
   }
@@ -26,7 +26,7 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
 }
 
 // Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
-// away from where the tissue is at rest, and deeper in its surface than isAnyThrough lets it.
+// away from where the tissue is at rest, and deeper in its surface than ShapeJudge lets it.
 bool ToolMotion::isHooked(std::size_t tool) const {
   if (!world_.sliding.pushes(static_cast<int>(tool), world_.tissue)) return false;
   std::vector<std::size_t> links;
@@ -38,7 +38,7 @@ bool ToolMotion::isHooked(std::size_t tool) const {
     }
     links.push_back(link);
   }
-  return load_step_.isAnyThrough(links, *world_.last_pose);
+  return judge_.isAnyThrough(links, *world_.last_pose);
 }
 
 void ToolMotion::letGoOf(std::size_t tool) {
@@ -109,7 +109,7 @@ void ToolMotion::comeAnew(const std::vector<std::size_t>& tools, RobotPose& pose
     letGoOf(tool);
   }
   world_.last_pose = without;
-  if (load_step_.advance(without)) {
+  if (load_step_.advance(without) == LoadStepEnd::kArrived) {
     comeAndGo(pose, Entry::kLetGo);
   } else if (world_.tissue.patience().cutsOff()) {
     world_.report.lost = true;

@@ -93,7 +93,8 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
     return true;
   }
   const double before_ms = world_.deadline.leftMs();
-  const bool arrived = load_step_.finish(start);
+  const LoadStepEnd end = load_step_.finish(start);
+  const bool arrived = end == LoadStepEnd::kArrived;
   const int made = world_.tissue.lastReport().iterations;
   behind_.late_iterations += std::max(1, made);
   if (arrived) start = world_.pose;
@@ -102,7 +103,7 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   const bool is_short = isShort(world_.deadline, before_ms) ||
                         (isBounded() && made > tuning::kShortToGoOn * world_.mostIterations());
   if (is_done && !is_short) return true;
-  behind_.begins_short = !arrived && !load_step_.isUnderWay();
+  behind_.begins_short = end == LoadStepEnd::kOutOfTime || end == LoadStepEnd::kNoShape;
   world_.report.too_fast = !world_.report.lost;
   return false;
 }
@@ -140,7 +141,9 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
     const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
     const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
     const double before_ms = world_.deadline.leftMs();
-    if (load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse)) {
+    const LoadStepEnd step_end =
+        load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse);
+    if (step_end == LoadStepEnd::kArrived) {
       if (longest == 1.0) patience.forgetWay();
       gone = there;
       if (longest < 1.0) in_short_ones += world_.tissue.lastReport().iterations;
@@ -152,7 +155,7 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
       return came();
     }
-    if (load_step_.isUnderWay()) {
+    if (step_end == LoadStepEnd::kUnderWay) {
       world_.report.too_fast = true;
       return came();
     }
@@ -163,12 +166,12 @@ RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
       return came();
     }
     longest = tuning::kShortestStep;
-    if (!isBounded() && !load_step_.ranOutOfTime() && !isShort(world_.deadline, before_ms))
+    if (!isBounded() && step_end == LoadStepEnd::kNoShape && !isShort(world_.deadline, before_ms))
       continue;
     behind_.begins_short = world_.report.too_fast = true;
     return came();
   }
-  if (end <= 0.0 && !load_step_.advance(pose)) world_.report.lost = true;
+  if (end <= 0.0 && load_step_.advance(pose) != LoadStepEnd::kArrived) world_.report.lost = true;
   if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
   return pose;
 }

@@ -7,6 +7,7 @@
 
 #include "load_stepper.h"
 #include "overlap_resolver.h"
+#include "shape_judge.h"
 #include "way_lengths.h"
 
 namespace robot_tissue {
@@ -27,11 +28,12 @@ class ToolMotion {
 
   // `behind` is kept by the caller.
   ToolMotion(World& world, const WayLengths& ways, const OverlapResolver& overlap,
-             Grasping& grasping, LoadStepper& load_step, WayBehind& behind)
+             Grasping& grasping, const ShapeJudge& judge, LoadStepper& load_step, WayBehind& behind)
       : world_(world),
         ways_(ways),
         overlap_(overlap),
         grasping_(grasping),
+        judge_(judge),
         load_step_(load_step),
         behind_(behind) {}
 
@@ -80,6 +82,7 @@ class ToolMotion {
   const WayLengths& ways_;
   const OverlapResolver& overlap_;
   Grasping& grasping_;
+  const ShapeJudge& judge_;
   LoadStepper& load_step_;
   WayBehind& behind_;
 };

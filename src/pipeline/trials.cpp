@@ -11,7 +11,7 @@ struct Pipeline::Mark {
 };
 
 void Pipeline::beginTrial() {
-  if (!parts_->load_step.isUnderWay()) parts_->load_step.forgetUnderWay();
+  if (!state_.under_way.isOf(world_.tissue)) state_.under_way.forget();
   trial_from_ = std::make_shared<const Mark>(Mark{
       world_.tissue.shape(), static_cast<const WorldState&>(world_), state_, world_.finder.kept()});
   world_.tissue.beginAside();
@@ -25,7 +25,7 @@ void Pipeline::undoTrial() {
   world_.tissue.restore(mark->shape);
   world_.takeBack(mark->world);
   state_ = mark->state;
-  parts_->load_step.keepUnderWay();
+  state_.under_way.beginAt(world_.tissue);
   world_.finder.restore(*mark->searches, world_.tissue.surface(), world_.tissue.vertices());
 }
 

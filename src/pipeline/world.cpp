@@ -1,6 +1,7 @@
 #include "world.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "robot_tissue/contact/tool_sizes.h"
 #include "tuning.h"
@@ -146,6 +147,11 @@ std::vector<ToolGeometry> World::edgesOf(std::vector<ToolGeometry> all) const {
   return all;
 }
 
+bool World::isOutOfTime() const {
+  if (tissue.patience().bound().isSpent()) return true;
+  return std::isfinite(deadline.leftMs()) && (deadline.isOver() || tissue.isLate());
+}
+
 double World::reach(std::size_t link) const {
   double reach = std::max(finder.reach(link), drills.reach(link));
   for (const Vec3& point : edgeOn(link)) reach = std::max(reach, point.norm());
@@ -205,6 +211,10 @@ std::vector<LoadingPatch> patchesOfTools(const World& world) {
     patches.back().contacts = springs;
   }
   return patches;
+}
+
+Bedding beddingOf(const World& world) {
+  return world.has_supports ? Bedding::kSupports : Bedding::kFixedNodes;
 }
 
 bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world) {

@@ -86,6 +86,10 @@ struct World : WorldState {
     return is_bounded ? most_iterations : 0;
   }
 
+  // Of a load step: no time is left in the call, or no iterations; also where there was none for
+  // another solve.
+  bool isOutOfTime() const;
+
   Tissue tissue;  // [LoadStepper]
   ToolSet tools;
   ContactFinder finder;               // of tools and supports that touch
@@ -110,6 +114,7 @@ PatchAnswer answerOf(const World& world, std::size_t tool);
 ForceBalance forceBalanceOf(const World& world);
 // Of each tool that holds or pushes, and of each support that is near.
 std::vector<LoadingPatch> patchesOfTools(const World& world);
+Bedding beddingOf(const World& world);
 // Supports are no tools: they alone disturb nothing.
 bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world);
 
