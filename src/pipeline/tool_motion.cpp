@@ -8,15 +8,12 @@
 #include "tuning.h"
 
 namespace robot_tissue {
-namespace {
 
 // Whether a load step like the last one, before which so much was left, would end too late.
-bool isShort(const Deadline& deadline, double before_ms) {
-  const double left_ms = deadline.leftMs();
+bool ToolMotion::isShort(double before_ms) const {
+  const double left_ms = world_.deadline.leftMs();
   return std::isfinite(left_ms) && left_ms < tuning::kOfLastLoadStep * (before_ms - left_ms);
 }
-
-}  // namespace
 
 // Whether the shortest load step of this way is the one that no shape followed (World::dead_end):
 // it is not tried again.
@@ -100,81 +97,16 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
   if (is_done) behind_.late_iterations = 0;
-  const bool is_short = isShort(world_.deadline, before_ms) ||
-                        (isBounded() && made > tuning::kShortToGoOn * world_.mostIterations());
+  const bool is_short =
+      isShort(before_ms) || (isBounded() && made > tuning::kShortToGoOn * world_.mostIterations());
   if (is_done && !is_short) return true;
   behind_.begins_short = end == LoadStepEnd::kOutOfTime || end == LoadStepEnd::kNoShape;
   world_.report.too_fast = !world_.report.lost;
   return false;
 }
 
-// Load steps of the way, or time steps, if these are more: whole ones, as a short one at the end
-// would be one of high accelerations.
-double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const {
-  const double duration = pose.stamp_s - start.stamp_s;
-  if (!world_.tissue.hasTime() || !(duration > 0.0)) return load_steps;
-  const double longest = std::max(world_.tissue.longestTimeStep(), tuning::kShortestTimeStep);
-  return std::ceil(std::max(load_steps, duration / longest) - tuning::kTimeRounding);
-}
-
 // Whether an update leaves what a load step has no iterations for to the next one.
 bool ToolMotion::isBounded() const { return world_.mostIterations() > 0; }
-
-RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
-  const double load_steps = ways_.stepsBetween(start, pose);
-  const double steps = stepsOf(load_steps, start, pose);
-  // Rigid patches find the shapes that they left by the steps of their ways, as these were.
-  const double end = world_.tools.anyRigid() ? steps : steps - tuning::kWayRounding;
-  double gone = 0.0,
-         longest = std::exchange(behind_.begins_short, false) ? tuning::kShortestStep : 1.0;
-  int in_short_ones = 0;  // iterations
-  Patience& patience = world_.tissue.patience();
-  patience.forgetWay();
-  const auto came = [&] { return gone > 0.0 ? between(start, pose, gone / steps) : start; };
-  while (gone < end) {
-    const bool flies = load_steps > 0.0 && !world_.tissue.isMoving();
-    const double free = flies ? ways_.freeSteps(came(), pose) * (steps / load_steps) : 0.0;
-    // Whole ones in time, too: what is left at the end would be short.
-    const double stride = std::max(longest, world_.tissue.hasTime() ? std::floor(free) : free);
-    const bool is_last = gone + stride >= end;
-    const double there = is_last ? steps : gone + stride;
-    const RobotPose on_the_way = is_last ? pose : between(start, pose, there / steps);
-    const bool is_short = std::min(longest, there - gone) <= tuning::kShortestStep;
-    const double before_ms = world_.deadline.leftMs();
-    const LoadStepEnd step_end =
-        load_step_.advance(on_the_way, is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse);
-    if (step_end == LoadStepEnd::kArrived) {
-      if (longest == 1.0) patience.forgetWay();
-      gone = there;
-      if (longest < 1.0) in_short_ones += world_.tissue.lastReport().iterations;
-      longest = std::min(1.0, 2.0 * longest);
-      if (world_.tools.anyRigid() && !is_last) checkIn(on_the_way);
-      const bool is_over = isShort(world_.deadline, before_ms) ||
-                           (isBounded() && in_short_ones >= world_.mostIterations());
-      if (is_last || !(is_over || patience.cutsOff())) continue;
-      (patience.cutsOff() ? world_.report.lost : world_.report.too_fast) = true;
-      return came();
-    }
-    if (step_end == LoadStepEnd::kUnderWay) {
-      world_.report.too_fast = true;
-      return came();
-    }
-    if (is_short || patience.isOver()) {
-      world_.report.lost = true;
-      const double next = std::min(gone + tuning::kShortestStep, there);
-      world_.dead_end = DeadEnd{came(), is_short ? on_the_way : between(start, pose, next / steps)};
-      return came();
-    }
-    longest = tuning::kShortestStep;
-    if (!isBounded() && step_end == LoadStepEnd::kNoShape && !isShort(world_.deadline, before_ms))
-      continue;
-    behind_.begins_short = world_.report.too_fast = true;
-    return came();
-  }
-  if (end <= 0.0 && load_step_.advance(pose) != LoadStepEnd::kArrived) world_.report.lost = true;
-  if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
-  return pose;
-}
 
 void ToolMotion::checkIn(const RobotPose& pose) {
   if (!world_.tools.anyRigid() || world_.tissue.isUntouched()) behind_.checkpoints.clear();

@@ -60,6 +60,18 @@ class ToolMotion {
 
  private:
   enum class Others { kNone, kCame };  // of the tools, in this step
+  // How a walk ended, or that it goes on.
+  enum class WalkEnd {
+    kGoesOn,
+    kArrived,
+    kOutOfTime,     // or out of iterations: a part of the way is left to the next update
+    kUnderWay,      // in a load step, which the next update goes on with
+    kToBeginShort,  // no shape followed a load step: the next update tries a shorter one
+    kDeadEnd,       // no shape follows even the shortest load step
+    kCutOff,        // load steps take far too long (Patience)
+    kLostAtEnd      // no shape where there is no way
+  };
+  class Walk;
 
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
   bool turnsBack(const RobotPose& start, const RobotPose& pose) const;
@@ -68,7 +80,9 @@ class ToolMotion {
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
   bool isBounded() const;
+  bool isShort(double before_ms) const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);
+  void note(WalkEnd end);
   void passTo(const RobotPose& pose);
   void checkIn(const RobotPose& pose);
   bool isHooked(std::size_t tool) const;

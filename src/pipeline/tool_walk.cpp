@@ -1,0 +1,170 @@
+// ToolMotion: one walk in load steps, of the strides that are whole, free, or shorter ones where no
+// shape follows.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "strides.h"
+#include "tool_motion.h"
+#include "tuning.h"
+
+namespace robot_tissue {
+
+// Load steps of the way, or time steps, if these are more: whole ones, as a short one at the end
+// would be one of high accelerations.
+double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const {
+  const double duration = pose.stamp_s - start.stamp_s;
+  if (!world_.tissue.hasTime() || !(duration > 0.0)) return load_steps;
+  const double longest = std::max(world_.tissue.longestTimeStep(), tuning::kShortestTimeStep);
+  return std::ceil(std::max(load_steps, duration / longest) - tuning::kTimeRounding);
+}
+
+// From `start` to `pose`. Places on the way are counted in steps from its start.
+class ToolMotion::Walk {
+ public:
+  Walk(ToolMotion& motion, const RobotPose& start, const RobotPose& pose);
+
+  WalkEnd go();
+  // How far it came.
+  RobotPose came() const { return placeAt(gone_); }
+
+ private:
+  struct Stride {
+    double end = 0.0;
+    RobotPose pose;         // there
+    bool is_last = false;   // it ends at the way's
+    bool is_short = false;  // no longer than the shortest load step
+  };
+
+  RobotPose placeAt(double gone) const;
+  Stride next() const;
+  double free() const;
+  WalkEnd take(const Stride& stride);
+  WalkEnd arriveAt(const Stride& stride, double before_ms);
+  WalkEnd stopBefore(const Stride& stride);
+
+  ToolMotion& motion_;
+  World& world_;
+  Patience& patience_;
+  const RobotPose& start_;
+  const RobotPose& pose_;
+  double load_steps_;      // of the way
+  double steps_;           // load steps of the way, or time steps, if these are more
+  double end_;             // what is beyond is rounding
+  double gone_ = 0.0;      // so far
+  double longest_ = 1.0;   // next stride, where the way is not free
+  int in_short_ones_ = 0;  // iterations, in load steps that were not whole
+};
+
+ToolMotion::Walk::Walk(ToolMotion& motion, const RobotPose& start, const RobotPose& pose)
+    : motion_(motion),
+      world_(motion.world_),
+      patience_(world_.tissue.patience()),
+      start_(start),
+      pose_(pose),
+      load_steps_(motion.ways_.stepsBetween(start, pose)),
+      steps_(motion.stepsOf(load_steps_, start, pose)),
+      // Rigid patches find the shapes that they left by the steps of their ways, as these were.
+      end_(world_.tools.anyRigid() ? steps_ : steps_ - tuning::kWayRounding) {
+  if (std::exchange(motion.behind_.begins_short, false)) longest_ = tuning::kShortestStep;
+  patience_.forgetWay();
+}
+
+ToolMotion::WalkEnd ToolMotion::Walk::go() {
+  if (end_ <= 0.0) {
+    const bool stays = motion_.load_step_.advance(pose_) == LoadStepEnd::kArrived;
+    return stays ? WalkEnd::kArrived : WalkEnd::kLostAtEnd;
+  }
+  WalkEnd end = WalkEnd::kGoesOn;
+  while (end == WalkEnd::kGoesOn) end = take(next());
+  return end;
+}
+
+RobotPose ToolMotion::Walk::placeAt(double gone) const {
+  return gone > 0.0 ? between(start_, pose_, gone / steps_) : start_;
+}
+
+ToolMotion::Walk::Stride ToolMotion::Walk::next() const {
+  const double length = std::max(longest_, free());
+  Stride stride;
+  stride.is_last = gone_ + length >= end_;
+  stride.end = stride.is_last ? steps_ : gone_ + length;
+  stride.pose = stride.is_last ? pose_ : between(start_, pose_, stride.end / steps_);
+  stride.is_short = std::min(longest_, stride.end - gone_) <= tuning::kShortestStep;
+  return stride;
+}
+
+// Steps before any tool can touch. Whole ones in time, too: what is left at the end would be short.
+double ToolMotion::Walk::free() const {
+  if (!(load_steps_ > 0.0) || world_.tissue.isMoving()) return 0.0;
+  const double free = motion_.ways_.freeSteps(came(), pose_) * (steps_ / load_steps_);
+  return world_.tissue.hasTime() ? std::floor(free) : free;
+}
+
+ToolMotion::WalkEnd ToolMotion::Walk::take(const Stride& stride) {
+  const double before_ms = world_.deadline.leftMs();
+  const auto if_unconverged = stride.is_short ? IfUnconverged::kTake : IfUnconverged::kRefuse;
+  const LoadStepEnd end = motion_.load_step_.advance(stride.pose, if_unconverged);
+  if (end == LoadStepEnd::kArrived) return arriveAt(stride, before_ms);
+  if (end == LoadStepEnd::kUnderWay) return WalkEnd::kUnderWay;
+  if (stride.is_short || patience_.isOver()) return stopBefore(stride);
+  longest_ = tuning::kShortestStep;
+  const bool has_time = end == LoadStepEnd::kNoShape && !motion_.isShort(before_ms);
+  return has_time && !motion_.isBounded() ? WalkEnd::kGoesOn : WalkEnd::kToBeginShort;
+}
+
+ToolMotion::WalkEnd ToolMotion::Walk::arriveAt(const Stride& stride, double before_ms) {
+  if (longest_ == 1.0) patience_.forgetWay();
+  gone_ = stride.end;
+  if (longest_ < 1.0) in_short_ones_ += world_.tissue.lastReport().iterations;
+  longest_ = std::min(1.0, 2.0 * longest_);
+  if (stride.is_last) return WalkEnd::kArrived;
+  if (world_.tools.anyRigid()) motion_.checkIn(stride.pose);
+  if (patience_.cutsOff()) return WalkEnd::kCutOff;
+  const bool is_over = motion_.isShort(before_ms) ||
+                       (motion_.isBounded() && in_short_ones_ >= world_.mostIterations());
+  return is_over ? WalkEnd::kOutOfTime : WalkEnd::kGoesOn;
+}
+
+// The shortest load step from here is one that no shape follows.
+ToolMotion::WalkEnd ToolMotion::Walk::stopBefore(const Stride& stride) {
+  const double next = std::min(gone_ + tuning::kShortestStep, stride.end);
+  world_.dead_end =
+      DeadEnd{came(), stride.is_short ? stride.pose : between(start_, pose_, next / steps_)};
+  return WalkEnd::kDeadEnd;
+}
+
+// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came.
+RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
+  Walk walk(*this, start, pose);
+  const WalkEnd end = walk.go();
+  note(end);
+  if (end != WalkEnd::kArrived && end != WalkEnd::kLostAtEnd) return walk.came();
+  if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
+  return pose;
+}
+
+// What the report, and the next update, have of how a walk ended.
+void ToolMotion::note(WalkEnd end) {
+  StepReport& report = world_.report;
+  switch (end) {
+    case WalkEnd::kGoesOn:
+    case WalkEnd::kArrived:
+      return;
+    case WalkEnd::kOutOfTime:
+    case WalkEnd::kUnderWay:
+      report.too_fast = true;
+      return;
+    case WalkEnd::kToBeginShort:
+      report.too_fast = true;
+      behind_.begins_short = true;
+      return;
+    case WalkEnd::kDeadEnd:
+    case WalkEnd::kCutOff:
+    case WalkEnd::kLostAtEnd:
+      report.lost = true;
+      return;
+  }
+}
+
+}  // namespace robot_tissue
