@@ -44,7 +44,7 @@ struct Pipeline::Parts {
   World world;
   State state;
   WayLengths ways{world};
-  TouchFinder touch_finder{world, state.touches};
+  TouchFinder touch_finder{world, state.touches, world.report.contact_ms};
   ToolContactUpdate contact_update{world, touch_finder};
   Grasping grasping{world, state.jaws};
   OverlapResolver overlap{world};

@@ -14,7 +14,7 @@ namespace robot_tissue {
 // The contact of each touch in the present shape: its point, and the plane of its link there.
 std::vector<std::optional<Contact>> TouchFinder::trackTouches(const RobotPose& pose,
                                                               const ContactSet& found) {
-  const Stopwatch watch(world_.report.contact_ms);
+  const Stopwatch watch(contact_ms_);
   std::vector<std::optional<Contact>> tracked;
   const std::set<std::pair<int, int>> come_in = verticesComeIn();
   curved_.take(world_.tissue.surface(), vertices_);
@@ -188,7 +188,7 @@ bool TouchFinder::turn(const RobotPose& pose, Contact& contact) const {
 
 ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement,
                                    double way) {
-  const Stopwatch watch(world_.report.contact_ms);
+  const Stopwatch watch(contact_ms_);
   deform(world_.tissue.surface(), displacement, vertices_);
   return flatContacts(pose, vertices_, way);
 }
@@ -231,7 +231,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
   };
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
-  const Stopwatch watch(world_.report.contact_ms);
+  const Stopwatch watch(contact_ms_);
   curved_.take(world_.tissue.surface(), vertices_);
   state_.smooth = smoothnesses(pose, contacts, vertices_);
   std::vector<double> nearest;  // depths by the nearest way out, of those that stay

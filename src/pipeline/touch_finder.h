@@ -24,9 +24,9 @@ struct TouchState {
 
 class TouchFinder {
  public:
-  // The state is kept by the caller.
-  TouchFinder(World& world, TouchState& state)
-      : world_(world), state_(state), rims_(world, state.rims) {}
+  // The state is kept by the caller; the time that it takes is added to `contact_ms`.
+  TouchFinder(const World& world, TouchState& state, double& contact_ms)
+      : world_(world), state_(state), contact_ms_(contact_ms), rims_(world, state.rims) {}
 
   // With gaps that a solve may close: of the triangles. Where no tool went farther than `way` (m)
   // since the last search of this shape, at the places that it found; so touchesAt.
@@ -38,7 +38,7 @@ class TouchFinder {
                        double way = 0.0);
   // After touchesAt.
   std::vector<std::optional<Contact>> trackTouches(const RobotPose& pose, const ContactSet& found);
-  // Likewise, of those that wander alone; none of the others.
+  // As trackTouches, of those that wander alone; none of the others.
   std::vector<std::optional<Contact>> trackWandering(const RobotPose& pose,
                                                      const ContactSet& found) const;
   // Takes those of them that wander back, to a part of the way from the touches that were there
@@ -90,8 +90,9 @@ class TouchFinder {
                                    const std::vector<Vec3>& vertices) const;
   void takeRims(const std::vector<std::uint8_t>& held, ContactSet& contacts);
 
-  World& world_;
+  const World& world_;
   TouchState& state_;
+  double& contact_ms_;
   ToolRims rims_;
   std::vector<Vec3> vertices_;  // of the last contacts
   CurvedSurface curved_;

@@ -92,7 +92,7 @@ std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const Contact
 
 std::vector<std::optional<Contact>> TouchFinder::trackWandering(const RobotPose& pose,
                                                                 const ContactSet& found) const {
-  const Stopwatch watch(world_.report.contact_ms);
+  const Stopwatch watch(contact_ms_);
   std::vector<std::optional<Contact>> tracked;
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     tracked.push_back(touch.contact.wanders ? goAlong(pose, found, touch) : std::nullopt);

@@ -1,5 +1,7 @@
 // The tissue and the tools beside it: what all parts of the pipeline see. In brackets: which of
-// them change it, besides Pipeline, which does when the tissue is loaded, cut or reset.
+// them change it, besides Pipeline, which does when the tissue is loaded, cut or reset; cutters:
+// Blades, Burrs and Scissors. WayLengths, TouchFinder, ToolRims, OverlapResolver, ShapeJudge and
+// reports have it const.
 #pragma once
 
 #include <optional>
@@ -28,9 +30,11 @@ struct WorldState {
   // wound.
   enum class Edge { kTouches, kFar, kInside };
 
-  // Of tools with rigid patches, and graspers. [LoadStepper, ToolMotion, Grasping]
+  // Of tools with rigid patches, and graspers. [LoadStepper, ToolContactUpdate, ToolMotion,
+  // Grasping]
   StickingContacts sticking;
-  // Of the other tools, and supports. [LoadStepper, ToolContactUpdate, ToolMotion, Grasping]
+  // Of the other tools, and supports.
+  // [LoadStepper, ToolContactUpdate, ToolMotion, Grasping, tearStretched, cutters]
   SlidingContacts sliding;
   // Of the load step under way, or the last that a shape followed. [LoadStepper, ToolMotion]
   RobotPose pose;
@@ -40,12 +44,14 @@ struct WorldState {
   std::optional<RobotPose> last_pose;
   // The stamp that the tissue has come to (s); none before the first. [LoadStepper, ToolMotion]
   std::optional<double> reached_s;
-  // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper]
+  // None: nothing failed since the tissue last changed. [ToolMotion, LoadStepper, cutters]
   std::optional<DeadEnd> dead_end;
-  bool unfinished = false;      // the last load step had no time for all it would do [LoadStepper]
-  StepReport report;            // [LoadStepper, ToolMotion; times: whoever took them]
+  // The last load step had no time for all it would do. [LoadStepper, ToolMotion]
+  bool unfinished = false;
+  // [LoadStepper, ToolMotion, Grasping, tearStretched, cutters; times: whoever took them]
+  StepReport report;
   bool depths_are_due = false;  // of the tools' reports [Pipeline]
-  std::vector<Edge> edge_of;    // per link; of those that have one that may touch
+  std::vector<Edge> edge_of;    // per link; of those that have one that may touch [Blades]
 };
 
 struct World : WorldState {
@@ -90,11 +96,13 @@ struct World : WorldState {
   // another solve.
   bool isOutOfTime() const;
 
-  Tissue tissue;  // [LoadStepper]
+  // Its shape: [LoadStepper, Grasping, cutters]; what is severed: [Grasping, tearStretched,
+  // cutters]; how long it is solved for: [ToolMotion].
+  Tissue tissue;
   ToolSet tools;
-  ContactFinder finder;               // of tools and supports that touch
+  ContactFinder finder;               // of tools and supports that touch [setEdge]
   ContactFinder drills;               // of the shapes of tools that drill; links as in `finder`
-  ContactFinder edges;                // of the bars along edges alone; links likewise
+  ContactFinder edges;                // of the bars along edges alone; links as in `finder`
   std::vector<std::string> warnings;  // of both
   bool has_supports = false;
   bool is_trial = false;    // what is done is undone, so nothing may sever
