@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/coupling/fade.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -11,11 +12,6 @@ namespace {
 // What takes `share` of the stiffness from a spring.
 double complianceLeaving(double share, double stiffness) {
   return stiffness > 0.0 ? share / ((1.0 - share) * stiffness) : 0.0;
-}
-
-// 1 at `full`, 0 at `none`.
-double fade(double value, double none, double full) {
-  return std::min(1.0, std::max(0.0, (value - none) / (full - none)));
 }
 
 // Along the friction: of a motion across the edge and along it in equal parts where there is none.

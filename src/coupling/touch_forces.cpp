@@ -73,7 +73,7 @@ bool SlidingContacts::pushes(int tool, const Tissue& tissue) const {
 // kMostElasticSlip of the fineness. True: the bounds' sum has changed by less than kSameFriction.
 bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
   const double spacing = tissue.lattice().spacing();
-  double drag_before = 0.0, drag_now = 0.0;
+  double bounds_before = 0.0, bounds_now = 0.0;
   pressed_.assign(friction_.size(), {});
   for (ContactConstraint& touch : touches_) {
     touch.found = false;
@@ -83,8 +83,8 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     Pressed& pressed = pressed_[at(touch.contact.tool)];
     pressed.force += force;
     pressed.touches += force > 0.0 ? 1 : 0;
-    drag_before += spring.friction_bound;
-    drag_now += friction_bound;
+    bounds_before += spring.friction_bound;
+    bounds_now += friction_bound;
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
     const double fine = fineness(touch.contact.link, spacing);
@@ -95,7 +95,7 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
     putPlane(touch);
   }
-  return std::abs(drag_now - drag_before) <= tuning::kSameFriction * drag_now;
+  return std::abs(bounds_now - bounds_before) <= tuning::kSameFriction * bounds_now;
 }
 
 // Of a shape on its way to balance forces say nothing, so multipliers stay; but those of points

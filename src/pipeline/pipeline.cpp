@@ -1,6 +1,7 @@
 #include "robot_tissue/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "landing.h"
@@ -176,38 +177,41 @@ void Pipeline::load(const LoadStep& step, const Tissue::OnIncrement& on_incremen
   touch();
 }
 
-SolveReport Pipeline::release(const std::vector<std::string>& names) {
+// A change of the tissue, which is in balance after it; what the change let loose comes to lie.
+SolveReport Pipeline::changeTissue(const std::function<SolveReport()>& change) {
   const Bounded bounded(*this);
   const std::optional<Tissue::Shape> before = shapeOfLoose();
-  const SolveReport report = comeToLie(before, world_.tissue.release(names));
+  const SolveReport report = comeToLie(before, change());
   touch();
   return report;
 }
 
+SolveReport Pipeline::release(const std::vector<std::string>& names) {
+  return changeTissue([&] { return world_.tissue.release(names); });
+}
+
 CutReport Pipeline::cut(const std::vector<Vec3>& corners) {
-  const Bounded bounded(*this);
-  const std::optional<Tissue::Shape> before = shapeOfLoose();
-  CutReport report = world_.tissue.cut(corners);
-  report.solve = comeToLie(before, report.solve);
-  touch();
+  CutReport report;
+  const SolveReport solve = changeTissue([&] {
+    report = world_.tissue.cut(corners);
+    return report.solve;
+  });
+  report.solve = solve;
   return report;
 }
 
 RemoveReport Pipeline::remove(const RemovedSpace& space) {
-  const Bounded bounded(*this);
-  const std::optional<Tissue::Shape> before = shapeOfLoose();
-  RemoveReport report = world_.tissue.remove(space);
-  report.solve = comeToLie(before, report.solve);
-  touch();
+  RemoveReport report;
+  const SolveReport solve = changeTissue([&] {
+    report = world_.tissue.remove(space);
+    return report.solve;
+  });
+  report.solve = solve;
   return report;
 }
 
 SolveReport Pipeline::undo(int count) {
-  const Bounded bounded(*this);
-  const std::optional<Tissue::Shape> before = shapeOfLoose();
-  const SolveReport report = comeToLie(before, world_.tissue.undo(count));
-  touch();
-  return report;
+  return changeTissue([&] { return world_.tissue.undo(count); });
 }
 
 SutureResult Pipeline::suture(const SutureConfig& config) {

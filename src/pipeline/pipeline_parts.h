@@ -32,7 +32,7 @@ struct Pipeline::State {
   std::vector<ScissorsState> scissors;
   WayBehind way_behind;
   int late_iterations = 0;    // of the method, where the tools stand
-  bool gave_up = false;       // there
+  bool gave_up = false;       // a solve that did not converge while they stood
   bool touched = true;        // the reports are to be brought up to date
   bool was_near = false;      // a tool, in the last step in which nothing was solved
   double reporting_ms = 0.0;  // that the last reports on the tools took

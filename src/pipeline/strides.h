@@ -25,10 +25,6 @@ struct StrideActions {
   std::function<void()> act;                           // at the end of a stride
 };
 
-// Straight, and turning evenly.
-Pose between(const Pose& from, const Pose& to, double share);
-RobotPose between(const RobotPose& from, const RobotPose& to, double share);
-
 // The tool goes to its place in the pose from where it was last; it acts nowhere on a trial, as
 // that could not be undone, nor on the way of a tool that comes from nowhere, or jumped. False:
 // there was no time for all of the way; the pose has where it came to.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "strides.h"
+#include "robot_tissue/pipeline/between.h"
 #include "tuning.h"
 
 namespace robot_tissue {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "strides.h"
+#include "robot_tissue/pipeline/between.h"
 #include "tuning.h"
 
 namespace robot_tissue {

@@ -6,15 +6,11 @@
 #include <limits>
 
 #include "robot_tissue/core/triangle_mesh.h"
+#include "robot_tissue/coupling/fade.h"
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
-
-// 1 where the value is `full` or beyond, seen from `none`, where it is 0.
-double fade(double value, double none, double full) {
-  return std::min(1.0, std::max(0.0, (value - none) / (full - none)));
-}
 
 // Of the face at the point (m); infinite where it ends on one side only, as far as is seen.
 double widthOf(const FlatFace& face) {

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "robot_tissue/pipeline/between.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {
@@ -9,11 +10,7 @@ namespace robot_tissue {
 MoveStep::Place between(const MoveStep::Place& from, const MoveStep::Place& to, double share) {
   if (share >= 1.0) return to;
   MoveStep::Place place;
-  const Vec3 start = from.pose.translation();
-  place.pose.translation() = start + share * (to.pose.translation() - start);
-  place.pose.linear() = Eigen::Quaterniond(from.pose.linear())
-                            .slerp(share, Eigen::Quaterniond(to.pose.linear()))
-                            .toRotationMatrix();
+  place.pose = between(from.pose, to.pose, share);
   place.opening = from.opening + share * (to.opening - from.opening);
   return place;
 }

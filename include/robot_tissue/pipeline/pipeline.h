@@ -12,6 +12,7 @@
 // came, it finds the shapes that it left.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -51,9 +52,10 @@ class Pipeline {
   // Follows the tools to their new pose, one entry a link of the tools. Poses with a non-finite
   // number throw InputError.
   const StepReport& step(const RobotPose& pose);
-  // Where tissue.time is set, time goes by in steps from one pose's stamp to the next one's; here
-  // while the tools stand (s). As Tissue::stopTime.
+  // Where tissue.time is set, time goes by in steps from one pose's stamp to the next one's; with
+  // this call while the tools stand (s).
   SolveReport wait(double duration);
+  // As Tissue::stopTime.
   void stopTime();
   // The stamp from which the first pose's time counts; otherwise it is that pose's own.
   void startClock(double seconds);
@@ -68,14 +70,16 @@ class Pipeline {
   std::vector<std::size_t> jumpsTo(const RobotPose& pose) const;
   // Load steps of the way to the pose before any tool on it can touch.
   double freeStepsTo(const RobotPose& pose) const;
-  // Whether the tool would be in the tissue there, in the shape as it is.
+  // Whether the tool would be in the tissue at that pose, in the shape as it is.
   bool isInTissue(std::size_t tool, const RobotPose& pose) const;
-  // Steps between these calls are undone: nothing that follows depends on them.
+  // Steps between these calls are undone: nothing that follows depends on them. They sever nothing.
+  // A reset, loaded state or other tools end a trial.
   void beginTrial();
   void undoTrial();
   // Time that a step, or one of the calls below, may take (s). Then it begins no further solve, the
   // rest of the way and of the loads is left to the next step, and so is a tool that would have to
-  // be drawn out; it is late, and the next one goes on from there, also when the tools stand.
+  // be drawn out; it is late, and the next step goes on from where it came to, also when the tools
+  // stand.
   void setBudget(double seconds) { budget_s_ = seconds; }
   // Iterations that a load step may make while tools are followed; 0, or in time: any number. From
   // a third of them on, shapes in balance are shown while contacts still settle, as where tissue
@@ -86,7 +90,7 @@ class Pipeline {
   bool isLate() const;
   // Goes on with what was left, while the tools have no pose: they stay where they are.
   const StepReport& carryOn();
-  // The tools are where they were asked to be last, and the shape is the one there, in balance.
+  // The tools are where they were asked to be last, and the shape is that of this pose, in balance.
   bool hasArrived() const;
   // From here on load steps that take far too long again and again, counted by iterations over all
   // solves since the last reset, are cut off, and ways given up (Patience, StepReport::hopeless).
@@ -95,12 +99,17 @@ class Pipeline {
   void setEnd(const Deadline& end);
 
   // As Tissue's, with the tools and supports where they are. Where no time passes, what nothing
-  // holds falls onto supports that are below it, and comes to lie there.
+  // holds falls onto supports that are below it, and comes to lie on them.
   SolveReport settle();
-  // Whether there is something that has to come to lie so before anything else is done with it.
+  // Whether there is something that has to come to lie on supports before anything else is done
+  // with it.
   bool isLoose() const;
+  // Throws InputError, and changes nothing: a patch whose box holds no node, or fixed ones; that
+  // shares nodes with another one, or has another one's name; that turns where method or nodes do
+  // not let it; a load that takes more than most_increments.
   void load(const LoadStep& step, const Tissue::OnIncrement& on_increment = {},
             int most_increments = 100000);
+  // As Tissue's; what a call lets loose comes to lie on supports.
   SolveReport release(const std::vector<std::string>& names);
   CutReport cut(const std::vector<Vec3>& corners);
   RemoveReport remove(const RemovedSpace& space);
@@ -115,8 +124,7 @@ class Pipeline {
   // The cells, loads and sutures of another tissue of the same lattice, with these displacements
   // (m); tools as after a reset.
   void takeOver(const Tissue& other, Tissue::Displacements displacement);
-  // As Tissue's; what tools and graspers hold is let go, they come in from outside as after a
-  // reset.
+  // As Tissue's; what tools and graspers hold is let go, and they come in from outside.
   SolveReport loadState(const std::string& bytes);
 
   // A grasper holds what is between its jaws now, or lets go. Throws InputError: no grasper, no
@@ -124,7 +132,8 @@ class Pipeline {
   void grasp(std::size_t tool);
   void letGo(std::size_t tool);
   // From the next step on the tool is where its force on the tissue equals this one (N, tissue
-  // frame), along the force from its pose; empty: at its pose again.
+  // frame), along the force from its pose; empty: at its pose again. Throws InputError: the force
+  // is zero or not finite, or the tool's role is one that does not touch.
   void push(std::size_t tool, const std::optional<Vec3>& force);
 
   const Tissue& tissue() const;
@@ -179,6 +188,7 @@ class Pipeline {
   void countLate();
   // settling.cpp
   SolveReport balance();
+  SolveReport changeTissue(const std::function<SolveReport()>& change);
   SolveReport settleLoose();
   std::optional<Tissue::Shape> shapeOfLoose() const;
   SolveReport comeToLie(const std::optional<Tissue::Shape>& before, const SolveReport& report);
