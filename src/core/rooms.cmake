@@ -2,7 +2,8 @@
 # Layering and doc/architecture.md have the same table.
 robot_tissue_room(base
   PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
-    shared_const.h sparse_values.h types.h)
+    shared_const.h sparse_values.h types.h
+  FILES text_of.h)
 robot_tissue_room(simd
   USES base
   FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h
@@ -31,7 +32,8 @@ robot_tissue_room(cutting
 robot_tissue_room(surface
   USES base geometry lattice cutting
   PUBLIC curved_surface.h surface.h surface_strain.h
-  FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h divided_grid.cpp
+  FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h cut_region.cpp cut_region.h
+    divided_grid.cpp
     divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
     smooth_carriers.h surface.cpp surface_strain.cpp)

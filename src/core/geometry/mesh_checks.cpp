@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "base/text_of.h"
 #include "geometry/exact_points.h"
 #include "geometry/tuning.h"
 #include "robot_tissue/core/disjoint_sets.h"
@@ -36,18 +36,12 @@ std::vector<Edge> sortedEdges(const TriangleMesh& mesh) {
   return edges;
 }
 
-std::string placeText(const Vec3& place) {
-  std::ostringstream text;
-  text << "(" << place.x() << ", " << place.y() << ", " << place.z() << ") m";
-  return text.str();
-}
-
 std::optional<std::string> edgeFault(const TriangleMesh& mesh) {
   const std::vector<Edge> edges = sortedEdges(mesh);
   int open = 0;
   int turned = 0;
-  Vec3 open_place;
-  Vec3 turned_place;
+  Vec3 open_place = Vec3::Zero();
+  Vec3 turned_place = Vec3::Zero();
   for (auto first = edges.begin(); first != edges.end();) {
     const auto end =
         std::find_if(first, edges.end(), [&](const Edge& edge) { return !edge.joinsAs(*first); });
@@ -61,12 +55,12 @@ std::optional<std::string> edgeFault(const TriangleMesh& mesh) {
   }
   if (open > 0) {
     return "is not closed: " + std::to_string(open) +
-           " edges with one triangle or more than two, one of them at " + placeText(open_place);
+           " edges with one triangle or more than two, one of them at " + textOf(open_place) + " m";
   }
   if (turned > 0) {
     return "has " + std::to_string(turned) +
            " edges whose two triangles face opposite sides, one of them at " +
-           placeText(turned_place);
+           textOf(turned_place) + " m";
   }
   return std::nullopt;
 }
@@ -143,7 +137,7 @@ std::optional<std::string> meshFault(const TriangleMesh& mesh) {
   const Vec3 middle =
       (mesh.vertices[at(t[0])] + mesh.vertices[at(t[1])] + mesh.vertices[at(t[2])]) / 3.0;
   return "intersects itself: " + std::to_string(pairs.size()) +
-         " pairs of triangles, one of them at " + placeText(middle);
+         " pairs of triangles, one of them at " + textOf(middle) + " m";
 }
 
 TriangleMesh facingOutward(TriangleMesh mesh) {

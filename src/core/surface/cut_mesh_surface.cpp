@@ -9,6 +9,7 @@
 #include "geometry/index_hash.h"
 #include "geometry/mesh_pieces.h"
 #include "surface/cell_parts.h"
+#include "surface/cut_region.h"
 #include "surface/divided_grid.h"
 #include "surface/hinges.h"
 #include "surface/merged_skin.h"
@@ -24,44 +25,6 @@ constexpr double kOnDiagonal = 1e-9;
 
 constexpr int kNotLookedFor = -2;  // a cell; -1: none
 
-// A value for each octant of a box, with the last ones; beyond it there is none.
-template <typename Value>
-class OnOctants {
- public:
-  OnOctants() = default;
-  OnOctants(const HalfIndex& first, const HalfIndex& last, Value all) : first_(first) {
-    for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = last[axis] - first[axis] + 1;
-    values_.assign(at(size_[0]) * at(size_[1]) * at(size_[2]), all);
-  }
-
-  Value* find(const HalfIndex& octant) {
-    return has(octant) ? &values_[numberOf(octant)] : nullptr;
-  }
-  const Value* find(const HalfIndex& octant) const {
-    return has(octant) ? &values_[numberOf(octant)] : nullptr;
-  }
-
- private:
-  bool has(const HalfIndex& octant) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int from_first = octant[axis] - first_[axis];
-      if (from_first < 0 || from_first >= size_[axis]) return false;
-    }
-    return true;
-  }
-  std::size_t numberOf(const HalfIndex& octant) const {
-    return (at(octant[0] - first_[0]) * at(size_[1]) + at(octant[1] - first_[1])) * at(size_[2]) +
-           at(octant[2] - first_[2]);
-  }
-
-  HalfIndex first_{}, size_{};
-  std::vector<Value> values_;
-};
-
-struct Octants {
-  HalfIndex first{}, last{};
-};
-
 class CutMeshBuilder {
  public:
   CutMeshBuilder(const Lattice& lattice, const LatticeState& state, const TriangleMesh& mesh)
@@ -70,9 +33,8 @@ class CutMeshBuilder {
         parts_(lattice, state),
         mesh_(mesh),
         grid_(lattice, state),
-        pieces_(inSpacings(), cells(), grid_) {
-    findRegion();
-  }
+        pieces_(inSpacings(), cells(), grid_),
+        region_(lattice, parts_) {}
 
   TissueSurface build() {
     for (std::size_t number = 0; number < mesh_.triangles.size(); ++number) {
@@ -96,7 +58,7 @@ class CutMeshBuilder {
       }
     }
     mesh_triangle_ = -1;
-    for (const HalfIndex& octant : region_) {
+    for (const HalfIndex& octant : region_.octants()) {
       for (int axis = 0; axis < 3; ++axis) addLids(octant, axis);
     }
     std::vector<int> mesh_triangles;
@@ -126,53 +88,6 @@ class CutMeshBuilder {
     return points;
   }
 
-  // The octants of split and removed cells, and of the cells around them.
-  void findRegion() {
-    std::vector<Octants> open;
-    for (const Cell& cell : lattice_.cells()) {
-      if (parts_.isOpen(cell.place)) open.push_back(octantsAround(cell));
-    }
-    if (open.empty()) return;
-    Octants box = open.front();
-    for (const Octants& each : open) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.first[axis] = std::min(box.first[axis], each.first[axis]);
-        box.last[axis] = std::max(box.last[axis], each.last[axis]);
-      }
-    }
-    cell_of_ = OnOctants<int>(box.first, box.last, kNotLookedFor);
-    is_in_region_ = OnOctants<char>(box.first, box.last, 0);
-    for (const Octants& each : open) addToRegion(each);
-    std::sort(region_.begin(), region_.end());
-  }
-
-  Octants octantsAround(const Cell& cell) const {
-    const auto lowest = lattice_.gridIndex(cell.nodes.front());
-    Octants around;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      around.first[axis] = std::max(0, 2 * lowest[axis] - 2);
-      around.last[axis] = std::min(2 * cells()[axis] - 1, 2 * lowest[axis] + 3);
-    }
-    return around;
-  }
-
-  void addToRegion(const Octants& octants) {
-    for (int k = octants.first[2]; k <= octants.last[2]; ++k) {
-      for (int j = octants.first[1]; j <= octants.last[1]; ++j) {
-        for (int i = octants.first[0]; i <= octants.last[0]; ++i) {
-          char& is_in = *is_in_region_.find({i, j, k});
-          if (is_in == 0) region_.push_back({i, j, k});
-          is_in = 1;
-        }
-      }
-    }
-  }
-
-  bool isInRegion(const HalfIndex& octant) const {
-    const char* is_in = is_in_region_.find(octant);
-    return is_in != nullptr && *is_in != 0;
-  }
-
   // Its box reaches into the region.
   bool isNear(const MeshTriangle& triangle) const {
     HalfIndex low = pieces_.octantOf(pieces_.straight(triangle[0]));
@@ -184,14 +99,7 @@ class CutMeshBuilder {
         high[axis] = std::max(high[axis], octant[axis]);
       }
     }
-    for (int k = low[2]; k <= high[2]; ++k) {
-      for (int j = low[1]; j <= high[1]; ++j) {
-        for (int i = low[0]; i <= high[0]; ++i) {
-          if (isInRegion({i, j, k})) return true;
-        }
-      }
-    }
-    return false;
+    return region_.reachesInto(low, high);
   }
 
   // A triangle off the region, with the points that a neighbor's edges were cut at.
@@ -232,8 +140,8 @@ class CutMeshBuilder {
   }
 
   Octant octantAt(const HalfIndex& octant) {
-    const int cell = cellOf(octant);
-    return {cell, cell < 0 ? 0 : cornerOf(cell, octant)};
+    const int cell = region_.cellOf(octant);
+    return {cell, cell < 0 ? 0 : region_.cornerOf(cell, octant)};
   }
 
   // On the octant's upper face along the axis, one for each side. A fan from the middle has the
@@ -278,17 +186,6 @@ class CutMeshBuilder {
     return is_before && is_beyond && on_line.size() > 1 ? on_line : border;
   }
 
-  // The cell that the octant is of; beyond the lattice the nearest one.
-  int cellOf(const HalfIndex& octant) {
-    int* known = cell_of_.find(octant);
-    if (known != nullptr && *known != kNotLookedFor) return *known;
-    int cell = lattice_.cellAt({octant[0] / 2, octant[1] / 2, octant[2] / 2});
-    const Vec3 middle(octant[0] + 0.5, octant[1] + 0.5, octant[2] + 0.5);
-    if (cell < 0) cell = nearestCell(lattice_, 0.5 * middle);
-    if (known != nullptr) *known = cell;
-    return cell;
-  }
-
   int cellAroundPoint(int point) {
     if (at(point) >= cell_around_.size()) cell_around_.resize(at(point) + 1, kNotLookedFor);
     int& cell = cell_around_[at(point)];
@@ -297,24 +194,25 @@ class CutMeshBuilder {
   }
 
   bool isRemoved(const HalfIndex& octant) {
-    const int cell = cellOf(octant);
-    return cell >= 0 && parts_.owner(cell, cornerOf(cell, octant)) == nullptr;
+    const int cell = region_.cellOf(octant);
+    return cell >= 0 && parts_.owner(cell, region_.cornerOf(cell, octant)) == nullptr;
   }
 
   bool areOfOnePart(const HalfIndex& a, const HalfIndex& b) {
-    const int cell = cellOf(a);
-    if (cell < 0 || cell != cellOf(b)) return false;
-    return parts_.owner(cell, cornerOf(cell, a)) == parts_.owner(cell, cornerOf(cell, b));
+    const int cell = region_.cellOf(a);
+    if (cell < 0 || cell != region_.cellOf(b)) return false;
+    return parts_.owner(cell, region_.cornerOf(cell, a)) ==
+           parts_.owner(cell, region_.cornerOf(cell, b));
   }
 
   // The cell, or part of one, that a point is in, as the material in the octant has it.
   const Cell& partAround(int point, const HalfIndex& octant) {
-    int cell = cellOf(octant);
+    int cell = region_.cellOf(octant);
     if (cell < 0 || !parts_.isOpen(cell)) {
       const int around = cellAroundPoint(point);  // whichever octant asks
       if (cell < 0 || !parts_.isOpen(around)) cell = around;
     }
-    return *parts_.owner(cell, cornerOf(cell, octant));
+    return *parts_.owner(cell, region_.cornerOf(cell, octant));
   }
 
   Vec3 placeIn(const Cell& part, int point) const {
@@ -362,27 +260,14 @@ class CutMeshBuilder {
     return lattice_.bounds().min() + lattice_.spacing() * point;
   }
 
-  // The cell's corner at the node that the octant belongs to, or the nearest to that.
-  int cornerOf(int cell, const HalfIndex& octant) const {
-    const auto lowest = lattice_.gridIndex(lattice_.cells()[at(cell)].nodes.front());
-    int corner = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int node = (octant[at(axis)] + 1) / 2;
-      if (node > lowest[at(axis)]) corner |= 1 << axis;
-    }
-    return corner;
-  }
-
   const Lattice& lattice_;
   const LatticeState& state_;
   CellParts parts_;
   const TriangleMesh& mesh_;
   DividedGrid grid_;
   MeshPieces pieces_;
-  OnOctants<int> cell_of_;         // of each octant around the region
-  std::vector<int> cell_around_;   // of the points up to the last that was asked for
-  OnOctants<char> is_in_region_;   // as cell_of_
-  std::vector<HalfIndex> region_;  // ascending
+  std::vector<int> cell_around_;  // of the points up to the last that was asked for
+  CutRegion region_;
   std::unordered_set<std::array<int, 2>, IndexHash> cut_edges_;
   std::unordered_map<std::array<int, 1 + kCorners>, int, IndexHash> vertices_;  // point, its nodes
   TissueSurface surface_;

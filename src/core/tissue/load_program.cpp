@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <unordered_map>
 #include <utility>
 
+#include "base/text_of.h"
 #include "loads/patch_rim.h"
 #include "material/tissue_model.h"
 
@@ -60,13 +60,6 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     }
     claim(patch);
   }
-}
-
-std::string textOf(const Box& box) {
-  std::ostringstream text;
-  text << "(" << box.min().x() << ", " << box.min().y() << ", " << box.min().z() << ") to ("
-       << box.max().x() << ", " << box.max().y() << ", " << box.max().z() << ") m";
-  return text.str();
 }
 
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
@@ -227,7 +220,7 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
                                    [&](int node) { return isRemoved(state, node); }),
                     patch.nodes.end());
   if (patch.nodes.empty())
-    refusePatch(config.name, "no node in its box, " + textOf(config.box),
+    refusePatch(config.name, "no node in its box, " + textOf(config.box) + " m",
                 "a box that holds a node");
   if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
                   [&](int node) { return lattice.isFixed(node); })) {

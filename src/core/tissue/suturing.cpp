@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/text_of.h"
 #include "surface/nearest_point.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
@@ -83,10 +84,9 @@ SutureThread Suturing::threadOf(const SutureConfig& config) const {
   const auto place = [&](const char* key, const Vec3& point, SutureThread::End& end) {
     const auto nearest = nearestPoint(data_.body.surface(), data_.body.vertices(), point);
     if (!nearest || nearest->distance > tuning::kReachOfSuture * spacing) {
-      std::ostringstream where;
-      where << key << " = (" << point.x() << ", " << point.y() << ", " << point.z()
-            << ") m is nowhere at the tissue's surface";
-      refuseSuture(config.name, where.str(), "a point within a spacing of it");
+      refuseSuture(config.name,
+                   key + (" = " + textOf(point)) + " m is nowhere at the tissue's surface",
+                   "a point within a spacing of it");
     }
     end.rest = restOf(data_.body.surface(), nearest->on);
     end.inside =
