@@ -56,9 +56,10 @@ inline double shareLeft(const LatticeState& state, int node) {
 // Nothing is left around the lattice's node.
 inline bool isRemoved(const LatticeState& state, int node) { return shareLeft(state, node) == 0.0; }
 
-// Likewise of any node; what ghosts there are has tissue around it.
+// Nothing is left around the node, of the lattice or a ghost.
 inline bool isGone(const LatticeState& state, int node) {
-  return !state.cells->isGhost(node) && isRemoved(state, node);
+  return state.cells->isGhost(node) ? state.cells->meetings(node).isEmpty()
+                                    : isRemoved(state, node);
 }
 
 // Nothing was cut or removed.

@@ -177,8 +177,8 @@ void removeCells(const Lattice& lattice, const std::vector<std::uint8_t>& cells,
 }
 
 void restRemoved(LatticeState& state) {
-  for (std::size_t node = 0; node < state.left.size(); ++node) {
-    if (state.left[node] == 0.0) state.displacement[node].setZero();
+  for (int node = 0; node < state.cells->nodeCount(); ++node) {
+    if (isGone(state, node)) state.displacement[at(node)].setZero();
   }
 }
 

@@ -299,8 +299,9 @@ void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& i
     if (!displacement.allFinite() || displacement.cwiseAbs().maxCoeff() > most) {
       throw InputError("is damaged: a displacement is beyond all bounds");
     }
-    const bool is_gone = isGone(state, node);
-    if ((is_gone || isFixed(lattice, *state.cells, node)) && !displacement.isZero(0.0)) {
+    const bool is_ghost = state.cells->isGhost(node);
+    const bool stands = isFixed(lattice, *state.cells, node) || (!is_ghost && isGone(state, node));
+    if (stands && !displacement.isZero(0.0)) {
       throw InputError("is damaged: a fixed or removed node is displaced");
     }
     state.displacement[at(node)] = displacement;

@@ -18,25 +18,15 @@ namespace {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
 }
 
-// Or at one place.
-bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes) {
-  const auto place = [&](int node) -> Eigen::Vector3i {
-    const auto index = lattice.gridIndex(node);
-    return {index[0], index[1], index[2]};
-  };
-  const Eigen::Vector3i first = place(nodes.front()), way = place(nodes.back()) - first;
-  return std::all_of(nodes.begin(), nodes.end(),
-                     [&](int node) { return (place(node) - first).cross(way).isZero(); });
-}
-
-// A node obeys one patch.
+// A node obeys one patch. A load that a removal took nodes from has them again where they are there
+// again: by the box that it had.
 void requireOwnNodes(const std::vector<LoadingPatch>& patches,
                      const std::vector<LoadingPatch>& standing) {
   std::unordered_map<int, const LoadingPatch*> owners;
   const auto claim = [&](const LoadingPatch& patch) {
     for (const int node : patch.nodes) {
       const LoadingPatch*& owner = owners[node];
-      if (owner != nullptr && owner->name != patch.name) {
+      if (owner != nullptr && (owner->tool || owner->name != patch.name)) {
         refusePatch(patch.name, "it shares nodes with patch '" + owner->name + "'",
                     "patches without a common node");
       }
@@ -44,11 +34,16 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     }
   };
   for (const LoadingPatch& patch : standing) {
-    const auto replaced = std::find_if(patches.begin(), patches.end(),
-                                       [&](const auto& other) { return other.name == patch.name; });
+    const auto replaced = std::find_if(patches.begin(), patches.end(), [&](const auto& other) {
+      return !patch.tool && other.name == patch.name;
+    });
+    const auto has_all_of = [&](const std::vector<int>& nodes) {
+      return std::includes(replaced->nodes.begin(), replaced->nodes.end(), nodes.begin(),
+                           nodes.end());
+    };
     if (replaced == patches.end()) {
       claim(patch);
-    } else if (replaced->nodes != patch.nodes) {
+    } else if (!has_all_of(patch.nodes)) {
       refusePatch(patch.name, "a patch of this name stands on other nodes",
                   "the same box, or a release");
     }
@@ -92,7 +87,9 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
   }
   const int increments = step.increments.value_or(wholeParts(stepping_.foreseenSteps(ramps)));
   if (increments > most_increments) {
+    const bool was_as_solved = data_.outcome.is_as_solved;
     data_.restore(before);
+    data_.outcome.is_as_solved = was_as_solved;
     refusePatch(targets.front().name,
                 "the load needs " + std::to_string(increments) + " increments",
                 "at most " + std::to_string(most_increments) + ", so a smaller load");

@@ -54,10 +54,13 @@ RemoveReport Surgery::takeAway(const std::vector<std::uint8_t>& within, Stroke s
   return report;
 }
 
-// Names of those of which nothing is left.
+// Names of those of which nothing is left. What is left on a line of nodes goes on without turning.
 std::vector<std::string> Surgery::dropLostLoads() {
   std::vector<std::string> lost =
       data_.loads.loseGoneNodes(data_.body.state(), data_.outcome.report.patches);
+  data_.loads.forEach([&](LoadingPatch& patch) {
+    if (patch.turns && areOnALine(data_.body.lattice(), patch.nodes)) patch.turns = false;
+  });
   const auto is_gone = [&](int node) { return isGone(data_.body.state(), node); };
   std::vector<int>& disturbed = data_.outcome.disturbed;
   disturbed.erase(std::remove_if(disturbed.begin(), disturbed.end(), is_gone), disturbed.end());

@@ -28,6 +28,17 @@ std::ptrdiff_t offset(std::size_t number) { return static_cast<std::ptrdiff_t>(n
 
 }  // namespace
 
+bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes) {
+  if (nodes.empty()) return true;
+  const auto place = [&](int node) -> Eigen::Vector3i {
+    const auto index = lattice.gridIndex(node);
+    return {index[0], index[1], index[2]};
+  };
+  const Eigen::Vector3i first = place(nodes.front()), way = place(nodes.back()) - first;
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [&](int node) { return (place(node) - first).cross(way).isZero(); });
+}
+
 std::vector<LoadingPatch> StandingLoads::namedLoads() const {
   return {patches_.begin(), patches_.begin() + offset(named_)};
 }

@@ -17,6 +17,9 @@
 
 namespace robot_tissue {
 
+// Or at one place: nothing keeps a patch of these nodes from turning.
+bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes);
+
 class StandingLoads {
  public:
   const std::vector<LoadingPatch>& patches() const { return patches_; }

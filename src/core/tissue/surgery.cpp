@@ -23,7 +23,8 @@ std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
   std::vector<PatchAnswer> told(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
     for (std::size_t j = 0; j < std::min(earlier.size(), answers.size()); ++j) {
-      if (earlier[j].name == patches[i].name) told[i] = answers[j];
+      const bool is_it = earlier[j].name == patches[i].name && earlier[j].tool == patches[i].tool;
+      if (is_it) told[i] = answers[j];
     }
   }
   return told;

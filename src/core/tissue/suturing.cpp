@@ -66,14 +66,14 @@ SutureResult Suturing::suture(const SutureConfig& config) {
     data_.threads.add(std::move(thread));
     result.solve = data_.asItIs();
   } else {
-    const double now = reportOf(thread, data_.body.displacement()).length;
+    const double now = robot_tissue::reportOf(thread, data_.body.displacement()).length;
     const double same = tuning::kSameDistance * data_.body.lattice().spacing();
     const bool is_slack = now <= thread.rest_length + same;
     if (!is_slack) thread.length = now;
     data_.threads.add(std::move(thread));
-    result.solve = is_slack ? data_.outcome.report : drawThreadsIn();
+    result.solve = is_slack ? data_.outcome.report : drawnIn();
   }
-  result.suture = sutures().back();
+  result.suture = reportOf(config.name);
   return result;
 }
 
@@ -106,10 +106,27 @@ SutureThread Suturing::threadOf(const SutureConfig& config) const {
   return thread;
 }
 
+// And what tears of that.
+SolveReport Suturing::drawnIn() {
+  drawThreadsIn();
+  return surgery_.tear();
+}
+
+// Broken: it went with tissue that tore.
+SutureReport Suturing::reportOf(const std::string& name) const {
+  for (const SutureReport& report : sutures()) {
+    if (report.name == name) return report;
+  }
+  SutureReport gone;
+  gone.name = name;
+  gone.broken = true;
+  return gone;
+}
+
 std::vector<SutureReport> Suturing::sutures() const {
   std::vector<SutureReport> reports;
   for (const SutureThread& thread : data_.threads.all()) {
-    reports.push_back(reportOf(thread, data_.body.displacement()));
+    reports.push_back(robot_tissue::reportOf(thread, data_.body.displacement()));
   }
   return reports;
 }

@@ -6,12 +6,14 @@
 
 #include "robot_tissue/core/suture.h"
 #include "tissue/load_step_solver.h"
+#include "tissue/surgery.h"
 
 namespace robot_tissue {
 
 class Suturing {
  public:
-  Suturing(TissueData& data, LoadStepSolver& solver) : data_(data), solver_(solver) {}
+  Suturing(TissueData& data, LoadStepSolver& solver, Surgery& surgery)
+      : data_(data), solver_(solver), surgery_(surgery) {}
 
   SutureResult suture(const SutureConfig& config);  // Tissue::suture
   std::vector<SutureReport> sutures() const;
@@ -20,11 +22,14 @@ class Suturing {
   SolveReport drawThreadsIn();
 
  private:
+  SutureReport reportOf(const std::string& name) const;
+  SolveReport drawnIn();
   SutureThread threadOf(const SutureConfig& config) const;
   bool solveOnThreads(SolveReport& report);
 
   TissueData& data_;
   LoadStepSolver& solver_;
+  Surgery& surgery_;
 };
 
 }  // namespace robot_tissue

@@ -4,18 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "cutting/split_cells.h"
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-// Of a motion that had fewer nodes: ghosts start as the nodes that they are of.
-std::vector<Vec3> extended(const std::vector<Vec3>& values, const CellSet& cells) {
-  std::vector<Vec3> all = values;
-  all.resize(at(cells.nodeCount()), Vec3::Zero());
-  const int known = std::max(cells.latticeNodeCount(), static_cast<int>(values.size()));
-  for (int node = known; node < cells.nodeCount(); ++node) {
-    all[at(node)] = all[at(cells.original(node))];
+// Of the nodes that there are now: every part goes on as its cell did.
+std::vector<Vec3> velocitiesIn(const LatticeState& state, const NodeMotion& before) {
+  if (!before.cells) return {at(state.cells->nodeCount()), Vec3::Zero()};
+  std::vector<Vec3> all = carriedOver(*before.cells, before.velocity, *state.cells);
+  for (int node = 0; node < state.cells->nodeCount(); ++node) {
+    if (isGone(state, node)) all[at(node)].setZero();
   }
   return all;
 }
@@ -25,12 +25,14 @@ std::vector<Vec3> extended(const std::vector<Vec3>& values, const CellSet& cells
 void TimeIntegrator::rest() {
   motion_.reset();
   mark_.clear();
+  error_ratio_ = 0.0;
 }
 
 void TimeIntegrator::wake(const LatticeState& state) {
   NodeMotion motion;
   if (motion_) motion = *motion_;
-  motion.velocity = extended(motion.velocity, *state.cells);
+  motion.velocity = velocitiesIn(state, motion);
+  motion.cells = state.cells;
   motion.acceleration.assign(motion.velocity.size(), Vec3::Zero());
   motion.begins = true;
   motion.next_duration = 0.0;
@@ -44,7 +46,7 @@ double TimeIntegrator::rateFactor() const {
 
 void TimeIntegrator::expect(double duration, Scheme scheme, const LatticeState& state,
                             std::vector<double> masses) {
-  if (motion_ && motion_->velocity.size() != state.displacement.size()) wake(state);
+  if (motion_ && motion_->cells != state.cells) wake(state);
   duration_ = duration;
   scheme_ = scheme;
   masses_ = std::move(masses);
@@ -144,7 +146,8 @@ void TimeIntegrator::end(const LatticeState& state, const std::vector<Vec3>* vel
   judge(state, motion);
 }
 
-// What touches a tool trembles as solves are not exact: it rests when it comes nowhere.
+// What touches a tool trembles as solves are not exact: it rests when it comes nowhere. What
+// creeps, by its damping, goes on for about the damping time.
 bool TimeIntegrator::comesNowhere(const LatticeState& state) {
   mark_age_ += duration_;
   const bool has_mark = mark_.size() == state.displacement.size();
@@ -156,8 +159,13 @@ bool TimeIntegrator::comesNowhere(const LatticeState& state) {
   }
   mark_ = state.displacement;
   mark_age_ = 0.0;
-  const double allowed = tuning::kTrembling * tolerance_ * std::sqrt(greatest);
-  return has_mark && std::sqrt(farthest) < allowed;
+  const double to_come = std::sqrt(farthest) * std::max(1.0, damping_time_ / tuning::kRestTime);
+  return has_mark && to_come < negligibleWay(std::sqrt(greatest));
+}
+
+// m; of what is that far off rest.
+double TimeIntegrator::negligibleWay(double displacement) const {
+  return tuning::kTrembling * tolerance_ * displacement;
 }
 
 // The local error of a step is h^2 |a' - a| / 3, or h^2 |a'| / 2 of Euler's (tuning.h); it is held
@@ -166,18 +174,23 @@ void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
   const double h = duration_;
   const bool is_first_order = scheme_ == Scheme::kBackwardEuler;
   const bool is_known = is_first_order || !motion_->begins;  // what its error is
-  double way = 0.0, displacement = 0.0, error = 0.0, farthest = 0.0;
+  double way = 0.0, displacement = 0.0, error = 0.0, farthest = 0.0, fastest = 0.0, most = 0.0;
   for (std::size_t node = 0; node < before_.size(); ++node) {
     const Vec3 moved = state.displacement[node] - before_[node];
     way += moved.squaredNorm();
     displacement += state.displacement[node].squaredNorm();
+    most = std::max(most, state.displacement[node].squaredNorm());
+    fastest = std::max(fastest, motion.velocity[node].squaredNorm());
     Vec3 change = motion.acceleration[node];
     if (!is_first_order) change -= motion_->acceleration[node];
     if (is_known) error += change.squaredNorm();
     farthest = std::max({farthest, moved.squaredNorm(), (h * motion.velocity[node]).squaredNorm(),
                          (h * h * motion.acceleration[node]).squaredNorm()});
   }
-  if (std::sqrt(farthest) < tuning::kAtRest * spacing_ || comesNowhere(state)) return rest();
+  const double still = tuning::kAtRest * spacing_;
+  const bool creeps =
+      damping_time_ * std::sqrt(fastest) > std::max(still, negligibleWay(std::sqrt(most)));
+  if ((std::sqrt(farthest) < still && !creeps) || comesNowhere(state)) return rest();
   const double least =
       tuning::kLeastMotion * spacing_ * std::sqrt(static_cast<double>(before_.size()));
   const double scale =

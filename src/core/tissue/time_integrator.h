@@ -33,10 +33,11 @@ namespace robot_tissue {
 
 // Of the nodes, ghosts last, beside where they are.
 struct NodeMotion {
-  std::vector<Vec3> velocity;      // m/s
-  std::vector<Vec3> acceleration;  // m/s^2
-  bool begins = true;              // the acceleration is not known yet
-  double next_duration = 0.0;      // longest good step from here on (s)
+  std::shared_ptr<const CellSet> cells;  // whose nodes they are
+  std::vector<Vec3> velocity;            // m/s
+  std::vector<Vec3> acceleration;        // m/s^2
+  bool begins = true;                    // the acceleration is not known yet
+  double next_duration = 0.0;            // longest good step from here on (s)
 };
 
 class TimeIntegrator {
@@ -96,6 +97,7 @@ class TimeIntegrator {
   double rateFactor() const;
   std::vector<Vec3> rateFrom() const;  // displacements where the rate of f is taken from
   bool comesNowhere(const LatticeState& state);
+  double negligibleWay(double displacement) const;
   void judge(const LatticeState& state, NodeMotion& motion);
 
   double damping_time_, spacing_, tolerance_;

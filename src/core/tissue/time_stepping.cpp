@@ -23,16 +23,18 @@ void TimeStepping::endTimeStep() {
     shift(*nodes, -integrator.drift(*nodes, data_.body.state(), data_.body.gravity()));
   }
   data_.motion.end(data_.methods.now().velocities());
-  if (!data_.motion.isMoving()) return;
-  const Vec3 lead = integrator.lead(data_.body.gravity());
-  for (const std::vector<int>* nodes : falling) shift(*nodes, -lead);
+  if (data_.motion.isMoving()) {
+    const Vec3 lead = integrator.lead(data_.body.gravity());
+    for (const std::vector<int>* nodes : falling) shift(*nodes, -lead);
+  }
+  if (!falling.empty()) data_.deformSurface();
 }
 
+// The surface is to be deformed after it.
 void TimeStepping::shift(const std::vector<int>& nodes, const Vec3& way) {
   if (way.isZero(0.0)) return;
   std::vector<Vec3>& displacement = data_.body.change().displacement;
   for (const int node : nodes) displacement[at(node)] += way;
-  data_.deformSurface();
 }
 
 // Tools would have to be looked at on the way.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "robot_tissue/core/cells.h"
 #include "tissue/front_ties.h"

@@ -22,7 +22,7 @@ struct TissueParts {
   TissueForces forces{data};
   LoadStepSolver solver{data};
   Surgery surgery;
-  Suturing suturing{data, solver};
+  Suturing suturing{data, solver, surgery};
   LoadProgram program{data, forces, solver, surgery, suturing};
   TimeStepping time{data, solver, surgery};
   TissueStates states;
