@@ -1,4 +1,5 @@
-// What the node has as a bound of a load step, and says of contacts that still settle.
+// What the node has as a bound of a load step, and says of contacts that still settle, and of tools
+// that let go.
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -54,6 +55,16 @@ TEST(LateStatus, ContactsThatStillSettleAreNoLackOfTime) {
     EXPECT_EQ(status.message.find("max_ms"), std::string::npos) << status.message;
   }
   EXPECT_GT(settling, 0);
+}
+
+TEST(Status, ToolsThatLetGoDidNotAppearInside) {
+  const NodeParameters parameters = parametersWith("");
+  const Pipeline pipeline(parameters.scene.tissue, parameters.scene.solver, {});
+  using Kind = StepRemark::Kind;
+  EXPECT_EQ(statusOf(pipeline, {}).status, "OK");
+  EXPECT_EQ(statusOf(pipeline, {{Kind::kInside, "a"}}).status, "INSIDE");
+  EXPECT_EQ(statusOf(pipeline, {{Kind::kHooked, "a"}, {Kind::kInside, "b"}}).status, "HOOKED");
+  EXPECT_EQ(statusOf(pipeline, {{Kind::kJammed, "a"}, {Kind::kTornOff, "b"}}).status, "JAMMED");
 }
 
 }  // namespace

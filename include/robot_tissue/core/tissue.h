@@ -108,7 +108,7 @@ class Tissue {
   bool isUntouched() const;
   // Longest motion of a tool that one solve follows well (m).
   double stepLength() const;
-  // Which bounds the iterations of all of the tissue's solves.
+  // What bounds the iterations of all of the tissue's solves.
   Patience& patience();
   const Patience& patience() const;
   // Standing loads in the order of SolveReport::patches: named patches, then the tools'.
@@ -166,8 +166,8 @@ class Tissue {
   // leave it to the next call. Loads stop on their way then, to be carried on (loadOn). None:
   // solver.max_ms bounds each solve.
   void setDeadline(std::optional<Deadline> deadline);
-  // Whether a solve and a look at the contacts, as short as the last ones, would end after it, but
-  // not if they were the first that a call does.
+  // Whether a solve and a look at the contacts, as short as the last ones, would end after the
+  // deadline, but not if they were the first that a call does.
   bool isRoundForNextCall() const;
 
   // Something comes near, but does not touch yet: the solver makes what its first solve needs,
@@ -183,7 +183,7 @@ class Tissue {
   // rest.
   bool hasTime() const;
   bool isMoving() const;  // time will change the shape
-  // The five that follow, and wait, are for tissue that has time alone.
+  // This, expectTimeStep, beginTimeStep and wait: only where hasTime().
   double longestTimeStep() const;  // that the error of the last one allows (s)
   // What is asked from here on is asked for a time step of `duration` (s), which is about to begin.
   void expectTimeStep(double duration, Touched touched);

@@ -13,7 +13,6 @@
 #include "membrane/membrane_plan.h"
 #include "robot_tissue/core/contact_spring.h"
 #include "robot_tissue/core/tissue.h"
-#include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
 

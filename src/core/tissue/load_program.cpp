@@ -57,6 +57,41 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
   }
 }
 
+// The center of a patch that turns is that of its nodes at rest.
+void driveByForce(const PatchConfig& config, const Lattice& lattice, bool may_turn,
+                  LoadingPatch& patch) {
+  patch.drive = LoadingPatch::Drive::kForce;
+  patch.force = *config.force;
+  if (config.turns && !may_turn) {
+    refusePatch(config.name, "turns: this method moves patches without turning them",
+                "turns false, or another method");
+  }
+  if (config.turns && areOnALine(lattice, patch.nodes)) {
+    refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
+                "turns false, or a box of nodes on more than one line");
+  }
+  patch.turns = config.turns;
+  for (const int node : patch.nodes) {
+    patch.center += lattice.restPosition(node) / static_cast<double>(patch.nodes.size());
+  }
+}
+
+void driveByDisplacement(const PatchConfig& config, LoadingPatch& patch) {
+  Vec3 displacement = Vec3::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& component = (*config.displacement)[axis];
+    patch.free_axis[axis] = !component;
+    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
+  }
+  patch.displacement.assign(patch.nodes.size(), displacement);
+  for (RimSpring& spring : patch.rim) {
+    spring.anchor = displacement;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
+    }
+  }
+}
+
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
 void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
   std::unordered_map<int, const LoadingPatch*> owners;
@@ -227,34 +262,9 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
     patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
   }
   if (config.force) {
-    patch.drive = LoadingPatch::Drive::kForce;
-    patch.force = *config.force;
-    if (config.turns && !data_.methods.now().findsEquilibrium()) {
-      refusePatch(config.name, "turns: this method moves patches without turning them",
-                  "turns false, or another method");
-    }
-    if (config.turns && areOnALine(lattice, patch.nodes)) {
-      refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
-                  "turns false, or a box of nodes on more than one line");
-    }
-    patch.turns = config.turns;
-    for (const int node : patch.nodes) {
-      patch.center += lattice.restPosition(node) / static_cast<double>(patch.nodes.size());
-    }
-    return patch;
-  }
-  Vec3 displacement = Vec3::Zero();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double>& component = (*config.displacement)[axis];
-    patch.free_axis[axis] = !component;
-    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
-  }
-  patch.displacement.assign(patch.nodes.size(), displacement);
-  for (RimSpring& spring : patch.rim) {
-    spring.anchor = displacement;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
-    }
+    driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);
+  } else {
+    driveByDisplacement(config, patch);
   }
   return patch;
 }

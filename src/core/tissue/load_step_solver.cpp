@@ -67,7 +67,6 @@ SolveReport LoadStepSolver::solveAndBreak(const std::vector<int>& disturbed) {
 SolveReport LoadStepSolver::solveOnce(const std::vector<int>& disturbed) {
   SolverMethod& method = data_.methods.now();
   SolveOutcome& outcome = data_.outcome;
-  Patience& patience = data_.bounds.patience();
   // Where contacts are looked at, the shape is kept in any case; else a copy would cost more than
   // it saves a method that stays finite.
   const bool keeps_shape = contact_update_ != nullptr || !method.staysFinite();
@@ -95,13 +94,7 @@ SolveReport LoadStepSolver::solveOnce(const std::vector<int>& disturbed) {
   outcome.is_late = report.status == SolveStatus::kLate;
   outcome.is_as_solved = is_finite;
   outcome.are_contacts_settled = true;
-  const bool converged = report.status != SolveStatus::kUnconverged;
-  // Loads alone are an answer, however long it took.
-  if (converged && data_.loads.isUntouched()) {
-    patience.noteEasy();
-  } else {
-    patience.note(report.iterations, converged, data_.bounds.solved(), cost);
-  }
+  noteWork(report, cost);
   describeShape(report);
   outcome.report = report;
   return report;
@@ -117,6 +110,18 @@ SolveReport LoadStepSolver::solveWithThreads(const std::vector<int>& disturbed,
   patches.pop_back();
   report.patches.resize(patches.size());
   return report;
+}
+
+// cost: of an iteration (Patience::note).
+void LoadStepSolver::noteWork(const SolveReport& report, double cost) {
+  Patience& patience = data_.bounds.patience();
+  const bool converged = report.status != SolveStatus::kUnconverged;
+  // Loads alone are an answer, however long it took.
+  if (converged && data_.loads.isUntouched()) {
+    patience.noteEasy();
+  } else {
+    patience.note(report.iterations, converged, data_.bounds.solved(), cost);
+  }
 }
 
 // Pieces that hang, for one solve, as a patch that keeps them where they are. False: there are

@@ -38,6 +38,7 @@ class LoadStepSolver {
   bool holdHanging();
   void letHangingBe(SolveReport& report);
   double costOfIteration() const;
+  void noteWork(const SolveReport& report, double cost);
   // contact_rounds.cpp
   SolveReport solveInRounds(const std::vector<int>& disturbed);
   RoundDecision endRound(Rounds& rounds);

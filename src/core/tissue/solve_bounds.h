@@ -27,9 +27,10 @@ class SolveBounds {
   bool isTimeOver() const { return deadline_ && deadline_->isOver(); }     // in a time step, too
   bool isBounded() const { return deadline_ && !motion_.isInTimeStep(); }  // by the deadline
   double leftMs() const { return isBounded() ? deadline_->leftMs() : 0.0; }
-  double mostMs() const;                  // for the next solve; 0: no bound
-  int mostIterations(double cost) const;  // likewise, with the cost of one (Patience::note)
-  Patience::Of solved() const;            // what the next solve is of
+  double mostMs() const;  // for the next solve; 0: no bound
+  int mostIterations(
+      double cost) const;       // for the next solve, with the cost of one (Patience::note)
+  Patience::Of solved() const;  // what the next solve is of
 
   void noteSolve(const SolveReport& solve);  // the last one
   void noteLook(double ms);                  // how long a look at the contacts took

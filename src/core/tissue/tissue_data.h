@@ -1,5 +1,5 @@
 // What the tissue is, what acts on it, and what the last solve left: what all parts behind Tissue
-// share. In brackets: which of them change it; TissueStates changes all.
+// share. In brackets: which of them change it, besides `restore` and TissueStates.
 #pragma once
 
 #include <vector>
@@ -24,8 +24,8 @@ struct TissueData {
   double stepLength() const;     // Tissue::stepLength (m)
   bool goesThroughTime() const;  // Tissue::goesThroughTime
   bool isLate() const { return outcome.is_late || loads.isLoading(); }
-  std::vector<int> hangingNodes()
-      const;  // of pieces that gravity pulls and nothing bears; ascending
+  // Of pieces that gravity pulls and nothing bears; ascending.
+  std::vector<int> hangingNodes() const;
   Tissue::Shape shape() const;
   void restore(const Tissue::Shape& shape);
   SavedState saved() const;
@@ -46,9 +46,9 @@ struct TissueData {
   Threads threads;       // of sutures [LoadStepSolver, Suturing, LoadProgram]
   History history;       // of what changed the topology [TopologyChange]
   MethodPair methods;    // [LoadStepSolver, LoadProgram]
-  TissueMotion motion;   // [Surgery, LoadProgram, TimeStepping]
+  TissueMotion motion;   // [Surgery, LoadProgram, TimeStepping, Tissue]
   PieceRegistry pieces;  // [Surgery]
-  SolveBounds bounds;    // [LoadStepSolver]
+  SolveBounds bounds;    // [LoadStepSolver, Tissue]
 
  private:
   void rebindThreads();

@@ -41,7 +41,7 @@ class TissueMotion {
   void end(const std::vector<Vec3>* velocities) { integrator_->end(body_.state(), velocities); }
   void wake();               // loads or cells are others, the shape is not yet
   void wakeUnderBodyLoad();  // the rest shape is not the one under gravity or a pressure
-  void noteOtherCells();
+  void noteOtherCells();     // cuts or removals made them, maybe within a time step
   void stop();
   void restore(TimeIntegrator::Motion motion, bool in_time);  // of another shape
   void setTolerance(double tolerance);
