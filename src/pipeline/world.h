@@ -1,7 +1,7 @@
 // The tissue and the tools beside it: what all parts of the pipeline see. In brackets: which of
-// them change it, besides Pipeline, which does when the tissue is loaded, cut or reset; cutters:
-// Blades, Burrs and Scissors. WayLengths, TouchFinder, ToolRims, OverlapResolver, ShapeJudge and
-// reports have it const.
+// them change it, besides Pipeline, which may change all of it; cutters: Blades, Burrs, Scissors.
+// WayLengths, TouchFinder, ToolRims, OverlapResolver, ShapeJudge and what makes reports have it
+// const.
 #pragma once
 
 #include <optional>
@@ -100,13 +100,13 @@ struct World : WorldState {
   // cutters]; how long it is solved for: [ToolMotion].
   Tissue tissue;
   ToolSet tools;
-  ContactFinder finder;               // of tools and supports that touch [setEdge]
+  ContactFinder finder;               // of tools and supports that touch [Blades]
   ContactFinder drills;               // of the shapes of tools that drill; links as in `finder`
   ContactFinder edges;                // of the bars along edges alone; links as in `finder`
-  std::vector<std::string> warnings;  // of both
+  std::vector<std::string> warnings;  // of `finder` and `drills`
   bool has_supports = false;
-  bool is_trial = false;    // what is done is undone, so nothing may sever
-  Deadline deadline;        // of the call under way
+  bool is_trial = false;    // what is done is undone, so nothing may sever [Pipeline]
+  Deadline deadline;        // of the call under way [Pipeline]
   int most_iterations = 0;  // of a load step while tools are followed; 0: any number [Pipeline]
   bool tools_move = false;  // of themselves, in the call under way [Pipeline]
 
