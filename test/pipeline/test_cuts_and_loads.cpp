@@ -125,6 +125,43 @@ TEST_P(HeldCut, ARemovalElsewhereLeavesTheToolItsHold) {
 
 INSTANTIATE_TEST_SUITE_P(Grasped, HeldCut, testing::Bool());
 
+TEST(LoadUnderATool, MayHaveItsName) {
+  Pipeline pipeline(block(), methodOf("elastic"), {probe()});
+  walk(pipeline, -0.001, 0.002);
+  PatchConfig patch;
+  patch.name = pipeline.tools().front().name;
+  patch.box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, 0.01, kTop)};
+  patch.displacement = {{0.0, 0.0, -0.001}};
+  pipeline.load({{}, {patch}});
+  EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+  EXPECT_EQ(pipeline.tissue().namedPatches(), 1U);
+  pipeline.release({patch.name});
+  EXPECT_EQ(pipeline.tissue().namedPatches(), 0U);
+  EXPECT_GT(pipeline.report().tools.front().contacts, 0);
+}
+
+// Removed nodes stand in a cavity as at rest: they are no tissue.
+TEST(GraspInACavity, HoldsNothing) {
+  ToolGeometry forceps = probe();
+  const Vec3 jaw(0.006, 0.002, 0.006);
+  forceps.role = toolRole("grasper");
+  forceps.links = {{"left", {boxOf(jaw)}}, {"right", {boxOf(jaw)}}};
+  forceps.grasp.close_gap = 0.012;
+  forceps.grasp.open_gap = 0.014;
+  Pipeline pipeline(block(), methodOf("elastic"), {forceps});
+  const double deep = 0.03, half = 0.02;  // m
+  pipeline.remove(PlacedBox{Box(Vec3(kMiddle - half, kMiddle - half, kTop - deep),
+                                Vec3(kMiddle + half, kMiddle + half, kTop + deep))});
+  const auto jaws = [](const Vec3& at, double apart) -> std::vector<Vec3> {
+    return {at - apart * Vec3::UnitY(), at + apart * Vec3::UnitY()};
+  };
+  const Vec3 up(kMiddle, kMiddle, kTop + 0.03), down(kMiddle, kMiddle, kTop - 0.5 * deep);
+  walk(pipeline, jaws(up, 0.006), jaws(down, 0.006));
+  EXPECT_THROW(pipeline.grasp(0), InputError);
+  EXPECT_FALSE(pipeline.report().tools.front().grasps);
+  EXPECT_EQ(pipeline.report().tools.front().contacts, 0);
+}
+
 // A patch beside a standing tool goes down: the tissue comes away from the tool or into it.
 TEST(LoadUnderATool, IsMetByTheToolAtEachIncrement) {
   Pipeline pipeline(block(), methodOf("elastic"), {probe()});

@@ -57,6 +57,11 @@ bool LoadStepping::stopsOnTheWay(const std::vector<LoadRamp>& ramps) {
   return true;
 }
 
+// Nothing converges any more, and there was work enough: the rest of the way is one step.
+bool LoadStepping::isHopeless(const SolveReport& report) const {
+  return report.status == SolveStatus::kUnconverged && data_.bounds.patience().cutsOff();
+}
+
 // How many of the method's longest steps s the load takes. A patch by displacement: its way over s.
 // A patch by force: the force over k s, k the stiffness of the patch. In equilibrium a hard patch
 // of n nodes answers like a flat punch, whose stiffness grows with its width, so as sqrt(n) nodes
@@ -97,7 +102,8 @@ SolveReport LoadStepping::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     return stepLoads(ramps, wholeParts(foreseenSteps(ramps)), on_increment);
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
-  const double first = 1.0 / foreseenSteps(ramps), least = tuning::kLeastOfFirst * first;
+  const double first = 1.0 / foreseenSteps(ramps);
+  const double least = std::max(tuning::kLeastOfFirst * first, 1.0 / tuning::kMostSteps);
   double share = 0.0, stride = first;
   for (int increment = 1; share < 1.0; ++increment) {
     const Tissue::Shape good = data_.shape();
@@ -107,11 +113,14 @@ SolveReport LoadStepping::stepLoadsByItself(const std::vector<LoadRamp>& ramps,
     const double went = farthestWay(ramps, *good.displacement, data_.body.displacement()) /
                         data_.methods.now().patchStep();
     stride = std::max(least, part / std::max(went, 1.0 / tuning::kMostGrowth));
-    if (went > tuning::kTooFar && stride < part) {
+    const bool may_be_shorter = part > (1.0 + tuning::kRounding) * least;
+    const bool has_time = !data_.bounds.isTimeOver() && !isHopeless(report);
+    if (went > tuning::kTooFar && stride < part && may_be_shorter && has_time) {
       data_.restore(good);
       --increment;
       continue;
     }
+    if (isHopeless(report)) stride = 1.0;
     share = to;
     report = surgery_.tear();
     worst = std::max(worst, report.status);
@@ -163,6 +172,7 @@ SolveReport LoadStepping::goInSteps(const std::vector<LoadRamp>& ramps, int incr
       report.status = data_.outcome.report.status;
       break;
     }
+    if (isHopeless(report)) part = std::max(part, parts - 1);
   }
   return report;
 }

@@ -21,6 +21,7 @@ class LoadStepping {
                         const Tissue::OnIncrement& on_increment);
 
  private:
+  bool isHopeless(const SolveReport& report) const;
   bool stopsOnTheWay(const std::vector<LoadRamp>& ramps);
   SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
   SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);

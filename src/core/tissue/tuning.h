@@ -23,7 +23,7 @@ constexpr double kMostGrowth = 2.0;
 // closely, in up to as many more solves. Chosen.
 constexpr double kLeastOfFirst = 1.0 / 16.0;
 // Steps of one load at most. More: patches that go farther take steps of the same length. Chosen.
-constexpr double kMostSteps = 100000.0;
+constexpr double kMostSteps = 10000.0;
 // Steps (1): 5 steps of a fifth are 5, not 6. Rounding.
 constexpr double kRounding = 1e-9;
 

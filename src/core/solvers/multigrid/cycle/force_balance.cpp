@@ -17,6 +17,15 @@ double sizeOf(const GroupVector& vector) { return vector.head<3>().norm(); }
 
 }  // namespace
 
+template <typename Real>
+void ForceBalance<Real>::begin() {
+  greatest_at_start_ = shape_.greatestForce();
+  greatest_on_patches_ = 0.0;
+  for (const GroupVector& force : shape_.finest().constrained.force) {
+    greatest_on_patches_ = std::max(greatest_on_patches_, sizeOf(force));
+  }
+}
+
 // On the finest level alone: coarse levels show forces of rounding even where there are none.
 template <typename Real>
 bool ForceBalance<Real>::isZero() const {
@@ -76,21 +85,30 @@ bool ForceBalance<Real>::areContactsBalanced() const {
   return !(pushed > 0.0 && shape_.netForce().norm() > tuning::kContactBalance * pushed);
 }
 
+// But for the loads of patches as they are now; what contacts press with, in all.
+template <typename Real>
+double ForceBalance<Real>::greatestActing() const {
+  return std::max({greatest_at_start_, greatest_on_patches_, greatest_held_, greatestGiven(),
+                   shape_.finest().constrained.contactForce().norm()});
+}
+
 // Patches by force: each, and the whole that they move.
 template <typename Real>
 bool ForceBalance<Real>::arePatchesBalanced() const {
   const ConstrainedNodes<Real>& constrained = shape_.finest().constrained;
+  const double least = std::max(tuning::kLeastLoad * greatestActing(), tuning::kStill);
   Vec3 given = Vec3::Zero(), net = Vec3::Zero();
   for (std::size_t group = 0; group < constrained.groups.size(); ++group) {
     const Vec3 load = forceOf(constrained.right_hand_side[group]);
     const Vec3 left = forceOf(constrained.force[group]);
-    if (left.norm() > std::max(tolerance_, tuning::kPatchBalance) * load.norm()) return false;
+    const double scale = std::max(load.norm(), least);
+    if (left.norm() > std::max(tolerance_, tuning::kPatchBalance) * scale) return false;
     given += load;
     net += left;
   }
   if (given.isZero(0.0)) return true;
   net += shape_.netForce();
-  return net.norm() < tuning::kFalling * given.norm();
+  return net.norm() < tuning::kFalling * std::max(given.norm(), least);
 }
 
 // The sum of all unbalanced forces is the difference between what goes into the tissue and what its

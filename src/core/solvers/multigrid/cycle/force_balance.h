@@ -17,7 +17,7 @@ class ForceBalance {
       : shape_(shape), tolerance_(tolerance) {}
 
   // A solve begins.
-  void begin() { greatest_at_start_ = shape_.greatestForce(); }
+  void begin();
   double greatestAtStart() const { return greatest_at_start_; }
   // Of a patch on a node, in the last solve.
   void noteHeld(double greatest) { greatest_held_ = greatest; }
@@ -34,6 +34,7 @@ class ForceBalance {
  private:
   bool isLoaded(const SolveContext& solve) const;
   double greatestGiven() const;
+  double greatestActing() const;
   bool isCalm(const SolveContext& solve) const;
   bool isRounding(const SolveContext& solve) const;
   bool areContactsBalanced() const;
@@ -42,7 +43,8 @@ class ForceBalance {
 
   const CompositeShape<Real>& shape_;
   double tolerance_;
-  double greatest_at_start_ = 0.0;
+  double greatest_at_start_ = 0.0;    // on a node
+  double greatest_on_patches_ = 0.0;  // unbalanced then, on a patch by force
   double greatest_held_ = 0.0;
 };
 

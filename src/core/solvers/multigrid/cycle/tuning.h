@@ -98,6 +98,10 @@ constexpr double kQuietForceShare = 0.5;
 // Share of a patch's own force that may be unbalanced on it, if the tolerance is less: single
 // precision knows no better (chosen). Up: patches by force stop earlier.
 constexpr double kPatchBalance = 1e-5;
+// Of the greatest other force that acts: a patch's load that is less, as one of zero, is balanced
+// as exactly as one of that size (chosen). Up: small loads are answered less exactly; down:
+// rounding is taken for what is out of balance.
+constexpr double kLeastLoad = 1e-3;
 // Share of the greatest force that may be unbalanced on a node, without contacts (chosen, for what
 // hangs by little and moves far). Up: that stops early.
 constexpr double kMostUnbalanced = 0.1;
