@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "robot_tissue/ros/seconds_between.h"
+
 namespace robot_tissue {
 
 double TissueClock::advance(const ros::Time& stamp, bool moves, double reached) {
-  const double gap = last_.isZero() ? 0.0 : (stamp - last_).toSec();
+  const double gap = last_.isZero() ? 0.0 : secondsBetween(last_, stamp);
   last_ = stamp;
   left_out_ = 0.0;
   if (!(gap > 0.0)) return now_;

@@ -6,6 +6,7 @@
 
 #include "robot_tissue/core/body_load.h"
 #include "robot_tissue/pipeline/step_remarks.h"
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
 
@@ -28,7 +29,7 @@ std::string TissueFollower::waitsAfterJump(const PoseLookUp& look_up) {
   if (jumped.empty() || now < jumped_at_) jumped_at_ = ros::Time();
   if (jumped.empty()) return "";
   if (jumped_at_.isZero()) jumped_at_ = now;
-  if ((now - jumped_at_).toSec() >= parameters_.tf_timeout_s) return "";
+  if (secondsBetween(jumped_at_, now) >= parameters_.tf_timeout_s) return "";
   return namesOf(jumped, pipeline_.tools()) +
          " jumped, farther than is followed: the last good shape stays, until the pose has lasted "
          "for " +

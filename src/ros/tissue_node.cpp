@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/memory.h"
 #include "tuning.h"
 
@@ -150,7 +151,7 @@ void TissueNode::onTimer() {
 // The pose that was looked up last is the tools' at this time, too.
 void TissueNode::standUntil(const ros::Time& stamp) {
   last_look_up_.stamp = stamp;
-  last_look_up_.age_s = (ros::Time::now() - stamp).toSec();
+  last_look_up_.age_s = secondsBetween(stamp, ros::Time::now());
 }
 
 // Publishes markers and state, which go out seldom, at a pose at which there was nothing to solve.

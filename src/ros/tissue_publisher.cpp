@@ -2,13 +2,14 @@
 
 #include <chrono>
 
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/ros/tissue_messages.h"
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-const ros::Duration kStatePeriod(1.0);  // of the state while nothing changes
+constexpr double kStatePeriod = 1.0;  // s, of the state while nothing changes
 
 }  // namespace
 
@@ -72,7 +73,7 @@ void TissuePublisher::followTools(const Pipeline& pipeline, const ros::Time& sta
     contacts_due_ = contacts_due_ || news.forces;
     return;
   }
-  const bool long_since = (stamp - marker_builder_.reachedAt()).toSec() > tuning::kOldForce;
+  const bool long_since = secondsBetween(marker_builder_.reachedAt(), stamp) > tuning::kOldForce;
   if (long_since && marker_builder_.fallBehind(pipeline)) toolsChanged();
 }
 
@@ -110,7 +111,7 @@ void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Ti
 void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& stamp,
                                    const NodeStatus& status) {
   const bool news = status.status != last_status_.status || last_state_.isZero() ||
-                    stamp - last_state_ >= kStatePeriod || stamp < last_state_;
+                    secondsBetween(last_state_, stamp) >= kStatePeriod || stamp < last_state_;
   if (!news) return;
   last_status_ = status;
   last_state_ = stamp;
@@ -119,7 +120,7 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
   message.header.stamp = stamp;
   message.header.frame_id = frame_id_;
   message.publish_ms = publish_ms_;
-  message.pose_age_ms = 1e3 * (ros::Time::now() - stamp).toSec();
+  message.pose_age_ms = 1e3 * secondsBetween(stamp, ros::Time::now());
   state_.publish(message);
 }
 
@@ -141,8 +142,8 @@ void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& 
 }
 
 void TissuePublisher::publishContacts(const Pipeline& pipeline, const ros::Time& stamp) {
-  const bool due =
-      contacts_due_ || stamp - last_contacts_ >= kStatePeriod || stamp < last_contacts_;
+  const bool due = contacts_due_ || secondsBetween(last_contacts_, stamp) >= kStatePeriod ||
+                   stamp < last_contacts_;
   if (!due || contacts_.getNumSubscribers() == 0 || !pipeline.hasArrived()) return;
   contacts_due_ = false;
   last_contacts_ = stamp;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -53,7 +54,7 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
     }
     found.is_static = isStatic(common);
     found.stamp = found.is_static ? now : common;
-    found.age_s = (now - found.stamp).toSec();
+    found.age_s = secondsBetween(found.stamp, now);
     if (std::abs(found.age_s) > timeout_s_) {
       found.status = PoseLookUp::Status::kStale;
       found.message = "the pose of link '" + oldest + "' is " + numberText(std::abs(found.age_s)) +
@@ -84,7 +85,7 @@ std::optional<ToolPoses::Newest> ToolPoses::newest(const std::string& frame) con
     const auto transform = buffer_.lookupTransform(tissue_frame_, frame, ros::Time(0));
     const ros::Time now = ros::Time::now();
     const ros::Time stamp = isStatic(transform.header.stamp) ? now : transform.header.stamp;
-    if (std::abs((now - stamp).toSec()) > timeout_s_) return std::nullopt;
+    if (std::abs(secondsBetween(stamp, now)) > timeout_s_) return std::nullopt;
     return Newest{tf2::transformToEigen(transform), stamp};
   } catch (const tf2::TransformException&) {
     return std::nullopt;
@@ -96,7 +97,7 @@ Pose ToolPoses::frame(const std_msgs::Header& header) const {
   if (frame.empty() || frame == tissue_frame_) return Pose::Identity();
   try {
     const auto newest = buffer_.lookupTransform(tissue_frame_, frame, ros::Time(0));
-    const double ahead = header.stamp.toSec() - newest.header.stamp.toSec();
+    const double ahead = secondsBetween(newest.header.stamp, header.stamp);
     const bool is_asked = !header.stamp.isZero() && !isStatic(newest.header.stamp);
     if (is_asked && ahead > timeout_s_) {
       throw InputError("header.stamp: " + numberText(ahead) + " s after the newest transform of '" +

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -17,9 +18,6 @@ const ros::WallDuration kWarnPeriod(10.0);
 // those that a simulator sends with its next tick. Chosen.
 constexpr double kOnItsWay = 1.0;
 constexpr double kAheadOfClock = 0.5;
-
-// s: a stamp may be farther from another than ros::Duration tells, which throws then.
-double secondsFrom(const ros::Time& from, const ros::Time& to) { return to.toSec() - from.toSec(); }
 
 }  // namespace
 
@@ -48,13 +46,13 @@ bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform)
   const ros::Time now = ros::Time::now(), stamp = transform.header.stamp;
   if (now.isZero()) return false;
   const double most = buffer_.getCacheLength().toSec();
-  if (secondsFrom(now, stamp) > most) {
+  if (secondsBetween(now, stamp) > most) {
     if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
     return false;
   }
   if (isOfBefore(now, stamp)) return false;
   ros::Time& newest = newest_[transform.child_frame_id];
-  if (secondsFrom(stamp, newest) > most) return false;
+  if (secondsBetween(stamp, newest) > most) return false;
   newest = std::max(newest, stamp);
   return true;
 }
@@ -62,14 +60,14 @@ bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform)
 // Where time went back just now, what is ahead of it was still on its way. Put in, it would be the
 // newest until time has come there.
 bool TransformIntake::isOfBefore(const ros::Time& now, const ros::Time& stamp) const {
-  return went_back_to_ && secondsFrom(*went_back_to_, now) < kOnItsWay &&
-         secondsFrom(now, stamp) > kAheadOfClock;
+  return went_back_to_ && secondsBetween(*went_back_to_, now) < kOnItsWay &&
+         secondsBetween(now, stamp) > kAheadOfClock;
 }
 
 void TransformIntake::warnOfAhead() {
   if (!ahead_) return;
   const ros::WallTime now = ros::WallTime::now();
-  const double ahead = secondsFrom(ros::Time::now(), ahead_->stamp);
+  const double ahead = secondsBetween(ros::Time::now(), ahead_->stamp);
   const double most = buffer_.getCacheLength().toSec();
   if (ahead > most && now - ahead_->seen < kPatience) return;
   if (ahead > most && now - warned_ > kWarnPeriod) {

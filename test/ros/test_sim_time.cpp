@@ -211,5 +211,14 @@ TEST_F(SimTime, TransformsFromTheFutureBlindNobody) {
   EXPECT_LT(wrench_->header.stamp, now_ + ros::Duration(1.0));
 }
 
+// Farther than any ros::Duration tells, as where a simulated clock that began at zero is set to the
+// wall's, and back again.
+TEST_F(SimTime, AClockThatLeapsFarIsFollowed) {
+  for (const double start : {1000.0, 4.2e9, 2000.0}) {
+    playFrom(start, 0.004);
+    EXPECT_TRUE(tickUntil([this] { return state_->header.stamp >= played_from_; })) << start;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_sim_time

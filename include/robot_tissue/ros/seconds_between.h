@@ -1,0 +1,23 @@
+// The time from one stamp to another. They may be farther apart than ros::Duration tells (2^31 s),
+// which throws there, as where a clock starts at zero and leaps to the wall's.
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstdint>
+
+namespace robot_tissue {
+
+// s; below zero where `to` is earlier. The number is that of ros::Duration::toSec().
+inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
+  std::int64_t seconds = static_cast<std::int64_t>(to.sec) - static_cast<std::int64_t>(from.sec);
+  std::int64_t nanoseconds =
+      static_cast<std::int64_t>(to.nsec) - static_cast<std::int64_t>(from.nsec);
+  if (nanoseconds < 0) {
+    --seconds;
+    nanoseconds += 1000000000;
+  }
+  return static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
+}
+
+}  // namespace robot_tissue
