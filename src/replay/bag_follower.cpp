@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/ros/shape_messages.h"
 #include "robot_tissue/ros/tissue_messages.h"
 
@@ -13,15 +14,19 @@ namespace {
 
 const std::string kTopics = "/robot_tissue/";
 const ros::Duration kWatchPeriod(0.1);  // of looks for a pose where none comes, as the node's
-const ros::Duration kFaultPeriod(1.0);  // of the state while a fault lasts, as the node's
+constexpr double kFaultPeriod = 1.0;    // s, of the state while a fault lasts, as the node's
+// s of the bag without a message: after that nothing new is to be seen until the next one. More: a
+// gap, as from zero to the wall's clock, takes longer and has more states. Chosen.
+constexpr double kLongestWatch = 600.0;
 
 }  // namespace
 
 BagFollower::BagFollower(const NodeParameters& parameters, const std::vector<ToolGeometry>& tools,
-                         Shape shape, OutputBag& out)
+                         Shape shape, OutputBag& out, std::function<void()> before_look)
     : parameters_(parameters),
       shape_(shape),
       out_(out),
+      before_look_(std::move(before_look)),
       pipeline_(parameters.scene.tissue, parameters.scene.solver, tools, parameters.scene.supports),
       poses_(buffer_, parameters.scene.tissue.frame_id, parameters.tf_timeout_s),
       pick_(poses_, parameters.rate_hz),
@@ -46,7 +51,13 @@ void BagFollower::take(const tf2_msgs::TFMessage& message, TransformIntake::Kind
 // Where no pose comes the node's timer looks for what is wrong, or at links that are all static.
 void BagFollower::watchUntil(const ros::Time& now) {
   if (next_watch_.isZero()) next_watch_ = now + kWatchPeriod;
+  const ros::Time start = next_watch_;
   for (; next_watch_ < now; next_watch_ += kWatchPeriod) {
+    before_look_();
+    if (secondsBetween(start, next_watch_) > kLongestWatch) {
+      next_watch_ = now;
+      return;
+    }
     ros::Time::setNow(next_watch_);
     if (!std::exchange(any_pose_, false)) update(poses_.lookUp(next_watch_), next_watch_);
   }
@@ -138,8 +149,8 @@ void BagFollower::tellState(const ros::Time& stamp, double age_s) {
 
 // The last good shape stays.
 void BagFollower::tellFault(const NodeStatus& status, const ros::Time& now) {
-  const bool is_news =
-      status.status != status_.status || last_fault_.isZero() || now - last_fault_ >= kFaultPeriod;
+  const bool is_news = status.status != status_.status || last_fault_.isZero() ||
+                       secondsBetween(last_fault_, now) >= kFaultPeriod;
   status_ = status;
   if (!is_news) return;
   last_fault_ = now;

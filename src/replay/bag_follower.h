@@ -8,6 +8,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,10 @@ class BagFollower {
     bool nodes = false;
   };
 
-  // What is handed in must outlive it. Throws InputError.
+  // What is handed in must outlive it. before_look: called before each look for a pose where none
+  // comes; what it throws ends take(). Throws InputError.
   BagFollower(const NodeParameters& parameters, const std::vector<ToolGeometry>& tools, Shape shape,
-              OutputBag& out);
+              OutputBag& out, std::function<void()> before_look);
   ~BagFollower();
   BagFollower(const BagFollower&) = delete;
   BagFollower& operator=(const BagFollower&) = delete;
@@ -58,6 +60,7 @@ class BagFollower {
   const NodeParameters& parameters_;
   Shape shape_;
   OutputBag& out_;
+  std::function<void()> before_look_;
   Pipeline pipeline_;
   tf2::BufferCore buffer_;
   ToolPoses poses_;

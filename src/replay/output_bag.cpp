@@ -20,7 +20,7 @@ OutputBag::OutputBag(const std::string& path) : path_(path) {
   }
   makePart();
   try {
-    bag_.open(part_, rosbag::bagmode::Write);
+    bag_->open(part_, rosbag::bagmode::Write);
   } catch (const std::exception& error) {
     std::filesystem::remove(part_, ignored);
     refuse(error.what());
@@ -43,9 +43,11 @@ void OutputBag::makePart() {
 OutputBag::~OutputBag() {
   if (part_.empty()) return;
   try {
-    bag_.close();
+    bag_->close();
   } catch (const std::exception&) {
-    // it goes all the same
+    // As on a full disk. Its destructor would close it again, and throw where nothing may be
+    // thrown: it stays until the program ends.
+    static_cast<void>(bag_.release());
   }
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);
@@ -53,7 +55,7 @@ OutputBag::~OutputBag() {
 
 void OutputBag::commit() {
   try {
-    bag_.close();
+    bag_->close();
     std::filesystem::rename(part_, path_);
   } catch (const std::exception& error) {
     refuse(error.what());

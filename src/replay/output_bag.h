@@ -6,6 +6,7 @@
 #include <ros/time.h>
 #include <rosbag/bag.h>
 
+#include <memory>
 #include <string>
 
 namespace robot_tissue {
@@ -22,7 +23,7 @@ class OutputBag {
   template <class Message>
   void write(const std::string& topic, const ros::Time& stamp, const Message& message) {
     try {
-      bag_.write(topic, stamp, message);
+      bag_->write(topic, stamp, message);
     } catch (const std::exception& error) {
       refuse(error.what());
     }
@@ -34,7 +35,7 @@ class OutputBag {
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string path_, part_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
 };
 
 }  // namespace robot_tissue

@@ -11,6 +11,7 @@
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/mesh/regular_file.h"
 #include "robot_tissue/scene/entry.h"
+#include "robot_tissue/scene/scene_files.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -39,7 +40,8 @@ std::optional<std::string> urdfOf(const ReplayOptions& options, const InputBag& 
   try {
     return readRegularFile(*options.urdf, kLargestUrdf);
   } catch (const InputError& error) {
-    throw InputError(onOneLine(*options.urdf) + ": " + error.what());
+    throw InputError("--urdf = " + onOneLine(*options.urdf) + ": " + error.what() +
+                     "; allowed: a URDF file that can be read");
   }
 }
 
@@ -57,25 +59,38 @@ LoadedTools toolsFor(const NodeParameters& parameters, const std::optional<std::
   return toolsOf(configs);
 }
 
+void requireNoInput(const ReplayOptions& options, const Scene& scene) {
+  if (!inputAt(options.out, {options.in}).empty()) {
+    throw InputError(onOneLine(options.out) + ": is IN.bag itself; allowed: another file");
+  }
+  std::vector<std::string> inputs = inputFiles(scene, options.scene);
+  if (options.urdf) inputs.push_back(*options.urdf);
+  const std::string input = inputAt(options.out, inputs);
+  if (input.empty()) return;
+  throw InputError(onOneLine(options.out) + ": is " + onOneLine(input) +
+                   ", which is read; allowed: another file");
+}
+
 void follow(const ReplayOptions& options, std::ostream& out, std::ostream& err,
             const std::function<bool()>& is_stopped) {
   ros::Time::init();  // it is told what time it is (BagFollower)
   const NodeParameters parameters = parametersOf(options);
   const InputBag in(options.in);
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.in, options.out, ignored)) {
-    throw InputError(onOneLine(options.out) + ": is IN.bag itself; allowed: another file");
-  }
+  requireNoInput(options, parameters.scene);
   const LoadedTools loaded = toolsFor(parameters, urdfOf(options, in));
   OutputBag bag(options.out);
-  BagFollower follower(parameters, loaded.tools, {options.surface, options.nodes}, bag);
+  const auto end_if_stopped = [&] {
+    if (is_stopped()) throw InputError("stopped by a signal; nothing is written");
+  };
+  BagFollower follower(parameters, loaded.tools, {options.surface, options.nodes}, bag,
+                       end_if_stopped);
   for (const auto* lines :
        {&parameters.scene.remarks, &loaded.warnings, &follower.toolWarnings()}) {
     for (const std::string& line : *lines) err << "replay: " << line << '\n';
   }
   in.forTransforms([&](const tf2_msgs::TFMessage& message, TransformIntake::Kind kind,
                        const ros::Time& received) {
-    if (is_stopped()) throw InputError("stopped by a signal; nothing is written");
+    end_if_stopped();
     follower.take(message, kind, received);
   });
   if (follower.posesFollowed() == 0) {

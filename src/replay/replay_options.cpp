@@ -30,7 +30,7 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
     if (bool* is_on = switchOf(*word, options)) {
       *is_on = true;
     } else if (auto* value = valueOf(*word, options)) {
-      if (std::next(word) == arguments.end()) {
+      if (std::next(word) == arguments.end() || std::next(word)->rfind("--", 0) == 0) {
         throw InputError(*word + ": has no value; allowed: a value after it (see --help)");
       }
       *value = *++word;

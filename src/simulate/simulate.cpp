@@ -1,12 +1,14 @@
 #include "simulate.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <ostream>
 
 #include "arguments.h"
 #include "output_folder.h"
 #include "result_text.h"
 #include "robot_tissue/core/method_names.h"
+#include "robot_tissue/scene/scene_files.h"
 #include "robot_tissue/scene/value_text.h"
 #include "run_scene.h"
 
@@ -71,6 +73,19 @@ std::vector<std::string> filesOf(const Scene& scene) {
   return files;
 }
 
+// Results have fixed names, and states those of the scene: one may be that of the scene's file.
+void requireNoInput(const Scene& scene, const Arguments& arguments) {
+  const std::vector<std::string> inputs = inputFiles(scene, arguments.scene);
+  for (const std::string& file : filesOf(scene)) {
+    const std::string input =
+        inputAt((std::filesystem::path(arguments.out) / file).string(), inputs);
+    if (input.empty()) continue;
+    throw InputError("--out = " + onOneLine(arguments.out) + ": " + file +
+                     " would be written over " + onOneLine(input) +
+                     ", which the scene is read from: must be another folder");
+  }
+}
+
 // Where the scene asks for them; those of an earlier run are taken away. States of steps that the
 // run was cut off before are not there, and stay as they were.
 void write(const Scene& scene, const RunResult& result, OutputFolder& folder) {
@@ -101,6 +116,7 @@ RunResult runNamed(const Scene& scene, const Arguments& arguments, const OnRow& 
 int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const Deadline deadline = arguments.max_seconds ? Deadline(*arguments.max_seconds) : Deadline();
   const Scene scene = loadScene(arguments.scene, arguments.overrides);
+  requireNoInput(scene, arguments);
   OutputFolder folder(arguments.out, filesOf(scene));
   const bool progress = terminal && !arguments.quiet;
   const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
@@ -121,6 +137,10 @@ int exitCodeOf(const std::string& program, std::ostream& err, const std::functio
     return run();
   } catch (const InputError& error) {
     err << program << ": " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {  // as in a folder that was deleted
+    err << program << ": " << onOneLine(error.what())
+        << ": must be files and folders that are there\n";
     return kExitBadInput;
   } catch (const std::exception& error) {
     err << program << ": " << error.what() << '\n';

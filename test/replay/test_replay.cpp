@@ -98,11 +98,22 @@ class Replay : public ::testing::Test {
     }
   }
 
+  // A pose at the start, and one after a gap (s).
+  void recordWithGap(const std::string& name, double gap) const {
+    rosbag::Bag bag(path(name), rosbag::bagmode::Write);
+    for (const double t : {0.0, 0.01, gap, gap + 0.01}) {
+      tf2_msgs::TFMessage message;
+      message.transforms = {tipAt(ros::Time(kStart + t), 0.0)};
+      bag.write("/tf", ros::Time(kStart + t), message);
+    }
+  }
+
   int run(const std::string& in, const std::string& out, std::vector<std::string> more = {},
           const std::string& scene = "scene.yaml") {
     more.insert(more.begin(), {path(scene), path(in), path(out)});
     std::ostringstream said, complained;
-    const int code = replay(more, said, complained, [this] { return is_stopped_; });
+    const int code =
+        replay(more, said, complained, [this] { return is_stopped_ || --asks_left_ < 0; });
     said_ = said.str();
     complained_ = complained.str();
     return code;
@@ -135,6 +146,7 @@ class Replay : public ::testing::Test {
   fs::path folder_;
   std::string said_, complained_;
   bool is_stopped_ = false;
+  int asks_left_ = 100000;  // until it is stopped
 };
 
 // Each run is a process of its own, as a user's.
@@ -229,6 +241,7 @@ TEST_F(Replay, RefusesABagThatIsWrong) {
 TEST_F(Replay, RefusesWrongArguments) {
   record("in.bag");
   expectRefused("in.bag", "--rate: has no value", {"--rate"});
+  expectRefused("in.bag", "--urdf: has no value", {"--urdf", "--surface"});
   expectRefused("in.bag", "rate", {"--rate", "fast"});
   expectRefused("in.bag", "threads", {"--threads", "0"});
   expectRefused("in.bag", "--speed", {"--speed", "5"});
@@ -237,6 +250,12 @@ TEST_F(Replay, RefusesWrongArguments) {
   EXPECT_EQ(run("in.bag", "in.bag"), 2);
   EXPECT_NE(complained_.find("is IN.bag itself"), std::string::npos) << complained_;
   EXPECT_EQ(run("in.bag", "whole.bag"), 0);  // the bag is as before
+  write("robot.urdf", kUrdf);
+  EXPECT_EQ(run("in.bag", "scene.yaml"), 2);
+  EXPECT_NE(complained_.find("which is read; allowed: another file"), std::string::npos);
+  EXPECT_EQ(bytes("scene.yaml"), kScene);
+  EXPECT_EQ(run("in.bag", "robot.urdf", {"--urdf", path("robot.urdf")}), 2);
+  EXPECT_EQ(bytes("robot.urdf"), kUrdf);
 }
 
 TEST_F(Replay, WritesBesideWhatIsThereInAnotherPlace) {
@@ -263,6 +282,41 @@ TEST_F(Replay, LeavesATransformOfTheEndOfTimeOut) {
   bag.close();
   ASSERT_EQ(run("in.bag", "out.bag"), 0) << complained_;
   EXPECT_EQ(said_, without);
+}
+
+// As of a recording that began before the simulated clock: the time between is longer than any
+// ros::Duration, and nothing happens in it.
+TEST_F(Replay, LeapsOverALongGap) {
+  for (const double gap : {3600.0, 4.2e9 - kStart}) {
+    recordWithGap("gap.bag", gap);
+    ASSERT_EQ(run("gap.bag", "out.bag"), 0) << complained_;
+    const auto states = read<TissueState>("out.bag", "state");
+    EXPECT_LT(states.size(), 1000u);
+    EXPECT_EQ(states.back().status, "OK");
+    EXPECT_GT(states.back().header.stamp.toSec(), kStart + gap);
+  }
+}
+
+TEST_F(Replay, IsStoppedInAGap) {
+  recordWithGap("gap.bag", 300.0);
+  asks_left_ = 1000;
+  EXPECT_EQ(run("gap.bag", "out.bag"), 2);
+  EXPECT_NE(complained_.find("stopped by a signal"), std::string::npos) << complained_;
+}
+
+// Files of more than some blocks of 512 bytes are refused as on a full disk.
+TEST_F(Replay, LeavesNothingOnAFullDisk) {
+  record("in.bag");
+  for (const int blocks : {1, 8, 40}) {
+    const std::string command = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec '" +
+                                std::string(REPLAY_PATH) + "' '" + path("scene.yaml") + "' '" +
+                                path("in.bag") + "' '" + path("out.bag") +
+                                "' --surface --nodes > /dev/null 2> /dev/null";
+    const int status = std::system(command.c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status << ", " << blocks;
+    EXPECT_FALSE(fs::exists(path("out.bag")));
+    EXPECT_FALSE(fs::exists(path("out.bag.active")));
+  }
 }
 
 TEST_F(Replay, LeavesWhatIsThereWhenItIsStopped) {

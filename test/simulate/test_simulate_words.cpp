@@ -1,6 +1,8 @@
 // The runner as a program: what it refuses, and what it says on the way.
 #include <gtest/gtest.h>
 
+#include "core/mesh_fixtures.h"
+#include "scene/mesh_files.h"
 #include "simulate.h"
 #include "simulate_program.h"
 
@@ -45,6 +47,32 @@ TEST_F(Simulate, FoldersThatCannotBeWrittenAreRefused) {
   fs::create_directories(folder_ / "odd/nodes.csv");
   expectRefused("block.yaml --out odd", "is no plain file");
   EXPECT_EQ(entries("odd"), std::vector<std::string>({"nodes.csv"}));
+}
+
+TEST_F(Simulate, ResultsAreNotWrittenOverWhatTheSceneIsReadFrom) {
+  const std::string saving = kScene + "  - save: {file: block.yaml}\n";
+  write("block.yaml", saving);
+  expectRefused("block.yaml --out .", "block.yaml would be written over block.yaml");
+  EXPECT_EQ(readText(folder_ / "block.yaml"), saving);
+  write("surface.stl", stlText(boxMesh(Vec3::Zero(), Vec3(0.04, 0.03, 0.02))));
+  write("block.yaml",
+        "tissue:\n  shape: {type: mesh, resource: surface.stl}\n  spacing: 0.01\n"
+        "  material: {young_modulus: 10000.0}\nsteps: [{settle: {}}]\n");
+  expectRefused("block.yaml --out .", "surface.stl would be written over");
+  EXPECT_EQ(entries("."),
+            std::vector<std::string>({"block.yaml", "stderr.txt", "stdout.txt", "surface.stl"}));
+  EXPECT_EQ(program("block.yaml --out other").code, 0) << readText(folder_ / "stderr.txt");
+}
+
+TEST_F(Simulate, AFolderThatIsGoneIsNoFailureOfTheProgram) {
+  const std::string gone = (folder_ / "gone").string(), err = (folder_ / "err.txt").string();
+  fs::create_directory(gone);
+  const std::string command = "cd '" + gone + "' && rmdir '" + gone + "' && '" + SIMULATE_PATH +
+                              "' block.yaml --out out 2> '" + err + "'";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
+  const std::string told = readText(err);
+  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
 }
 
 TEST_F(Simulate, RemarksGoToStderrUnlessQuiet) {
