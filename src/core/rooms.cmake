@@ -17,7 +17,7 @@ robot_tissue_room(geometry
     tetrahedron.h triangle_mesh.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC body_load.h removed_space.h scene.h suture.h tool_role.h
+  PUBLIC body_load.h removed_space.h scene.h suture.h suture_ranges.h tool_role.h
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "robot_tissue/core/suture_ranges.h"
 #include "robot_tissue/core/triangle_mesh.h"
 #include "robot_tissue/scene/value_text.h"
 
@@ -24,6 +25,7 @@ LengthRanges::LengthRanges(const Box& tissue, double spacing) {
   const double size = sizeOf(tissue);
   length = {kThinnest * spacing, kFarthest * size, "m"};
   gap = {0.0, kFarthest * size, "m"};
+  thread = {0.0, longestSuture(tissue), "m"};
   place = {-kFarthest * size, kFarthest * size, "m"};
   displacement = {-kMostPulled * size, kMostPulled * size, "m"};
 }

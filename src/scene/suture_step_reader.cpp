@@ -28,7 +28,7 @@ const KeyTable<SutureReading> kSutureKeys = {
     {"rest_length",
      [](const Entry& entry, SutureReading& reading) {
        double& length = reading.suture.rest_length;
-       length = entry.numberOr(length, reading.lengths.gap);
+       length = entry.numberOr(length, reading.lengths.thread);
      }},
     {"stiffness",
      [](const Entry& entry, SutureReading& reading) {
@@ -38,12 +38,12 @@ const KeyTable<SutureReading> kSutureKeys = {
     {"break_force",
      [](const Entry& entry, SutureReading& reading) {
        double& force = reading.suture.break_force;
-       force = entry.numberOr(force, ranges::forceLimit());
+       force = entry.numberOr(force, ranges::sutureStrength());
      }},
     {"bite",
      [](const Entry& entry, SutureReading& reading) {
        double& bite = reading.suture.bite;
-       bite = entry.numberOr(bite, reading.lengths.gap);
+       bite = entry.numberOr(bite, reading.lengths.thread);
      }},
 };
 

@@ -321,6 +321,10 @@ TEST_F(SutureRefusal, OfWhatIsNoThread) {
   expectRefused([](SutureConfig& config) { config.rest_length = -1e-3; }, "rest_length");
   expectRefused([&](SutureConfig& config) { config.break_force = infinity; }, "break_force");
   expectRefused([](SutureConfig& config) { config.bite = -1e-3; }, "bite");
+  expectRefused([](SutureConfig& config) { config.stiffness = 1e-7; }, "1e-06 to 100000 N/m");
+  expectRefused([](SutureConfig& config) { config.break_force = 1e10; }, "0 to 1e+09 N");
+  expectRefused([](SutureConfig& config) { config.rest_length = 1e6; }, "rest_length");
+  expectRefused([](SutureConfig& config) { config.bite = 1e6; }, "bite");
   expectRefused([&](SutureConfig& config) { config.bite = nan; }, "bite");
 }
 

@@ -168,6 +168,18 @@ TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
     EXPECT_FALSE(bad.response.success);
     EXPECT_NE(bad.response.message.find("allowed"), std::string::npos) << bad.response.message;
   }
+  for (const auto& set : std::vector<void (*)(Suture::Request&)>{
+           [](Suture::Request& request) { request.rest_length = 1e15; },
+           [](Suture::Request& request) { request.stiffness = 1e-300; },
+           [](Suture::Request& request) { request.break_force = 1e300; },
+           [](Suture::Request& request) { request.bite = 1e15; }}) {
+    Suture beyond = call;
+    beyond.request.name = "s2";
+    set(beyond.request);
+    ASSERT_TRUE(ros::service::call("/tissue/suture", beyond));
+    EXPECT_FALSE(beyond.response.success) << beyond.request;
+    EXPECT_NE(beyond.response.message.find("allowed"), std::string::npos);
+  }
   call.request.name = "s1";
   ASSERT_TRUE(ros::service::call("/tissue/suture", call));
   EXPECT_FALSE(call.response.success);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "robot_tissue/core/scene.h"
+#include "robot_tissue/core/suture_ranges.h"
 #include "robot_tissue/scene/entry.h"
 
 namespace robot_tissue {
@@ -28,7 +29,8 @@ inline Range friction() { return {0.0, 1e3, ""}; }
 inline Range force() { return {-1e9, 1e9, "N"}; }
 inline Range forceLimit() { return {0.0, 1e9, "N"}; }  // 0: none
 
-inline Range sutureStiffness() { return {1e-6, kStiffestSuture, "N/m"}; }
+inline Range sutureStiffness() { return {kSoftestSuture, kStiffestSuture, "N/m"}; }
+inline Range sutureStrength() { return {0.0, kStrongestSuture, "N"}; }  // 0: never breaks
 
 inline Range dampingTime() { return {0.0, 1e3, "s"}; }
 inline Range duration() { return {1e-6, 3600.0, "s"}; }  // of a step
@@ -60,6 +62,7 @@ constexpr double kFarthestCell = 1e6;  // spacings from the origin to the tissue
 struct LengthRanges {
   Range length;        // of what must have some
   Range gap;           // of what may be zero
+  Range thread;        // of a suture, which may be zero
   Range place;         // a coordinate
   Range displacement;  // of a patch
 

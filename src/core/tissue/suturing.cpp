@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text_of.h"
+#include "robot_tissue/core/suture_ranges.h"
 #include "surface/nearest_point.h"
 #include "tissue/load_ramp.h"
 #include "tissue/registry.h"
@@ -21,33 +22,33 @@ namespace {
   throw InputError("suture '" + suture + "': " + problem + "; allowed: " + allowed);
 }
 
-void requireNumbers(const SutureConfig& config) {
+// `longest` (m): of its lengths.
+void requireNumbers(const SutureConfig& config, double longest) {
   if (config.name.empty()) refuseSuture(config.name, "no name", "a name");
   const auto require_finite = [&](const Vec3& point, const char* key) {
     if (point.allFinite()) return;
     refuseSuture(config.name, std::string(key) + " is not finite", "finite coordinates");
   };
-  const auto require = [&](bool holds, double value, const char* key, const char* allowed) {
-    if (holds) return;
-    std::ostringstream problem;
+  const auto require = [&](double value, double least, double most, const char* key,
+                           const char* unit) {
+    if (value >= least && value <= most) return;
+    std::ostringstream problem, allowed;
     problem << key << " = " << value;
-    refuseSuture(config.name, problem.str(), allowed);
+    allowed << least << " to " << most << ' ' << unit;
+    refuseSuture(config.name, problem.str(), allowed.str());
   };
   require_finite(config.from, "from");
   require_finite(config.to, "to");
-  const double length = config.rest_length, stiffness = config.stiffness;
-  const double force = config.break_force;
-  require(length >= 0.0 && std::isfinite(length), length, "rest_length", "0 m or more");
-  require(stiffness > 0.0 && stiffness <= kStiffestSuture, stiffness, "stiffness",
-          "more than 0 N/m, at most 1e5 N/m");
-  require(force >= 0.0 && std::isfinite(force), force, "break_force", "0 (never), or more N");
-  require(config.bite >= 0.0 && std::isfinite(config.bite), config.bite, "bite", "0 m or more");
+  require(config.rest_length, 0.0, longest, "rest_length", "m");
+  require(config.stiffness, kSoftestSuture, kStiffestSuture, "stiffness", "N/m");
+  require(config.break_force, 0.0, kStrongestSuture, "break_force", "N (0: never)");
+  require(config.bite, 0.0, longest, "bite", "m");
 }
 
 }  // namespace
 
 SutureResult Suturing::suture(const SutureConfig& config) {
-  requireNumbers(config);
+  requireNumbers(config, longestSuture(data_.body.lattice().bounds()));
   if (!data_.methods.now().findsEquilibrium()) {
     std::string allowed;
     for (const std::string& name : methodsFor("elastic")) {
