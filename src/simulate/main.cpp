@@ -26,7 +26,7 @@ void handle(int signal) {
   sigaction(signal, &action, nullptr);
 }
 
-// SIGINT and SIGTERM end the program as ever, but leave nothing behind.
+// SIGINT, SIGTERM and SIGHUP end the program as ever, but leave nothing behind.
 void endTidily() {
   if (pipe(signal_pipe) != 0) return;
   std::thread([] {
@@ -38,6 +38,7 @@ void endTidily() {
   }).detach();
   handle(SIGINT);
   handle(SIGTERM);
+  handle(SIGHUP);
 }
 
 }  // namespace

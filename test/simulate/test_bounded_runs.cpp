@@ -75,7 +75,7 @@ class BoundedRun : public ::testing::Test {
     if (child != 0) return child;
     const rlimit most{kProcessorSeconds, kProcessorSeconds};
     setrlimit(RLIMIT_CPU, &most);
-    signal(SIGINT, SIG_DFL);  // who started the test may ignore it
+    for (const int number : {SIGINT, SIGHUP}) signal(number, SIG_DFL);  // who started it may ignore
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -111,6 +111,23 @@ class BoundedRun : public ::testing::Test {
 TEST_F(BoundedRun, LeavesNothingBehindWhenInterrupted) { expectNothingLeftBehind(SIGINT); }
 
 TEST_F(BoundedRun, LeavesNothingBehindWhenTerminated) { expectNothingLeftBehind(SIGTERM); }
+
+TEST_F(BoundedRun, LeavesNothingBehindWhenItsTerminalGoes) { expectNothingLeftBehind(SIGHUP); }
+
+// The scene's own bound of an update is the same in a run that has one, too.
+TEST_F(BoundedRun, KeepsTheBoundOfAnUpdateBesideThatOfTheRun) {
+  std::string scene = kLongScene;
+  scene.replace(scene.find("method: newton"), 14, "max_ms: 1.0e-3");
+  scene.replace(scene.find("10000\n"), 5, "1");
+  std::ofstream(folder_ / "short.yaml") << scene;
+  for (const std::string seconds : {"1000", "1e9"}) {
+    const fs::path out = folder_ / seconds;
+    const int status = statusOf(start({(folder_ / "short.yaml").string(), "--out", out.string(),
+                                       "--max-seconds", seconds, "--quiet"}));
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;
+    EXPECT_NE(readText(out / "increments.csv").find(",LATE,"), std::string::npos);
+  }
+}
 
 TEST_F(BoundedRun, WritesWhatItCameToWhenTheTimeIsOver) {
   const fs::path out = folder_ / "out";

@@ -93,7 +93,8 @@ LoadStepSolver::RoundShape LoadStepSolver::takeShape(Rounds& rounds, bool late) 
   const SolveReport& report = rounds.report;
   RoundShape shape;
   shape.late = late;
-  shape.hurried = data_.bounds.isBounded() && report.status == SolveStatus::kLate;
+  shape.hurried =
+      report.status == SolveStatus::kLate && data_.bounds.wasHurried(rounds.of_round.wall_ms);
   const bool solved = report.status != SolveStatus::kUnconverged && (late || !shape.hurried);
   shape.is_on_its_way = !data_.goesThroughTime() && goBack(rounds);
   shape.whole = !shape.is_on_its_way && solved;

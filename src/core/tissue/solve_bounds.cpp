@@ -26,6 +26,12 @@ Patience::Of SolveBounds::solved() const {
   return motion_.isInTimeStep() ? Patience::Of::kTimeStep : Patience::Of::kLoadStep;
 }
 
+bool SolveBounds::wasHurried(double solve_ms) const {
+  if (!isBounded()) return false;
+  const double left = deadline_->leftMs() + solve_ms;  // when it began
+  return max_ms_ <= 0.0 || max_ms_ >= tuning::kShareOfTime * left;
+}
+
 void SolveBounds::noteSolve(const SolveReport& solve) {
   const double ends = tuning::kIterationsOfEnds;
   shortest_ms_ = solve.wall_ms * (1.0 + ends) / (std::max(1, solve.iterations) + ends);

@@ -15,7 +15,7 @@ namespace robot_tissue {
 
 class SolveBounds {
  public:
-  // max_ms: of a solve without a deadline; 0: none.
+  // max_ms: of a solve, also where a deadline is later; 0: none.
   SolveBounds(const TissueMotion& motion, const Patience& patience, double max_ms)
       : motion_(motion), patience_(patience), max_ms_(max_ms) {}
 
@@ -32,6 +32,9 @@ class SolveBounds {
       double cost) const;       // for the next solve, with the cost of one (Patience::note)
   Patience::Of solved() const;  // what the next solve is of
 
+  // The last solve, if it was late, had to end for the deadline: it is one to carry on in the time
+  // that is left. One that max_ms ended has had its time. `solve_ms`: that it took.
+  bool wasHurried(double solve_ms) const;
   void noteSolve(const SolveReport& solve);  // the last one
   void noteLook(double ms);                  // how long a look at the contacts took
   // Another solve and the looks before and after it take longer than what is left.
