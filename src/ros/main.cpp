@@ -2,18 +2,20 @@
 
 #include <csignal>
 #include <exception>
+#include <optional>
 
 #include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/scene/memory.h"
 
 int main(int argc, char** argv) {
   robot_tissue::keepFreeMemory();
-  ros::init(argc, argv, "robot_tissue");
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });  // as roscpp does on SIGINT
   // The last handle to go closes the log, so one stays until the last line is said.
-  const ros::NodeHandle private_node("~");
+  std::optional<ros::NodeHandle> private_node;
   try {
-    const robot_tissue::TissueNode node(private_node);
+    ros::init(argc, argv, "robot_tissue");                      // throws at a name that is none
+    std::signal(SIGTERM, [](int) { ros::requestShutdown(); });  // as roscpp does on SIGINT
+    private_node.emplace("~");
+    const robot_tissue::TissueNode node(*private_node);
     ros::spin();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());

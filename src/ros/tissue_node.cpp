@@ -1,5 +1,6 @@
 #include "robot_tissue/ros/tissue_node.h"
 
+#include <XmlRpcValue.h>
 #include <ros/callback_queue.h>
 
 #include <algorithm>
@@ -209,6 +210,17 @@ void TissueNode::follow() {
   if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
 }
 
+// Empty: not set yet. Throws InputError where it is something else than a text.
+std::optional<std::string> TissueNode::robotDescription() const {
+  std::string path;
+  XmlRpc::XmlRpcValue value;
+  const std::string& name = parameters_.robot_description_param;
+  if (!private_node_.searchParam(name, path) || !private_node_.getParam(path, value)) return {};
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return std::string(value);
+  throw InputError("parameter '" + path +
+                   "' (~robot_description_param) is no text; allowed: a URDF");
+}
+
 // Loads the tools once the robot's description is there; without tools none is needed.
 bool TissueNode::robotIsKnown() {
   if (robot_is_known_) return true;
@@ -217,10 +229,9 @@ bool TissueNode::robotIsKnown() {
     const ros::WallTime now = ros::WallTime::now();
     if (now < next_robot_look_up_) return false;
     next_robot_look_up_ = now + kRobotLookUpPeriod;
-    std::string path, urdf;
-    const std::string& name = parameters_.robot_description_param;
-    if (!private_node_.searchParam(name, path) || !private_node_.getParam(path, urdf)) return false;
-    const LoadedTools loaded = loadTools(urdf, tools);
+    const std::optional<std::string> urdf = robotDescription();
+    if (!urdf) return false;
+    const LoadedTools loaded = loadTools(*urdf, tools);
     for (const std::string& warning : loaded.warnings) ROS_WARN_STREAM(warning);
     pipeline_.setTools(loaded.tools);
     for (const std::string& warning : pipeline_.toolWarnings()) ROS_WARN_STREAM(warning);

@@ -76,6 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"timeout", "tf_timeout", -1, "tf_timeout = -1"},
                       Case{"diagnostics", "diagnostic_period", -1, "diagnostic_period = -1"},
                       Case{"description", "robot_description_param", "/broken_description", "URDF"},
+                      Case{"no_text", "robot_description_param", "/number_description",
+                           "'/number_description' (~robot_description_param) is no text"},
                       Case{"other_robot", "robot_description_param", "/other_description",
                            "probe"}),
     [](const ::testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "robot_tissue/pipeline/pipeline.h"
@@ -52,6 +53,7 @@ class TissueNode {
   void update(PoseLookUp look_up);
   bool waitsAfterJump();
   void follow();
+  std::optional<std::string> robotDescription() const;
   bool robotIsKnown();
   void report(const NodeStatus& status);
   void giveBackMemory();
