@@ -34,7 +34,9 @@ Arguments parse(const std::vector<std::string>& arguments) {
   Arguments parsed;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--urdf") {
-      if (i + 1 == arguments.size()) throw InputError("--urdf: missing, must be a URDF's file");
+      if (i + 1 == arguments.size() || arguments[i + 1].rfind("--", 0) == 0) {
+        throw InputError("--urdf: missing, must be a URDF's file");
+      }
       parsed.urdf = arguments[++i];
     } else if (arguments[i].rfind("--", 0) == 0 || !parsed.scene.empty()) {
       throw InputError(shortText(arguments[i]) + ": is not known, must be SCENE.yaml or --urdf");
@@ -87,7 +89,8 @@ Robot robotOf(const Arguments& arguments, const Scene& scene, const LookAtRobot&
     requireUrdf(urdf);
     return {urdf, {}};
   } catch (const InputError& error) {
-    throw InputError(onOneLine(arguments.urdf) + ": " + error.what());
+    throw InputError("--urdf = " + onOneLine(arguments.urdf) + ": " + error.what() +
+                     ", must be a URDF file that can be read");
   }
 }
 

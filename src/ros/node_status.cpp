@@ -64,7 +64,7 @@ NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& rem
     say("LATE", "the update ran out of its time (solver.max_ms, else 0.1 s) and is carried on",
         status);
   } else if (report.gave_up || solve.status == SolveStatus::kUnconverged) {
-    say("UNCONVERGED", "a layer or patch did not come to balance", status);
+    say("UNCONVERGED", "the solve did not come to balance in its iterations", status);
   } else if (solve.status == SolveStatus::kInverted) {
     say("INVERTED", std::to_string(solve.inverted_cells) + " cells are inverted", status);
   }

@@ -102,7 +102,10 @@ void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response&
 void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
                              std_srvs::Trigger::Response& response) {
   if (pipeline_.tissue().undoable() == 0) {
-    throw InputError("nothing to take back; allowed: after a cut, a removal, a tear or a suture");
+    throw InputError(
+        "nothing to take back; allowed: after a cut, a removal, a tear or a suture since the "
+        "start, "
+        "a reset or a loaded state");
   }
   const SolveReport report = pipeline_.undo(1);
   publisher_.shapeChanged();

@@ -1,7 +1,7 @@
 #include "robot_tissue/scene/state_file.h"
 
 #include <fcntl.h>
-#include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr mode_t kMode = 0666;                            // less the user's mask, as of any file
 constexpr std::size_t kLongestFileName = 100;             // bytes
 constexpr std::size_t kMostBytes = std::size_t{1} << 32;  // of a file; 30 million nodes have less
 
@@ -34,10 +35,14 @@ void requireStateFileName(const std::string& name) {
 // The steps of a write, each by itself.
 class NewFile {
  public:
-  NewFile(const fs::path& folder, const std::string& name)
-      : name_(name), path_((folder / ("." + name + "-XXXXXX")).string()) {
-    number_ = ::mkostemp(path_.data(), O_CLOEXEC);
-    if (number_ < 0) fail();
+  NewFile(const fs::path& folder, const std::string& name) : name_(name) {
+    const std::string first = (folder / ("." + name + "-")).string() + std::to_string(::getpid());
+    for (int count = 1; number_ < 0; ++count) {
+      const std::string path = first + "-" + std::to_string(count);
+      number_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+      if (number_ >= 0) path_ = path;
+      if (number_ < 0 && errno != EEXIST) fail();
+    }
   }
   ~NewFile() {
     if (number_ >= 0) ::close(number_);
@@ -111,7 +116,7 @@ std::string readStateFile(const std::string& folder, const std::string& name) {
   try {
     return readRegularFile((fs::path(folder) / name).string(), kMostBytes);
   } catch (const InputError& error) {
-    refuse(name, error.what());
+    refuse(name, error.what() + ("; allowed: a saved state in the folder " + folder));
   }
 }
 

@@ -93,10 +93,13 @@ void OutputFolder::discard() {
 
 void OutputFolder::write(const std::string& file, const std::string& content) {
   const std::lock_guard<std::mutex> lock(guard());
+  errno = 0;
   std::ofstream stream(staging_ / file, std::ios::binary);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
-  if (!stream) refuse("cannot write " + file);
+  const int number = errno;  // of the call that failed, where one did
+  if (stream) return;
+  refuse("cannot write " + file + (number == 0 ? "" : std::string(", ") + std::strerror(number)));
 }
 
 void OutputFolder::writeState(const std::string& file, const std::string& bytes) {

@@ -101,6 +101,8 @@ void Runner::performAll() {
       remarkDropped(dropped);
       if (!was_impatient) remarkImpatience();
       if (on_step_) on_step_(step_, pipeline_.tissue());
+    } catch (const EntryError& error) {
+      throw InputError(pathOf(scene_, step_) + "." + error.what());
     } catch (const InputError& error) {
       throw InputError(pathOf(scene_, step_) + ": " + error.what());
     }

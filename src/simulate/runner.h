@@ -19,6 +19,10 @@ class Runner {
 
  private:
   struct TimeIsOver {};
+  // Of a step's entry: the text begins with the entry's key.
+  struct EntryError : InputError {
+    using InputError::InputError;
+  };
   // A tool's way from pose to pose, straight and in equal load steps.
   struct Way {
     std::size_t tool = 0;
@@ -66,6 +70,7 @@ class Runner {
   // state_steps.cpp
   void perform(const SaveStep& step);
   void perform(const LoadStateStep& step);
+  SolveReport loaded(const std::string& file);
 
   // tool_steps.cpp
   void perform(const MoveStep& step);

@@ -10,17 +10,24 @@ void Runner::perform(const SaveStep& step) {
   keep(pipeline_.tissue().lastReport());
 }
 
-// Saved by an earlier step, or where the run's files will be.
-void Runner::perform(const LoadStateStep& step) {
-  const auto saved = result_.saved.find(step.file);
-  const std::string bytes =
-      saved != result_.saved.end() ? saved->second : readStateFile(state_folder_, step.file);
-  SolveReport report;
+// From a state that an earlier step saved, else from one where the run's files will be.
+SolveReport Runner::loaded(const std::string& file) {
+  const auto saved = result_.saved.find(file);
+  std::string bytes;
   try {
-    report = pipeline_.loadState(bytes);
+    bytes = saved != result_.saved.end() ? saved->second : readStateFile(state_folder_, file);
   } catch (const InputError& error) {
-    throw InputError("file = '" + step.file + "': " + error.what());
+    throw EntryError(error.what());
   }
+  try {
+    return pipeline_.loadState(bytes);
+  } catch (const InputError& error) {
+    throw EntryError("file = '" + file + "': " + error.what());
+  }
+}
+
+void Runner::perform(const LoadStateStep& step) {
+  const SolveReport report = loaded(step.file);
   pushes_.assign(tools_.count(), std::nullopt);
   if (tools_.anyStands()) follow();  // they come in anew
   keep(report);

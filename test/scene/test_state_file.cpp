@@ -51,6 +51,14 @@ TEST_F(StateFile, IsReadAsItWasWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(made), fs::directory_iterator()), 1);
 }
 
+// As of any other result.
+TEST_F(StateFile, MayBeReadByWhomTheMaskLets) {
+  const mode_t before = umask(022);
+  writeStateFile(folder(), "a.tissue", "x");
+  umask(before);
+  EXPECT_EQ(fs::status(folder_ / "a.tissue").permissions(), fs::perms(0644));
+}
+
 TEST_F(StateFile, OnlyPlainNamesAreTaken) {
   for (const std::string& name :
        {std::string(), std::string("."), std::string(".."), std::string("../a"),
@@ -67,8 +75,9 @@ TEST_F(StateFile, OnlyPlainNamesAreTaken) {
 }
 
 TEST_F(StateFile, WhatIsMissingOrNoFileIsRefused) {
-  EXPECT_NE(refusalOf([&] { readStateFile(folder(), "none"); }).find("file = 'none'"),
-            std::string::npos);
+  EXPECT_EQ(
+      refusalOf([&] { readStateFile(folder(), "none"); }),
+      "file = 'none': No such file or directory; allowed: a saved state in the folder " + folder());
   fs::create_directory(folder_ / "sub");
   EXPECT_NE(refusalOf([&] { readStateFile(folder(), "sub"); }), "");
   EXPECT_NE(refusalOf([&] { writeStateFile(folder(), "sub", "x"); }), "");

@@ -159,10 +159,21 @@ TEST_F(StateFiles, AStateOfAnotherLatticeIsRefusedAndNothingWritten) {
   std::string other = scene(kBack);
   other.replace(other.find("0.1, 0.1, 0.05"), 14, "0.1, 0.1, 0.04");
   EXPECT_EQ(runInto("out", other), 2);
-  EXPECT_NE(err_.str().find("steps[0].load_state: file = 'a.tissue': is of another lattice"),
+  EXPECT_NE(err_.str().find("steps[0].load_state.file = 'a.tissue': is of another lattice"),
             std::string::npos)
       << err_.str();
   EXPECT_EQ(text("out/nodes.csv"), nodes);
+}
+
+TEST_F(StateFiles, WhatIsWrongNamesTheEntryAndWhatIsAllowed) {
+  EXPECT_EQ(runInto("out", scene(kBack)), 2);
+  EXPECT_NE(err_.str().find("steps[0].load_state.file = 'a.tissue': No such file or directory; "
+                            "allowed: a saved state in the folder "),
+            std::string::npos)
+      << err_.str();
+  EXPECT_EQ(runInto("out", scene(kCut + kSave + kBack + "  - undo: {}\n")), 2);
+  EXPECT_NE(err_.str().find("since the tissue was made, reset or loaded"), std::string::npos)
+      << err_.str();
 }
 
 // What a removal leaves of a cut's front, and of what a grasper held, is what is saved.

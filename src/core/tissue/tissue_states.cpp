@@ -178,7 +178,8 @@ SolveReport TissueStates::undo(int count) {
   Body& body = data_.body;
   if (count < 1 || count > undoable()) {
     throw InputError("count: " + std::to_string(count) + " to take back; allowed: " +
-                     (undoable() == 0 ? "none, as nothing was cut, removed, torn or sutured"
+                     (undoable() == 0 ? "none, as nothing was cut, removed, torn or sutured since "
+                                        "the tissue was made, reset or loaded"
                                       : "1 to " + std::to_string(undoable())));
   }
   const std::size_t target = data_.history.size() - static_cast<std::size_t>(count);
