@@ -103,6 +103,12 @@ void appendPolygon(const std::vector<int>& corners, TriangleMesh& mesh) {
   Ears(corners, mesh).cut();
 }
 
+std::string_view withoutMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kMark.size()) == kMark) text.remove_prefix(kMark.size());
+  return text;
+}
+
 std::string_view takeWord(std::string_view& text) {
   const std::size_t start = std::min(text.find_first_not_of(kBlanks), text.size());
   const std::size_t end = std::min(text.find_first_of(kBlanks, start), text.size());

@@ -28,6 +28,9 @@ void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh);
 // Appends the triangles of a polygon of three corners or more, convex or not.
 void appendPolygon(const std::vector<int>& corners, TriangleMesh& mesh);
 
+// Without the mark that some editors put before a text (UTF-8).
+std::string_view withoutMark(std::string_view text);
+
 // The next word between blanks, taken off the front of `text`; empty at its end.
 std::string_view takeWord(std::string_view& text);
 

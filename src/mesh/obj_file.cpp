@@ -94,6 +94,6 @@ class ObjReader {
 
 }  // namespace
 
-TriangleMesh readObj(const std::string& bytes) { return ObjReader().read(bytes); }
+TriangleMesh readObj(const std::string& bytes) { return ObjReader().read(withoutMark(bytes)); }
 
 }  // namespace robot_tissue

@@ -108,7 +108,7 @@ TriangleMesh readStl(const std::string& bytes) {
   if (has_count && bytes.size() == kHeaderBytes + 4 + kTriangleBytes * count) {
     return readBinary(bytes);
   }
-  return TextReader(bytes).read();
+  return TextReader(withoutMark(bytes)).read();
 }
 
 }  // namespace robot_tissue

@@ -47,7 +47,8 @@ std::string helpText() {
 Runs the steps of a scene and writes what the tissue did to DIR; needs no ROS master.
 
   --out DIR         folder for nodes.csv, patches.csv, increments.csv, tools.csv and surface.stl,
-                    and for pieces.csv where steps cut or remove tissue
+                    for pieces.csv where tissue may part, for sutures.csv where a step sutures,
+                    and for the states that steps save
   --method NAME     solver method, instead of the scene's solver.method
   --tolerance X     relative, 1e-9 to 0.5, instead of the scene's solver.tolerance
   --threads N       1 to 256, instead of the scene's solver.threads

@@ -59,6 +59,9 @@ CommandLine readCommandLine(const std::vector<std::string>& words, const Options
       value = word.substr(equals + 1);
     } else if (i + 1 < words.size()) {
       value = words[++i];
+      if (value.rfind("--", 0) == 0) {  // the next option
+        throw InputError(name + ": must be followed by a value, not by " + onOneLine(value));
+      }
     }
     if (value.empty()) throw InputError(name + ": must be followed by a value");
     line.values[name] = value;

@@ -28,6 +28,11 @@ void print(const Arguments& arguments, std::ostream& out) {
   }
 }
 
+void printOut(const Arguments& arguments, std::ostream& out) {
+  print(arguments, out);
+  if (!out.flush()) throw InputError("stdout: cannot be written, must be what takes the answer");
+}
+
 OnRow progressOn(std::ostream& err, std::size_t steps) {
   const std::string clear_line = "\r\x1b[K";
   return [&err, steps, clear_line](const IncrementRow& row, int increments) {
@@ -153,7 +158,7 @@ int simulate(const std::vector<std::string>& words, std::ostream& out, std::ostr
   return exitCodeOf("simulate", err, [&] {
     const Arguments arguments = parseArguments(words);
     if (!arguments.onlyPrints()) return run(arguments, err, terminal);
-    print(arguments, out);
+    printOut(arguments, out);
     return kExitOk;
   });
 }

@@ -99,6 +99,16 @@ TEST(MeshFiles, BinaryStlIsTakenAndMustBeAsLongAsItsCountSays) {
   }
 }
 
+TEST(MeshFiles, AByteOrderMarkBeforeATextIsPassedOver) {
+  const std::string mark = "\xEF\xBB\xBF";
+  writeFile("mark.stl", mark + stlText(box()));
+  EXPECT_EQ(load("mark.stl").triangles.size(), 12U);
+  writeFile("mark.obj", mark + objText(box()));
+  EXPECT_EQ(load("mark.obj").triangles.size(), 12U);
+  writeFile("mark.obj", mark + mark + objText(box()));
+  expectRefused("mark.obj", "line 1: begins with no word of an OBJ file");
+}
+
 TEST(MeshFiles, ContentOfAnotherFormatThanTheNameIsRefused) {
   for (const char* name : {"binary.obj", "binary.dae", "binary.STL.obj"}) {
     writeFile(name, binaryStl(box()));

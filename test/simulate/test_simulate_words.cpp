@@ -15,6 +15,7 @@ TEST_F(Simulate, BadArgumentsAreRefusedInOneLineAndNothingIsWritten) {
   expectRefused("--out out", "SCENE.yaml is missing");
   expectRefused("block.yaml --out", "--out: must be followed by a value");
   expectRefused("block.yaml --out=", "--out: must be followed by a value");
+  expectRefused("block.yaml --out --quiet", "--out: must be followed by a value, not by --quiet");
   expectRefused("block.yaml other.yaml --out out", "\"other.yaml\"");
   expectRefused("block.yaml --out out --metod paper", "did you mean --method?");
   expectRefused("block.yaml --out out --quiet=1", "--quiet: must stand without a value");
@@ -108,6 +109,13 @@ TEST_F(Simulate, ListsMethodsAndModels) {
   const Outcome help = program("--help");
   EXPECT_EQ(help.code, 0);
   EXPECT_NE(help.out.find("--tolerance X"), std::string::npos);
+}
+
+TEST_F(Simulate, AListThatCannotBeWrittenIsNoSuccess) {
+  const std::string command =
+      std::string("'") + SIMULATE_PATH + "' --list-methods > /dev/full 2> /dev/null";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;
 }
 
 TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
