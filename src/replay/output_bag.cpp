@@ -22,10 +22,15 @@ OutputBag::OutputBag(const std::string& path) : path_(path) {
   try {
     bag_->open(part_, rosbag::bagmode::Write);
   } catch (const std::exception& error) {
+    leaveBag();
     std::filesystem::remove(part_, ignored);
     refuse(error.what());
   }
 }
+
+// As on a full disk: its destructor would close it again, and throw where nothing may be thrown. It
+// stays until the program ends.
+void OutputBag::leaveBag() { static_cast<void>(bag_.release()); }
 
 // A new file: one that is there already is another's, as of a recording that goes on.
 void OutputBag::makePart() {
@@ -43,11 +48,9 @@ void OutputBag::makePart() {
 OutputBag::~OutputBag() {
   if (part_.empty()) return;
   try {
-    bag_->close();
+    if (bag_) bag_->close();
   } catch (const std::exception&) {
-    // As on a full disk. Its destructor would close it again, and throw where nothing may be
-    // thrown: it stays until the program ends.
-    static_cast<void>(bag_.release());
+    leaveBag();
   }
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);
@@ -58,6 +61,7 @@ void OutputBag::commit() {
     bag_->close();
     std::filesystem::rename(part_, path_);
   } catch (const std::exception& error) {
+    leaveBag();
     refuse(error.what());
   }
   part_.clear();

@@ -32,6 +32,7 @@ class OutputBag {
 
  private:
   void makePart();
+  void leaveBag();
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string path_, part_;

@@ -93,7 +93,7 @@ TEST(StateSteps, BadNamesAndMissingFilesAreRefused) {
       std::string::npos);
   EXPECT_NE(refusalOf("  - save: {}\n").find("steps[0].save.file"), std::string::npos);
   const std::string line = refusalOf("  - load_state: {file: never-saved}\n");
-  EXPECT_NE(line.find("steps[0].load_state: file = 'never-saved'"), std::string::npos) << line;
+  EXPECT_NE(line.find("steps[0].load_state.file = 'never-saved'"), std::string::npos) << line;
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 
