@@ -134,5 +134,36 @@ TEST(Supports, WhatStaysThroughOneIsToldAsUnconverged) {
   EXPECT_TRUE(status == SolveStatus::kUnconverged || top < 0.2 * kTop + 0.25 * kSpacing) << top;
 }
 
+// A saved state has no touches: what it lies on bears it, with friction, before a load comes.
+TEST(Supports, OfALoadedStateHoldByFriction) {
+  TissueConfig tissue;
+  tissue.shape.max() = Vec3(0.05, 0.05, 0.03);
+  tissue.spacing = 0.01;
+  tissue.material.young_modulus = 14385.0;
+  tissue.material.poisson_ratio = 0.4;
+  tissue.gravity = Vec3(0.0, 0.0, -9.81);
+  LoadStep aside;
+  aside.patches.emplace_back();
+  aside.patches.front().name = "aside";
+  aside.patches.front().box = Box(Vec3(0.02, 0.02, 0.03), Vec3(0.03, 0.03, 0.03));
+  aside.patches.front().force = Vec3(0.02, 0.0, 0.05);
+  Pipeline goes_on(tissue, {}, {}, {{"table", planeOf(true), 0.5}});
+  goes_on.settle();
+  const std::string lying = goes_on.tissue().savedState();
+  goes_on.load(aside);
+  const double way = greatestDisplacement(goes_on.tissue());
+  const std::string pulled = goes_on.tissue().savedState();
+  for (const std::string& state : {lying, pulled}) {
+    Pipeline loaded(tissue, {}, {}, {{"table", planeOf(true), 0.5}});
+    EXPECT_EQ(loaded.loadState(state).status, SolveStatus::kOk);
+    const ForceBalance balance = loaded.forceBalance();
+    EXPECT_LT(balance.unbalanced().norm(), 0.02 * balance.weight.norm());
+    EXPECT_LT(balance.supports.normalized().head<2>().norm(), 0.5);
+    loaded.load(aside);
+    EXPECT_EQ(loaded.tissue().lastReport().status, SolveStatus::kOk);
+    EXPECT_NEAR(greatestDisplacement(loaded.tissue()), way, 0.1 * way);
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_supports

@@ -150,7 +150,11 @@ void TissueStates::takeOver(const TissueData& other) {
 SolveReport TissueStates::loadState(const SavedState& saved) {
   SolveOutcome& outcome = data_.outcome;
   take(saved);
-  if (!saved.in_balance) return solver_.solve(data_.body.freeNodes());
+  if (!saved.in_balance) {
+    // Supports are met before anything moves, so that what lies on them sticks at first.
+    solver_.renewContacts();
+    return solver_.solve(data_.body.freeNodes());
+  }
   outcome.report.inverted_cells = countInvertedCells(data_.body.lattice(), data_.body.state());
   outcome.report.volume_ratio = data_.body.volumeRatio();
   return outcome.report;
