@@ -165,5 +165,35 @@ TEST(Supports, OfALoadedStateHoldByFriction) {
   }
 }
 
+// What hovers is held by nothing; what lies is.
+TEST(Supports, HoldPiecesThatTheyTouchFromBeingDropped) {
+  const auto across = [](int axis, double place) {
+    std::vector<Vec3> corners;
+    for (const auto& [a, b] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+      Vec3 corner = Vec3::Constant(place);
+      corner[(axis + 1) % 3] = a;
+      corner[(axis + 2) % 3] = b;
+      corners.push_back(corner);
+    }
+    return corners;
+  };
+  for (const bool lies : {false, true}) {
+    TissueConfig tissue = block("elastic", 0.01);
+    tissue.fixed.clear();
+    tissue.free_pieces = FreePieces::kDrop;
+    if (lies) tissue.gravity = Vec3(0.0, 0.0, -9.81);
+    SupportConfig table{"table", planeOf(true), 1.0};
+    table.shape.pose.translation().z() = lies ? 0.0 : -0.002;
+    Pipeline pipeline(tissue, {}, {}, {table});
+    pipeline.settle();
+    pipeline.cut(across(2, 0.025));
+    EXPECT_TRUE(pipeline.tissue().droppedPieces().size() == (lies ? 1U : 0U)) << lies;
+    pipeline.cut(across(1, 0.005));
+    pipeline.cut(across(0, 0.025));
+    EXPECT_EQ(pipeline.tissue().droppedPieces().size(), lies ? 1U : 0U) << lies;
+    EXPECT_EQ(pipeline.tissue().pieces().size(), lies ? 4U : 8U) << lies;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_supports

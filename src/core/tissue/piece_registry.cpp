@@ -8,6 +8,7 @@
 #include "cutting/cell_division.h"
 #include "lattice/connectivity.h"
 #include "robot_tissue/core/disjoint_sets.h"
+#include "tissue/tuning.h"
 
 namespace robot_tissue {
 
@@ -20,7 +21,7 @@ PieceRegistry::PieceRegistry(const Body& body, const StandingLoads& loads, const
 void PieceRegistry::take(std::shared_ptr<const PieceNumbers> numbers) {
   numbers_ = std::move(numbers);
   of_nodes_of_.reset();
-  if (drops_free_) left_free_ = freePieces();
+  if (drops_free_) left_free_ = freePieces(touched());
 }
 
 void PieceRegistry::renumber() {
@@ -75,7 +76,7 @@ const std::vector<TissuePiece>& PieceRegistry::allAtRest() const {
 }
 
 std::vector<TissuePiece> PieceRegistry::atRest() const {
-  const std::vector<char> is_held = heldPieces();
+  const std::vector<char> is_held = heldPieces(near());
   std::vector<int> numbers = numbers_->names().of_parts;
   std::sort(numbers.begin(), numbers.end());
   std::vector<TissuePiece> pieces;
@@ -99,9 +100,42 @@ std::vector<TissuePiece> PieceRegistry::deformed() const {
   return pieces;
 }
 
+std::vector<int> PieceRegistry::near() const {
+  std::vector<int> nodes;
+  for (const LoadingPatch& patch : loads_.patches()) {
+    for (const ContactSpring& contact : patch.contacts) {
+      for (const NodeWeight& carrier : contact.carriers) nodes.push_back(carrier.node);
+    }
+  }
+  return nodes;
+}
+
+std::vector<int> PieceRegistry::touched() const {
+  std::vector<int> nodes;
+  if (!drops_free_) return nodes;
+  for (const LoadingPatch& patch : loads_.patches()) {
+    for (const ContactSpring& contact : patch.contacts) {
+      if (!touches(contact)) continue;
+      for (const NodeWeight& carrier : contact.carriers) nodes.push_back(carrier.node);
+    }
+  }
+  return nodes;
+}
+
+// Where it pushes, or has only just been found in touch. What gravity takes there comes to lie.
+bool PieceRegistry::touches(const ContactSpring& contact) const {
+  const std::vector<Vec3>& displacement = body_.displacement();
+  const auto is_gone = [&](const NodeWeight& carrier) {
+    return at(carrier.node) >= displacement.size();
+  };
+  if (std::any_of(contact.carriers.begin(), contact.carriers.end(), is_gone)) return true;
+  return normalForceOf(contact, displacement) > 0.0 || contact.normal.dot(body_.gravity()) < 0.0 ||
+         gapOf(contact, displacement) <= tuning::kTouchingGap * body_.lattice().spacing();
+}
+
 // Per number. What threads join is held together. Touches may still be of the surface before a
 // change, on ghosts that are gone.
-std::vector<char> PieceRegistry::heldPieces() const {
+std::vector<char> PieceRegistry::heldPieces(const std::vector<int>& touched) const {
   const std::vector<int>& piece_of = ofNodes();
   const auto piece = [&](int node) { return at(node) < piece_of.size() ? piece_of[at(node)] : -1; };
   DisjointSets joined(at(numbers_->names().next));
@@ -120,10 +154,8 @@ std::vector<char> PieceRegistry::heldPieces() const {
   }
   for (const LoadingPatch& patch : loads_.patches()) {
     std::for_each(patch.nodes.begin(), patch.nodes.end(), hold);
-    for (const ContactSpring& contact : patch.contacts) {
-      for (const NodeWeight& carrier : contact.carriers) hold(carrier.node);
-    }
   }
+  std::for_each(touched.begin(), touched.end(), hold);
   for (std::size_t number = 0; number < held.size(); ++number) {
     held[number] = held[at(joined.lowest(static_cast<int>(number)))];
   }
@@ -131,8 +163,8 @@ std::vector<char> PieceRegistry::heldPieces() const {
 }
 
 // Ascending.
-std::vector<int> PieceRegistry::freePieces() const {
-  const std::vector<char> is_held = heldPieces();
+std::vector<int> PieceRegistry::freePieces(const std::vector<int>& touched) const {
+  const std::vector<char> is_held = heldPieces(touched);
   std::vector<int> numbers = numbers_->names().of_parts;
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
                                [&](int number) { return is_held[at(number)] != 0; }),
@@ -142,7 +174,7 @@ std::vector<int> PieceRegistry::freePieces() const {
 }
 
 std::vector<int> PieceRegistry::nodesOfFree() const {
-  const std::vector<int> free_pieces = freePieces();
+  const std::vector<int> free_pieces = freePieces(near());
   std::vector<int> nodes;
   if (free_pieces.empty()) return nodes;
   const std::vector<int>& piece_of = ofNodes();
@@ -154,9 +186,9 @@ std::vector<int> PieceRegistry::nodesOfFree() const {
   return nodes;
 }
 
-std::vector<int> PieceRegistry::freed() {
+std::vector<int> PieceRegistry::freed(const std::vector<int>& touched) {
   if (!drops_free_ || body_.state().pieces == 1) return {};
-  const std::vector<int> now_free = freePieces();
+  const std::vector<int> now_free = freePieces(touched);
   std::vector<int> freed;
   if (now_free.size() == at(body_.state().pieces)) {
     left_free_ = now_free;

@@ -37,14 +37,19 @@ class PieceRegistry {
   void renumber();
   void renumberWithout(const std::vector<int>& pieces);
   bool dropsFree() const { return drops_free_; }
+  // Nodes that tools and supports touch: what is across a gap does not, unless gravity closes that.
+  // To be asked before the cells change, as touches are of those that there were.
+  std::vector<int> touched() const;
   // Those that were held when this was asked last, or are new, and are free now; none where free
   // pieces stay. While nothing holds any of the tissue it floats, and all of it stays.
-  std::vector<int> freed();
+  std::vector<int> freed(const std::vector<int>& touched);
 
  private:
   const std::vector<TissuePiece>& allAtRest() const;
-  std::vector<char> heldPieces() const;
-  std::vector<int> freePieces() const;
+  std::vector<int> near() const;  // nodes that tools and supports are near to
+  bool touches(const ContactSpring& contact) const;
+  std::vector<char> heldPieces(const std::vector<int>& touched) const;
+  std::vector<int> freePieces(const std::vector<int>& touched) const;
   void findLoose();
 
   const Body& body_;

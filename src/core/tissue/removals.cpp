@@ -42,12 +42,13 @@ RemoveReport Surgery::takeAway(const std::vector<std::uint8_t>& within, Stroke s
   if (report.holds_all) return report;
   const TopologyChange change(
       data_, stroke == Stroke::kBegins ? History::Kind::kByItself : History::Kind::kStrokeGoesOn);
+  const std::vector<int> touched = data_.pieces.touched();
   removeCells(lattice, cells, data_.body.model().splitCells(), data_.body.change());
   data_.body.weigh();
   report.volume = volumeOf(lattice, state, cells);
   data_.pieces.renumber();
   report.loads = dropLostLoads();
-  dropFreed();
+  dropFreed(touched);
   changeTopology(nodesAround(lattice, cells, state));
   report.solve = tear();
   report.pieces = state.pieces;
@@ -87,18 +88,19 @@ void Surgery::takeOut(const std::vector<int>& pieces) {
   dropLostLoads();
 }
 
-// Within a change of the topology, before its balance. The surface, and with it the ends of
-// threads, may still be that of before.
-void Surgery::dropFreed() {
+// Within a change of the topology, before its balance; touched: before that. The surface, and with
+// it the ends of threads, may still be that of before.
+void Surgery::dropFreed(const std::vector<int>& touched) {
   if (!data_.pieces.dropsFree() || data_.body.state().pieces == 1) return;
   if (data_.threads.anyWhole()) data_.rebuildSurface();
-  const std::vector<int> freed = data_.pieces.freed();
+  const std::vector<int> freed = data_.pieces.freed(touched);
   if (!freed.empty()) takeOut(freed);
 }
 
 // By tools, loads or threads that hold them no longer.
 void Surgery::dropLetGo() {
-  const std::vector<int> freed = data_.pieces.freed();
+  if (!data_.pieces.dropsFree() || data_.body.state().pieces == 1) return;
+  const std::vector<int> freed = data_.pieces.freed(data_.pieces.touched());
   if (freed.empty()) return;
   const TopologyChange change(data_, History::Kind::kByItself);
   takeOut(freed);

@@ -92,13 +92,14 @@ SolveReport Surgery::severAndBalance(const std::vector<Crossing>& crossings,
     disturbed.push_back(lattice.springs()[at(crossing.spring)].b);
   }
   const int pieces_before = body.state().pieces;
+  const std::vector<int> touched = data_.pieces.touched();
   if (blade != nullptr && tear_strains_.empty()) {
     sever(lattice, crossings, *blade, body.change(), body.model().splitCells());
   } else {
     sever(lattice, crossings, body.change(), body.model().splitCells());
   }
   if (body.state().pieces != pieces_before) data_.pieces.renumber();
-  dropFreed();
+  dropFreed(touched);
   return changeTopology(disturbed);
 }
 

@@ -46,7 +46,7 @@ class Surgery {
   RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
   std::vector<std::string> dropLostLoads();
   void takeOut(const std::vector<int>& pieces);
-  void dropFreed();
+  void dropFreed(const std::vector<int>& touched);
   void dropLetGo();
 
   TissueData& data_;

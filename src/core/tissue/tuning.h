@@ -99,6 +99,9 @@ constexpr int kTimesInTimeStep = 4;
 constexpr double kMostSpentOnAWay = 3000.0;
 
 // Cuts.
+// Of the spacing (1): a tool or support nearer than that to a piece touches it, also where it does
+// not push yet. More: what hovers is held; less: what lies may be taken out. Chosen.
+constexpr double kTouchingGap = 0.02;
 // Spacings (1): how far the lattice's nodes are from the surface that is shown, at most: a cell's
 // diagonal, rounded up. More: blades beside the tissue are looked at in vain.
 constexpr double kNodesBeyondSurface = 2.0;
