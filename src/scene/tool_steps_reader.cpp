@@ -97,7 +97,7 @@ const KeyTable<PushStep> kPushKeys = {
     {"increments", readIncrements<PushStep>},
 };
 
-const KeyTable<GraspStep> kGraspKeys = {{"tool"}};
+const KeyTable<GraspStep> kGraspStepKeys = {{"tool"}};
 
 }  // namespace
 
@@ -150,7 +150,7 @@ PushStep readPush(const Entry& entry, const std::vector<ToolConfig>& tools,
 
 GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools,
                         const std::set<std::string>& standing) {
-  const MapReader map(entry, namesOf(kGraspKeys));
+  const MapReader map(entry, namesOf(kGraspStepKeys));
   const ToolConfig& tool = readTool(map["tool"], tools);
   if (!tool.role.holds) {
     map["tool"].fail("must be one of the tools of role " + toolRolesWith(&ToolRole::holds) + ": " +
@@ -158,7 +158,7 @@ GraspStep readGraspStep(const Entry& entry, const std::vector<ToolConfig>& tools
   }
   requireStands(map["tool"], tool.name, standing);
   GraspStep step{tool.name};
-  readKeys(map, kGraspKeys, step);
+  readKeys(map, kGraspStepKeys, step);
   return step;
 }
 
