@@ -42,7 +42,10 @@ LoadStepEnd LoadStepper::goTo(const RobotPose& pose, IfUnconverged otherwise) {
     solved = followTools(pose, good, otherwise);
     if (solved == Solved::kLost) patience.noteLost();
   }
-  return solved == Solved::kFollows ? LoadStepEnd::kArrived : leave(good, otherwise, solved, 0);
+  if (solved != Solved::kFollows) return leave(good, otherwise, solved, 0);
+  if (!endsTooLong()) return LoadStepEnd::kArrived;
+  goBackTo(good);
+  return LoadStepEnd::kTooLong;
 }
 
 LoadStepEnd LoadStepper::goOn() {
@@ -127,8 +130,10 @@ LoadStepper::Solved LoadStepper::followTools(const RobotPose& pose, Checkpoint& 
 }
 
 // Solves on, kMoreSolves times at most, while the solve has not settled (ShapeJudge::isUnsettled).
-// kLost, too, where a shape did not converge and that is refused.
+// kLost, too, where a shape did not converge and that is refused. What moves and touches nothing
+// gets nowhere that it may not: its steps are judged by their errors alone, as Tissue::wait does.
 LoadStepper::Solved LoadStepper::settle(const Checkpoint& good, IfUnconverged otherwise) {
+  if (world_.tissue.isInTimeStep() && isFree(world_)) return Solved::kFollows;
   for (int more = 0;; ++more) {
     if (judge_.isLost(good) || isRefused(otherwise)) return Solved::kLost;
     const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
@@ -173,7 +178,18 @@ void LoadStepper::expectTimeStep(double duration) {
 
 // Without a duration the tools are elsewhere at once, as where they come in anew.
 void LoadStepper::beginTimeStep(double duration, Touched touched) {
-  if (world_.tissue.hasTime() && duration > 0.0) world_.tissue.beginTimeStep(duration, touched);
+  if (!world_.tissue.hasTime() || !(duration > 0.0)) return;
+  begins_free_ = touched == Touched::kByNone;
+  world_.tissue.beginTimeStep(duration, touched);
+}
+
+// Ends the time step, if there is one. Whether it is to be made anew, shorter: not beside tools or
+// supports, where a touch that begins or ends changes velocities at once, however short the step
+// is.
+bool LoadStepper::endsTooLong() {
+  if (!world_.tissue.isInTimeStep()) return false;
+  world_.tissue.endTimeStep();
+  return begins_free_ && isFree(world_) && world_.tissue.isTimeStepRefused();
 }
 
 // Where time ran out on the way through rounds, the forces are of no shape that the tissue takes.

@@ -16,6 +16,7 @@ enum class LoadStepEnd {
   kArrived,    // the tools are there, and the tissue has followed; or settles later
   kUnderWay,   // time ran out in it, and it can be gone on with from what it came to
   kOutOfTime,  // no shape followed, and time ran out
+  kTooLong,    // one followed, but the error of the time step asks for shorter ones
   kNoShape     // no shape followed
 };
 
@@ -68,6 +69,7 @@ class LoadStepper {
   double durationOf(const RobotPose& from, const RobotPose& to) const;
   void expectTimeStep(double duration);
   void beginTimeStep(double duration, Touched touched);
+  bool endsTooLong();
   void meet(const RobotPose& pose, double way = 0.0);
   double wayOfKnownPlaces() const;
   std::vector<LoadingPatch> touchesAtRest(const RobotPose& pose);
@@ -80,6 +82,7 @@ class LoadStepper {
   const ShapeJudge& judge_;
   Grasping& grasping_;
   UnfinishedLoadStep& under_way_;
+  bool begins_free_ = false;  // the time step under way: nothing is near
 };
 
 }  // namespace robot_tissue

@@ -79,6 +79,7 @@ class ToolMotion {
   bool finishes(RobotPose& start, const RobotPose& pose);
   bool letPass(RobotPose& start, const RobotPose& pose) const;
   double stepsOf(double load_steps, const RobotPose& start, const RobotPose& pose) const;
+  double stepDuration(double steps, const RobotPose& start, const RobotPose& pose) const;
   bool isBounded() const;
   bool isShort(double before_ms) const;
   RobotPose walkFrom(const RobotPose& start, const RobotPose& pose);

@@ -2,6 +2,7 @@
 // shape follows.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "robot_tissue/pipeline/between.h"
@@ -19,6 +20,20 @@ double ToolMotion::stepsOf(double load_steps, const RobotPose& start, const Robo
   return std::ceil(std::max(load_steps, duration / longest) - tuning::kTimeRounding);
 }
 
+namespace {
+
+bool isFreeAndUnconverged(const World& world) {
+  return isFree(world) && world.tissue.lastReport().status == SolveStatus::kUnconverged;
+}
+
+}  // namespace
+
+// s; 0: no time passes.
+double ToolMotion::stepDuration(double steps, const RobotPose& start, const RobotPose& pose) const {
+  const double duration = pose.stamp_s - start.stamp_s;
+  return world_.tissue.hasTime() && duration > 0.0 ? duration / steps : 0.0;
+}
+
 // From `start` to `pose`. Places on the way are counted in steps from its start.
 class ToolMotion::Walk {
  public:
@@ -27,6 +42,7 @@ class ToolMotion::Walk {
   WalkEnd go();
   // How far it came.
   RobotPose came() const { return placeAt(gone_); }
+  bool tookUnconverged() const { return took_unconverged_; }
 
  private:
   struct Stride {
@@ -38,6 +54,7 @@ class ToolMotion::Walk {
 
   RobotPose placeAt(double gone) const;
   Stride next() const;
+  double length() const;
   double free() const;
   WalkEnd take(const Stride& stride);
   WalkEnd arriveAt(const Stride& stride, double before_ms);
@@ -48,12 +65,15 @@ class ToolMotion::Walk {
   Patience& patience_;
   const RobotPose& start_;
   const RobotPose& pose_;
-  double load_steps_;      // of the way
-  double steps_;           // load steps of the way, or time steps, if these are more
-  double end_;             // what is beyond is rounding
-  double gone_ = 0.0;      // so far
-  double longest_ = 1.0;   // next stride, where the way is not free
-  int in_short_ones_ = 0;  // iterations, in load steps that were not whole
+  double load_steps_;     // of the way
+  double steps_;          // load steps of the way, or time steps, if these are more
+  double step_s_;         // s, of a step; 0: no time passes
+  double end_;            // what is beyond is rounding
+  double gone_ = 0.0;     // so far
+  double longest_ = 1.0;  // next stride, where the way is not free
+  double longest_s_ = std::numeric_limits<double>::infinity();  // likewise, in time
+  bool took_unconverged_ = false;  // a stride whose shape nothing touched
+  int in_short_ones_ = 0;          // iterations, in load steps that were not whole
 };
 
 ToolMotion::Walk::Walk(ToolMotion& motion, const RobotPose& start, const RobotPose& pose)
@@ -64,6 +84,7 @@ ToolMotion::Walk::Walk(ToolMotion& motion, const RobotPose& start, const RobotPo
       pose_(pose),
       load_steps_(motion.ways_.stepsBetween(start, pose)),
       steps_(motion.stepsOf(load_steps_, start, pose)),
+      step_s_(motion.stepDuration(steps_, start, pose)),
       // Rigid patches find the shapes that they left by the steps of their ways, as these were.
       end_(world_.tools.anyRigid() ? steps_ : steps_ - tuning::kWayRounding) {
   if (std::exchange(motion.behind_.begins_short, false)) longest_ = tuning::kShortestStep;
@@ -85,13 +106,29 @@ RobotPose ToolMotion::Walk::placeAt(double gone) const {
 }
 
 ToolMotion::Walk::Stride ToolMotion::Walk::next() const {
-  const double length = std::max(longest_, free());
+  const double length = this->length();
   Stride stride;
   stride.is_last = gone_ + length >= end_;
   stride.end = stride.is_last ? steps_ : gone_ + length;
   stride.pose = stride.is_last ? pose_ : between(start_, pose_, stride.end / steps_);
   stride.is_short = std::min(longest_, stride.end - gone_) <= tuning::kShortestStep;
   return stride;
+}
+
+// In time, strides are parts of what is left that are alike. Where nothing is near, they are as
+// long as the error allows, as of Tissue::wait; but a tool goes no farther than a load step.
+double ToolMotion::Walk::length() const {
+  const bool moves = step_s_ > 0.0 && world_.tissue.isMoving();
+  if (!moves || longest_ < 1.0) return std::max(longest_, free());
+  const double left = steps_ - gone_;
+  double parts = left;
+  double longest_s = longest_s_;
+  if (isFree(world_)) {
+    parts = left * load_steps_ / steps_;
+    longest_s = std::min(longest_s, world_.tissue.longestTimeStep());
+  }
+  parts = std::max(parts, left * step_s_ / longest_s);
+  return left / std::max(1.0, std::ceil(parts - tuning::kTimeRounding));
 }
 
 // Steps before any tool can touch. Whole ones in time, too: what is left at the end would be short.
@@ -107,6 +144,11 @@ ToolMotion::WalkEnd ToolMotion::Walk::take(const Stride& stride) {
   const LoadStepEnd end = motion_.load_step_.advance(stride.pose, if_unconverged);
   if (end == LoadStepEnd::kArrived) return arriveAt(stride, before_ms);
   if (end == LoadStepEnd::kUnderWay) return WalkEnd::kUnderWay;
+  if (end == LoadStepEnd::kTooLong) {
+    longest_ = 1.0;
+    longest_s_ = tuning::kShorterTimeStep * step_s_ * (stride.end - gone_);
+    return WalkEnd::kGoesOn;  // whatever time is left: the next update would try the same
+  }
   if (stride.is_short || patience_.isOver()) return stopBefore(stride);
   longest_ = tuning::kShortestStep;
   const bool has_time = end == LoadStepEnd::kNoShape && !motion_.isShort(before_ms);
@@ -118,6 +160,9 @@ ToolMotion::WalkEnd ToolMotion::Walk::arriveAt(const Stride& stride, double befo
   gone_ = stride.end;
   if (longest_ < 1.0) in_short_ones_ += world_.tissue.lastReport().iterations;
   longest_ = std::min(1.0, 2.0 * longest_);
+  longest_s_ = isFree(world_) ? tuning::kLongerTimeStep * longest_s_
+                              : std::numeric_limits<double>::infinity();
+  took_unconverged_ = took_unconverged_ || isFreeAndUnconverged(world_);
   if (stride.is_last) return WalkEnd::kArrived;
   if (world_.tools.anyRigid()) motion_.checkIn(stride.pose);
   if (patience_.cutsOff()) return WalkEnd::kCutOff;
@@ -138,6 +183,7 @@ ToolMotion::WalkEnd ToolMotion::Walk::stopBefore(const Stride& stride) {
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   Walk walk(*this, start, pose);
   const WalkEnd end = walk.go();
+  if (walk.tookUnconverged()) world_.tissue.noteUnconverged();
   note(end);
   if (end != WalkEnd::kArrived && end != WalkEnd::kLostAtEnd) return walk.came();
   if (world_.tools.anyRigid() && world_.tissue.isUntouched()) checkIn(pose);
@@ -160,6 +206,9 @@ void ToolMotion::note(WalkEnd end) {
       behind_.begins_short = true;
       return;
     case WalkEnd::kDeadEnd:
+      world_.tissue.haltMotion();  // else the next update would go the same way
+      report.lost = true;
+      return;
     case WalkEnd::kCutOff:
     case WalkEnd::kLostAtEnd:
       report.lost = true;

@@ -304,6 +304,11 @@ constexpr double kExitStride = 0.1;
 // square of the step are accelerations: of shorter steps the forces would be noise. Longer: contact
 // begins late. Chosen.
 constexpr double kShortestTimeStep = 1e-3;
+// Of a time step (1): the next one, where its error is too great, or no shape followed it while
+// nothing touched; and how much longer it may be after each that is taken. More of the first: more
+// tries. Chosen, as core's.
+constexpr double kShorterTimeStep = 0.3;
+constexpr double kLongerTimeStep = 2.0;
 // Of a time step (1): so little more than whole ones is rounding. Chosen.
 constexpr double kTimeRounding = 1e-6;
 

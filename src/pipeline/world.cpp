@@ -223,4 +223,11 @@ bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world) {
   });
 }
 
+bool isFree(const World& world) {
+  const std::vector<LoadingPatch>& patches = world.tissue.patches();
+  return world.tissue.isMoving() &&
+         std::none_of(patches.begin(), patches.end(),
+                      [](const LoadingPatch& patch) { return patch.tool.has_value(); });
+}
+
 }  // namespace robot_tissue

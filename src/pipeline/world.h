@@ -125,5 +125,7 @@ std::vector<LoadingPatch> patchesOfTools(const World& world);
 Bedding beddingOf(const World& world);
 // Supports are no tools: they alone disturb nothing.
 bool anyToolIn(const std::vector<LoadingPatch>& patches, const World& world);
+// The tissue moves in time, and no tool or support is near.
+bool isFree(const World& world);
 
 }  // namespace robot_tissue

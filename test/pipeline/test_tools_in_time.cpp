@@ -268,5 +268,50 @@ TEST(TissueUnderGravity, MovesFromTheStartAlsoBesideToolsThatAreAway) {
   }
 }
 
+// A thread that is drawn in throws light nodes at more than a spacing in a millisecond: its motion
+// asks for shorter steps, also where a tool that touches nothing is told of.
+class StrongThread : public testing::Test {
+ protected:
+  static constexpr double kSeconds = 0.1;
+
+  static TissueConfig tissue() {
+    TissueConfig tissue;
+    tissue.shape.max() = Vec3(0.02, 0.04, 0.05);
+    tissue.spacing = 0.01;
+    tissue.material.young_modulus = 12810.0;
+    tissue.material.poisson_ratio = 0.49;
+    tissue.fixed.push_back(bottomOf(tissue.shape));
+    return inTime(tissue, 0.01);
+  }
+  static SutureConfig thread() {
+    SutureConfig thread;
+    thread.name = "thread";
+    thread.from = Vec3(0.0088, 0.03128, 0.05);
+    thread.to = Vec3(0.01566, 0.03631, 0.05);
+    thread.rest_length = 0.00425;
+    thread.stiffness = 2000.0;
+    thread.bite = 0.00415;
+    return thread;
+  }
+  static double tensionAfter(Pipeline& pipeline) {
+    pipeline.startClock(0.0);
+    pipeline.suture(thread());
+    for (int part = 0; part < 4; ++part) {
+      EXPECT_EQ(pipeline.wait(kSeconds / 4.0).status, SolveStatus::kOk) << part;
+      EXPECT_FALSE(pipeline.report().lost) << part;
+    }
+    return pipeline.tissue().sutures().front().tension;
+  }
+};
+
+TEST_F(StrongThread, ComesToItsTensionAsWithoutAToolThatIsFarAway) {
+  Pipeline alone(tissue(), methodOf("elastic"), {});
+  Pipeline beside_tool(tissue(), methodOf("elastic"), {probe()});
+  beside_tool.step(at({Vec3(0.2, 0.01, 0.05)}));
+  const double tension = tensionAfter(alone);
+  EXPECT_GT(tension, 0.2);
+  EXPECT_NEAR(tensionAfter(beside_tool), tension, 0.02 * tension);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tools_in_time

@@ -189,6 +189,9 @@ class Tissue {
   void expectTimeStep(double duration, Touched touched);
   void beginTimeStep(double duration, Touched touched = Touched::kByNone);  // s
   void endTimeStep();
+  bool isTimeStepRefused() const;  // the one that ended last, as its error asks for shorter ones
+  // Velocities are zero from here on, as where a motion leads to no shape; forces move on.
+  void haltMotion();
   bool isInTimeStep() const;
   bool goesInTime() const;  // a time step is under way, or expected
   // A time step is under way or expected, and the method goes through it in shorter steps of its

@@ -205,6 +205,10 @@ void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
   motion_ = std::make_shared<const NodeMotion>(std::move(motion));
 }
 
+bool TimeIntegrator::isRefused() const {
+  return error_ratio_ > tuning::kRefusedError && duration_ > tuning::kShortestStep;
+}
+
 double TimeIntegrator::longestStep() const {
   if (!motion_ || motion_->next_duration == 0.0) return tuning::kFirstStep;
   return std::clamp(motion_->next_duration, tuning::kShortestStep, tuning::kLongestStep);

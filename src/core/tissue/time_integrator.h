@@ -87,6 +87,7 @@ class TimeIntegrator {
   void end(const LatticeState& state, const std::vector<Vec3>* velocities);
   // Estimated error of the last step over the one allowed.
   double errorRatio() const { return error_ratio_; }
+  bool isRefused() const;  // it is to be made anew, shorter
 
   double longestStep() const;  // from here on (s)
 

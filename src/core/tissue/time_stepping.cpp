@@ -67,7 +67,7 @@ SolveReport TimeStepping::wait(double duration) {
     const SolveReport report = solver_.solve({});
     endTimeStep();
     total.addWork(report);
-    if (integrator.errorRatio() > tuning::kRefusedError && step > tuning::kShortestStep) {
+    if (integrator.isRefused()) {
       longest = std::max(tuning::kShortestStep, tuning::kMostShrink * step);
       data_.restore(good);
       continue;

@@ -69,6 +69,8 @@ void Tissue::beginTimeStep(double duration, Touched touched) {
   parts_->time.beginTimeStep(duration, touched);
 }
 void Tissue::endTimeStep() { parts_->time.endTimeStep(); }
+bool Tissue::isTimeStepRefused() const { return parts_->data.motion.integrator().isRefused(); }
+void Tissue::haltMotion() { parts_->data.motion.halt(); }
 bool Tissue::isInTimeStep() const { return parts_->data.motion.isInTimeStep(); }
 bool Tissue::goesInTime() const { return parts_->data.motion.goesInTime(); }
 bool Tissue::goesThroughTime() const { return parts_->data.goesThroughTime(); }

@@ -62,6 +62,12 @@ void TissueMotion::noteOtherCells() {
   if (takesNoTime()) step_of_model_.reset();
 }
 
+void TissueMotion::halt() {
+  if (!isMoving()) return;
+  integrator_->rest();
+  wake();
+}
+
 void TissueMotion::stop() {
   if (!hasTime()) return;
   in_time_ = false;

@@ -42,6 +42,7 @@ class TissueMotion {
   void wake();               // loads or cells are others, the shape is not yet
   void wakeUnderBodyLoad();  // the rest shape is not the one under gravity or a pressure
   void noteOtherCells();     // cuts or removals made them, maybe within a time step
+  void halt();               // velocities are zero; between two steps
   void stop();
   void restore(TimeIntegrator::Motion motion, bool in_time);  // of another shape
   void setTolerance(double tolerance);
