@@ -83,7 +83,8 @@ LoadStepEnd LoadStepper::leave(const Checkpoint& good, IfUnconverged otherwise, 
   const bool ran_out_of_time = solved == Solved::kLeftToNextCall || world_.isOutOfTime();
   const int iterations = iterations_before + std::max(1, world_.tissue.lastReport().iterations);
   const bool is_kept = ran_out_of_time && iterations <= tuning::kMostUnderWay &&
-                       !world_.tools.anyRigid() && !world_.is_trial;
+                       !world_.tools.anyRigid() && !world_.is_trial &&
+                       !world_.tissue.isInTimeStep();
   std::optional<Checkpoint> came_to;
   if (is_kept) came_to = checkpoint();
   goBackTo(good);
@@ -122,7 +123,7 @@ LoadStepper::Solved LoadStepper::followTools(const RobotPose& pose, Checkpoint& 
     if (!world_.tools.anyRigid() || world_.unfinished) return Solved::kFollows;
     const double deepest = deepestInRigid(pose);
     if (deepest <= tuning::kDeepEnough * spacing) return Solved::kFollows;
-    const bool is_last = round == tuning::kRigidRounds || world_.tissue.patience().left() == 0;
+    const bool is_last = round == tuning::kRigidRounds || mayNotSolveOn();
     if (is_last) return deepest <= tuning::kThrough * spacing ? Solved::kFollows : Solved::kLost;
     world_.unfinished = !world_.tissue.isInTimeStep() && world_.isOutOfTime();
     if (world_.unfinished) return Solved::kFollows;
@@ -136,7 +137,7 @@ LoadStepper::Solved LoadStepper::settle(const Checkpoint& good, IfUnconverged ot
   if (world_.tissue.isInTimeStep() && isFree(world_)) return Solved::kFollows;
   for (int more = 0;; ++more) {
     if (judge_.isLost(good) || isRefused(otherwise)) return Solved::kLost;
-    const bool is_last = more == tuning::kMoreSolves || world_.tissue.patience().left() == 0;
+    const bool is_last = more == tuning::kMoreSolves || mayNotSolveOn();
     if (is_last || !judge_.isUnsettled()) return Solved::kFollows;
     const bool converged = world_.tissue.lastReport().status != SolveStatus::kUnconverged;
     if (converged && world_.tissue.mayShowUnsettled()) {
@@ -147,6 +148,10 @@ LoadStepper::Solved LoadStepper::settle(const Checkpoint& good, IfUnconverged ot
     if (world_.unfinished) return Solved::kFollows;
     solveOn();
   }
+}
+
+bool LoadStepper::mayNotSolveOn() const {
+  return world_.tissue.patience().left() == 0 || world_.tissue.isTimeStepOver();
 }
 
 void LoadStepper::solveOn() {

@@ -62,6 +62,7 @@ class LoadStepper {
                     int iterations_before);
   Solved followTools(const RobotPose& pose, Checkpoint& good, IfUnconverged otherwise);
   Solved settle(const Checkpoint& good, IfUnconverged otherwise);
+  bool mayNotSolveOn() const;
   void solveOn();
   void follow(std::vector<LoadingPatch> patches);
   bool isRefused(IfUnconverged otherwise) const;

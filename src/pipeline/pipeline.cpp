@@ -108,7 +108,9 @@ void Pipeline::beginReport() {
 }
 
 const StepReport& Pipeline::endReport() {
-  world_.report.late = isLate();
+  const bool is_cut_short = world_.tissue.isMoving() &&  // its last time step
+                            world_.tissue.lastReport().status == SolveStatus::kLate;
+  world_.report.late = isLate() || is_cut_short;
   world_.report.gave_up = state_.gave_up;
   world_.report.hopeless = world_.tissue.patience().cutsOff();
   return world_.report;

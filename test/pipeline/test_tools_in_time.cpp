@@ -313,5 +313,32 @@ TEST_F(StrongThread, ComesToItsTensionAsWithoutAToolThatIsFarAway) {
   EXPECT_NEAR(tensionAfter(beside_tool), tension, 0.02 * tension);
 }
 
+// Without time for a step's solve the tissue goes as far as it comes and stands still there, so it
+// comes to rest where it does with all the time, and never swings beyond.
+TEST(AShortUpdate, EndsTimeStepsAndIsLate) {
+  TissueConfig sagging = inTime(block("elastic", 0.01), 0.01);
+  sagging.gravity = Vec3(0.0, 0.0, -kGravity);
+  Pipeline unhurried(sagging, methodOf("elastic"), {});
+  unhurried.wait(5.0);
+  ASSERT_FALSE(unhurried.tissue().isMoving());
+  const double sag = greatestDisplacement(unhurried.tissue());
+  Pipeline hurried(sagging, methodOf("elastic"), {probe()});
+  hurried.step(pressed(-0.5));
+  hurried.startClock(0.0);
+  hurried.setEnd(Deadline(-1.0));  // over for a second
+  int late = 0;
+  for (int update = 0; update < 1000 && hurried.tissue().isMoving(); ++update) {
+    const SolveReport report = hurried.wait(1e-3);
+    ASSERT_LE(report.iterations, 1) << update;
+    ASSERT_FALSE(hurried.report().lost) << update;
+    const bool is_late = report.status == SolveStatus::kLate;
+    EXPECT_EQ(hurried.report().late, is_late) << update;
+    late += is_late ? 1 : 0;
+    ASSERT_LT(greatestDisplacement(hurried.tissue()), 1.05 * sag) << update;
+  }
+  EXPECT_GT(late, 3);
+  EXPECT_NEAR(greatestDisplacement(hurried.tissue()), sag, 0.05 * sag);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_tools_in_time

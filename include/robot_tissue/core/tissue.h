@@ -189,6 +189,7 @@ class Tissue {
   void expectTimeStep(double duration, Touched touched);
   void beginTimeStep(double duration, Touched touched = Touched::kByNone);  // s
   void endTimeStep();
+  bool isTimeStepOver() const;     // all its time is gone: no other solve is begun in it
   bool isTimeStepRefused() const;  // the one that ended last, as its error asks for shorter ones
   // Velocities are zero from here on, as where a motion leads to no shape; forces move on.
   void haltMotion();

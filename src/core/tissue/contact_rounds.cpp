@@ -61,7 +61,10 @@ LoadStepSolver::RoundDecision LoadStepSolver::endRound(Rounds& rounds) {
   SolveBounds& bounds = data_.bounds;
   const double left_ms = bounds.leftMs();
   bounds.noteSolve(rounds.of_round);
-  const bool no_time = bounds.isBounded() && bounds.isTooShort(left_ms);
+  const bool is_cut_short =
+      data_.motion.isInTimeStep() && rounds.of_round.status == SolveStatus::kLate;
+  const bool no_time =
+      (bounds.isBounded() && bounds.isTooShort(left_ms)) || is_cut_short || bounds.isTimeStepOver();
   if (rounds.count > 1 && bounds.isLookForNextCall()) {
     data_.outcome.is_late = true;
     worsen(rounds, SolveStatus::kUnconverged);

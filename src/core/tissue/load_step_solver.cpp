@@ -42,6 +42,7 @@ SolveReport LoadStepSolver::solve(const std::vector<int>& disturbed) {
   outcome.disturb(disturbed);
   SolveReport report = solveAndBreak(outcome.disturbed);
   // What it left, the next time step takes up.
+  outcome.is_cut_short = data_.motion.isInTimeStep() && outcome.is_late;
   if (data_.motion.isInTimeStep()) outcome.is_late = false;
   if (!outcome.is_late) outcome.disturbed.clear();
   outcome.forgetGhosts(data_.body.cells());

@@ -2,13 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
 
+double SolveBounds::leftOfTimeStepMs() const {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double of_solve = max_ms_ > 0.0 ? max_ms_ : kNone;
+  const double left = deadline_ ? deadline_->leftMs() : kNone;
+  return std::min(of_solve, left) + tuning::kMostBeyondMs;
+}
+
+bool SolveBounds::isTimeStepOver() const {
+  return motion_.isInTimeStep() && leftOfTimeStepMs() <= 0.0;
+}
+
 double SolveBounds::mostMs() const {
-  if (motion_.isInTimeStep()) return 0.0;
+  if (motion_.isInTimeStep()) {
+    const double left = leftOfTimeStepMs();
+    return std::isfinite(left) ? std::max(tuning::kLeastMs, left) : 0.0;
+  }
   if (!deadline_) return max_ms_;
   const double left = deadline_->leftMs();
   if (!std::isfinite(left)) return max_ms_;

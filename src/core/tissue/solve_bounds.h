@@ -1,7 +1,7 @@
 // How long a solve may take: time of the wall's clock in ms, and iterations.
 //
-// In a time step no clock bounds it: half a time step is no shape that tissue moves through, and
-// what a solve leaves would, over the square of the step, be accelerations.
+// Half a time step is no shape that tissue moves through, and what a solve leaves would, over the
+// square of the step, be accelerations. So a time step that was begun has some time beyond that.
 #pragma once
 
 #include <optional>
@@ -28,6 +28,8 @@ class SolveBounds {
   bool isBounded() const { return deadline_ && !motion_.isInTimeStep(); }  // by the deadline
   double leftMs() const { return isBounded() ? deadline_->leftMs() : 0.0; }
   double mostMs() const;  // for the next solve; 0: no bound
+  // The time step under way has had all its time: no other solve is begun in it.
+  bool isTimeStepOver() const;
   int mostIterations(
       double cost) const;       // for the next solve, with the cost of one (Patience::note)
   Patience::Of solved() const;  // what the next solve is of
@@ -45,6 +47,8 @@ class SolveBounds {
   bool isLookForNextCall() const;
 
  private:
+  double leftOfTimeStepMs() const;  // infinite: no bound
+
   const TissueMotion& motion_;
   Patience patience_;
   double max_ms_;

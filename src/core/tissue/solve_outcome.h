@@ -14,6 +14,7 @@ struct SolveOutcome {
   bool is_late = false;              // there was no time to come to balance
   bool is_as_solved = false;         // the shape is the one that the method came to last
   bool are_contacts_settled = true;  // else the shape was shown before they were
+  bool is_cut_short = false;         // in a time step, there was no time to come to its end
   std::vector<int> disturbed;        // nodes that it had no time to balance
 
   void worsen(SolveStatus status) { report.status = std::max(report.status, status); }

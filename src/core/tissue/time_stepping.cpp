@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cutting/split_cells.h"
 #include "tissue/solve_total.h"
@@ -13,6 +14,7 @@ void TimeStepping::beginTimeStep(double duration, Touched touched) {
   data_.motion.beginStep(duration, touched, data_.methods.now());
 }
 
+// A step that was cut short leaves a velocity that is none of the tissue's.
 void TimeStepping::endTimeStep() {
   const bool ends = data_.motion.isInTimeStep();
   data_.motion.leaveStep();
@@ -21,6 +23,11 @@ void TimeStepping::endTimeStep() {
   const std::vector<const std::vector<int>*> falling = data_.pieces.falling();
   for (const std::vector<int>* nodes : falling) {
     shift(*nodes, -integrator.drift(*nodes, data_.body.state(), data_.body.gravity()));
+  }
+  if (std::exchange(data_.outcome.is_cut_short, false)) {
+    data_.motion.halt();
+    if (!falling.empty()) data_.deformSurface();
+    return;
   }
   data_.motion.end(data_.methods.now().velocities());
   if (data_.motion.isMoving()) {

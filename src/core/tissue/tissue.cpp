@@ -69,6 +69,9 @@ void Tissue::beginTimeStep(double duration, Touched touched) {
   parts_->time.beginTimeStep(duration, touched);
 }
 void Tissue::endTimeStep() { parts_->time.endTimeStep(); }
+bool Tissue::isTimeStepOver() const {
+  return parts_->data.outcome.is_cut_short || parts_->data.bounds.isTimeStepOver();
+}
 bool Tissue::isTimeStepRefused() const { return parts_->data.motion.integrator().isRefused(); }
 void Tissue::haltMotion() { parts_->data.motion.halt(); }
 bool Tissue::isInTimeStep() const { return parts_->data.motion.isInTimeStep(); }

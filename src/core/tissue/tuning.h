@@ -132,6 +132,10 @@ constexpr double kIterationsOfEnds = 2.0;
 constexpr double kLevelsOverSurface = 2.0;
 
 // Motion in time.
+// ms: that a time step which was begun may take beyond the end of an update, or of a solve by
+// max_ms. More: longer updates; less: more steps are cut short, after which the tissue stands still
+// for a moment. Chosen: steps beside dragged tools, on large blocks, take up to 50.
+constexpr double kMostBeyondMs = 300.0;
 // In spacings (1): what goes less in a step, and by its velocity and acceleration would, is at
 // rest. More: slow motions end early; less: the rounding of single precision never rests. Chosen.
 constexpr double kAtRest = 4e-6;
