@@ -101,21 +101,20 @@ std::vector<TissuePiece> PieceRegistry::deformed() const {
 }
 
 std::vector<int> PieceRegistry::near() const {
-  std::vector<int> nodes;
-  for (const LoadingPatch& patch : loads_.patches()) {
-    for (const ContactSpring& contact : patch.contacts) {
-      for (const NodeWeight& carrier : contact.carriers) nodes.push_back(carrier.node);
-    }
-  }
-  return nodes;
+  return carriersOf([](const ContactSpring&) { return true; });
 }
 
 std::vector<int> PieceRegistry::touched() const {
+  if (!drops_free_) return {};
+  return carriersOf([this](const ContactSpring& contact) { return touches(contact); });
+}
+
+std::vector<int> PieceRegistry::carriersOf(
+    const std::function<bool(const ContactSpring&)>& counts) const {
   std::vector<int> nodes;
-  if (!drops_free_) return nodes;
   for (const LoadingPatch& patch : loads_.patches()) {
     for (const ContactSpring& contact : patch.contacts) {
-      if (!touches(contact)) continue;
+      if (!counts(contact)) continue;
       for (const NodeWeight& carrier : contact.carriers) nodes.push_back(carrier.node);
     }
   }

@@ -5,6 +5,7 @@
 // Centers in m, in the tissue's frame; volumes in m^3.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -47,6 +48,8 @@ class PieceRegistry {
  private:
   const std::vector<TissuePiece>& allAtRest() const;
   std::vector<int> near() const;  // nodes that tools and supports are near to
+  // Nodes of the contacts that count.
+  std::vector<int> carriersOf(const std::function<bool(const ContactSpring&)>& counts) const;
   bool touches(const ContactSpring& contact) const;
   std::vector<char> heldPieces(const std::vector<int>& touched) const;
   std::vector<int> freePieces(const std::vector<int>& touched) const;
