@@ -111,7 +111,7 @@ robot_tissue_room(tissue
     solvers/multigrid/cycle
     solvers/newton solvers/paper solvers/baselines
   PUBLIC load_step_bound.h method_names.h patience.h tissue.h
-  FILES body.cpp body.h contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h
+  FILES body.cpp body.h contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h kept_still.cpp kept_still.h
     load_program.cpp load_program.h load_ramp.h load_step_bound.cpp load_step_solver.cpp load_step_solver.h
     load_stepping.cpp load_stepping.h method_pair.cpp method_pair.h partings.h patience.cpp
     piece_registry.cpp piece_registry.h registry.cpp registry.h removals.cpp round_gain.h solve_bounds.cpp

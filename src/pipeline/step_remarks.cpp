@@ -2,21 +2,39 @@
 
 namespace robot_tissue {
 
+namespace {
+
+std::string listOf(const std::vector<std::string>& names) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 < names.size() ? ", " : " and ";
+    list += "'" + names[i] + "'";
+  }
+  return list;
+}
+
+}  // namespace
+
 std::string namesOf(const std::vector<std::size_t>& numbers,
                     const std::vector<ToolGeometry>& tools) {
   if (numbers.empty()) return "a tool";
-  std::string names;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0) names += i + 1 < numbers.size() ? ", " : " and ";
-    names += "'" + tools[numbers[i]].name + "'";
-  }
-  return names;
+  std::vector<std::string> names;
+  for (const std::size_t number : numbers) names.push_back(tools[number].name);
+  return listOf(names);
 }
 
 std::string remarkOnLaw(const Tissue& tissue) {
   if (tissue.cellsBeyondLaw() == 0) return "";
   return "cells are strained so far that law fung would overflow: there it goes on as a polynomial "
          "(doc/model.md); give less stiffening or strain";
+}
+
+std::string remarkOnAdrift(const Tissue& tissue) {
+  const std::vector<std::string> names = tissue.adriftLoads();
+  if (names.empty()) return "";
+  return "the force of load " + listOf(names) +
+         " moves tissue that nothing holds: it stays where it is; release the load, or hold the "
+         "tissue";
 }
 
 namespace {
@@ -101,6 +119,8 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
   }
   const std::string of_law = remarkOnLaw(pipeline.tissue());
   if (!of_law.empty()) remarks.push_back({Kind::kBeyondLaw, of_law});
+  const std::string of_adrift = remarkOnAdrift(pipeline.tissue());
+  if (!of_adrift.empty()) remarks.push_back({Kind::kAdrift, of_adrift});
   addOfJaws(pipeline, remarks);
   addOfBurrs(pipeline, remarks);
   return remarks;

@@ -29,6 +29,7 @@ std::string wordOf(StepRemark::Kind kind) {
     case StepRemark::Kind::kTooFast:
       return "TOO_FAST";
     case StepRemark::Kind::kLost:
+    case StepRemark::Kind::kAdrift:
       return "UNCONVERGED";
     case StepRemark::Kind::kBeyondLaw:
     case StepRemark::Kind::kJawsMeet:

@@ -172,6 +172,8 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   keepSutures(increment);
   const std::string of_law = remarkOnLaw(pipeline_.tissue());
   if (!of_law.empty()) remark(of_law);
+  const std::string of_adrift = remarkOnAdrift(pipeline_.tissue());
+  if (!of_adrift.empty()) remark(of_adrift);
   const double update_ms = report.wall_ms + std::exchange(contact_ms_, 0.0);
   result_.increments.push_back({step_, increment, report, update_ms, time_});
   if (on_row_) on_row_(result_.increments.back(), increments);

@@ -93,6 +93,8 @@ struct PatchAnswer {
   Vec3 force = Vec3::Zero();         // of the patch on the tissue (N)
   Vec3 torque = Vec3::Zero();        // of that about the tissue frame's origin (N m)
   Vec3 displacement = Vec3::Zero();  // mean over its nodes, from rest (m)
+  // Its force moves tissue that nothing else holds, without end: it was kept where it was.
+  bool is_adrift = false;
 };
 
 // From the forces of the tissue, and of others' contacts, on its hard nodes, in their order (N;

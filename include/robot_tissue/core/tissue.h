@@ -143,6 +143,10 @@ class Tissue {
   // them, so that no shape is their balance. Where no time passes they stay as they are.
   Vec3 weight() const;
   bool anyHangs() const;
+  // Names of the loads by force that move tissue that nothing else holds, without end, as a cut may
+  // leave it. Where no time passes it stays as it is, and such a load has no answer: UNCONVERGED,
+  // but where a tool touches the tissue.
+  std::vector<std::string> adriftLoads() const;
   Vec3 forceOfFixedNodes() const;  // on the tissue (N, tissue frame)
   // Of the cells, against moving a node alone from rest, mean over the axes (N/m).
   double nodeStiffness(int node) const;
@@ -242,6 +246,8 @@ class Tissue {
     std::shared_ptr<const NodeMotion> motion;  // null: at rest
     bool in_time = false;
     std::vector<std::string> whole_sutures;  // that have not broken
+    bool is_cut_short = false;               // a time step had no time to come to its end
+    std::vector<int> disturbed;              // nodes of the lattice that are still to be balanced
   };
   Shape shape() const;
   void restore(const Shape& shape);  // of this tissue

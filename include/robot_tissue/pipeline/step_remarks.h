@@ -18,6 +18,7 @@ struct StepRemark {
     kTooFast,
     kLost,
     kBeyondLaw,
+    kAdrift,
     kJawsMeet,
     kHoldsNothing,
     kDrills
@@ -31,6 +32,9 @@ std::vector<StepRemark> remarksOn(const Pipeline& pipeline);
 
 // Where the law `fung` would overflow; empty: nowhere.
 std::string remarkOnLaw(const Tissue& tissue);
+
+// Loads whose force acts on tissue that nothing holds; empty: there are none.
+std::string remarkOnAdrift(const Tissue& tissue);
 
 // "'probe'", "'probe' and 'hook'", "'a', 'b' and 'c'": these of the tools; "a tool" without any.
 std::string namesOf(const std::vector<std::size_t>& numbers,

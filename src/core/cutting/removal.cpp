@@ -182,6 +182,42 @@ void restRemoved(LatticeState& state) {
   }
 }
 
+void moveWithNeighbors(const Lattice& lattice, const LatticeState& before, LatticeState& state) {
+  const std::size_t nodes = at(lattice.nodeCount());
+  std::vector<char> is_known(nodes, 1);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    const int number = static_cast<int>(node);
+    is_known[node] = lattice.isFixed(number) || !isGone(before, number) || isGone(state, number);
+  }
+  for (bool any = true; any;) {
+    std::vector<int> beside(nodes, 0);
+    std::vector<Vec3> sum(nodes, Vec3::Zero());
+    any = false;
+    const auto add = [&](int from, int to) {
+      if (is_known[at(from)] == 0 || is_known[at(to)] != 0 || isGone(state, from)) return;
+      sum[at(to)] += state.displacement[at(from)];
+      ++beside[at(to)];
+      any = true;
+    };
+    for (const Spring spring : lattice.springs()) {
+      add(spring.a, spring.b);
+      add(spring.b, spring.a);
+    }
+    for (std::size_t node = 0; node < nodes; ++node) {
+      if (beside[node] == 0) continue;
+      state.displacement[node] = sum[node] / beside[node];
+      is_known[node] = 1;
+    }
+  }
+  for (const Cell& part : state.cells->all()) {
+    if (!part.isPart() || before.cells->owner(part.place, part.lowestOwn()) != nullptr) continue;
+    for (const int node : part.nodes) {
+      if (!state.cells->isGhost(node)) continue;
+      state.displacement[at(node)] = state.displacement[at(state.cells->original(node))];
+    }
+  }
+}
+
 bool isOfWholeParts(const Lattice& lattice, const LatticeState& state) {
   for (const Cell& cell : lattice.cells()) {
     const unsigned taken = takenOf(state, cell.place);

@@ -24,6 +24,10 @@ void removeCells(const Lattice& lattice, const std::vector<std::uint8_t>& cells,
 // Nodes around which nothing is left have no displacement.
 void restRemoved(LatticeState& state);
 
+// Of nodes that were gone in `before` and are there again in `state`: they are moved as far as
+// those beside them are, layer after layer, so that what comes back is where its surroundings went.
+void moveWithNeighbors(const Lattice& lattice, const LatticeState& before, LatticeState& state);
+
 // Sets what hangs on `taken` alone: which springs are severed with it, and `left`.
 void noteTaken(const Lattice& lattice, LatticeState& state);
 

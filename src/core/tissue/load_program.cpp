@@ -71,9 +71,7 @@ void driveByForce(const PatchConfig& config, const Lattice& lattice, bool may_tu
                 "turns false, or a box of nodes on more than one line");
   }
   patch.turns = config.turns;
-  for (const int node : patch.nodes) {
-    patch.center += lattice.restPosition(node) / static_cast<double>(patch.nodes.size());
-  }
+  patch.center = restCenter(lattice, patch.nodes);
 }
 
 void driveByDisplacement(const PatchConfig& config, LoadingPatch& patch) {
@@ -180,7 +178,7 @@ SolveReport LoadProgram::release(const std::vector<std::string>& names) {
 SolveReport LoadProgram::follow(std::vector<LoadingPatch> tool_patches,
                                 const std::vector<int>& disturbed, Bedding bedding) {
   const bool one_left = data_.loads.isOneLeftBy(tool_patches);
-  data_.loads.putToolPatches(std::move(tool_patches));
+  data_.putToolPatches(std::move(tool_patches));
   const bool last_left = one_left && data_.loads.isUntouched();
   const bool returns = data_.methods.now().findsEquilibrium() && bedding == Bedding::kFixedNodes;
   if (data_.motion.isInTimeStep()) return solver_.solve(disturbed);
@@ -234,11 +232,15 @@ SolveReport LoadProgram::solveFromRest() {
   return report;
 }
 
-// Under gravity and threads alone, these drawn in from where the rest shape has their ends.
+// Under gravity and threads alone, these drawn in from where the rest shape has their ends. A shape
+// on the way to another: what loads hold is not let go of, and nothing tears of it.
 SolveReport LoadProgram::settleFromRest() {
   SolveReport report;
   data_.threads.loosen(data_.body.displacement());
-  if (data_.body.hasBodyLoad()) report = settle();
+  if (data_.body.hasBodyLoad()) {
+    data_.motion.stop();
+    report = solver_.solve(data_.body.freeNodes());
+  }
   return data_.threads.anyWhole() ? suturing_.drawThreadsIn() : report;
 }
 

@@ -6,6 +6,7 @@
 
 #include "cutting/split_cells.h"
 #include "robot_tissue/core/cells.h"
+#include "tissue/kept_still.h"
 #include "tissue/solve_total.h"
 #include "tissue/tuning.h"
 
@@ -13,6 +14,8 @@ namespace robot_tissue {
 namespace {
 
 bool isFinite(const Vec3& vector) { return vector.allFinite(); }
+
+bool isAdrift(const PatchAnswer& answer) { return answer.is_adrift; }
 
 bool hasOnlyFiniteNumbers(const SolveReport& report) {
   return std::isfinite(report.residual) && std::isfinite(report.error_estimate) &&
@@ -33,7 +36,7 @@ void LoadStepSolver::renewContacts() {
   std::vector<LoadingPatch> of_tools;
   contact_update_->renew(of_tools, ContactUpdate::Shape::kSolved, ContactUpdate::Round::kNext);
   // None, too: those of before may be on ghosts that are gone.
-  data_.loads.putToolPatches(std::move(of_tools));
+  data_.putToolPatches(std::move(of_tools));
 }
 
 SolveReport LoadStepSolver::solve(const std::vector<int>& disturbed) {
@@ -46,6 +49,11 @@ SolveReport LoadStepSolver::solve(const std::vector<int>& disturbed) {
   if (data_.motion.isInTimeStep()) outcome.is_late = false;
   if (!outcome.is_late) outcome.disturbed.clear();
   outcome.forgetGhosts(data_.body.cells());
+  // Tools are not to stop for a load that nothing bears: beside them it is told alone.
+  if (data_.loads.isUntouched() &&
+      std::any_of(report.patches.begin(), report.patches.end(), isAdrift)) {
+    outcome.report.status = report.status = std::max(report.status, SolveStatus::kUnconverged);
+  }
   outcome.report.volume_ratio = report.volume_ratio = data_.body.volumeRatio();
   return report;
 }
@@ -79,9 +87,9 @@ SolveReport LoadStepSolver::solveOnce(const std::vector<int>& disturbed) {
   const double cost = costOfIteration();
   method.limitTime(data_.bounds.mostMs());
   method.limitIterations(data_.bounds.mostIterations(cost));
-  const bool any_hangs = holdHanging();
+  KeptStill still(data_);
   SolveReport report = solveWithThreads(disturbed, state);
-  if (any_hangs) letHangingBe(report);
+  still.letGo(report);
   const bool is_finite = hasOnlyFiniteNumbers(report) &&
                          (method.staysFinite() || std::all_of(state.displacement.begin(),
                                                               state.displacement.end(), isFinite));
@@ -123,24 +131,6 @@ void LoadStepSolver::noteWork(const SolveReport& report, double cost) {
   } else {
     patience.note(report.iterations, converged, data_.bounds.solved(), cost);
   }
-}
-
-// Pieces that hang, for one solve, as a patch that keeps them where they are. False: there are
-// none.
-bool LoadStepSolver::holdHanging() {
-  LoadingPatch patch;
-  patch.nodes = data_.hangingNodes();
-  if (patch.nodes.empty()) return false;
-  const std::vector<Vec3>& displacement = data_.body.displacement();
-  for (const int node : patch.nodes) patch.displacement.push_back(displacement[at(node)]);
-  data_.loads.patches().push_back(std::move(patch));
-  return true;
-}
-
-// What would have to hold them is no answer to a load.
-void LoadStepSolver::letHangingBe(SolveReport& report) {
-  data_.loads.patches().pop_back();
-  report.patches.resize(data_.loads.patches().size());
 }
 
 void LoadStepSolver::describeShape(SolveReport& report) {

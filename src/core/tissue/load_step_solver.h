@@ -35,8 +35,6 @@ class LoadStepSolver {
   SolveReport solveAndBreak(const std::vector<int>& disturbed);
   SolveReport solveOnce(const std::vector<int>& disturbed);
   SolveReport solveWithThreads(const std::vector<int>& disturbed, LatticeState& state);
-  bool holdHanging();
-  void letHangingBe(SolveReport& report);
   double costOfIteration() const;
   void noteWork(const SolveReport& report, double cost);
   // contact_rounds.cpp

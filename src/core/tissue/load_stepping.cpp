@@ -140,11 +140,10 @@ SolveReport LoadStepping::stepLoads(const std::vector<LoadRamp>& ramps, int incr
   SolveReport report;
   SolveStatus worst = SolveStatus::kOk;
   for (int increment = 1; increment <= increments; ++increment) {
-    report = goInSteps(ramps, increment, increments);
+    const bool arrived = goInSteps(ramps, increment, increments, report);
     worst = std::max(worst, report.status);
-    const bool stopped = report.status == SolveStatus::kLate && data_.loads.isLoading();
     if (on_increment) on_increment(increment, increments, report);
-    if (stopped || (increment < increments && stopsOnTheWay(ramps))) {
+    if (!arrived || (increment < increments && stopsOnTheWay(ramps))) {
       worst = std::max(worst, SolveStatus::kLate);
       break;
     }
@@ -154,13 +153,14 @@ SolveReport LoadStepping::stepLoads(const std::vector<LoadRamp>& ramps, int incr
 }
 
 // An increment that would turn cells over, were only the patch to move, is walked in the method's
-// own steps: in one go the shape would be that of no way there.
-SolveReport LoadStepping::goInSteps(const std::vector<LoadRamp>& ramps, int increment,
-                                    int increments) {
+// own steps: in one go the shape would be that of no way there. False: time ran out before its end,
+// and the rest is due.
+bool LoadStepping::goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments,
+                             SolveReport& report) {
   const double steps =
       data_.methods.now().findsEquilibrium() ? foreseenSteps(ramps) / increments : 1.0;
   const int parts = steps > tuning::kTooFar ? wholeParts(steps) : 1;
-  SolveReport report;
+  report = SolveReport();
   for (int part = 1; part <= parts; ++part) {
     SolveTotal total(report);
     report = goTo(ramps, (increment - 1 + static_cast<double>(part) / parts) / increments);
@@ -170,11 +170,11 @@ SolveReport LoadStepping::goInSteps(const std::vector<LoadRamp>& ramps, int incr
     report = surgery_.tear();
     if (part < parts && stopsOnTheWay(ramps)) {
       report.status = data_.outcome.report.status;
-      break;
+      return false;
     }
     if (isHopeless(report)) part = std::max(part, parts - 1);
   }
-  return report;
+  return true;
 }
 
 SolveReport LoadStepping::goTo(const std::vector<LoadRamp>& ramps, double share) {

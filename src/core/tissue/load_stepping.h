@@ -23,7 +23,8 @@ class LoadStepping {
  private:
   bool isHopeless(const SolveReport& report) const;
   bool stopsOnTheWay(const std::vector<LoadRamp>& ramps);
-  SolveReport goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments);
+  bool goInSteps(const std::vector<LoadRamp>& ramps, int increment, int increments,
+                 SolveReport& report);
   SolveReport goTo(const std::vector<LoadRamp>& ramps, double share);
 
   TissueData& data_;

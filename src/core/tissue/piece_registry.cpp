@@ -76,7 +76,7 @@ const std::vector<TissuePiece>& PieceRegistry::allAtRest() const {
 }
 
 std::vector<TissuePiece> PieceRegistry::atRest() const {
-  const std::vector<char> is_held = heldPieces(near());
+  const std::vector<char> is_held = findHolds(near(), GivenForces::kHold).held;
   std::vector<int> numbers = numbers_->names().of_parts;
   std::sort(numbers.begin(), numbers.end());
   std::vector<TissuePiece> pieces;
@@ -132,38 +132,46 @@ bool PieceRegistry::touches(const ContactSpring& contact) const {
          gapOf(contact, displacement) <= tuning::kTouchingGap * body_.lattice().spacing();
 }
 
-// Per number. What threads join is held together. Touches may still be of the surface before a
-// change, on ghosts that are gone.
-std::vector<char> PieceRegistry::heldPieces(const std::vector<int>& touched) const {
+// Touches may still be of the surface before a change, on ghosts that are gone.
+PieceRegistry::Holds PieceRegistry::findHolds(const std::vector<int>& touched,
+                                              GivenForces forces) const {
   const std::vector<int>& piece_of = ofNodes();
   const auto piece = [&](int node) { return at(node) < piece_of.size() ? piece_of[at(node)] : -1; };
   DisjointSets joined(at(numbers_->names().next));
-  for (const SutureThread& thread : threads_.all()) {
-    if (thread.broken) continue;
-    const int from = piece(thread.from.carriers.front().node);
-    const int to = piece(thread.to.carriers.front().node);
-    if (from >= 0 && to >= 0) joined.join(from, to);
-  }
-  std::vector<char> held(at(numbers_->names().next), 0);
-  const auto hold = [&](int node) {
-    if (piece(node) >= 0) held[at(joined.lowest(piece(node)))] = 1;
+  const auto join = [&](int a, int b) {
+    if (piece(a) >= 0 && piece(b) >= 0) joined.join(piece(a), piece(b));
   };
-  for (std::size_t number = 0; number < held.size(); ++number) {
-    if (allAtRest()[number].fixed) held[at(joined.lowest(static_cast<int>(number)))] = 1;
+  for (const SutureThread& thread : threads_.all()) {
+    if (!thread.broken) {
+      join(thread.from.carriers.front().node, thread.to.carriers.front().node);
+    }
   }
   for (const LoadingPatch& patch : loads_.patches()) {
+    for (const int node : patch.nodes) join(patch.nodes.front(), node);
+  }
+  Holds holds;
+  holds.held.assign(at(numbers_->names().next), 0);
+  const auto hold = [&](int node) {
+    if (piece(node) >= 0) holds.held[at(joined.lowest(piece(node)))] = 1;
+  };
+  for (std::size_t number = 0; number < holds.held.size(); ++number) {
+    holds.group.push_back(joined.lowest(static_cast<int>(number)));
+    if (allAtRest()[number].fixed) holds.held[at(holds.group.back())] = 1;
+  }
+  for (const LoadingPatch& patch : loads_.patches()) {
+    if (forces == GivenForces::kLetGo && byForce(patch)) continue;
     std::for_each(patch.nodes.begin(), patch.nodes.end(), hold);
   }
   std::for_each(touched.begin(), touched.end(), hold);
-  for (std::size_t number = 0; number < held.size(); ++number) {
-    held[number] = held[at(joined.lowest(static_cast<int>(number)))];
+  for (std::size_t number = 0; number < holds.held.size(); ++number) {
+    holds.held[number] = holds.held[at(holds.group[number])];
   }
-  return held;
+  return holds;
 }
 
 // Ascending.
 std::vector<int> PieceRegistry::freePieces(const std::vector<int>& touched) const {
-  const std::vector<char> is_held = heldPieces(touched);
+  const std::vector<char> is_held = findHolds(touched, GivenForces::kHold).held;
   std::vector<int> numbers = numbers_->names().of_parts;
   numbers.erase(std::remove_if(numbers.begin(), numbers.end(),
                                [&](int number) { return is_held[at(number)] != 0; }),
@@ -172,17 +180,65 @@ std::vector<int> PieceRegistry::freePieces(const std::vector<int>& touched) cons
   return numbers;
 }
 
-std::vector<int> PieceRegistry::nodesOfFree() const {
-  const std::vector<int> free_pieces = freePieces(near());
+std::vector<int> PieceRegistry::nodesOf(const std::vector<int>& pieces) const {
   std::vector<int> nodes;
-  if (free_pieces.empty()) return nodes;
+  if (pieces.empty()) return nodes;
   const std::vector<int>& piece_of = ofNodes();
   for (std::size_t node = 0; node < piece_of.size(); ++node) {
-    if (std::binary_search(free_pieces.begin(), free_pieces.end(), piece_of[node])) {
+    if (std::binary_search(pieces.begin(), pieces.end(), piece_of[node])) {
       nodes.push_back(static_cast<int>(node));
     }
   }
   return nodes;
+}
+
+std::vector<int> PieceRegistry::nodesOfFree() const { return nodesOf(freePieces(near())); }
+
+// Per group, by its lowest piece, whether given forces, with gravity, move it without end.
+std::vector<char> PieceRegistry::drifting(const Holds& holds) const {
+  const std::vector<int>& piece_of = ofNodes();
+  std::vector<Vec3> net(holds.held.size(), Vec3::Zero());
+  std::vector<double> given(holds.held.size(), 0.0);
+  std::vector<char> drifting(holds.held.size(), 0);
+  for (const LoadingPatch& patch : loads_.patches()) {
+    if (!byForce(patch)) continue;
+    const int piece = piece_of[at(patch.nodes.front())];
+    if (piece < 0 || holds.held[at(piece)] != 0) continue;
+    const std::size_t group = at(holds.group[at(piece)]);
+    net[group] += patch.force;
+    given[group] += patch.force.norm();
+    drifting[group] = 1;
+  }
+  const bool any = std::count(drifting.begin(), drifting.end(), 1) > 0;
+  const Lattice& lattice = body_.lattice();
+  for (int node = 0; any && !body_.gravity().isZero(0.0) && node < lattice.nodeCount(); ++node) {
+    const int piece = piece_of[at(node)];
+    if (piece >= 0) net[at(holds.group[at(piece)])] += lattice.mass(node) * body_.gravity();
+  }
+  for (std::size_t group = 0; group < drifting.size(); ++group) {
+    if (net[group].norm() <= tuning::kAdrift * given[group]) drifting[group] = 0;
+  }
+  return drifting;
+}
+
+PieceRegistry::Adrift PieceRegistry::adrift() const {
+  Adrift adrift;
+  const std::vector<LoadingPatch>& patches = loads_.patches();
+  if (std::none_of(patches.begin(), patches.end(), byForce)) return adrift;
+  const Holds holds = findHolds(near(), GivenForces::kLetGo);
+  const std::vector<char> drifts = drifting(holds);
+  std::vector<int> pieces;
+  for (std::size_t number = 0; number < holds.group.size(); ++number) {
+    if (drifts[at(holds.group[number])] != 0) pieces.push_back(static_cast<int>(number));
+  }
+  adrift.nodes = nodesOf(pieces);
+  const auto is_adrift = [&](int node) {
+    return std::binary_search(adrift.nodes.begin(), adrift.nodes.end(), node);
+  };
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (byForce(patches[i]) && is_adrift(patches[i].nodes.front())) adrift.patches.push_back(i);
+  }
+  return adrift;
 }
 
 std::vector<int> PieceRegistry::freed(const std::vector<int>& touched) {

@@ -19,6 +19,12 @@ namespace robot_tissue {
 
 class PieceRegistry {
  public:
+  // What given forces move without end, as nothing else holds it or touches it.
+  struct Adrift {
+    std::vector<int> nodes;            // of these pieces, ascending
+    std::vector<std::size_t> patches;  // that move them, ascending
+  };
+
   // drops_free: pieces that nothing holds any more are to be taken out.
   PieceRegistry(const Body& body, const StandingLoads& loads, const Threads& threads,
                 bool drops_free);
@@ -29,6 +35,7 @@ class PieceRegistry {
   std::vector<TissuePiece> atRest() const;    // by number; centers at rest
   std::vector<TissuePiece> deformed() const;  // by number
   std::vector<int> nodesOfFree() const;       // of pieces that nothing holds; ascending
+  Adrift adrift() const;
   // Nodes of each piece that no fixed node holds and nothing holds or touches; its center of mass
   // goes as gravity says.
   std::vector<const std::vector<int>*> falling();
@@ -51,7 +58,16 @@ class PieceRegistry {
   // Nodes of the contacts that count.
   std::vector<int> carriersOf(const std::function<bool(const ContactSpring&)>& counts) const;
   bool touches(const ContactSpring& contact) const;
-  std::vector<char> heldPieces(const std::vector<int>& touched) const;
+  // Pieces by number: which of them hang together by threads and patches, named by the lowest, and
+  // whether something holds them.
+  struct Holds {
+    std::vector<int> group;
+    std::vector<char> held;
+  };
+  enum class GivenForces { kHold, kLetGo };
+  std::vector<char> drifting(const Holds& holds) const;
+  Holds findHolds(const std::vector<int>& touched, GivenForces forces) const;
+  std::vector<int> nodesOf(const std::vector<int>& pieces) const;  // ascending, as these are
   std::vector<int> freePieces(const std::vector<int>& touched) const;
   void findLoose();
 

@@ -55,16 +55,24 @@ RemoveReport Surgery::takeAway(const std::vector<std::uint8_t>& within, Stroke s
   return report;
 }
 
+// The force acts in the middle of the nodes that are left, which stand where they did: for all x,
+// c' + d' + R (x - c') = c + d + R (x - c).
+void Surgery::centerAnew(LoadingPatch& patch) const {
+  if (!byForce(patch) || patch.nodes.empty()) return;
+  const Vec3 center = restCenter(data_.body.lattice(), patch.nodes), moved = center - patch.center;
+  patch.place.displacement += patch.place.rotation * moved - moved;
+  patch.center = center;
+}
+
 // Names of those of which nothing is left. What is left on a line of nodes goes on without turning.
 std::vector<std::string> Surgery::dropLostLoads() {
   std::vector<std::string> lost =
       data_.loads.loseGoneNodes(data_.body.state(), data_.outcome.report.patches);
   data_.loads.forEach([&](LoadingPatch& patch) {
+    centerAnew(patch);
     if (patch.turns && areOnALine(data_.body.lattice(), patch.nodes)) patch.turns = false;
   });
-  const auto is_gone = [&](int node) { return isGone(data_.body.state(), node); };
-  std::vector<int>& disturbed = data_.outcome.disturbed;
-  disturbed.erase(std::remove_if(disturbed.begin(), disturbed.end(), is_gone), disturbed.end());
+  data_.outcome.dropGone(data_.body.state());
   return lost;
 }
 

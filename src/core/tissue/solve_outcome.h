@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robot_tissue/core/cells.h"
+#include "robot_tissue/core/lattice_state.h"
 #include "robot_tissue/core/solve_report.h"
 
 namespace robot_tissue {
@@ -28,6 +29,10 @@ struct SolveOutcome {
     disturbed.insert(disturbed.end(), nodes.begin(), nodes.end());
     std::sort(disturbed.begin(), disturbed.end());
     disturbed.erase(std::unique(disturbed.begin(), disturbed.end()), disturbed.end());
+  }
+  void dropGone(const LatticeState& state) {
+    const auto is_gone = [&](int node) { return isGone(state, node); };
+    disturbed.erase(std::remove_if(disturbed.begin(), disturbed.end(), is_gone), disturbed.end());
   }
   // What is left is remembered as nodes of the lattice: ghosts may go before the next solve.
   void forgetGhosts(const CellSet& cells) {

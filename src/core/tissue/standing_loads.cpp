@@ -39,6 +39,14 @@ bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes) {
                      [&](int node) { return (place(node) - first).cross(way).isZero(); });
 }
 
+Vec3 restCenter(const Lattice& lattice, const std::vector<int>& nodes) {
+  Vec3 center = Vec3::Zero();
+  for (const int node : nodes) {
+    center += lattice.restPosition(node) / static_cast<double>(nodes.size());
+  }
+  return center;
+}
+
 std::vector<LoadingPatch> StandingLoads::namedLoads() const {
   return {patches_.begin(), patches_.begin() + offset(named_)};
 }
@@ -123,8 +131,8 @@ void StandingLoads::forEach(const std::function<void(LoadingPatch&)>& change) {
 }
 
 void StandingLoads::makeDue(const LoadingPatch& target) {
-  dropDue(target.name);
-  due_.push_back(target);
+  const auto is_it = [&](const LoadingPatch& patch) { return patch.name == target.name; };
+  if (std::none_of(due_.begin(), due_.end(), is_it)) due_.push_back(target);
 }
 
 void StandingLoads::dropDue(const std::string& name) {

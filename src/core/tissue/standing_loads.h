@@ -19,6 +19,7 @@ namespace robot_tissue {
 
 // Or at one place: nothing keeps a patch of these nodes from turning.
 bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes);
+Vec3 restCenter(const Lattice& lattice, const std::vector<int>& nodes);  // their mean (m)
 
 class StandingLoads {
  public:
@@ -51,6 +52,7 @@ class StandingLoads {
 
   // Targets of named loads that had no time to come there.
   bool isLoading() const { return !due_.empty(); }
+  // What was due of that name before stays so: the patch was on its way there.
   void makeDue(const LoadingPatch& target);
   void dropDue(const std::string& name);
   std::vector<LoadingPatch> takeDue() { return std::exchange(due_, {}); }

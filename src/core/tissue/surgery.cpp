@@ -14,24 +14,6 @@
 #include "tissue/tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-// What these patches were told to answer when they were the earlier ones; nothing of new ones.
-std::vector<PatchAnswer> asTold(const std::vector<LoadingPatch>& earlier,
-                                const std::vector<PatchAnswer>& answers,
-                                const std::vector<LoadingPatch>& patches) {
-  std::vector<PatchAnswer> told(patches.size());
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    for (std::size_t j = 0; j < std::min(earlier.size(), answers.size()); ++j) {
-      const bool is_it = earlier[j].name == patches[i].name && earlier[j].tool == patches[i].tool;
-      if (is_it) told[i] = answers[j];
-    }
-  }
-  return told;
-}
-
-}  // namespace
-
 Surgery::Surgery(const TissueConfig& tissue, TissueData& data, LoadStepSolver& solver)
     : data_(data), solver_(solver), tear_strains_(tearStrains(data.body.lattice(), tissue)) {}
 
@@ -45,12 +27,9 @@ SolveReport Surgery::changeTopology(const std::vector<int>& disturbed) {
   data_.rebuildSurface();
   data_.deformSurface(
       [](const ContactSpring&, const std::vector<Vec3>&) -> Vec3 { return Vec3::Zero(); });
-  const std::vector<LoadingPatch> earlier = data_.loads.patches();
   solver_.renewContacts();
   if (data_.motion.takesNoTime()) return data_.asItIs();
   if (hasTimeForLevels(before_ms)) return solver_.solve(disturbed);
-  data_.outcome.report.patches =
-      asTold(earlier, data_.outcome.report.patches, data_.loads.patches());
   return leaveToNextCall(disturbed);
 }
 

@@ -45,6 +45,7 @@ class Surgery {
   // removals.cpp
   RemoveReport takeAway(const std::vector<std::uint8_t>& within, Stroke stroke);
   std::vector<std::string> dropLostLoads();
+  void centerAnew(LoadingPatch& patch) const;
   void takeOut(const std::vector<int>& pieces);
   void dropFreed(const std::vector<int>& touched);
   void dropLetGo();

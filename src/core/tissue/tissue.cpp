@@ -42,6 +42,13 @@ Vec3 Tissue::nodeForce(int node) const { return parts_->forces.nodeForce(node); 
 std::vector<int> Tissue::freeNodes() const { return parts_->data.body.freeNodes(); }
 Vec3 Tissue::weight() const { return parts_->forces.weight(); }
 bool Tissue::anyHangs() const { return !parts_->data.hangingNodes().empty(); }
+std::vector<std::string> Tissue::adriftLoads() const {
+  std::vector<std::string> names;
+  for (const std::size_t number : parts_->data.adrift().patches) {
+    names.push_back(patches()[number].name);
+  }
+  return names;
+}
 Vec3 Tissue::forceOfFixedNodes() const { return parts_->forces.forceOfFixedNodes(); }
 double Tissue::nodeStiffness(int node) const { return parts_->data.body.nodeStiffness(node); }
 double Tissue::stiffening(int node) const { return parts_->forces.stiffening(node); }

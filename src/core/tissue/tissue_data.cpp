@@ -1,6 +1,8 @@
 #include "tissue/tissue_data.h"
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "cutting/removal.h"
@@ -38,7 +40,9 @@ Tissue::Shape TissueData::shape() const {
           outcome.are_contacts_settled,
           motion.nodes(),
           motion.isInTime(),
-          threads.whole()};
+          threads.whole(),
+          outcome.is_cut_short,
+          outcome.disturbed};
 }
 
 void TissueData::restore(const Tissue::Shape& shape) {
@@ -51,6 +55,9 @@ void TissueData::restore(const Tissue::Shape& shape) {
   outcome.report = shape.report;
   outcome.is_late = shape.is_late;
   outcome.are_contacts_settled = shape.are_contacts_settled;
+  outcome.is_cut_short = shape.is_cut_short;
+  outcome.disturbed = shape.disturbed;
+  outcome.dropGone(state);
   threads.mend(shape.whole_sutures);
   deformSurface();
 }
@@ -72,10 +79,34 @@ std::vector<int> TissueData::hangingNodes() const {
   return pieces.nodesOfFree();
 }
 
+PieceRegistry::Adrift TissueData::adrift() const {
+  const bool moves = motion.goesInTime() || motion.isMoving();
+  if (moves || !methods.now().findsEquilibrium()) return {};
+  return pieces.adrift();
+}
+
 SolveReport TissueData::asItIs() {
   motion.wake();
   outcome.report.patches.resize(loads.patches().size());
   return outcome.report;
+}
+
+void TissueData::putToolPatches(std::vector<LoadingPatch> of_tools) {
+  const std::vector<PatchAnswer> earlier = std::move(outcome.report.patches);
+  std::map<std::pair<int, std::string>, std::size_t> number_of;
+  for (std::size_t i = loads.named(); i < std::min(loads.patches().size(), earlier.size()); ++i) {
+    number_of[{loads.patches()[i].tool.value_or(-1), loads.patches()[i].name}] = i;
+  }
+  loads.putToolPatches(std::move(of_tools));
+  std::vector<PatchAnswer>& now = outcome.report.patches;
+  now.assign(earlier.begin(), earlier.begin() + static_cast<std::ptrdiff_t>(
+                                                    std::min(earlier.size(), loads.named())));
+  now.resize(loads.patches().size());
+  for (std::size_t i = loads.named(); i < now.size(); ++i) {
+    const auto same =
+        number_of.find({loads.patches()[i].tool.value_or(-1), loads.patches()[i].name});
+    if (same != number_of.end()) now[i] = earlier[same->second];
+  }
 }
 
 void TissueData::beginAside() {

@@ -26,11 +26,16 @@ struct TissueData {
   bool isLate() const { return outcome.is_late || loads.isLoading(); }
   // Of pieces that gravity pulls and nothing bears; ascending.
   std::vector<int> hangingNodes() const;
+  // Likewise by given forces, where the method looks for a balance.
+  PieceRegistry::Adrift adrift() const;
   Tissue::Shape shape() const;
   void restore(const Tissue::Shape& shape);
   SavedState saved() const;
   // Loads or cuts are others, the shape is not yet: time is to move it.
   SolveReport asItIs();
+  // In the place of the earlier ones of tools. Until the next solve each answers what it was last
+  // told to answer, and new ones nothing.
+  void putToolPatches(std::vector<LoadingPatch> of_tools);
   void beginAside();
   void endAside();
 

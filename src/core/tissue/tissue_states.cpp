@@ -83,6 +83,7 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
   state.pieces = countPieces(lattice, state);
   if (!isAsMade(state)) state.cells = cellsLeft(lattice, state, split);
   state.displacement = carriedOver(*now.cells, now.displacement, *state.cells);
+  if (now.taken != state.taken) moveWithNeighbors(lattice, now, state);
   return state;
 }
 

@@ -102,6 +102,10 @@ constexpr double kMostSpentOnAWay = 3000.0;
 // Of the spacing (1): a tool or support nearer than that to a piece touches it, also where it does
 // not push yet. More: what hovers is held; less: what lies may be taken out. Chosen.
 constexpr double kTouchingGap = 0.02;
+// Of the given forces on a piece that nothing else holds (1): as much unbalanced in all, with
+// gravity, moves it without end, and it is kept where it is. As cycle_tuning::kFalling. More:
+// pieces that move off slowly are solved for, without end.
+constexpr double kAdrift = 0.5;
 // Spacings (1): how far the lattice's nodes are from the surface that is shown, at most: a cell's
 // diagonal, rounded up. More: blades beside the tissue are looked at in vain.
 constexpr double kNodesBeyondSurface = 2.0;
