@@ -5,6 +5,7 @@
 
 #include "block_fixtures.h"
 #include "mesh_fixtures.h"
+#include "tissue/history.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue::test_undo {
@@ -210,6 +211,26 @@ TEST(Undo, UnderOtherLoadsThreadsStayWhereTheyWere) {
     all += there.squaredNorm();
   }
   EXPECT_LT(std::sqrt(off), 0.005 * std::sqrt(all));
+}
+
+// More than is kept: the oldest changes are joined, the beginning and the last ones stay.
+TEST(HistoryOfManyChanges, IsBoundedAndLeadsBackToTheBeginning) {
+  constexpr std::size_t kSprings = 8000;  // 1000 bytes a change
+  History history(1000000, 5500);
+  for (std::size_t change = 0; change < 20; ++change) {
+    History::Entry entry;
+    entry.severed.assign(kSprings, false);
+    entry.severed[change] = true;
+    ASSERT_TRUE(history.begins(History::Kind::kByItself));
+    history.begin(History::Kind::kByItself, entry, {});
+    history.end({});
+  }
+  ASSERT_EQ(history.size(), 5U);
+  EXPECT_TRUE(history.before(0).severed[0]);
+  for (std::size_t last = 1; last < 5; ++last) {
+    EXPECT_TRUE(history.before(last).severed[15 + last]) << last;
+  }
+  EXPECT_TRUE(history.hasLoadsSince(0, {}));
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ class PieceNumbers {
   PieceNumbers(const Lattice& lattice, const LatticeState& state, Names names);
 
   const Names& names() const { return names_; }
+  std::size_t bytes() const { return of_nodes_.size() * sizeof(int); }  // nearly all of it
   // After cuts and removals: parts may have come apart, or have gone.
   PieceNumbers after(const Lattice& lattice, const LatticeState& state) const;
   // With these among the dropped ones.

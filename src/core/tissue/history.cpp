@@ -1,6 +1,7 @@
 #include "tissue/history.h"
 
 #include <algorithm>
+#include <climits>
 #include <utility>
 
 #include "saving/saved_loads.h"
@@ -26,6 +27,8 @@ std::size_t bytesOf(const std::shared_ptr<const SavedState>& state) {
 
 }  // namespace
 
+History::History() : History(tuning::kMostHistoryBytes, tuning::kMostTopologyBytes) {}
+
 bool History::begins(Kind kind) {
   const bool goes_on = !changes_.empty() && (kind == Kind::kStrokeGoesOn ||
                                              (kind == Kind::kTear && changes_.back().kind == kind));
@@ -40,13 +43,41 @@ void History::begin(Kind kind, Entry before, const std::vector<LoadingPatch>& na
   change.entry = std::move(before);
   change.loads_before = hashOfLoads(named_loads);
   changes_.push_back(std::move(change));
-  // The way back to the beginning is the one that matters most; of the others the last.
+  forgetOldShapes();
+  while (changes_.size() > 2 && bytesOfTopologies() > most_of_topologies_) joinOldest();
+}
+
+// The way back to the beginning is the one that matters most; of the others the last.
+void History::forgetOldShapes() {
   std::size_t bytes = 0;
   for (const Change& each : changes_) bytes += bytesOf(each.entry.state);
-  for (std::size_t i = 1; i + 1 < changes_.size() && bytes > tuning::kMostHistoryBytes; ++i) {
+  for (std::size_t i = 1; i + 1 < changes_.size() && bytes > most_of_shapes_; ++i) {
     bytes -= bytesOf(changes_[i].entry.state);
     changes_[i].entry.state.reset();
   }
+}
+
+// The two oldest are one from here on, to be taken back together.
+void History::joinOldest() {
+  Change& first = changes_.front();
+  if (first.loads_after != changes_[1].loads_before) first.entry.state.reset();
+  first.loads_after = changes_[1].loads_after;
+  changes_.erase(changes_.begin() + 1);
+}
+
+// Numbers of pieces are shared by changes that leave them as they are.
+std::size_t History::bytesOfTopologies() const {
+  std::size_t bytes = 0;
+  const PieceNumbers* counted = nullptr;
+  for (const Change& change : changes_) {
+    const Entry& entry = change.entry;
+    bytes += entry.severed.size() / CHAR_BIT + entry.parted_at.size() * sizeof(double) +
+             entry.ahead.size() * sizeof(SpringAhead) + entry.taken.size() +
+             entry.sutures.size() * sizeof(SutureThread);
+    if (entry.pieces && entry.pieces.get() != counted) bytes += entry.pieces->bytes();
+    counted = entry.pieces.get();
+  }
+  return bytes;
 }
 
 void History::end(const std::vector<LoadingPatch>& named_loads) {

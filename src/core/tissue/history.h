@@ -30,6 +30,11 @@ class History {
   // goes on to tear.
   enum class Kind { kByItself, kStrokeGoesOn, kTear };
 
+  // Bytes of shapes, and of topologies, that are kept (tuning.h).
+  History();
+  History(std::size_t most_of_shapes, std::size_t most_of_topologies)
+      : most_of_shapes_(most_of_shapes), most_of_topologies_(most_of_topologies) {}
+
   // False: it goes on with the last one.
   bool begins(Kind kind);
   // Before the change, and after it.
@@ -53,6 +58,11 @@ class History {
     std::uint64_t loads_before = 0, loads_after = 0;  // hashes
   };
 
+  void forgetOldShapes();
+  void joinOldest();
+  std::size_t bytesOfTopologies() const;
+
+  std::size_t most_of_shapes_, most_of_topologies_;
   std::vector<Change> changes_;
   bool is_under_way_ = false;
 };

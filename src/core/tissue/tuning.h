@@ -212,5 +212,8 @@ constexpr double kFieldBytes = 175.0;
 // Bytes of the shapes that cuts can be taken back to. More: more of them come back bit for bit, not
 // balanced anew. Chosen.
 constexpr std::size_t kMostHistoryBytes = 256000000;
+// Bytes of what tells the cuts themselves apart. More: the oldest ones are taken back one by one
+// for longer. Chosen.
+constexpr std::size_t kMostTopologyBytes = 256000000;
 
 }  // namespace robot_tissue::tuning
