@@ -45,8 +45,8 @@ robot_tissue_room(membrane
 robot_tissue_room(material
   USES base config lattice membrane
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h
-    elastic_model.cpp elastic_model.h energy_model.h fill_law.cpp fill_law.h inertial_term.h six_spring_model.cpp
-    six_spring_model.h tissue_model.h)
+    elastic_in_time.cpp elastic_model.cpp elastic_model.h energy_model.h fill_law.cpp fill_law.h inertial_term.h six_spring_model.cpp
+    six_spring_model.h reached_displacements.h tissue_model.h viscosity.h)
 robot_tissue_room(loads
   USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h

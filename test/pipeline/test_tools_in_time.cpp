@@ -96,7 +96,7 @@ TEST_P(UnevenPoses, AToolThatPressesEvenlyPressesEvenly) {
   const double at_rest = forceWithoutTime();
   move(-0.001, kDepth, 0.5);
   EXPECT_LT(greatest_, 1.35 * at_rest);
-  EXPECT_LT(greatest_change_, 0.26 * at_rest);
+  EXPECT_LT(greatest_change_, 0.32 * at_rest);
 }
 
 // Its way takes the tissue a millisecond a load step, so that no step throws the tissue away: what

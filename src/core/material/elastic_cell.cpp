@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "material/elastic_law.h"
+#include "material/viscosity.h"
 
 namespace robot_tissue {
 namespace {
@@ -278,8 +279,49 @@ ElasticCell::Curve ElasticCell::barrier(const Determinant& edges) const {
   return curve;
 }
 
+// Half the derivative of I1 - |F|^2, which bends and twists.
+Vec3 ElasticCell::roughSlope(std::size_t node) const {
+  return invariant_slope_[node] - mean_.gradient * mean_.weight[node];
+}
+
+void ElasticCell::damp(const Moduli& viscous, const ElasticCell& from) {
+  Damping& damping = damping_.emplace();
+  damping.shear = viscous.shear;
+  damping.lame = viscous.bulk - 2.0 / 3.0 * viscous.shear;
+  const Eigen::Matrix3d inverse = viscosity::inverseOf(from.mean_.gradient);
+  const Eigen::Matrix3d added = (mean_.gradient - from.mean_.gradient) * inverse;
+  const Eigen::Matrix3d strain = 0.5 * (added + added.transpose());
+  damping.stress = 2.0 * viscous.shear * strain;
+  damping.stress.diagonal().array() += damping.lame * strain.trace();
+  damping.energy = 0.5 * damping.stress.cwiseProduct(strain).sum();
+  for (std::size_t node = 0; node < at(count_); ++node) {
+    damping.weight[node] = inverse.transpose() * mean_.weight[node];
+    damping.rough[node] = roughSlope(node) - from.roughSlope(node);
+    damping.energy +=
+        0.5 * viscous.shear * damping.rough[node].dot(position_[node] - from.position_[node]);
+  }
+}
+
+void ElasticCell::addDamping(CellHessian& density) const {
+  const Pairs pairs = invariantPairs();
+  const double share = 1.0 / (12.0 * spacing_ * spacing_);
+  for (int one = 0; one < count_; ++one) {
+    const Vec3& g = damping_->weight[at(one)];
+    for (int other = 0; other < count_; ++other) {
+      const Vec3& of_other = damping_->weight[at(other)];
+      const double rough =
+          share * pairs(one, other) - mean_.weight[at(one)].dot(mean_.weight[at(other)]);
+      auto block = density.block<3, 3>(3 * one, 3 * other);
+      block +=
+          damping_->shear * of_other * g.transpose() + damping_->lame * g * of_other.transpose();
+      block.diagonal().array() += damping_->shear * (g.dot(of_other) + rough);
+    }
+  }
+}
+
 double ElasticCell::energy() const {
   double density = volume_term_.value;
+  if (damping_) density += damping_->energy;
   for (int i = 0; i < squeezed_count_; ++i) density += barrier(squeezed_[at(i)]).value;
   return volume_ * density;
 }
@@ -287,6 +329,8 @@ double ElasticCell::energy() const {
 Vec3 ElasticCell::gradient(int corner) const {
   const std::size_t c = at(corner);
   Vec3 density = a_ * invariant_slope_[c] + volume_term_.slope * mean_.slope[c];
+  if (damping_)
+    density += damping_->stress * damping_->weight[c] + damping_->shear * damping_->rough[c];
   for (int i = 0; i < squeezed_count_; ++i) {
     density += barrier(squeezed_[at(i)]).slope * squeezed_[at(i)].slope[c];
   }
@@ -301,6 +345,13 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
   density += volume_term_.curvature * j * j.transpose();
   density.diagonal().array() += a_ / (12.0 * spacing_ * spacing_) * invariant_own_[c];
   if (steepness_ > 0.0) density += steepness_ * l * l.transpose();
+  if (damping_) {
+    const Vec3& g = damping_->weight[c];
+    const double rough =
+        invariant_own_[c] / (12.0 * spacing_ * spacing_) - mean_.weight[c].squaredNorm();
+    density += (damping_->shear + damping_->lame) * g * g.transpose();
+    density.diagonal().array() += damping_->shear * (g.squaredNorm() + rough);
+  }
   for (int i = 0; i < squeezed_count_; ++i) {
     const Vec3& slope = squeezed_[at(i)].slope[c];
     density += barrier(squeezed_[at(i)]).curvature * slope * slope.transpose();
@@ -343,6 +394,7 @@ CellHessian ElasticCell::hessian() const {
     }
   }
   for (int i = 0; i < squeezed_count_; ++i) add(barrier(squeezed_[at(i)]), squeezed_[at(i)]);
+  if (damping_) addDamping(density);
   return volume_ * density;
 }
 

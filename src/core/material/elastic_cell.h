@@ -37,6 +37,10 @@ class ElasticCell {
   ElasticCell(const Moduli& moduli, double spacing, const Corners& displacement,
               const CellFill* fill = nullptr);
 
+  // From here on also with what damps the strain that a time step adds (material/viscosity.h), of
+  // these moduli; `from`: the cell where the rate is taken from.
+  void damp(const Moduli& viscous, const ElasticCell& from);
+
   double energy() const;                                            // J, zero at rest
   double shapeEnergyDensity() const { return volume_term_.value; }  // Pa, without the barrier
   int nodeCount() const { return count_; }                          // corners, and nodes reached
@@ -62,6 +66,16 @@ class ElasticCell {
   // (1/2) d2I1/dx_i dx_j, times the unit matrix (1/12h^2).
   using Pairs =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostReached, kMostReached>;
+
+  struct Damping {
+    double shear = 0.0, lame = 0.0;  // mu, lambda (Pa)
+    Reached weight;                  // F_0^-T w of each node (1/m)
+    Eigen::Matrix3d stress;          // 2 mu D + lambda tr D (Pa)
+    Reached rough;        // of what bends and twists, half the derivative of its part of I1 (1/m)
+    double energy = 0.0;  // density (Pa)
+  };
+  Vec3 roughSlope(std::size_t node) const;
+  void addDamping(CellHessian& density) const;
 
   void measureFull();
   void measureFill();
@@ -95,6 +109,7 @@ class ElasticCell {
   double cross_slope_ = 0.0;
   double steepness_ = 0.0;
   Curve volume_term_;  // as a function of J at constant I1
+  std::optional<Damping> damping_;
 };
 
 // x of elastic_law.h, J^(-2/3) I1 - 3, of a cell.

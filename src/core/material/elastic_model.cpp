@@ -7,22 +7,11 @@
 #include "config/material.h"
 #include "material/cell_modes.h"
 #include "material/elastic_law.h"
+#include "material/reached_displacements.h"
 #include "membrane/membrane.h"
 
 namespace robot_tissue {
 namespace {
-
-ElasticCell::Reached reachedOf(const LatticeState& state, const Cell& cell) {
-  ElasticCell::Reached displacement;
-  for (std::size_t corner = 0; corner < kCorners; ++corner) {
-    displacement[corner] = state.displacement[at(cell.nodes[corner])];
-  }
-  for (std::size_t beyond = 0; cell.reach != nullptr && beyond < kBeyond; ++beyond) {
-    const int node = cell.reach->nodes[beyond];
-    displacement[kCorners + beyond] = node < 0 ? Vec3(Vec3::Zero()) : state.displacement[at(node)];
-  }
-  return displacement;
-}
 
 void addGradients(const ElasticCell& shape, const Cell& cell, std::vector<Vec3>& forces) {
   const std::array<int, kMostReached> reached = reachedNodes(cell);
@@ -79,8 +68,8 @@ int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
   if (!stiffens) return 0;
   const auto is_beyond = [&](const Cell& cell) {
     const double b = substanceOf(cell).moduli.stiffening;
-    return b > 0.0 && b * shapeStrain(lattice_.spacing(), reachedOf(state, cell), cell.fill.get(),
-                                      cell.reach.get()) >
+    return b > 0.0 && b * shapeStrain(lattice_.spacing(), reachedOf(state.displacement, cell),
+                                      cell.fill.get(), cell.reach.get()) >
                           elastic_law::kMostExponent;
   };
   const std::vector<Cell>& cells = state.cells->all();
@@ -89,20 +78,9 @@ int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
 
 Moduli ElasticModel::stepModuli(const Cell& cell) const {
   const Moduli moduli = cellModuli(cell);
-  if (inertia_ == nullptr) return moduli;
+  if (inertia_ == nullptr || dampsStrain()) return moduli;
   return {inertia_->elastic_scale * moduli.shear, inertia_->elastic_scale * moduli.bulk,
           moduli.stiffening};
-}
-
-double ElasticModel::cornerInertia(const Cell& cell, int corner) const {
-  return inertia_ == nullptr || corner >= kCorners ? 0.0
-                                                   : inertia_->per_mass * cornerMass(cell, corner);
-}
-
-void ElasticModel::addInertia(const Cell& cell, CellHessian& hessian) const {
-  for (int corner = 0; corner < kCorners; ++corner) {
-    hessian.diagonal().segment<3>(3 * corner).array() += cornerInertia(cell, corner);
-  }
 }
 
 double ElasticModel::freeForceNorm(const LatticeState& state) const {
@@ -118,13 +96,11 @@ double ElasticModel::freeForceNorm(const LatticeState& state) const {
   return std::sqrt(squared);
 }
 
-Vec3 ElasticModel::inertialForce(int node) const {
-  return inertia_ == nullptr ? Vec3(Vec3::Zero()) : inertia_->force[at(node)];
-}
-
 ElasticCell ElasticModel::shaped(const LatticeState& state, const Cell& cell) const {
-  return {stepModuli(cell), lattice_.spacing(), reachedOf(state, cell), cell.fill.get(),
-          cell.reach.get()};
+  ElasticCell shape(stepModuli(cell), lattice_.spacing(), reachedOf(state.displacement, cell),
+                    cell.fill.get(), cell.reach.get());
+  if (dampsStrain()) damp(cell, shape);
+  return shape;
 }
 
 // On one of the cell's nodes (reachedNodes), at this displacement.
@@ -356,9 +332,10 @@ void ElasticModel::addElasticForces(const LatticeState& state, const std::vector
                                     std::vector<Vec3>& forces) const {
   for (const int index : cells) {
     const Cell& cell = state.cells->all()[at(index)];
-    addGradients(ElasticCell(cellModuli(cell), lattice_.spacing(), reachedOf(state, cell),
-                             cell.fill.get(), cell.reach.get()),
-                 cell, forces);
+    addGradients(
+        ElasticCell(cellModuli(cell), lattice_.spacing(), reachedOf(state.displacement, cell),
+                    cell.fill.get(), cell.reach.get()),
+        cell, forces);
   }
 }
 

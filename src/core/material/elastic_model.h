@@ -76,6 +76,8 @@ class ElasticModel : public EnergyModel {
     return substances_[lattice_.compositionOf(cell)];
   }
 
+  bool dampsStrain() const { return inertia_ != nullptr && inertia_->dampsStrain(); }
+  void damp(const Cell& cell, ElasticCell& shape) const;
   Moduli stepModuli(const Cell& cell) const;                 // with what a time step adds
   double cornerInertia(const Cell& cell, int corner) const;  // N/m; zero without a time step
   void addInertia(const Cell& cell, CellHessian& hessian) const;

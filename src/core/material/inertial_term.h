@@ -18,6 +18,12 @@ struct InertialTerm {
   // Least length that a solve's error is relative to, otherwise the way from the free motion; as a
   // vector of all nodes (m).
   double least_way = 0.0;
+  // Damping of the strain that the step adds, by methods that take it so: of what elastic_scale is
+  // above 1, which then is not of the cells' energy, but of material/viscosity.h, from these
+  // displacements on. Else empty: it is of the energy, and `force` has its part.
+  std::vector<Vec3> rate_from;  // m
+  bool dampsStrain() const { return !rate_from.empty(); }
+  double viscosity() const { return elastic_scale - 1.0; }
   bool beside_contacts = false;  // a step of first order (doc/time.md)
   // What the terms above are made of, for methods that go through the step in shorter ones.
   double duration = 0.0;       // s

@@ -46,9 +46,9 @@ class SolverMethod {
   // methods that know their usual iterations.
   virtual void limitIterations(int) {}
 
-  // Of the cells on their nodes in that shape (N), gravity and inertia not included, where the
-  // method has a faster way than the model; empty: it has none.
-  virtual std::vector<Vec3> cellForces(const LatticeState&) { return {}; }
+  // Whether it has what damps the strain of a time step (InertialTerm::dampsStrain); else the rate
+  // of all forces damps.
+  virtual bool dampsStrain() const { return false; }
 
   // Whether it goes through a time step in steps of its own: contacts go along their plane_way, and
   // are left with the force that they had in the mean.

@@ -65,7 +65,7 @@ std::vector<Vec3> TimeIntegrator::rateFrom() const {
   return from;
 }
 
-const InertialTerm& TimeIntegrator::begin(const LatticeState& state,
+const InertialTerm& TimeIntegrator::begin(const LatticeState& state, Damping damping,
                                           const CellForces& cell_forces) {
   if (!motion_) wake(state);
   before_ = state.displacement;
@@ -92,7 +92,12 @@ const InertialTerm& TimeIntegrator::begin(const LatticeState& state,
                 tuning::kSolvedOfDisplacement * std::sqrt(displacement),
                 tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(nodes))}) /
       term_.elastic_scale;  // so that forces are as exact
+  term_.rate_from.clear();
   if (damping_time_ == 0.0) return term_;
+  if (damping == Damping::kOfStrain) {
+    term_.rate_from = rateFrom();
+    return term_;
+  }
   LatticeState there = state;
   there.displacement = rateFrom();
   const std::vector<Vec3> forces = cell_forces(there);

@@ -71,8 +71,11 @@ class TimeIntegrator {
 
   // Forces of the cells in a shape (N), asked for where there is damping.
   using CellForces = std::function<std::vector<Vec3>(const LatticeState&)>;
+  // What damps: the rate of strain, or that of all forces of the cells.
+  enum class Damping { kOfStrain, kOfForces };
   // The term of the step that is expected, from the shape on.
-  const InertialTerm& begin(const LatticeState& state, const CellForces& cell_forces);
+  const InertialTerm& begin(const LatticeState& state, Damping damping,
+                            const CellForces& cell_forces);
   // Where the step leads with the acceleration that there is: a first guess.
   Vec3 predicted(std::size_t node) const {
     return term_.free_motion[node] + 0.5 * duration_ * duration_ * motion_->acceleration[node];

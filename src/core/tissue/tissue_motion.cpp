@@ -42,11 +42,11 @@ void TissueMotion::beginStep(double duration, Touched touched, SolverMethod& met
   expectStep(duration, touched);
   in_time_ = in_step_ = true;
   step_of_model_.reset();  // the cells' forces at its begin are those of the shape alone
-  const auto cell_forces = [&](const LatticeState& shape) {
-    std::vector<Vec3> forces = method.cellForces(shape);
-    return forces.empty() ? elasticModel(body_).cellForces(shape) : forces;
-  };
-  step_of_model_.emplace(body_, integrator_->begin(body_.state(), cell_forces));
+  using Damping = TimeIntegrator::Damping;
+  step_of_model_.emplace(
+      body_, integrator_->begin(
+                 body_.state(), method.dampsStrain() ? Damping::kOfStrain : Damping::kOfForces,
+                 [&](const LatticeState& shape) { return elasticModel(body_).cellForces(shape); }));
 }
 
 void TissueMotion::wake() {

@@ -39,6 +39,7 @@ class NewtonMethod : public SolverMethod {
   SolveReport solve(std::vector<LoadingPatch>& patches, const std::vector<int>& disturbed,
                     LatticeState& state) override;
   bool findsEquilibrium() const override { return true; }
+  bool dampsStrain() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   void limitIterations(int most) override { most_iterations_ = most; }
   double patchStep() const override;

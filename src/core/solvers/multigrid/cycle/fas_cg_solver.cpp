@@ -236,25 +236,6 @@ void FasCgSolver<Real>::takeTimeStep(const SolveContext& solve) {
 }
 
 template <typename Real>
-std::vector<Vec3> FasCgSolver<Real>::cellForces(const LatticeState& shape) {
-  findLevels(shape, Budget(0.0, 0));
-  const CompositeGrid<Real>& grid = shape_.levels().grid();
-  shape_.levels().takeTimeStep(nullptr);
-  knows_cells_ = false;
-  shape_.levels().displacements().take(shape.displacement,
-                                       std::vector<std::uint8_t>(shape.displacement.size(), 0));
-  shape_.finest().findForces();
-  const double unit = grid.modulus() * lattice_.spacing() * lattice_.spacing();
-  std::vector<Vec3> forces(shape.displacement.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < grid.nodes().size(); ++i) {
-    const int entry = grid.entries()[i];
-    forces[at(grid.nodes()[i])] = unit * (shape_.finest().forceOfCells(entry) -
-                                          vectorAt(shape_.finest().right_hand_side, entry));
-  }
-  return forces;
-}
-
-template <typename Real>
 void FasCgSolver<Real>::writeShape(SolveContext& solve) const {
   shape_.levels().displacements().writeTo(solve.shape.state.displacement,
                                           solve.hold.dirichletMask());

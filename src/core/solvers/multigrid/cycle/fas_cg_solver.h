@@ -36,7 +36,6 @@ class FasCgSolver : public MultigridSolver {
   bool wantsDouble() const override { return wants_double_; }
   const GridBox* visited() const override;
   void forget() override;
-  std::vector<Vec3> cellForces(const LatticeState& shape) override;
   void expect(const LatticeState& state) override;
 
  private:

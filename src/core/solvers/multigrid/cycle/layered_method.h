@@ -30,13 +30,11 @@ class LayeredMethod : public SolverMethod {
   Vec3 forceLeft() override { return solver_->forceLeft(); }
   bool staysFinite() const override { return true; }
   bool findsEquilibrium() const override { return true; }
+  bool dampsStrain() const override { return true; }
   void limitTime(double ms) override { options_.max_ms = ms; }
   void limitIterations(int most) override { most_cycles_ = most; }
   double patchStep() const override;
   int usualIterations() const override;
-  std::vector<Vec3> cellForces(const LatticeState& shape) override {
-    return solver_->cellForces(shape);
-  }
 
  private:
   Precision precisionIn(const LatticeState& state) const;

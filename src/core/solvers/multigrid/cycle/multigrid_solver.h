@@ -48,7 +48,6 @@ class MultigridSolver {
   virtual const GridBox* visited() const = 0;          // as SolverMethod
   virtual Vec3 forceLeft() = 0;                        // likewise (N)
   virtual void forget() = 0;
-  virtual std::vector<Vec3> cellForces(const LatticeState& shape) = 0;  // likewise
 };
 
 enum class Precision { kSingle, kDouble };

@@ -65,6 +65,13 @@ bool NodeLoads<Real>::takeTimeStep(const InertialTerm* inertia, const WholeLevel
     }
     on.levels[level].setInertia(std::move(stiffness));
   }
+  const bool damps = is_in_step_ && inertia->dampsStrain();
+  if (damps) findRateFrom(*inertia, on);
+  for (std::size_t level = 0; level < on.levels.size(); ++level) {
+    const double share = damps ? inertia->viscosity() / inertia->elastic_scale : 0.0;
+    if (damps || damps_) on.levels[level].setViscosity(share, rate_from_[level]);
+  }
+  damps_ = damps;
   if (is_in_step_) {
     findLoadOfStep(*inertia, on);
   } else {
@@ -72,6 +79,25 @@ bool NodeLoads<Real>::takeTimeStep(const InertialTerm* inertia, const WholeLevel
   }
   if (!onFinest().front().empty()) on.levels.front().right_hand_side = onFinest();
   return true;
+}
+
+// Coarse levels have the shape as the solver restricts it.
+template <typename Real>
+void NodeLoads<Real>::findRateFrom(const InertialTerm& inertia, const WholeLevels<Real>& on) {
+  rate_from_.resize(on.levels.size());
+  for (std::size_t level = 0; level < on.levels.size(); ++level) {
+    for (auto& values : rate_from_[level]) values.assign(at(on.levels[level].count()), Real(0));
+  }
+  for (std::size_t node = 0; node < on.entries.size(); ++node) {
+    for (int axis = 0; axis < 3; ++axis) {
+      rate_from_.front()[at(axis)][at(on.entries[node])] =
+          static_cast<Real>(inertia.rate_from[node][axis] / on.spacing);
+    }
+  }
+  for (std::size_t level = 1; level < on.levels.size(); ++level) {
+    on.transfers[level - 1].restrictDisplacement(
+        rate_from_[level - 1], on.levels[level].part().covered, rate_from_[level]);
+  }
 }
 
 template <typename Real>
@@ -86,6 +112,13 @@ void NodeLoads<Real>::findLoadOfStep(const InertialTerm& inertia, const WholeLev
       if (!weight_.front().empty()) {
         load += weight_[at(axis)][at(on.entries[node])] / static_cast<Real>(scale_);
       }
+    }
+  }
+  if (!damps_) return;
+  const Field<Real> viscous = on.levels.front().viscousForces(rate_from_.front());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t entry = 0; entry < viscous[axis].size(); ++entry) {
+      load_of_step_[axis][entry] -= viscous[axis][entry];
     }
   }
 }

@@ -39,6 +39,7 @@ class NodeLoads {
  private:
   void findWeight(const ElasticModel& model, const CellSet& cells, const WholeLevels<Real>& on);
   void findMasses(const ElasticModel& model, const CellSet& cells, const WholeLevels<Real>& on);
+  void findRateFrom(const InertialTerm& inertia, const WholeLevels<Real>& on);
   void findLoadOfStep(const InertialTerm& inertia, const WholeLevels<Real>& on);
 
   Field<Real> weight_;                       // gravity
@@ -46,6 +47,8 @@ class NodeLoads {
   double scale_ = 1.0;
   bool is_in_step_ = false;
   Field<Real> load_of_step_;
+  bool damps_ = false;                  // the strain that the step adds
+  std::vector<Field<Real>> rate_from_;  // per level, displacements that it is added to
 };
 
 extern template class NodeLoads<float>;

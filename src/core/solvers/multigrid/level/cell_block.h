@@ -28,7 +28,11 @@ struct Block {
   L corner_stiffness[kCorners][6];  // what the barrier adds to it where one is squeezed
   bool is_squeezed = false;
   Real per_greatest{};  // CellGrid::per_greatest
-  L parts{};            // bulk where the volumes of a cell's parts are held
+  // In a time step with damping, else not set (material/viscosity.h).
+  bool has_viscosity = false;
+  L viscous_shear, viscous_lame;  // mu and lambda of the strain that the step adds
+  L rest_slopes[3][3];            // of F where the rate is taken from
+  L parts{};                      // bulk where the volumes of a cell's parts are held
   bool has_parts = false;
   // From corners to modes, M_s = sum over k of (-1)^(bits in k and s) x_k, by sums and differences
   // along one axis after another (Walsh-Hadamard). Twice gives eight times what was: it also goes
@@ -167,8 +171,52 @@ struct Block {
            cofactor[along][c] * cofactor[along][c];
   }
 
+  // Shares of the moduli there are, as of CellGrid.
+  ROBOT_TISSUE_INLINE void divideModuli(Real elastic, Real viscous) {
+    has_viscosity = true;
+    viscous_shear = viscous * shear;
+    viscous_lame = viscous * (bulk - Real(2.0 / 3.0) * shear);
+    shear *= elastic;
+    bulk *= elastic;
+  }
+
+  // With the strain D, the symmetric part of H F_0^-1, H e_a = -m_a: the stress S = 2 mu D +
+  // lambda tr D; a quarter of the gradients in the m_a, -S F_0^-T e_a.
+  ROBOT_TISSUE_INLINE void findViscous(L (&push)[3][3]) const {
+    L rate[3][3];
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        rate[i][j] = mode[1][i] * rest_slopes[0][j] + mode[2][i] * rest_slopes[1][j] +
+                     mode[4][i] * rest_slopes[2][j];
+      }
+    }
+    const L even = viscous_lame * (rate[0][0] + rate[1][1] + rate[2][2]);
+    L stress[3][3];
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) stress[i][j] = viscous_shear * (rate[i][j] + rate[j][i]);
+      stress[i][i] += even;
+    }
+    for (int a0 = 0; a0 < 3; ++a0) {
+      for (int i = 0; i < 3; ++i) {
+        push[a0][i] =
+            Real(0.25) * (stress[i][0] * rest_slopes[a0][0] + stress[i][1] * rest_slopes[a0][1] +
+                          stress[i][2] * rest_slopes[a0][2]);
+      }
+    }
+  }
+
+  ROBOT_TISSUE_INLINE void addViscous(const L (&push)[3][3]) {
+    for (int a0 = 0; a0 < 3; ++a0) {
+      for (int axis = 0; axis < 3; ++axis) mode[1 << a0][axis] += push[a0][axis];
+    }
+  }
+
+  // a of the modes that bend and twist, whose rate is damped as they are.
+  ROBOT_TISSUE_INLINE L bent() const { return has_viscosity ? a + viscous_shear : a; }
+
   ROBOT_TISSUE_INLINE void scale() {
-    const L one = a * Real(0.25), two = a * Real(0.5 / 3.0), three = a * Real(0.25 / 3.0);
+    const L rough = bent();
+    const L one = a * Real(0.25), two = rough * Real(0.5 / 3.0), three = rough * Real(0.25 / 3.0);
     const L push = Real(0.25) * pressure, pull = one - push;
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
@@ -250,7 +298,9 @@ struct Block {
       const L shares[3] = {share * WholeBox<V>::side(0, corner & 1),
                            share * WholeBox<V>::side(1, corner >> 1 & 1),
                            share * WholeBox<V>::side(2, corner >> 2 & 1)};
-      findStiffness(a * Real(1.0 / 3.0) + of_strain, shares, stiffness[corner]);
+      L diagonal = a * Real(1.0 / 3.0) + of_strain;
+      if (has_viscosity) diagonal += viscous_shear * Real(1.0 / 3.0 - 3.0 / 16.0);
+      findStiffness(diagonal, shares, stiffness[corner]);
     }
   }
 
@@ -269,6 +319,23 @@ struct Block {
       const int b = (axis + 1) % 3, c = (axis + 2) % 3;
       stiffness[axis] = diagonal + of_volume * s[axis] * s[axis];
       stiffness[3 + axis] = of_volume * s[b] * s[c];
+    }
+    if (has_viscosity) stiffenViscous(shares, stiffness);
+  }
+
+  // The bound of `findStiffness` at rest, in the shape where the rate is taken from: with g the sum
+  // of the shares of the rows of F_0^-1, mu |g|^2 1 + (lambda + 7/3 mu) g g^T.
+  ROBOT_TISSUE_INLINE void stiffenViscous(const L (&shares)[3], L (&stiffness)[6]) const {
+    L g[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      g[axis] = shares[0] * rest_slopes[0][axis] + shares[1] * rest_slopes[1][axis] +
+                shares[2] * rest_slopes[2][axis];
+    }
+    const L around = viscous_shear * (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    const L along = viscous_lame + Real(7.0 / 3.0) * viscous_shear;
+    for (int axis = 0; axis < 3; ++axis) {
+      stiffness[axis] += around + along * g[axis] * g[axis];
+      stiffness[3 + axis] += along * g[(axis + 1) % 3] * g[(axis + 2) % 3];
     }
   }
 
@@ -299,7 +366,10 @@ struct Block {
       }
       if (has_parts) addParts(push);
     }
+    L viscous[3][3];
+    if (has_viscosity) findViscous(viscous);
     scale();
+    if (has_viscosity) addViscous(viscous);
     if (more) {
       for (int s = 1; s < kCorners; ++s) {
         for (int axis = 0; axis < 3; ++axis) mode[s][axis] += push[s][axis];

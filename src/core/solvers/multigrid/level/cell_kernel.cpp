@@ -59,6 +59,12 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
   block.per_greatest = grid.per_greatest;
   block.has_parts = standing != 0;
   if (block.has_parts) block.parts = block.bulk * onesOf<V>(standing);
+  if (grid.has_viscosity) {
+    for (std::size_t i = 0; i < kNine; ++i) {
+      block.rest_slopes[i / 3][i % 3] = load<V>(grid.inverse[i] + first);
+    }
+    block.divideModuli(grid.elastic, grid.viscous);
+  }
   block.template solve<kWithStiffness, kStiffens>();
   typename V::Lanes stiffness[kCorners / 2][kSymmetric];
   if constexpr (kWithStiffness) block.findStiffness(stiffness);
@@ -103,6 +109,18 @@ ROBOT_TISSUE_INLINE void addAllBlocks(const CellGrid<typename V::Real>& grid,
   }
 }
 
+// Of loose cells, filled ones, too.
+template <typename V, typename Cells>
+ROBOT_TISSUE_INLINE void takeViscosity(const CellGrid<typename V::Real>& grid, const Cells* cells,
+                                       int count, Block<V>& block) {
+  for (std::size_t i = 0; i < kNine; ++i) {
+    typename V::Lanes& here = block.rest_slopes[i / 3][i % 3];
+    here = typename V::Lanes{};
+    for (int cell = 0; cell < count; ++cell) here[cell] = cells[cell].inverse[i];
+  }
+  block.divideModuli(grid.elastic, grid.viscous);
+}
+
 template <typename V>
 ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
                                        const LooseCell<typename V::Real>* cells, int count) {
@@ -122,6 +140,7 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
+  if (grid.has_viscosity) takeViscosity<V>(grid, cells, count, block);
   if (grid.stiffening == nullptr) {
     block.template solve<true, false>();
   } else {
@@ -205,6 +224,7 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   block.per_greatest = grid.per_greatest;
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
+  if (grid.has_viscosity) takeViscosity<V>(grid, cells, count, block);
   L stiffness[kMostReached][kSymmetric];
   L(*const asked)[kSymmetric] = grid.findsStiffness() ? stiffness : nullptr;
   if (grid.stiffening == nullptr) {

@@ -22,6 +22,8 @@
 
 namespace robot_tissue {
 
+constexpr std::size_t kNine = 9;  // numbers of a matrix, by rows
+
 constexpr std::uint16_t kAllLanes = 0xffff;
 
 // Cells first .. first + kLanes - 1, bits from the lowest on.
@@ -43,6 +45,12 @@ struct CellGrid {
   int plane;               // and along z
   bool loose_stand;        // loose cells are coarse, as CellBlock::standing
   Real per_greatest;       // 1 over the greatest stiffness of a motion, in its nodes' own, at rest
+  // In a time step with damping: shares of the moduli that are elastic, and that are of the strain
+  // added in the step (material/viscosity.h); for that, per cell, the inverse of F where the rate
+  // is taken from, by rows. Elsewhere all is elastic.
+  bool has_viscosity;
+  Real elastic, viscous;
+  std::array<const Real*, kNine> inverse;
   // Where a plane of cells adds its forces, from node `origin` on: those on the cells' lower four
   // corners, and those on the upper ones, which are in the next plane of nodes.
   int origin;
@@ -64,6 +72,7 @@ struct LooseCell {
   Real shear = 0;
   Real bulk = 0;
   Real stiffening = 0;
+  std::array<Real, kNine> inverse{};  // CellGrid::inverse
 };
 
 // Adds the forces of the cells to `lower`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "material/viscosity.h"
 #include "simd/field_kernel.h"
 
 namespace robot_tissue {
@@ -168,6 +169,56 @@ void CellOperator<Real>::share(Workers& workers) {
 }
 
 template <typename Real>
+void CellOperator<Real>::findViscousForces(const Loads& loads) {
+  const Real elastic = std::exchange(elastic_, Real(0));
+  const Numbers<Real> inertia_kept = std::exchange(inertia, {});
+  findForces(loads, Find::kForces, blocks_);
+  inertia = inertia_kept;
+  elastic_ = elastic;
+}
+
+template <typename Real>
+void CellOperator<Real>::setViscosity(double share, const Field<Real>& rate_from) {
+  viscous_ = static_cast<Real>(share);
+  elastic_ = Real(1) - viscous_;
+  for (auto& values : inverse_) values.resize(share > 0.0 ? at(count_) : 0);
+  if (!(share > 0.0)) return;
+  for (int cell = 0; cell < grid_.beside; ++cell) {
+    if (!(shear_[at(cell)] > Real(0))) continue;
+    std::array<int, kCorners> nodes;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      nodes[at(corner)] =
+          cell + (corner & 1) + (corner >> 1 & 1) * grid_.row + (corner >> 2 & 1) * grid_.plane;
+    }
+    const std::array<Real, kNine> inverse = inverseOfStrain(rate_from, nodes);
+    for (std::size_t i = 0; i < kNine; ++i) inverse_[i][at(cell)] = inverse[i];
+  }
+  for (LooseCell<Real>& cell : loose_) cell.inverse = inverseOfStrain(rate_from, cell.nodes);
+  for (LooseCell<Real>& cell : filled_) cell.inverse = inverseOfStrain(rate_from, cell.nodes);
+}
+
+// Of the mean of F over the whole cell, also where it is filled in part: what the strain is taken
+// with is the same at both ends of the step.
+template <typename Real>
+std::array<Real, kNine> CellOperator<Real>::inverseOfStrain(
+    const Field<Real>& displacement, const std::array<int, kCorners>& nodes) const {
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Identity();
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const std::size_t node = at(nodes[at(corner)]);
+    const Vec3 moved(displacement[0][node], displacement[1][node], displacement[2][node]);
+    for (int axis = 0; axis < 3; ++axis) {
+      strain.col(axis) += ((corner >> axis & 1) != 0 ? 0.25 : -0.25) * moved;
+    }
+  }
+  const Eigen::Matrix3d inverse = viscosity::inverseOf(strain);
+  std::array<Real, kNine> numbers;
+  for (std::size_t i = 0; i < kNine; ++i) {
+    numbers[i] = static_cast<Real>(inverse(static_cast<int>(i / 3), static_cast<int>(i % 3)));
+  }
+  return numbers;
+}
+
+template <typename Real>
 bool CellOperator<Real>::isShared() const {
   return workers_ != nullptr && grid_.plane * grid_.size[2] >= level_tuning::kWorthSharing;
 }
@@ -218,6 +269,10 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   cells.plane = grid_.plane;
   cells.loose_stand = !part_.covered.isEmpty();
   cells.per_greatest = per_greatest;
+  cells.has_viscosity = viscous_ > Real(0);
+  cells.elastic = elastic_;
+  cells.viscous = viscous_;
+  for (std::size_t i = 0; i < kNine; ++i) cells.inverse[i] = inverse_[i].data();
   return cells;
 }
 

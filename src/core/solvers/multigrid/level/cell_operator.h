@@ -67,12 +67,17 @@ class CellOperator {
     SymmetricField<Real>& inverse;
   };
   void findForces(const Loads& loads, Find what);
+  // Of the viscous share of the moduli alone.
+  void findViscousForces(const Loads& loads);
   // What findForces found, with stiffness, of other nodes that are free.
   void takeFree(const Loads& loads) const;
   // Of covered cells alone, and of the right-hand side.
   void findForcesOfCovered(const Loads& loads);
   // In these threads from now on, with the same results.
   void share(Workers& workers);
+  // In a time step with damping, such a share of the moduli (0 to below 1) is of the strain that is
+  // added to the shape of these displacements; 0: all is elastic.
+  void setViscosity(double share, const Field<Real>& rate_from);
   // Calls visit(first, count) for parts of all entries, each in the thread that finds the forces
   // there, as what they are found from is in its cache.
   template <typename Visit>
@@ -107,6 +112,8 @@ class CellOperator {
   void findForces(const Loads& loads, Find what, const Blocks& blocks);
   void findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first, int end,
                   Sums& sums);
+  std::array<Real, kNine> inverseOfStrain(const Field<Real>& displacement,
+                                          const std::array<int, kCorners>& nodes) const;
   CellGrid<Real> gridOf(const Loads& loads) const;
   void addPlane(const Loads& loads, Find what, const std::vector<CellBlock>& blocks, int plane,
                 Sums& sums) const;
@@ -117,7 +124,9 @@ class CellOperator {
   LevelGrid grid_;
   int count_ = 0;
   Numbers<Real> shear_, bulk_;
-  Numbers<Real> stiffening_;  // empty: 0 in all
+  Numbers<Real> stiffening_;                  // empty: 0 in all
+  Real elastic_ = 1, viscous_ = 0;            // shares of the moduli
+  std::array<Numbers<Real>, kNine> inverse_;  // CellGrid::inverse; empty: all is elastic
   std::vector<LooseCell<Real>> loose_;
   std::vector<FilledCell<Real>> filled_;
   std::vector<int> loose_nodes_;  // of loose cells and filled ones

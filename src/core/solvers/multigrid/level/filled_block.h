@@ -34,6 +34,7 @@ struct FilledBlock : Block<V> {
   using Block<V>::a;
   using Block<V>::cofactor;
   using Block<V>::has_parts;
+  using Block<V>::has_viscosity;
   using Block<V>::invariant;
   using Block<V>::pressure;
   using Block<V>::shear;
@@ -128,12 +129,13 @@ struct FilledBlock : Block<V> {
 
   // The transpose of reachOut, for a quarter of the gradients in m_a; those in the nodes beyond.
   ROBOT_TISSUE_INLINE void spreadGradients(const Fill& fill) {
+    const L rough = this->bent();
     for (int a0 = 0; a0 < 3; ++a0) {
       L share[kFaceNodes];
       findShares(fill, a0, share);
       for (int axis = 0; axis < 3; ++axis) {
-        const L in_mean = Real(0.25) * a * bends[a0][axis];
-        const L in_uneven = Real(0.25) * a * uneven[a0][axis];
+        const L in_mean = Real(0.25) * rough * bends[a0][axis];
+        const L in_uneven = Real(0.25) * rough * uneven[a0][axis];
         const L in_shift = fill.centroid[a0] * mode[1 << a0][axis];
         for (const int side : {2 * a0, 2 * a0 + 1}) {
           const L push = fill.in_mean[side] * in_mean + fill.in_uneven[side] * in_uneven -
@@ -205,14 +207,15 @@ struct FilledBlock : Block<V> {
   // Energy gradients in the modes, as `scale`.
   ROBOT_TISSUE_INLINE void scaleFill(const Fill& fill) {
     const L one = a * Real(0.25), push = Real(0.25) * pressure, pull = one - push;
+    const L rough = this->bent();
     for (int axis = 0; axis < 3; ++axis) {
       mode[0][axis] = L{};
       for (int a0 = 0; a0 < 3; ++a0) {
         mode[1 << a0][axis] = one * mode[1 << a0][axis] + pull * cofactor[a0][axis];
-        mode[pairMode(a0)][axis] = Real(0.5) * a * bends[3 + a0][axis];
+        mode[pairMode(a0)][axis] = Real(0.5) * rough * bends[3 + a0][axis];
       }
       mode[1 << axis][axis] -= push;
-      mode[7][axis] *= Real(4) * a * fill.twisting;
+      mode[7][axis] *= Real(4) * rough * fill.twisting;
     }
   }
 
@@ -247,7 +250,10 @@ struct FilledBlock : Block<V> {
       for (auto& corner : over_fill) corner[0] = corner[1] = corner[2] = L{};
       this->addParts(fill.between_parts, over_fill);
     }
+    L viscous[3][3];
+    if (has_viscosity) this->findViscous(viscous);
     scaleFill(fill);
+    if (has_viscosity) this->addViscous(viscous);
     for (int s = 1; has_parts && s < kCorners; ++s) {
       for (int axis = 0; axis < 3; ++axis) mode[s][axis] += over_fill[s][axis];
     }
@@ -308,7 +314,12 @@ struct FilledBlock : Block<V> {
 
   ROBOT_TISSUE_INLINE void stiffenNode(const L& shape, const L& widest, const L (&slopes)[3],
                                        L (&here)[6]) const {
-    this->findStiffness(a * shape + Real(16) * of_strain * widest, slopes, here);
+    L diagonal = a * shape + Real(16) * of_strain * widest;
+    if (has_viscosity) {
+      const L strained = slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2];
+      diagonal += this->viscous_shear * (shape - strained);
+    }
+    this->findStiffness(diagonal, slopes, here);
     const L around = (here[0] + here[1] + here[2]) * Real(level_tuning::kAround);
     for (int axis = 0; axis < 3; ++axis) here[axis] += around;
   }

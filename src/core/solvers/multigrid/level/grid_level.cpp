@@ -180,6 +180,15 @@ void GridLevel<Real>::findForces(Find what) {
 }
 
 template <typename Real>
+Field<Real> GridLevel<Real>::viscousForces(const Field<Real>& at_displacement) {
+  Field<Real> none = force;
+  for (auto& values : none) std::fill(values.begin(), values.end(), Real(0));
+  cells_.findViscousForces({at_displacement, none, free_, force, inverse_});
+  is_stiffness_known_ = false;
+  return cells_.whole;
+}
+
+template <typename Real>
 void GridLevel<Real>::findForcesOfConstrained() {
   cells_.takeFree({displacement, right_hand_side, free_, force, inverse_});
   constrained.findForces(cells_, displacement, Find::kForcesAndStiffness, force);

@@ -79,8 +79,12 @@ class GridLevel {
 
   // Per entry, stiffness of the nodes' inertia in a time step; empty: none. Forces are stale then.
   void setInertia(Numbers<Real> stiffness) { cells_.inertia = std::move(stiffness); }
-  // Of cells, membranes and the right-hand side alone, as last found.
-  Vec3 forceOfCells(int node) const { return vectorAt(cells_.whole, node); }
+  // As CellOperator. Forces are stale then.
+  void setViscosity(double share, const Field<Real>& rate_from) {
+    cells_.setViscosity(share, rate_from);
+  }
+  // What damps strain, as forces of the cells on all nodes at these displacements.
+  Field<Real> viscousForces(const Field<Real>& at_displacement);
 
   // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
   void findForces(Find what = Find::kForcesAndStiffness);
