@@ -140,7 +140,6 @@ void Blades::describe(std::size_t tool, ToolReport& report) const {
   report.force_on_tool += of_cut;
   report.torque_on_tool += state.point.cross(of_cut);
   report.point = state.stands() * state.point;
-  limitWrench(world_.tools[tool].max_force, report);
 }
 
 }  // namespace robot_tissue

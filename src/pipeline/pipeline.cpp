@@ -348,6 +348,7 @@ void Pipeline::describeTools() {
       report = describeTool(world_, parts_->grasping, tool);
       report.offset = state_.drive.offset(tool);
       parts_->blades.describe(tool, report);
+      limitWrench(world_.tools[tool].max_force, report);
     }
   }
   world_.depths_are_due = true;

@@ -75,8 +75,9 @@ void limitWrench(double max_force, ToolReport& report) {
   const double force = report.force_on_tool.norm();
   if (!(max_force > 0.0) || force <= max_force) return;
   report.saturated = true;
-  report.torque_on_tool *= max_force / force;
-  report.force_on_tool *= max_force / force;
+  report.told_share = max_force / force;
+  report.torque_on_tool *= report.told_share;
+  report.force_on_tool *= report.told_share;
 }
 
 // The patch's answer in the tool's frame: its force is on the tissue, its torque about the origin.
@@ -113,7 +114,6 @@ ToolReport describeTool(const World& world, const Grasping& grasping, std::size_
   const Vec3 torque = -answer.torque - tissue_T_tool.translation().cross(force);
   report.force_on_tool = tissue_T_tool.linear().transpose() * force;
   report.torque_on_tool = tissue_T_tool.linear().transpose() * torque;
-  limitWrench(world.tools[tool].max_force, report);
   return report;
 }
 

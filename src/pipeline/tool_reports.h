@@ -13,11 +13,12 @@ namespace robot_tissue {
 // way.
 std::vector<double> deepestPoints(const World& world, TouchFinder& touch_finder);
 
-// The report of a tool, but for max_penetration (deepestPoints) and offset (ForceDrive), which the
-// caller puts in.
+// The report of a tool, but for max_penetration (deepestPoints), offset (ForceDrive) and what its
+// edge meets (Blades), which the caller puts in.
 ToolReport describeTool(const World& world, const Grasping& grasping, std::size_t tool);
 
-// A wrench stronger than the tool's max_force (N; 0: none) is told as that.
+// A wrench stronger than the tool's max_force (N; 0: none) is told as that; once all of it is
+// there.
 void limitWrench(double max_force, ToolReport& report);
 
 // Of a node that the tool holds, from the tool into the tissue, of any length; zero where every way

@@ -7,7 +7,8 @@
 
 namespace robot_tissue {
 
-WrenchPrediction::WrenchPrediction(double arm) : arm_(std::max(arm, tuning::kLeastArm)) {}
+WrenchPrediction::WrenchPrediction(double arm, double max_force)
+    : arm_(std::max(arm, tuning::kLeastArm)), max_force_(max_force) {}
 
 void WrenchPrediction::forget() {
   touches_ = false;
@@ -26,6 +27,14 @@ void WrenchPrediction::learn(const Pose& pose, const ToolWrench& solved) {
   touches_ = true;
 }
 
+// What max_force leaves of a wrench tells nothing of the stiffness.
+void WrenchPrediction::learnFrom(const Pose& reached, const ToolReport& report) {
+  Pose pose = reached;
+  pose.translation() -= report.offset;
+  const Eigen::Matrix3d whole = reached.linear() / report.told_share;
+  learn(pose, {whole * report.force_on_tool, whole * report.torque_on_tool});
+}
+
 void WrenchPrediction::learnStep(const Vec6& step, const Vec6& change) {
   const double force = wrench_.norm();
   const double wander = force / tuning::kWayOfStiffness;
@@ -41,9 +50,11 @@ ToolWrench WrenchPrediction::at(const Pose& pose) const {
   if (!touches_) return {};
   Vec6 way = wayFrom(pose_, pose);
   if (way.norm() > tuning::kFarthestPredicted) way *= tuning::kFarthestPredicted / way.norm();
-  const Vec6 predicted = wrench_ + stiffness_ * way;
+  Vec6 predicted = wrench_ + stiffness_ * way;
   const bool pulls = predicted.head<3>().dot(wrench_.head<3>()) < 0.0;
   if (pulls || !predicted.allFinite()) return {};
+  const double force = predicted.head<3>().norm();
+  if (max_force_ > 0.0 && force > max_force_) predicted *= max_force_ / force;
   return {predicted.head<3>(), arm_ * predicted.tail<3>()};
 }
 

@@ -34,7 +34,7 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
               advertise(tool.name + "/predicted_cf"),
               {},
               link,
-              WrenchPrediction(tuning::kArmOfTurn)};
+              WrenchPrediction(tuning::kArmOfTurn, tool.max_force)};
     told.message.header.frame_id = linkFrames(tool).front();
     tools_.push_back(told);
     link += tool.links.size();
@@ -52,9 +52,7 @@ void WrenchPublisher::publish(const Pipeline& pipeline, const ros::Time& stamp) 
     told.message.header.stamp = stamp;
     told.message.wrench = wrenchOn(report);
     if (!pipeline.pose()) continue;
-    const Pose& pose = pipeline.pose()->links[told.first_link];
-    told.prediction.learn(
-        pose, {pose.linear() * report.force_on_tool, pose.linear() * report.torque_on_tool});
+    told.prediction.learnFrom(pipeline.pose()->links[told.first_link], report);
   }
   silent_ = false;
   has_told_ = true;

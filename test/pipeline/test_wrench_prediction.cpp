@@ -134,6 +134,51 @@ TEST(WrenchPrediction, WhatTouchesNothingFeelsNothingAndNoneIsPulled) {
   EXPECT_TRUE(prediction.at(at_depth(kTouch + 1e-4)).force.isZero());
 }
 
+// At its own pose, from which a force has driven it: the way of the push is no motion.
+TEST(WrenchPrediction, OfADrivenToolIsTheSolvedWrenchWhereTheToolStands) {
+  const RobotPose stands = at({above(-0.002)});
+  Pipeline pipeline(block(), exact(), {withFriction(0.0, probe())});
+  pipeline.step(stands);
+  WrenchPrediction prediction(kArm);
+  for (int force = 10; force <= 20; ++force) {
+    pipeline.push(0, Vec3(0.0, 0.0, -0.01 * force));
+    for (int update = 0; update < 60 && (update == 0 || pipeline.report().changed); ++update) {
+      pipeline.step(stands);
+      prediction.learnFrom(pipeline.pose()->links.front(), pipeline.report().tools.front());
+    }
+  }
+  const Vec3 force = wrenchOf(pipeline).force;
+  ASSERT_GT(force.z(), 0.15);
+  ASSERT_LT(pipeline.report().tools.front().offset.z(), -0.003);
+  EXPECT_LT((prediction.at(stands.links.front()).force - force).norm(), 1e-9);
+}
+
+TEST(WrenchPrediction, IsToldWithMaxForceAtMostAndKnowsTheStiffnessBeyondIt) {
+  constexpr double kMost = 0.1;  // N
+  ToolGeometry limited = withFriction(0.0, probe());
+  limited.max_force = kMost;
+  Pipeline pipeline(block(), exact(), {limited});
+  Pipeline free(block(), exact(), {withFriction(0.0, probe())});
+  WrenchPrediction prediction(kArm, kMost), of_free(kArm);
+  const auto press = [&](double depth) {
+    for (Pipeline* each : {&pipeline, &free}) each->step(pressed(depth));
+    prediction.learnFrom(poseAt(above(depth)), pipeline.report().tools.front());
+    of_free.learnFrom(poseAt(above(depth)), free.report().tools.front());
+  };
+  for (double depth = -0.001; depth < 0.006; depth += 2.5e-4) press(depth);
+  ASSERT_TRUE(pipeline.report().tools.front().saturated);
+  const Pose deeper = poseAt(above(0.0065));
+  EXPECT_GT(of_free.at(deeper).force.norm(), 2.0 * kMost);
+  EXPECT_NEAR(prediction.at(deeper).force.norm(), kMost, 1e-9);
+  double depth = 0.006;
+  while (pipeline.report().tools.front().saturated && depth > 0.0) press(depth -= 2.5e-4);
+  const Pose outwards = poseAt(above(depth - 5e-4));
+  const Vec3 force = of_free.at(outwards).force;
+  ASSERT_GT(force.z(), 0.0);
+  ASSERT_LT(force.norm(), kMost);
+  EXPECT_LT((prediction.at(outwards).force - force).norm(), 1e-6 * kMost);
+}
+
 TEST(WrenchPrediction, FarOffItStaysWhereItStillCounts) {
   WrenchPrediction prediction(kArm);
   prediction.learn(poseAt(Vec3::Zero()), {Vec3(0.0, 0.0, 1.0), Vec3::Zero()});

@@ -15,6 +15,7 @@ struct ToolReport {
   Vec3 force_on_tool = Vec3::Zero();   // of the tissue on the tool, tool frame (N)
   Vec3 torque_on_tool = Vec3::Zero();  // about the tool's origin, tool frame (N m)
   bool saturated = false;              // the wrench was longer than the tool's max_force
+  double told_share = 1.0;             // of the wrench; less than 1 where it is saturated
   std::vector<int> nodes;              // of its patch: held, or under a touch that pushes
   int contacts = 0;                    // touches that push, and held nodes
   Vec3 point = Vec3::Zero();           // centroid of those, tissue frame (m)

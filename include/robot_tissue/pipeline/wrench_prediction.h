@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/pipeline/step_report.h"
 
 namespace robot_tissue {
 
@@ -28,10 +29,14 @@ struct ToolWrench {
 class WrenchPrediction {
  public:
   // The way of a point so far from the tool's origin (m) is what a turn counts: the tool's reach.
-  explicit WrenchPrediction(double arm);
+  // A wrench whose force is greater than max_force (N; 0: any may be) is told with that force.
+  explicit WrenchPrediction(double arm, double max_force = 0.0);
 
-  // What a solve told at that pose (tissue_T_tool).
+  // What a solve told at that pose (tissue_T_tool), in full.
   void learn(const Pose& pose, const ToolWrench& solved);
+  // The same of a report, with the pose that the tool reached. A force that drives the tool took it
+  // there from its own pose, and that is the one that wrenches are asked for at.
+  void learnFrom(const Pose& reached, const ToolReport& report);
   // The tissue is another one, or the tool came from elsewhere.
   void forget();
 
@@ -48,7 +53,7 @@ class WrenchPrediction {
   Vec6 wayFrom(const Pose& from, const Pose& to) const;
   Vec6 stacked(const ToolWrench& wrench) const;
 
-  double arm_;
+  double arm_, max_force_;
   bool touches_ = false;
   Pose pose_ = Pose::Identity();
   Vec6 wrench_ = Vec6::Zero();
