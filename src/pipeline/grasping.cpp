@@ -164,7 +164,6 @@ std::size_t Grasping::hold(std::size_t tool) {
   if (pinch) middle = pinch->middle;
   jaws_[tool].grip = {world_.pose.links[jaw].inverse() * middle,
                       world_.pose.links[jaw + 1].inverse() * middle};
-  jaws_[tool].asked = false;
   world_.sticking.letGo(static_cast<int>(tool));
   world_.sliding.clear(static_cast<int>(tool));
   for (const std::size_t link : {jaw, jaw + 1}) {
@@ -212,16 +211,14 @@ std::vector<int> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw, d
   return nodes;
 }
 
-// Why a grasper holds nothing whose jaws are closed, or press tissue between them, or that was told
-// to grasp; else empty.
-std::string Grasping::whyItHoldsNothing(std::size_t tool) const {
+std::string Grasping::whyItHoldsNothing(std::size_t tool, bool is_asked) const {
   if (!world_.last_pose || grasps(tool) || !hasJaws(tool, world_.pose)) return "";
   const Jaws& jaws = jaws_[tool];
   const GraspConfig& grasp = world_.tools[tool].grasp;
   const auto gap = gapAtTissue(tool, world_.pose);
   if (!gap) {
     const bool closed = *leastGap(tool, world_.pose) < grasp.close_gap;
-    return closed || jaws.asked ? "no tissue is between its jaws" : "";
+    return closed || is_asked ? "no tissue is between its jaws" : "";
   }
   const std::string open_first =
       ": its jaws must first open farther than grasp.open_gap" + inMeters(grasp.open_gap);
@@ -238,7 +235,7 @@ std::string Grasping::whyItHoldsNothing(std::size_t tool) const {
   if (*gap < grasp.close_gap) return "what is between its jaws is fixed, or held by others";
   const bool presses =
       pushesWith(world_.tools.firstJaw(tool)) && pushesWith(world_.tools.firstJaw(tool) + 1);
-  if (!presses && !jaws.asked) return "";
+  if (!presses && !is_asked) return "";
   return "where tissue is, its jaws are not closer than grasp.close_gap" +
          inMeters(grasp.close_gap);
 }
@@ -264,10 +261,7 @@ bool Grasping::jawsOverlap(std::size_t tool) const {
 
 bool Grasping::grasp(std::size_t tool) {
   Jaws& jaws = jaws_[tool];
-  if (!hasJaws(tool, world_.pose) || hold(tool) == 0) {
-    jaws.asked = true;
-    return false;
-  }
+  if (!hasJaws(tool, world_.pose) || hold(tool) == 0) return false;
   // Jaws that stand open all the same need not open to let go, but be told.
   const auto gap = gapAtTissue(tool, world_.pose);
   const bool closed = gap && *gap <= world_.tools[tool].grasp.open_gap;
@@ -281,7 +275,6 @@ bool Grasping::letGo(std::size_t tool) {
     jaws_[tool].let_go = true;
     jaws_[tool].loss = Jaws::Loss::kReleased;
   }
-  jaws_[tool].asked = false;
   world_.sticking.letGo(static_cast<int>(tool));
   return held;
 }

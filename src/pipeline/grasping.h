@@ -24,7 +24,6 @@ struct Jaws {
   State state = State::kOpen;
   Loss loss = Loss::kClosedBefore;
   std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where, in each's frame (m)
-  bool asked = false;                                       // to grasp, in vain
   bool let_go = false;  // told to since the last step: in the next they do not take hold again
   bool were_apart = false;
 };
@@ -54,7 +53,9 @@ class Grasping {
   bool hasJaws(std::size_t tool, const RobotPose& pose) const;
   std::optional<double> gapAtTissue(std::size_t tool, const RobotPose& pose) const;
   bool jawsOverlap(std::size_t tool) const;
-  std::string whyItHoldsNothing(std::size_t tool) const;
+  // Why a grasper holds nothing whose jaws are closed, or press tissue between them, or that is
+  // asked to grasp now; else empty.
+  std::string whyItHoldsNothing(std::size_t tool, bool is_asked = false) const;
 
  private:
   // Two jaws seen from a point.

@@ -16,17 +16,19 @@ void Pipeline::grasp(std::size_t tool) {
   }
   if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
   if (!parts_->grasping.grasp(tool)) {
-    describeTools();
-    const std::string& why = world_.report.tools[tool].holds_nothing;
+    const std::string why = parts_->grasping.whyItHoldsNothing(tool, true);
     throw InputError(name + ": holds nothing: " +
                      (why.empty() ? "its jaws stand nowhere or have no shapes" : why) +
                      "; allowed: jaws around tissue");
   }
   state_.touched = true;
+  describeTools();
 }
 
 void Pipeline::letGo(std::size_t tool) {
-  if (parts_->grasping.letGo(tool)) state_.touched = true;
+  if (!parts_->grasping.letGo(tool)) return;
+  state_.touched = true;
+  describeTools();
 }
 
 void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {

@@ -64,7 +64,6 @@ bool TissueServices::onGrasp(Tool::Request& request, Tool::Response& response) {
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
-    if (node_.has_pose()) node_.follow();  // tells why
   }
   return true;
 }

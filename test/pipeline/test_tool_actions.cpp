@@ -113,10 +113,13 @@ TEST_P(Grasper, HoldsAndLetsGoWhenItIsTold) {
   close(pipeline);
   EXPECT_FALSE(pipeline.report().tools.front().grasps);
   pipeline.grasp(0);
+  EXPECT_TRUE(pipeline.report().tools.front().grasps) << "told at once, with no update";
+  EXPECT_GT(pipeline.report().tools.front().nodes.size(), 0U);
   walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
   EXPECT_TRUE(pipeline.report().tools.front().grasps);
   EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), -0.05);
   pipeline.letGo(0);
+  EXPECT_FALSE(pipeline.report().tools.front().grasps);
   walk(pipeline, jaws(0.008, 0.003), jaws(0.016, 0.003));
   EXPECT_FALSE(pipeline.report().tools.front().grasps);
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
@@ -173,6 +176,8 @@ TEST_P(Grasper, CannotHoldWhatIsNotThere) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
   pipeline.step(at(jaws(0.014, 0.05)));
   EXPECT_THROW(pipeline.grasp(0), InputError);
+  pipeline.step(at(jaws(0.014, 0.051)));
+  EXPECT_EQ(pipeline.report().tools.front().holds_nothing, "") << "open jaws need hold nothing";
   Pipeline pusher(ridge(), solver(), {probe()});
   pusher.step(pressed(-0.01));
   EXPECT_THROW(pusher.grasp(0), InputError);

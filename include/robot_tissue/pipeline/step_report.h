@@ -29,7 +29,7 @@ struct ToolReport {
   // are never apart have a hinge in common.
   bool jaws_overlap = false;
   std::optional<double> jaw_gap;  // of a grasper, where tissue is between its jaws or held (m)
-  std::string holds_nothing;      // of a grasper that is closed, or told to grasp: why; else empty
+  std::string holds_nothing;      // of a grasper whose jaws are closed, or press: why; else empty
   Vec3 offset = Vec3::Zero();     // of a tool that a force drives, from its pose, tissue frame (m)
 };
 
