@@ -63,12 +63,13 @@ void OutputFolder::makeFolders() {
     }
   }
   for (auto next = missing.rbegin(); next != missing.rend(); ++next) {
-    if (!fs::create_directory(*next, error)) {
+    if (fs::create_directory(*next, error)) {
+      made_.push_back(*next);
+    } else if (error) {  // else another run has made it meanwhile
       std::error_code ignored;
       for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);
       refuse(error.message());
     }
-    made_.push_back(*next);
   }
 }
 

@@ -18,9 +18,11 @@ bool partsTissue(const Scene& scene) {
            std::holds_alternative<UndoStep>(step) || std::holds_alternative<LoadStateStep>(step);
   };
   const auto tears = [](const Material& material) { return material.tear_stretch > 0.0; };
+  const auto may_part = [](const ToolConfig& tool) {
+    return !tool.role.touches() || tool.grasp.tears_out;
+  };
   return std::any_of(scene.steps.begin(), scene.steps.end(), parts) ||
-         std::any_of(scene.tools.begin(), scene.tools.end(),
-                     [](const ToolConfig& tool) { return !tool.role.touches(); }) ||
+         std::any_of(scene.tools.begin(), scene.tools.end(), may_part) ||
          tears(scene.tissue.material) ||
          std::any_of(scene.tissue.regions.begin(), scene.tissue.regions.end(),
                      [&](const Region& region) { return tears(region.material); });

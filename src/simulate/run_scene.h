@@ -72,7 +72,7 @@ using OnRow = std::function<void(const IncrementRow& row, int increments)>;
 // Called when a step (from 0) has ended, with the tissue as it is then.
 using OnStep = std::function<void(int step, const Tissue& tissue)>;
 
-// Whether a step, a blade or a stretch may part the scene's tissue, or mend it.
+// Whether a step, a blade, a pull or a stretch may part the scene's tissue, or mend it.
 bool partsTissue(const Scene& scene);
 
 // `state_folder`: where states are loaded from that no step has saved.

@@ -50,6 +50,7 @@ std::vector<ToolConfig> movedTools(const Scene& scene) {
 Runner::Runner(const Scene& scene, const OnRow& on_row, const OnStep& on_step,
                const Deadline& deadline, const std::string& state_folder)
     : scene_(scene),
+      parts_tissue_(partsTissue(scene)),
       on_row_(on_row),
       on_step_(on_step),
       deadline_(deadline),
@@ -90,6 +91,7 @@ void Runner::layDown(const Step& next) {
 void Runner::performAll() {
   for (std::size_t i = 0; i < scene_.steps.size(); ++i) {
     step_ = static_cast<int>(i);
+    unmet_.assign(tools_.count(), std::nullopt);
     try {
       const bool is_at_rest = i == 0 || std::holds_alternative<ResetStep>(scene_.steps[i - 1]);
       if (is_at_rest) layDown(scene_.steps[i]);
@@ -148,6 +150,9 @@ void Runner::perform(const ResetStep&) {
 // A row of increments.csv, with times and status of the tools' updates since the last row.
 void Runner::keep(SolveReport report, int increment, int increments) {
   if (updates_.any) {
+    for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
+      if (pushes_[tool]) judgePush(tool);
+    }
     const SolveStatus worst = std::max(report.status, updates_.worst);
     const double wall_ms = report.wall_ms + updates_.solve_ms;
     report = pipeline_.tissue().lastReport();
@@ -168,7 +173,7 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
     if (tools_.of(tool)) keepTool(tool, increment);
   }
-  if (partsTissue(scene_)) keepPieces(increment);
+  if (parts_tissue_) keepPieces(increment);
   keepSutures(increment);
   const std::string of_law = remarkOnLaw(pipeline_.tissue());
   if (!of_law.empty()) remark(of_law);
@@ -181,9 +186,13 @@ void Runner::keep(SolveReport report, int increment, int increments) {
   if (more && deadline_.isOver()) throw TimeIsOver();
 }
 
+std::string Runner::ofStep(const std::string& text) const {
+  return pathOf(scene_, step_) + ": " + text;
+}
+
 // Once a step.
 void Runner::remark(const std::string& text) {
-  const std::string line = pathOf(scene_, step_) + ": " + text;
+  const std::string line = ofStep(text);
   std::vector<std::string>& all = result_.remarks;
   if (std::find(all.begin(), all.end(), line) == all.end()) all.push_back(line);
 }
@@ -223,17 +232,13 @@ void Runner::keepTool(std::size_t tool, int increment) {
 void Runner::keepShape() {
   const Tissue& tissue = pipeline_.tissue();
   const Lattice& lattice = tissue.lattice();
-  for (int node = 0; node < lattice.nodeCount(); ++node) {
-    result_.rest.push_back(lattice.restPosition(node));
-  }
-  result_.displacement = tissue.shownDisplacement();
-  deform(tissue.surface(), result_.displacement, result_.vertices);
+  const std::vector<Vec3> displacement = tissue.shownDisplacement();
+  deform(tissue.surface(), displacement, result_.vertices);
   result_.triangles = tissue.surface().triangles;
-  result_.displacement.resize(result_.rest.size());  // ghosts are no nodes of the lattice
-  for (int node = lattice.nodeCount() - 1; node >= 0; --node) {
-    if (!isRemoved(tissue.state(), node)) continue;
-    result_.rest.erase(result_.rest.begin() + node);
-    result_.displacement.erase(result_.displacement.begin() + node);
+  for (int node = 0; node < lattice.nodeCount(); ++node) {  // ghosts beyond are none of its nodes
+    if (isRemoved(tissue.state(), node)) continue;
+    result_.rest.push_back(lattice.restPosition(node));
+    result_.displacement.push_back(displacement[at(node)]);
   }
 }
 

@@ -49,6 +49,7 @@ class Runner {
   void perform(const ResetStep& step);
   void layDown(const Step& next);
   void performAll();
+  std::string ofStep(const std::string& text) const;
   void remark(const std::string& text);
   void remarkTorn(int before);
   void remarkImpatience();
@@ -92,6 +93,7 @@ class Runner {
   void judgePush(std::size_t tool);
 
   const Scene& scene_;
+  const bool parts_tissue_;
   const OnRow& on_row_;
   const OnStep& on_step_;
   const Deadline& deadline_;
@@ -99,6 +101,8 @@ class Runner {
   ToolPlaces tools_;
   Pipeline pipeline_;
   std::vector<std::optional<Vec3>> pushes_;  // per tool, on the tissue (N)
+  // Per tool: which remark tells of its push that was not met in this step.
+  std::vector<std::optional<std::size_t>> unmet_;
   Updates updates_;
   std::set<std::string> broken_sutures_;  // that a remark was made of
   double contact_ms_ = 0.0;               // of the tools' updates since the last row

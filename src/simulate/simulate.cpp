@@ -33,16 +33,30 @@ void printOut(const Arguments& arguments, std::ostream& out) {
   if (!out.flush()) throw InputError("stdout: cannot be written, must be what takes the answer");
 }
 
-OnRow progressOn(std::ostream& err, std::size_t steps) {
-  const std::string clear_line = "\r\x1b[K";
-  return [&err, steps, clear_line](const IncrementRow& row, int increments) {
-    err << clear_line << "steps[" << row.step << "] of " << steps << ", increment " << row.increment
-        << " of " << increments << ": " << toString(row.report.status) << ", "
-        << numberText(row.report.wall_ms) << " ms" << std::flush;
-    const bool last = static_cast<std::size_t>(row.step) + 1 == steps;
-    if (last && row.increment == increments) err << std::endl;
-  };
-}
+// The line of a terminal that each row is shown on, in place of the one before. It ends with the
+// run, however that ends.
+class ProgressLine {
+ public:
+  ProgressLine(std::ostream& err, std::size_t steps) : err_(err), steps_(steps) {}
+  ~ProgressLine() {
+    if (is_begun_) err_ << std::endl;
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const IncrementRow& row, int increments) {
+    const char* clear_line = "\r\x1b[K";
+    err_ << clear_line << "steps[" << row.step << "] of " << steps_ << ", increment "
+         << row.increment << " of " << increments << ": " << toString(row.report.status) << ", "
+         << numberText(row.report.wall_ms) << " ms" << std::flush;
+    is_begun_ = true;
+  }
+
+ private:
+  std::ostream& err_;
+  std::size_t steps_;
+  bool is_begun_ = false;
+};
 
 void tellNotOk(const RunResult& result, std::ostream& err) {
   if (!result.cut_off.empty()) {
@@ -109,9 +123,14 @@ void write(const Scene& scene, const RunResult& result, OutputFolder& folder) {
   folder.commit();
 }
 
-RunResult runNamed(const Scene& scene, const Arguments& arguments, const OnRow& on_row,
+RunResult runNamed(const Scene& scene, const Arguments& arguments, std::ostream& err, bool terminal,
                    const Deadline& deadline) {
   try {
+    if (!terminal || arguments.quiet) return runScene(scene, {}, {}, deadline, arguments.out);
+    ProgressLine line(err, scene.steps.size());
+    const OnRow on_row = [&line](const IncrementRow& row, int increments) {
+      line.show(row, increments);
+    };
     return runScene(scene, on_row, {}, deadline, arguments.out);
   } catch (const InputError& error) {
     throw InputError(onOneLine(arguments.scene) + ": " + error.what());
@@ -123,9 +142,7 @@ int run(const Arguments& arguments, std::ostream& err, bool terminal) {
   const Scene scene = loadScene(arguments.scene, arguments.overrides);
   requireNoInput(scene, arguments);
   OutputFolder folder(arguments.out, filesOf(scene));
-  const bool progress = terminal && !arguments.quiet;
-  const OnRow on_row = progress ? progressOn(err, scene.steps.size()) : OnRow();
-  const RunResult result = runNamed(scene, arguments, on_row, deadline);
+  const RunResult result = runNamed(scene, arguments, err, terminal, deadline);
   write(scene, result, folder);
   if (!arguments.quiet) {  // a refusal is told alone
     for (const std::string& remark : scene.remarks) err << "simulate: " << remark << '\n';

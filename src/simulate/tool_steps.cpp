@@ -175,9 +175,6 @@ void Runner::followPushes() {
     if (i > 0 && (!report.changed || report.hopeless || deadline_.isOver())) break;
     update();
   }
-  for (std::size_t tool = 0; tool < tools_.count(); ++tool) {
-    if (pushes_[tool]) judgePush(tool);
-  }
 }
 
 void Runner::update() {
@@ -217,6 +214,7 @@ void Runner::remarkCut(std::size_t tool) {
          " m^2 of new surface; pieces: " + std::to_string(pipeline_.tissue().state().pieces));
 }
 
+// Before a row is kept. Its numbers differ from row to row: of those in a step the last one stays.
 void Runner::judgePush(std::size_t tool) {
   const ToolReport& report = pipeline_.report().tools[tool];
   if (report.saturated) return;  // its force is not told
@@ -226,8 +224,13 @@ void Runner::judgePush(std::size_t tool) {
   const double met = force.dot(*pushes_[tool]) / wanted + 0.0;  // not -0
   if (std::abs(met - wanted) <= tuning::kMetForce * wanted) return;
   updates_.worst = std::max(updates_.worst, SolveStatus::kUnconverged);
-  remark("tool '" + tools_.name(tool) + "' met " + numberText(met) + " N on its way of " +
-         numberText(report.offset.norm()) + " m, not the force of " + numberText(wanted) + " N");
+  if (!unmet_[tool]) {
+    unmet_[tool] = result_.remarks.size();
+    result_.remarks.emplace_back();
+  }
+  result_.remarks[*unmet_[tool]] = ofStep(
+      "tool '" + tools_.name(tool) + "' met " + numberText(met) + " N on its way of " +
+      numberText(report.offset.norm()) + " m, not the force of " + numberText(wanted) + " N");
 }
 
 }  // namespace robot_tissue

@@ -76,5 +76,29 @@ TEST(TearInAScene, IsToldInWords) {
   EXPECT_NEAR(result.patches.back().answer.force.norm(), 0.0, 1e-2);
 }
 
+TEST(TearInAScene, OfAGrasperHasRowsOfPieces) {
+  const RunResult result =
+      run("tissue:\n"
+          "  shape: {type: box, min: [0, 0, 0], max: [0.03, 0.01, 0.03]}\n"
+          "  spacing: 0.005\n"
+          "  material: {young_modulus: 10000}\n"
+          "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+          "tools:\n"
+          "  - name: forceps\n"
+          "    role: grasper\n"
+          "    jaws:\n"
+          "      - {shapes: [{type: box, size: [0.016, 0.004, 0.01], xyz: [0, -0.002, 0]}]}\n"
+          "      - {shapes: [{type: box, size: [0.016, 0.004, 0.01], xyz: [0, 0.002, 0]}]}\n"
+          "    grasp: {close_gap: 0.0085, open_gap: 0.0095, max_force: 0.2, on_max_force: tear}\n"
+          "steps:\n"
+          "  - move: {tool: forceps, from: {xyz: [0.015, 0.005, 0.025], opening: 0.014},"
+          " to: {xyz: [0.015, 0.005, 0.025], opening: 0.008}, increments: 1}\n"
+          "  - move: {tool: forceps, to: {xyz: [0.015, 0.005, 0.045], opening: 0.008},"
+          " increments: 1}\n");
+  ASSERT_EQ(result.pieces.size(), 3U);  // one, then two
+  EXPECT_TRUE(result.pieces[1].piece.fixed);
+  EXPECT_FALSE(result.pieces[2].piece.fixed);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_blade

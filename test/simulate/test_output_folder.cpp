@@ -1,9 +1,13 @@
 // The output folder gets all its files or stays as it was.
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "output_folder.h"
 #include "robot_tissue/core/types.h"
@@ -37,6 +41,37 @@ TEST_F(OutputFolderTest, WithoutCommitNothingIsLeft) {
     EXPECT_FALSE(fs::exists(root_ / "a/b/x.csv"));
   }
   EXPECT_TRUE(fs::is_empty(root_));
+}
+
+// Each finds that some folders are missing, and that the other has made them meanwhile.
+TEST_F(OutputFolderTest, TwoRunsAtOnceMakeTheParentsThatTheyShare) {
+  constexpr int kRounds = 40;
+  for (int round = 0; round < kRounds; ++round) {
+    const fs::path shared = root_ / std::to_string(round) / "a/b/c/d/e/f/g/h";
+    int gate[2];  // closed by this process, so that both start
+    ASSERT_EQ(pipe(gate), 0);
+    std::vector<pid_t> runs;
+    for (const std::string name : {"one", "other"}) {
+      runs.push_back(fork());
+      if (runs.back() != 0) continue;
+      close(gate[1]);
+      char none = 0;
+      if (read(gate[0], &none, 1) != 0) _exit(2);
+      try {
+        const OutputFolder folder((shared / name).string(), {"x.csv"});
+        _exit(0);
+      } catch (const InputError&) {
+        _exit(1);
+      }
+    }
+    close(gate[0]);
+    close(gate[1]);
+    for (const pid_t run : runs) {
+      int status = -1;
+      ASSERT_EQ(waitpid(run, &status, 0), run);
+      ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "round " << round;
+    }
+  }
 }
 
 TEST_F(OutputFolderTest, WithoutCommitOldFilesStay) {

@@ -134,5 +134,28 @@ TEST_F(Simulate, ProgressIsShownOnATerminalOnlyAndNotWhenQuiet) {
   EXPECT_EQ(progress({"--quiet"}, true), "");
 }
 
+TEST_F(Simulate, WhatIsToldAfterTheProgressStandsOnALineOfItsOwn) {
+  std::string refused = kInvertingScene;
+  refused.replace(refused.find("steps:"), 6, R"(
+solver: {method: paper}
+tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.015, 0.015, 0.01]}]}]
+steps:
+  - settle: {}
+  - move: {tool: plate, from: {xyz: [0.02, 0.02, 0.05]}, to: {xyz: [0.02, 0.02, 0.024]}})");
+  write("refused.yaml", refused);
+  const auto told = [&](const std::string& scene, std::vector<std::string> more) {
+    more.insert(more.end(), {(folder_ / scene).string(), "--out", (folder_ / "out").string()});
+    std::ostringstream out_stream, err_stream;
+    EXPECT_NE(simulate(more, out_stream, err_stream, true), kExitOk);
+    return err_stream.str();
+  };
+  for (const std::string& text :
+       {told("refused.yaml", {}), told("block.yaml", {"--max-seconds", "1e-9"})}) {
+    EXPECT_NE(text.find(" ms\nsimulate: "), std::string::npos) << text;
+    EXPECT_EQ(text.find("\n\n"), std::string::npos) << text;
+    EXPECT_EQ(text.back(), '\n') << text;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_simulate_words

@@ -185,6 +185,18 @@ TEST(ToolSteps, APushThatMeetsNothingIsToldAndNotOk) {
   EXPECT_TRUE(hasRemark(result, "steps[1].push: tool 'probe' met 0 N", "not the force of 0.3 N"));
 }
 
+TEST(ToolSteps, APushIsToldOnceAStepAsItsLastRowHasIt) {
+  const RunResult result =
+      run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.01), sphereAt(-0.005), 1) +
+          "  - push: {tool: probe, force: [0, 0, 0.3], increments: 3}\n  - settle: {}\n");
+  ASSERT_EQ(result.remarks.size(), 2U);
+  EXPECT_TRUE(hasRemark(result, "steps[1].push: tool 'probe' met 0 N", "not the force of 0.3 N"));
+  EXPECT_TRUE(hasRemark(result, "steps[2].settle: tool 'probe' met 0 N", "the force of 0.3 N"));
+  for (const std::size_t row : {1U, 2U, 3U, 4U}) {
+    EXPECT_EQ(result.increments[row].report.status, SolveStatus::kUnconverged) << row;
+  }
+}
+
 TEST(ToolSteps, AReleaseOfNothingIsTold) {
   const RunResult result =
       run(block() + kSphere + "steps:\n" + placed("probe", sphereAt(-0.004), sphereAt(-0.002), 1) +
