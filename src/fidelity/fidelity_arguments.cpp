@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "command_line.h"
 #include "robot_tissue/core/method_names.h"
+#include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/map_reader.h"
 #include "robot_tissue/scene/value_text.h"
@@ -21,7 +21,7 @@ double numberOf(const CommandLine& line, const std::string& option, double other
 std::string methodOf(const CommandLine& line, const std::string& otherwise) {
   const auto text = line.value("--method");
   if (!text) return otherwise;
-  return Entry(YAML::Node(*text), "--method", "").choice(methodsFor("elastic"), {});
+  return Entry(YAML::Node(*text), "--method", "").choice(methodsFor("elastic"));
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ FidelityArguments parseFidelityArguments(const std::vector<std::string>& words) 
       words, {{"--error", "--rate", "--seconds", "--way", "--method", "--write", "--csv"},
               {"--quiet", "--help"}});
   FidelityArguments parsed;
-  parsed.scene = line.scene;
+  parsed.scene = line.file(0);
   parsed.help = line.has("--help");
   parsed.quiet = line.has("--quiet");
   parsed.write = line.value("--write").value_or("");

@@ -20,14 +20,14 @@ namespace {
 constexpr std::size_t kLargestUrdf = 100000000;  // bytes
 
 NodeParameters parametersOf(const ReplayOptions& options) {
-  YAML::Node root = loadSceneText(options.scene);
+  const YAML::Node root = loadSceneText(options.scene);
   SceneSource source;
   source.name = options.scene;
   source.user = SceneUser::kNode;
   source.folder = std::filesystem::absolute(options.scene).parent_path().string();
   source.overrides.threads = options.threads;
-  if (options.rate && root.IsMap()) root["rate"] = *options.rate;
   NodeParameters parameters = parseNodeParameters(root, source);
+  parameters.rate_hz = options.rate.value_or(parameters.rate_hz);
   parameters.scene.solver.max_ms = 0.0;  // it would be of the wall's clock
   if (parameters.scene.tools.empty()) {
     throw InputError(onOneLine(options.scene) + ": tools: none; allowed: at least one");

@@ -1,55 +1,31 @@
 #include "replay_options.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "robot_tissue/core/types.h"
-#include "robot_tissue/scene/value_text.h"
+#include "robot_tissue/ros/node_ranges.h"
+#include "robot_tissue/scene/command_line.h"
+#include "robot_tissue/scene/entry.h"
 
 namespace robot_tissue {
-namespace {
-
-std::optional<std::string>* valueOf(const std::string& option, ReplayOptions& options) {
-  if (option == "--urdf") return &options.urdf;
-  if (option == "--rate") return &options.rate;
-  return option == "--threads" ? &options.threads : nullptr;
-}
-
-bool* switchOf(const std::string& option, ReplayOptions& options) {
-  if (option == "--surface") return &options.surface;
-  if (option == "--nodes") return &options.nodes;
-  return option == "--help" || option == "-h" ? &options.help : nullptr;
-}
-
-}  // namespace
-
-ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
+ReplayOptions parseReplayOptions(const std::vector<std::string>& words) {
+  const CommandLine line = readCommandLine(words, {{"--urdf", "--rate", "--threads"},
+                                                   {"--surface", "--nodes", "--help"},
+                                                   {"SCENE.yaml", "IN.bag", "OUT.bag"}});
   ReplayOptions options;
-  std::vector<std::string> files;
-  for (auto word = arguments.begin(); word != arguments.end(); ++word) {
-    if (bool* is_on = switchOf(*word, options)) {
-      *is_on = true;
-    } else if (auto* value = valueOf(*word, options)) {
-      if (std::next(word) == arguments.end() || std::next(word)->rfind("--", 0) == 0) {
-        throw InputError(*word + ": has no value; allowed: a value after it (see --help)");
-      }
-      *value = *++word;
-    } else if (word->rfind("--", 0) == 0) {
-      throw InputError(shortText(*word) +
-                       ": is not known; allowed: --urdf, --rate, --threads, --surface, --nodes, "
-                       "--help");
-    } else {
-      files.push_back(*word);
-    }
-  }
+  options.scene = line.file(0);
+  options.in = line.file(1);
+  options.out = line.file(2);
+  options.urdf = line.value("--urdf");
+  options.threads = line.value("--threads");
+  options.surface = line.has("--surface");
+  options.nodes = line.has("--nodes");
+  options.help = line.has("--help");
   if (options.help) return options;
-  if (files.size() != 3) {
-    throw InputError(std::to_string(files.size()) +
-                     " files; allowed: three, SCENE.yaml IN.bag OUT.bag (see --help)");
+  if (options.out.empty()) {
+    throw InputError(std::to_string(line.files.size()) +
+                     " files, must be three, SCENE.yaml IN.bag OUT.bag (see --help)");
   }
-  options.scene = files[0];
-  options.in = files[1];
-  options.out = files[2];
+  const auto rate = line.value("--rate");
+  if (rate) options.rate = Entry(YAML::Node(*rate), "--rate", "").number(ranges::rate());
   return options;
 }
 

@@ -10,7 +10,7 @@ namespace robot_tissue {
 struct ReplayOptions {
   std::string scene, in, out;
   std::optional<std::string> urdf;     // --urdf FILE
-  std::optional<std::string> rate;     // --rate HZ, as typed
+  std::optional<double> rate;          // --rate HZ
   std::optional<std::string> threads;  // --threads N, as typed
   bool surface = false;                // --surface
   bool nodes = false;                  // --nodes
@@ -18,7 +18,7 @@ struct ReplayOptions {
 };
 
 // Throws InputError, one line.
-ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments);
+ReplayOptions parseReplayOptions(const std::vector<std::string>& words);
 std::string replayHelp();
 
 }  // namespace robot_tissue

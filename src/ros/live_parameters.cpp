@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "node_ranges.h"
 #include "robot_tissue/core/method_names.h"
+#include "robot_tissue/ros/node_ranges.h"
 #include "robot_tissue/scene/ranges.h"
 #include "robot_tissue/scene/value_text.h"
 

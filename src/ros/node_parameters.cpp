@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "node_ranges.h"
+#include "robot_tissue/ros/node_ranges.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/key_table.h"
 #include "robot_tissue/scene/value_text.h"

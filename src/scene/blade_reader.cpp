@@ -28,10 +28,6 @@ bool isOfEdge(const Entry& entry, const ToolConfig& tool) {
   return false;
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<Vec3> readPolyline(const Entry& entry, const LengthRanges& lengths) {
   std::vector<Vec3> line;
   for (const Entry& point : entry.list(2, "points", kMostPoints)) {

@@ -111,15 +111,10 @@ Vec3 Entry::vec3Or(const Vec3& otherwise, const Range& range) const {
   return given() ? vec3(range) : otherwise;
 }
 
-std::string Entry::choice(const std::vector<std::string>& available,
-                          const std::vector<std::string>& planned) const {
-  const std::string allowed = available.size() == 1 ? "must be " + available.front()
-                                                    : "must be one of " + joined(available);
-  const auto has = [this](const std::vector<std::string>& names) {
-    return std::any_of(names.begin(), names.end(), [this](const auto& n) { return isWord(n); });
-  };
-  if (has(available)) return node_.Scalar();
-  fail(has(planned) ? "not available yet, " + allowed : allowed);
+std::string Entry::choice(const std::vector<std::string>& allowed) const {
+  const auto is_it = [this](const std::string& name) { return isWord(name); };
+  if (std::any_of(allowed.begin(), allowed.end(), is_it)) return node_.Scalar();
+  fail(allowed.size() == 1 ? "must be " + allowed.front() : "must be one of " + joined(allowed));
 }
 
 std::vector<Entry> Entry::list(std::size_t at_least, const std::string& what,

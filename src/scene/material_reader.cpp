@@ -25,7 +25,7 @@ void readPreset(const Entry& entry, MaterialReading& reading) {
   if (!entry.given()) return;
   std::vector<std::string> names;
   for (const MaterialPreset& preset : materialPresets()) names.push_back(preset.name);
-  const std::string name = entry.choice(names, {});
+  const std::string name = entry.choice(names);
   for (const MaterialPreset& preset : materialPresets()) {
     if (preset.name != name) continue;
     Material& material = reading.material;
@@ -48,7 +48,7 @@ void readPoissonRatio(const Entry& entry, MaterialReading& reading) {
 
 void readLaw(const Entry& entry, MaterialReading& reading) {
   if (!entry.given()) return;
-  const bool stiffens = entry.choice({"neo_hookean", "fung"}, {}) == "fung";
+  const bool stiffens = entry.choice({"neo_hookean", "fung"}) == "fung";
   reading.material.law = stiffens ? Material::Law::kFung : Material::Law::kNeoHookean;
   if (stiffens && !traitsOfModel(reading.model).has_law) {
     reading.remarks.push_back(entry.line("ignored, model " + reading.model + " is linear springs"));

@@ -36,7 +36,7 @@ void readModulus(const Entry& entry, MembraneReading& reading) {
 void readSide(const Entry& entry, MembraneReading& reading) {
   using Side = MembraneConfig::Side;
   if (!entry.given()) return;
-  const std::string side = entry.choice({"all", "outer", "inner"}, {});
+  const std::string side = entry.choice({"all", "outer", "inner"});
   reading.membrane.side = side == "outer"   ? Side::kOuter
                           : side == "inner" ? Side::kInner
                                             : Side::kAll;

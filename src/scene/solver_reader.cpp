@@ -36,7 +36,7 @@ struct SolverReading {
 void readMethod(const Entry& entry, SolverReading& reading) {
   const Entry method = overridden(entry, reading.overrides.method, "--method");
   if (!method.given()) return;
-  reading.solver.method = method.choice(methodNames(), {});
+  reading.solver.method = method.choice(methodNames());
   requireFit(method, reading.solver.method, reading.tissue.model);
   if (!reading.tissue.membranes.empty()) requireMembranes(method, reading.solver.method);
 }

@@ -236,7 +236,7 @@ void readGravity(const Entry& entry, TissueReading& reading) {
 const KeyTable<TimeConfig> kTimeKeys = {
     {"mode",
      [](const Entry& entry, TimeConfig&) {
-       if (entry.given()) entry.choice({"dynamic"}, {});
+       if (entry.given()) entry.choice({"dynamic"});
      }},
     {"damping_time",
      [](const Entry& entry, TimeConfig& time) {
@@ -256,7 +256,7 @@ void readTime(const Entry& entry, TissueReading& reading) {
 
 void readFreePieces(const Entry& entry, TissueReading& reading) {
   if (!entry.given()) return;
-  const bool drops = entry.choice({"stay", "drop"}, {}) == "drop";
+  const bool drops = entry.choice({"stay", "drop"}) == "drop";
   reading.tissue.free_pieces = drops ? FreePieces::kDrop : FreePieces::kStay;
 }
 
@@ -270,7 +270,7 @@ const KeyTable<TissueReading> kBodyKeys = {
     {"spacing", readSpacing},
     {"model",
      [](const Entry& entry, TissueReading& reading) {
-       if (entry.given()) reading.tissue.model = entry.choice(modelNames(), {});
+       if (entry.given()) reading.tissue.model = entry.choice(modelNames());
      }},
     {"material", readMaterial},
     {"time", readTime},

@@ -29,7 +29,7 @@ ToolRole readRole(const Entry& entry, const std::string& model) {
   if (!entry.given()) return {};
   std::vector<std::string> names;
   for (const ToolRole& role : toolRoles()) names.push_back(role.name);
-  const ToolRole& role = toolRole(entry.choice(names, plannedToolRoles()));
+  const ToolRole& role = toolRole(entry.choice(names));
   if (hardPatchesOnly(model) && !role.fits_hard_patches) {
     entry.fail("with tissue.model " + model + " must be " +
                toolRolesWith(&ToolRole::fits_hard_patches) +
@@ -42,7 +42,7 @@ ToolConfig::Patch readPatch(const Entry& entry, const std::string& model) {
   if (!entry.given()) {
     return hardPatchesOnly(model) ? ToolConfig::Patch::kRigid : ToolConfig::Patch::kConforming;
   }
-  if (entry.choice({"conforming", "rigid"}, {}) == "rigid") return ToolConfig::Patch::kRigid;
+  if (entry.choice({"conforming", "rigid"}) == "rigid") return ToolConfig::Patch::kRigid;
   if (hardPatchesOnly(model)) {
     entry.fail("with tissue.model " + model + " must be rigid, its method moves hard patches only");
   }
@@ -75,7 +75,7 @@ const KeyTable<GraspReading> kGraspKeys = {
     {"on_max_force",
      [](const Entry& entry, GraspReading& reading) {
        if (!entry.given()) return;
-       reading.grasp.tears_out = entry.choice({"release", "tear"}, {}) == "tear";
+       reading.grasp.tears_out = entry.choice({"release", "tear"}) == "tear";
        if (!reading.grasp.tears_out || reading.grasp.max_force > 0.0) return;
        entry.fail("must stand with a max_force above 0");
      }},

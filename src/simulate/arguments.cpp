@@ -1,7 +1,7 @@
 #include "arguments.h"
 
-#include "command_line.h"
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
@@ -30,7 +30,7 @@ Arguments parseArguments(const std::vector<std::string>& arguments) {
       arguments, {{"--out", "--method", "--tolerance", "--threads", "--max-seconds"},
                   {"--list-methods", "--list-models", "--quiet", "--help"}});
   Arguments parsed;
-  parsed.scene = line.scene;
+  parsed.scene = line.file(0);
   parsed.out = line.value("--out").value_or("");
   parsed.overrides = {line.value("--method"), line.value("--tolerance"), line.value("--threads")};
   parsed.max_seconds = readSeconds(line.value("--max-seconds"));

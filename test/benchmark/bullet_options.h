@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "command_line.h"
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/scene/command_line.h"
 
 namespace robot_tissue {
 

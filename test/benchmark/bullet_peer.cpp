@@ -17,9 +17,9 @@
 
 #include "bullet_body.h"
 #include "bullet_options.h"
-#include "command_line.h"
 #include "output_folder.h"
 #include "result_text.h"
+#include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "run_scene.h"
@@ -230,9 +230,9 @@ int solve(const CommandLine& line) {
   Rest rest;
   rest.tolerance = numberOf(line, "--tolerance", rest.tolerance);
   rest.most_steps = static_cast<int>(numberOf(line, "--steps", rest.most_steps));
-  if (line.scene.empty() || !line.value("--out"))
+  if (line.file(0).empty() || !line.value("--out"))
     throw InputError("SCENE.yaml and --out are needed");
-  const Scene scene = loadScene(line.scene);
+  const Scene scene = loadScene(line.file(0));
   OutputFolder folder(*line.value("--out"),
                       {"nodes.csv", "patches.csv", "increments.csv", "tools.csv"});
   Peer peer(scene, line, rest);

@@ -10,9 +10,9 @@
 
 #include "bullet_contact.h"
 #include "bullet_options.h"
-#include "command_line.h"
 #include "output_folder.h"
 #include "result_text.h"
+#include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "run_scene.h"
 #include "simulate.h"
@@ -86,13 +86,13 @@ RunResult runTool(const Scene& scene, const BulletPace& pace) {
 }
 
 int solve(const CommandLine& line) {
-  if (line.scene.empty() || !line.value("--out")) {
+  if (line.file(0).empty() || !line.value("--out")) {
     throw InputError("SCENE.yaml and --out are needed");
   }
   BulletPace pace;
   pace.implicit = line.has("--implicit");
   pace.steps = wholeNumberOf(line, "--steps", pace.steps);
-  const Scene scene = loadScene(line.scene);
+  const Scene scene = loadScene(line.file(0));
   OutputFolder folder(*line.value("--out"), {"nodes.csv", "increments.csv", "tools.csv"});
   const RunResult result = runTool(scene, pace);
   folder.write("nodes.csv", nodesCsv(result));

@@ -240,12 +240,14 @@ TEST_F(Replay, RefusesABagThatIsWrong) {
 
 TEST_F(Replay, RefusesWrongArguments) {
   record("in.bag");
-  expectRefused("in.bag", "--rate: has no value", {"--rate"});
-  expectRefused("in.bag", "--urdf: has no value", {"--urdf", "--surface"});
-  expectRefused("in.bag", "rate", {"--rate", "fast"});
+  expectRefused("in.bag", "--rate: must be followed by a value", {"--rate"});
+  expectRefused("in.bag", "--urdf: must be followed by a value, not by --surface",
+                {"--urdf", "--surface"});
+  expectRefused("in.bag", "replay: --rate = fast: must be a number from 0.01 to 10000 in Hz",
+                {"--rate", "fast"});
   expectRefused("in.bag", "threads", {"--threads", "0"});
   expectRefused("in.bag", "--speed", {"--speed", "5"});
-  expectRefused("in.bag", "4 files", {"more.bag"});
+  expectRefused("in.bag", "more.bag\": must be SCENE.yaml IN.bag OUT.bag only", {"more.bag"});
   EXPECT_EQ(run("in.bag", "nowhere/out.bag"), 2);
   EXPECT_EQ(run("in.bag", "in.bag"), 2);
   EXPECT_NE(complained_.find("is IN.bag itself"), std::string::npos) << complained_;

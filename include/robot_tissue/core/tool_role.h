@@ -23,8 +23,6 @@ struct ToolRole {
 };
 
 const std::vector<ToolRole>& toolRoles();
-// Names that are known but not available yet.
-const std::vector<std::string>& plannedToolRoles();
 // Throws InputError: no role of this name.
 const ToolRole& toolRole(const std::string& name);
 

@@ -43,9 +43,7 @@ class Entry {
   std::string word(const std::string& allowed) const;  // not empty, `allowed` says what it is
   Vec3 vec3(const Range& range) const;
   Vec3 vec3Or(const Vec3& otherwise, const Range& range) const;
-  // `planned` names are known but refused as not available yet.
-  std::string choice(const std::vector<std::string>& available,
-                     const std::vector<std::string>& planned) const;
+  std::string choice(const std::vector<std::string>& allowed) const;
   // `what` names the entries, e.g. "patches".
   std::vector<Entry> list(std::size_t at_least, const std::string& what,
                           std::size_t at_most = kMostEntries) const;

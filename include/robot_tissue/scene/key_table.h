@@ -64,7 +64,7 @@ MapReader readTyped(const Entry& entry, const KeyTable<Target>& common,
     names.push_back(type.name);
     for (const Key<Target>& key : type.keys) any_key.push_back(key.name);
   }
-  const std::string name = MapReader(entry, any_key)["type"].choice(names, {});
+  const std::string name = MapReader(entry, any_key)["type"].choice(names);
   const MapType<Target>& type = *std::find_if(
       types.begin(), types.end(), [&name](const auto& each) { return each.name == name; });
   const MapReader map(entry, namesOfAll(common, type.keys));

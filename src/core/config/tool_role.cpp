@@ -27,11 +27,6 @@ const std::vector<ToolRole>& toolRoles() {
   return all;
 }
 
-const std::vector<std::string>& plannedToolRoles() {
-  static const std::vector<std::string> planned;
-  return planned;
-}
-
 const ToolRole& toolRole(const std::string& name) {
   std::string known;
   for (const ToolRole& role : toolRoles()) {

@@ -1,4 +1,4 @@
-#include "command_line.h"
+#include "robot_tissue/scene/command_line.h"
 
 #include <algorithm>
 
@@ -21,14 +21,20 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
                    ", must be one of " + joined(all));
 }
 
-void takeScene(const std::string& word, CommandLine& line) {
-  if (word.empty() || !line.scene.empty()) {
-    throw InputError("\"" + onOneLine(word) + "\": must be one SCENE.yaml only");
+void takeFile(const std::string& word, const Options& options, CommandLine& line) {
+  if (word.empty() || line.files.size() == options.files.size()) {
+    std::string names = options.files.size() == 1 ? "one" : "";
+    for (const std::string& name : options.files) names += (names.empty() ? "" : " ") + name;
+    throw InputError("\"" + shortText(word) + "\": must be " + names + " only");
   }
-  line.scene = word;
+  line.files.push_back(word);
 }
 
 }  // namespace
+
+std::string CommandLine::file(std::size_t number) const {
+  return number < files.size() ? files[number] : "";
+}
 
 std::optional<std::string> CommandLine::value(const std::string& name) const {
   const auto found = values.find(name);
@@ -41,7 +47,7 @@ CommandLine readCommandLine(const std::vector<std::string>& words, const Options
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (word.empty() || word.front() != '-') {
-      takeScene(word, line);
+      takeFile(word, options, line);
       continue;
     }
     const std::size_t equals = word.find('=');
