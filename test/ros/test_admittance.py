@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The demo's arm goes down until the tissue answers with the force that was asked for, and holds it."""
+import subprocess
 import sys
 import unittest
 
@@ -18,6 +19,13 @@ class TestAdmittance(unittest.TestCase):
         for jaw in JAWS:
             rospy.Subscriber(f"/robot_tissue/{jaw}/measured_cf", WrenchStamped,
                              lambda wrench, jaw=jaw: self.pushes.update({jaw: -wrench.wrench.force.z}))
+
+    def test_a_force_that_is_none_is_refused_in_a_line(self):
+        for force in "abc", "-1", ".nan", "true":
+            command = ["rosrun", "robot_tissue", "admittance", f"_force:={force}", "__name:=refused"]
+            run = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertRegex(run.stderr, r"\Aadmittance: parameter '/refused/force' = .*allowed: .*\n\Z")
 
     def test_the_force_comes_and_stays(self):
         end, since = rospy.Time.now() + rospy.Duration(DEADLINE), None
