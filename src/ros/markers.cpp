@@ -175,6 +175,7 @@ Marker blankOf(const Namespace& of, const std::string& frame_id, const ros::Time
   marker.color.g = static_cast<float>(of.color.green);
   marker.color.b = static_cast<float>(of.color.blue);
   marker.color.a = 1.0F;
+  marker.frame_locked = 1;  // it moves with the tissue's frame, also where it is not told anew
   return marker;
 }
 

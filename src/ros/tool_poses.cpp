@@ -15,6 +15,15 @@ namespace {
 // Stamps of static transforms, which hold at any time.
 bool isStatic(const ros::Time& stamp) { return stamp.isZero(); }
 
+// Of a buffer, which takes quaternions of a length within half a percent of 1, and no others.
+Pose rigidPose(const geometry_msgs::TransformStamped& transform) {
+  Pose pose = tf2::transformToEigen(transform);
+  const auto& turn = transform.transform.rotation;
+  pose.linear() =
+      Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized().toRotationMatrix();
+  return pose;
+}
+
 }  // namespace
 
 std::vector<std::string> linkFrames(const ToolGeometry& tool) {
@@ -68,7 +77,7 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
       if (stamp != common && !isStatic(stamp)) {
         newest_of[link] = buffer_.lookupTransform(tissue_frame_, looked_up, common);
       }
-      found.pose.links.push_back(tf2::transformToEigen(newest_of[link]));
+      found.pose.links.push_back(rigidPose(newest_of[link]));
     }
   } catch (const tf2::TransformException& error) {
     found.message = "no transform from link '" + looked_up + "' to '" + tissue_frame_ +
@@ -86,7 +95,7 @@ std::optional<ToolPoses::Newest> ToolPoses::newest(const std::string& frame) con
     const ros::Time now = ros::Time::now();
     const ros::Time stamp = isStatic(transform.header.stamp) ? now : transform.header.stamp;
     if (std::abs(secondsBetween(stamp, now)) > timeout_s_) return std::nullopt;
-    return Newest{tf2::transformToEigen(transform), stamp};
+    return Newest{rigidPose(transform), stamp};
   } catch (const tf2::TransformException&) {
     return std::nullopt;
   }
@@ -105,8 +114,8 @@ Pose ToolPoses::frame(const std_msgs::Header& header) const {
                        " (~tf_timeout), or 0: the newest");
     }
     const bool is_earlier = is_asked && ahead < 0.0;
-    return tf2::transformToEigen(
-        is_earlier ? buffer_.lookupTransform(tissue_frame_, frame, header.stamp) : newest);
+    return rigidPose(is_earlier ? buffer_.lookupTransform(tissue_frame_, frame, header.stamp)
+                                : newest);
   } catch (const tf2::ExtrapolationException& error) {
     throw InputError("header.stamp: '" + shortText(frame) +
                      "' has no transform of then; allowed: one that the buffer holds, or 0: the "

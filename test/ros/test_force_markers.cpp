@@ -66,6 +66,7 @@ TEST_F(ForceMarkers, AreOfThePoseReachedAndDimmedOnceTheToolIsElsewhere) {
   const Marker arrow = drawn(pipeline, "contact_forces", 1.0);
   ASSERT_NE(pressed.text, "");
   EXPECT_GT(arrow.points.at(1).z, arrow.points.at(0).z);  // it pushes the sphere out
+  EXPECT_TRUE(arrow.frame_locked) << "it goes along where the tissue's frame moves";
 
   pipeline.setBudget(1e-6);  // a load step an update
   pipeline.step(sphereAt(-0.02));

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <cmath>
+
 #include "robot_tissue/core/types.h"
 #include "robot_tissue/ros/tool_poses.h"
 #include "robot_tissue/ros/transform_intake.h"
@@ -55,6 +57,20 @@ TEST_F(RequestFrame, IsWhereItWasAtTheStamp) {
   EXPECT_NEAR(x(101.0), 0.3, 1e-12);
   EXPECT_NEAR(x(0.0), 0.3, 1e-12) << "without a stamp the newest counts";
   EXPECT_NEAR(x(101.4), 0.3, 1e-12) << "a transform comes a little later than its request";
+}
+
+// The buffer takes quaternions that are a little too long; a pose must stretch nothing.
+TEST_F(RequestFrame, TurnsAndStretchesNothing) {
+  geometry_msgs::TransformStamped turned = cameraAt(0.3, 102.0);
+  turned.transform.rotation.x = turned.transform.rotation.w = 1.004 * std::sqrt(0.5);
+  ASSERT_TRUE(buffer_.setTransform(turned, "test"));
+  poses_.setLinks({"camera"});
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitX()).toRotationMatrix();
+  const PoseLookUp found = poses_.lookUp(ros::Time(102.0));
+  ASSERT_EQ(found.pose.links.size(), 1U) << found.message;
+  EXPECT_TRUE(found.pose.links.front().linear().isApprox(turn, 1e-12));
+  EXPECT_TRUE(poses_.frame(of("camera", 0.0)).linear().isApprox(turn, 1e-12));
+  EXPECT_TRUE(poses_.frame(of("camera", 102.0)).linear().isApprox(turn, 1e-12));
 }
 
 TEST_F(RequestFrame, OfAnotherTimeIsRefused) {
