@@ -72,6 +72,11 @@ NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& rem
   return status;
 }
 
+std::string endOfAnswer(const SolveReport& solve, const Pipeline& pipeline) {
+  if (solve.status == SolveStatus::kOk) return "";
+  return std::string("; ") + toString(solve.status) + (pipeline.isLate() ? ", carried on" : "");
+}
+
 // Of an update, for the diagnostics, which come seldom.
 void TissueNode::remember(const std::vector<StepRemark>& remarks) {
   for (const StepRemark& remark : remarks) {
@@ -82,7 +87,7 @@ void TissueNode::remember(const std::vector<StepRemark>& remarks) {
 
 // Poses may come as seldom as they do: `~rate` is how often they are followed at most.
 void TissueNode::diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = ros::SteadyTime::now();
   const double seconds = (now - rate_told_).toSec();
   rate_told_ = now;
   const PoseWatch::Counts counts = watch_.counts();
@@ -103,7 +108,7 @@ void TissueNode::diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper&
     status.summary(DiagnosticStatus::ERROR, "no robot description");
   } else if (last_look_up_.status == PoseLookUp::Status::kOk) {
     status.summary(DiagnosticStatus::OK, "fresh");
-  } else if (ros::WallTime::now() < grace_end_) {
+  } else if (ros::SteadyTime::now() < grace_end_) {
     status.summary(DiagnosticStatus::OK, "waiting: " + last_look_up_.message);
   } else {
     status.summary(DiagnosticStatus::ERROR, last_look_up_.message);

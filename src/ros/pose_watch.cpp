@@ -71,6 +71,11 @@ PoseWatch::Counts PoseWatch::counts() {
   return std::exchange(counts_, Counts());
 }
 
+bool PoseWatch::takeTurn() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return pick_.takeTurn(ros::Time::now());
+}
+
 int PoseWatch::timeJumps() {
   const std::lock_guard<std::mutex> lock(mutex_);
   noticeTime();

@@ -4,16 +4,13 @@
 
 #include "robot_tissue/pipeline/suture_names.h"
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/node_status.h"
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/scene/state_file.h"
 
 namespace robot_tissue {
 namespace {
-
-std::string solved(const SolveReport& report) {
-  return report.status == SolveStatus::kOk ? "" : std::string("; ") + toString(report.status);
-}
 
 RemovedSpace spaceOf(const Remove::Request& request, const Pose& tissue_T_frame) {
   const Vec3 low = toVec3(request.min), high = toVec3(request.max), center = toVec3(request.center);
@@ -84,7 +81,7 @@ void SurgeryServices::onLoadState(const File::Request& request, File::Response& 
     throw InputError("file = '" + request.file + "': " + error.what());
   }
   publisher_.shapeChanged();
-  response.message = "loaded" + solved(report);
+  response.message = "loaded" + endOfAnswer(report, pipeline_);
 }
 
 void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response& response) {
@@ -96,7 +93,7 @@ void SurgeryServices::onRemove(const Remove::Request& request, Remove::Response&
   response.pieces = report.pieces;
   response.message = report.volume > 0.0 ? "removed" : "no cell has its center in the space";
   for (const std::string& load : report.loads) response.message += ", load '" + load + "' with it";
-  response.message += solved(report.solve);
+  response.message += endOfAnswer(report.solve, pipeline_);
 }
 
 void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
@@ -110,7 +107,7 @@ void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
   const SolveReport report = pipeline_.undo(1);
   publisher_.shapeChanged();
   response.message = "taken back, " + std::to_string(pipeline_.tissue().undoable()) +
-                     " more to take back" + solved(report);
+                     " more to take back" + endOfAnswer(report, pipeline_);
 }
 
 void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response& response) {
@@ -133,7 +130,7 @@ void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response&
   response.name = suture.name;
   response.tension = result.suture.tension;
   response.message = result.suture.broken ? "sutured, and broken at once" : "sutured";
-  response.message += solved(result.solve);
+  response.message += endOfAnswer(result.solve, pipeline_);
 }
 
 }  // namespace robot_tissue

@@ -1,6 +1,5 @@
 #include "robot_tissue/ros/tissue_node.h"
 
-#include <XmlRpcValue.h>
 #include <ros/callback_queue.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/memory.h"
 #include "tuning.h"
@@ -35,7 +35,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
           [this](const ros::Time& stamp) { onStill(stamp); },
           [this](PoseLookUp look_up) { update(std::move(look_up)); }) {
   for (const std::string& remark : parameters_.scene.remarks) ROS_WARN_STREAM(remark);
-  grace_end_ = ros::WallTime::now() + kGrace;
+  grace_end_ = ros::SteadyTime::now() + kGrace;
   pipeline_.setBudget(updateBudget(parameters_));
   pipeline_.setMostIterations(mostIterations(parameters_));
   pipeline_.leaveDepths();
@@ -53,16 +53,15 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
                               parameters_.scene.solver.method.c_str(),
                               pipeline_.tissue().lattice().nodeCount());
-  rate_told_ = ros::WallTime::now();
+  rate_told_ = ros::SteadyTime::now();
   diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
   diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
   diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
-  timer_ = private_node_.createTimer(ros::Duration(1.0 / parameters_.rate_hz),
-                                     [this](const ros::TimerEvent&) { onTimer(); });
+  timer_ = private_node_.createTimer(period(), [this](const ros::TimerEvent&) { onTimer(); });
   if (!ros::Time::isSimTime()) return;
-  wall_timer_ = private_node_.createWallTimer(
-      kClockPeriod, [this](const ros::WallTimerEvent&) { onWallTimer(); });
+  steady_timer_ = private_node_.createSteadyTimer(
+      kClockPeriod, [this](const ros::SteadyTimerEvent&) { onSteadyTimer(); });
 }
 
 // In the thread that receives transforms.
@@ -77,8 +76,8 @@ void TissueNode::tick(Ticks ticks) {
 // Of the timer.
 ros::Duration TissueNode::period() const {
   const double at_rate = 1.0 / parameters_.rate_hz;
-  return ros::Duration(ticks_ == Ticks::kSeldom ? std::max(at_rate, tuning::kWatchPeriod)
-                                                : at_rate);
+  return ros::Duration(ticks_ == Ticks::kSeldom ? tuning::kWatchPeriod
+                                                : std::min(at_rate, tuning::kWatchPeriod));
 }
 
 // Becomes what the parameters say, as far as LiveParameters changes them.
@@ -105,7 +104,7 @@ void TissueNode::wake() {
 
 // Timers of simulated time stand still without a clock, and where time goes back one whose period
 // was set since it last came may sleep until it is as late as before.
-void TissueNode::onWallTimer() {
+void TissueNode::onSteadyTimer() {
   if (ros::Time::now().isZero()) {
     return report({"NO_TRANSFORM", "use_sim_time is true, but nothing publishes a time on /clock"});
   }
@@ -122,7 +121,7 @@ bool TissueNode::timeWentBack() {
                        "shape stays, the tools come in anew (said once)");
   time_jumps_ = jumps;
   timer_.setPeriod(period());  // it comes again from now on
-  grace_end_ = ros::WallTime::now() + kGrace;
+  grace_end_ = ros::SteadyTime::now() + kGrace;
   last_look_up_ = PoseLookUp();
   if (robot_is_known_) follower_.timeWentBack();
   publisher_.timeWentBack();
@@ -142,8 +141,15 @@ void TissueNode::onTimer() {
   const PoseWatch::Seen seen = watch_.seen();
   if (seen.still > last_look_up_.stamp) tellStill(seen.still);
   if (seen.any) return tick(Ticks::kSeldom);
+  PoseLookUp look_up = tool_poses_.lookUp(ros::Time::now());
+  const bool goes_on =
+      look_up.status == PoseLookUp::Status::kOk && last_look_up_.status == PoseLookUp::Status::kOk;
+  if (goes_on && !watch_.takeTurn()) {
+    if (pipeline_.isLate()) update(PoseLookUp(last_look_up_));  // what is left of the last update
+    return;
+  }
   watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
-  update(tool_poses_.lookUp(ros::Time::now()));
+  update(std::move(look_up));
   const bool is_good = last_look_up_.status == PoseLookUp::Status::kOk;
   const bool has_time = !is_good || (isStill() && !publisher_.tellsWrenches());
   tick(has_time && !pipeline_.isLate() ? Ticks::kSeldom : Ticks::kAtRate);
@@ -189,7 +195,7 @@ bool TissueNode::waitsAfterJump() {
   if (waits.empty()) return false;
   last_look_up_.status = PoseLookUp::Status::kStale;
   last_look_up_.message = waits;
-  report({"TOO_FAST", waits});
+  report({"TOO_FAST", waits}, TissuePublisher::Wrenches::kOld);
   return true;
 }
 
@@ -201,7 +207,7 @@ void TissueNode::follow() {
   const std::vector<StepRemark> remarks = remarksOn(pipeline_);
   status_ = statusOf(pipeline_, remarks);
   remember(remarks);
-  const bool comes_anew = time_jumps_ > 0 && ros::WallTime::now() < grace_end_;
+  const bool comes_anew = time_jumps_ > 0 && ros::SteadyTime::now() < grace_end_;
   if (!comes_anew && (step.too_fast || !step.were_inside.empty() || !step.hooked.empty() ||
                       !step.jammed.empty() || !step.torn_off.empty() || !step.torn_out.empty())) {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
@@ -210,26 +216,15 @@ void TissueNode::follow() {
   if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
 }
 
-// Empty: not set yet. Throws InputError where it is something else than a text.
-std::optional<std::string> TissueNode::robotDescription() const {
-  std::string path;
-  XmlRpc::XmlRpcValue value;
-  const std::string& name = parameters_.robot_description_param;
-  if (!private_node_.searchParam(name, path) || !private_node_.getParam(path, value)) return {};
-  if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return std::string(value);
-  throw InputError("parameter '" + path +
-                   "' (~robot_description_param) is no text; allowed: a URDF");
-}
-
 // Loads the tools once the robot's description is there; without tools none is needed.
 bool TissueNode::robotIsKnown() {
   if (robot_is_known_) return true;
   const auto& tools = parameters_.scene.tools;
   if (!tools.empty()) {
-    const ros::WallTime now = ros::WallTime::now();
+    const ros::SteadyTime now = ros::SteadyTime::now();
     if (now < next_robot_look_up_) return false;
     next_robot_look_up_ = now + kRobotLookUpPeriod;
-    const std::optional<std::string> urdf = robotDescription();
+    const auto urdf = robotDescription(private_node_, parameters_.robot_description_param);
     if (!urdf) return false;
     const LoadedTools loaded = loadTools(*urdf, tools);
     for (const std::string& warning : loaded.warnings) ROS_WARN_STREAM(warning);
@@ -247,7 +242,7 @@ bool TissueNode::robotIsKnown() {
 // this the heap grows by the gaps for hours.
 void TissueNode::giveBackMemory() {
   const std::uint64_t revision = pipeline_.tissue().surface().revision;
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = ros::SteadyTime::now();
   if (revision == tidy_revision_ || now - tidied_ < kTidyPeriod) return;
   giveBackFreeMemory();
   tidy_revision_ = revision;
@@ -255,8 +250,8 @@ void TissueNode::giveBackMemory() {
 }
 
 // The last good shape stays; what is wrong is said, but for what is so at every start.
-void TissueNode::report(const NodeStatus& status) {
-  if (status.status != warned_ && ros::WallTime::now() >= grace_end_) {
+void TissueNode::report(const NodeStatus& status, TissuePublisher::Wrenches wrenches) {
+  if (status.status != warned_ && ros::SteadyTime::now() >= grace_end_) {
     ROS_WARN_STREAM(status.status << ": " << status.message);
     warned_ = status.status;
   }
@@ -265,7 +260,7 @@ void TissueNode::report(const NodeStatus& status) {
     pipeline_.carryOn();
     publisher_.shapeChanged();
   }
-  publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_);
+  publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_, wrenches);
 }
 
 }  // namespace robot_tissue

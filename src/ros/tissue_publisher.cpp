@@ -100,8 +100,8 @@ bool TissuePublisher::areMarkersWanted() const {
 }
 
 void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Time& now,
-                                         const NodeStatus& status) {
-  wrenches_.fallSilent();
+                                         const NodeStatus& status, Wrenches wrenches) {
+  wrenches == Wrenches::kOld ? wrenches_.publishOld() : wrenches_.fallSilent();
   if (marker_builder_.fallBehind(pipeline)) toolsChanged();
   publishMarkers(pipeline, now);
   shape_.publish(pipeline.tissue(), now);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/node_status.h"
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
 #include "tuning.h"
@@ -13,11 +14,6 @@ namespace robot_tissue {
 namespace {
 
 constexpr std::size_t kMostCorners = 1000;
-
-std::string solved(const SolveReport& report, bool is_late) {
-  if (report.status == SolveStatus::kOk) return "";
-  return std::string("; ") + toString(report.status) + (is_late ? ", carried on" : "");
-}
 
 // Its corners, in its own frame.
 std::vector<Vec3> cornersOf(const Cut::Request& request) {
@@ -95,7 +91,8 @@ bool TissueServices::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
   node_.settle_from_rest();
   publisher_.shapeChanged();
   response.success = true;
-  response.message = "rest shape, no cuts, no loads";
+  response.message =
+      "rest shape, no cuts, no loads" + endOfAnswer(pipeline_.tissue().lastReport(), pipeline_);
   return true;
 }
 
@@ -115,7 +112,7 @@ bool TissueServices::onCut(Cut::Request& request, Cut::Response& response) {
     if (cut.springs_torn > 0) {
       response.message += ", " + std::to_string(cut.springs_torn) + " torn thereafter";
     }
-    response.message += solved(cut.solve, pipeline_.isLate());
+    response.message += endOfAnswer(cut.solve, pipeline_);
   } catch (const InputError& error) {
     response.success = false;
     response.message = error.what();
@@ -148,7 +145,7 @@ void TissueServices::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Res
   }
   if (request.displacement.empty() && request.force.empty()) {
     pipeline_.release({request.name});
-    response.message = "released" + solved(pipeline_.tissue().lastReport(), pipeline_.isLate());
+    response.message = "released" + endOfAnswer(pipeline_.tissue().lastReport(), pipeline_);
     return;
   }
   requireBox(request);
@@ -161,7 +158,7 @@ void TissueServices::loadPatch(const ApplyLoad::Request& request, ApplyLoad::Res
   response.force = toVector3(answer.force);
   response.displacement = toVector3(answer.displacement);
   const bool is_there = !pipeline_.tissue().isLoading();
-  response.message = (is_there ? "loaded" : "on its way") + solved(last, pipeline_.isLate());
+  response.message = (is_there ? "loaded" : "on its way") + endOfAnswer(last, pipeline_);
 }
 
 }  // namespace robot_tissue

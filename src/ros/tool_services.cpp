@@ -113,10 +113,10 @@ void TissueServices::pushTool(const ApplyLoad::Request& request, ApplyLoad::Resp
 
 // Until the tool stands, or the time of an update is over. Returns what became of it.
 std::string TissueServices::followPush(std::size_t tool, const Vec3& force) {
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(updateBudget(parameters_));
+  const ros::SteadyTime end = ros::SteadyTime::now() + ros::WallDuration(updateBudget(parameters_));
   do {
     node_.follow();
-  } while (pipeline_.report().changed && ros::WallTime::now() < end);
+  } while (pipeline_.report().changed && ros::SteadyTime::now() < end);
   const ToolReport& report = pipeline_.report().tools[tool];
   if (pipeline_.report().changed) return "on its way";
   if (force.isZero()) return "at its pose";

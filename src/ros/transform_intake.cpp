@@ -47,7 +47,7 @@ bool TransformIntake::hasPlace(const geometry_msgs::TransformStamped& transform)
   if (now.isZero()) return false;
   const double most = buffer_.getCacheLength().toSec();
   if (secondsBetween(now, stamp) > most) {
-    if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::WallTime::now()};
+    if (!ahead_) ahead_ = Ahead{transform.child_frame_id, stamp, ros::SteadyTime::now()};
     return false;
   }
   if (isOfBefore(now, stamp)) return false;
@@ -66,11 +66,11 @@ bool TransformIntake::isOfBefore(const ros::Time& now, const ros::Time& stamp) c
 
 void TransformIntake::warnOfAhead() {
   if (!ahead_) return;
-  const ros::WallTime now = ros::WallTime::now();
+  const ros::SteadyTime now = ros::SteadyTime::now();
   const double ahead = secondsBetween(ros::Time::now(), ahead_->stamp);
   const double most = buffer_.getCacheLength().toSec();
   if (ahead > most && now - ahead_->seen < kPatience) return;
-  if (ahead > most && now - warned_ > kWarnPeriod) {
+  if (ahead > most && (warned_.isZero() || now - warned_ > kWarnPeriod)) {
     warned_ = now;
     ROS_WARN_STREAM("/tf: the transform of '"
                     << shortText(ahead_->frame) << "' is " << numberText(ahead)

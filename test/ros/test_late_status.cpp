@@ -57,6 +57,26 @@ TEST(LateStatus, ContactsThatStillSettleAreNoLackOfTime) {
   EXPECT_GT(settling, 0);
 }
 
+TEST(Status, AnswersOfServicesTellASolveThatIsNotInBalance) {
+  NodeParameters parameters = parametersWith("solver: {method: layered}");
+  Pipeline pipeline(parameters.scene.tissue, parameters.scene.solver, {});
+  SolveReport solve;
+  EXPECT_EQ(endOfAnswer(solve, pipeline), "");
+  solve.status = SolveStatus::kUnconverged;
+  EXPECT_EQ(endOfAnswer(solve, pipeline), "; UNCONVERGED");
+  pipeline.setBudget(1e-9);
+  LoadStep load;
+  PatchConfig patch;
+  patch.name = "pull";
+  patch.box = Box(Vec3(0.0, 0.0, 0.04), Vec3(0.06, 0.06, 0.04));
+  patch.displacement = {{0.0, 0.0, 0.002}};
+  load.patches.push_back(patch);
+  pipeline.load(
+      load, [&](int, int, const SolveReport& report) { solve = report; }, 1);
+  ASSERT_TRUE(pipeline.isLate());
+  EXPECT_EQ(endOfAnswer(solve, pipeline), "; LATE, carried on");
+}
+
 TEST(Status, ToolsThatLetGoDidNotAppearInside) {
   const NodeParameters parameters = parametersWith("");
   const Pipeline pipeline(parameters.scene.tissue, parameters.scene.solver, {});

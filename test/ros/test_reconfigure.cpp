@@ -208,6 +208,18 @@ TEST_F(Reconfigure, PosesAreFollowedAtTheRate) {
   EXPECT_TRUE(waitForGaps(false));
 }
 
+// A hundred seconds a pose: who waits for that does not see it before the deadline.
+TEST_F(Reconfigure, ALostRobotIsToldOfAtALowRateToo) {
+  set({{"rate", 0.01}});
+  publishes_transform_ = false;
+  EXPECT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
+  publishes_transform_ = true;
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
+  diagnostics_.clear();
+  EXPECT_TRUE(waitFor([this] { return diagnostics_.count("tissue: transforms") > 0; }));
+  set({{"rate", 100.0}});
+}
+
 TEST_F(Reconfigure, ForceScaleIsTheLengthOfAnArrowOverItsForce) {
   const auto& force = press(kDepth).wrench.force;
   const double newtons = std::hypot(force.x, std::hypot(force.y, force.z));

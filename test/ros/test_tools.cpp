@@ -259,13 +259,19 @@ TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {
 // It may be a wrong pose: the shape stays until it has lasted.
 TEST_F(Tools, JumpIsReportedAndFollowedWhenItLasts) {
   places_["probe"] = pressed(0.004);
-  EXPECT_GT(follow().wrench.force.z, 0.1);
+  const auto pressed_in = follow();
+  EXPECT_GT(pressed_in.wrench.force.z, 0.1);
   ASSERT_TRUE(waitForMarkers([this] { return markers_.count("surface") > 0; }));
   said_.clear();
   places_["probe"] = Eigen::Vector3d(5.0, 5.0, 5.0);
   ASSERT_TRUE(waitFor([this] { return said_.count("TOO_FAST") > 0; }));
   EXPECT_NE(said_["TOO_FAST"].find("'probe' jumped"), std::string::npos) << said_["TOO_FAST"];
   EXPECT_LT(state_->force_of_tools.z, -0.1);  // of the shape that stays
+  const ros::Time last = state_->header.stamp;
+  wrench_.reset();
+  ASSERT_TRUE(waitFor([this] { return wrench_ != nullptr; }));
+  EXPECT_TRUE(wrench_->wrench == pressed_in.wrench) << "told on, of the pose that was reached";
+  EXPECT_LT(wrench_->header.stamp, last);
   EXPECT_EQ(follow().wrench.force.z, 0.0);
   EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; }));
 }

@@ -18,4 +18,8 @@ struct NodeStatus {
 // the message has all.
 NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& remarks);
 
+// What the answer of a service ends with, whose last solve this is: nothing where it is in balance,
+// else "; " and the status.
+std::string endOfAnswer(const SolveReport& solve, const Pipeline& pipeline);
+
 }  // namespace robot_tissue

@@ -19,6 +19,12 @@ class PosePick {
   void setRate(double rate_hz) { pace_ = UpdatePace(rate_hz); }
   // Stamps of before say nothing any more.
   void timeWentBack() { last_stamp_ = ros::Time(); }
+  // Whether a pose may be followed now that did not come just now; then it counts as one that did.
+  bool takeTurn(const ros::Time& now) {
+    const bool is_due = pace_.isDue(now.toSec());
+    if (is_due) pace_.take(now.toSec());
+    return is_due;
+  }
   // After transforms came: the pose to be followed, if there is one. Where all transforms are
   // static none is.
   std::optional<PoseLookUp> take(const ros::Time& now) {

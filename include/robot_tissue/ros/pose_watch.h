@@ -53,6 +53,8 @@ class PoseWatch {
     int missed = 0;
   };
   Counts counts();
+  // Whether the rate leaves room to follow a pose that this did not hand over; then that takes it.
+  bool takeTurn();
   // How often time has gone back so far, as where a bag plays again. What was received before goes.
   int timeJumps();
   // From here on these poses are answered as still ones; none: none is.

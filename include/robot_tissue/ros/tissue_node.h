@@ -2,13 +2,13 @@
 // mechanics. Everything runs in one thread, the spinner's, but for poses at which nothing is to be
 // done (PoseWatch) and wrenches with a rate of their own (WrenchPublisher). A new pose is followed
 // as soon as it came, `~rate` times a second at most. Where none comes the timer goes on at that
-// rate with what is left to do; else it only watches, seldom.
+// rate with what is left to do; else it only watches, seldom, but never as seldom as a low rate.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
+#include <ros/steady_timer.h>
 #include <ros/timer.h>
-#include <ros/wall_timer.h>
 #include <tf2_ros/buffer.h>
 
 #include <cstdint>
@@ -41,7 +41,7 @@ class TissueNode {
 
   void onStill(const ros::Time& stamp);
   void onTimer();
-  void onWallTimer();
+  void onSteadyTimer();
   void tick(Ticks ticks);
   ros::Duration period() const;
   void retune(const NodeParameters& wanted);
@@ -53,9 +53,9 @@ class TissueNode {
   void update(PoseLookUp look_up);
   bool waitsAfterJump();
   void follow();
-  std::optional<std::string> robotDescription() const;
   bool robotIsKnown();
-  void report(const NodeStatus& status);
+  void report(const NodeStatus& status,
+              TissuePublisher::Wrenches wrenches = TissuePublisher::Wrenches::kNone);
   void giveBackMemory();
   // node_status.cpp
   void remember(const std::vector<StepRemark>& remarks);
@@ -72,25 +72,25 @@ class TissueNode {
   TissuePublisher publisher_;
   TissueFollower follower_;
   bool robot_is_known_ = false;
-  ros::WallTime next_robot_look_up_;
+  ros::SteadyTime next_robot_look_up_;
   PoseLookUp last_look_up_;
   Ticks ticks_ = Ticks::kAtRate;
   NodeStatus status_;
-  ros::WallTime grace_end_;  // until then it is no fault that no pose is there yet
-  std::string warned_;       // status that was warned about last, until there is a good pose
+  ros::SteadyTime grace_end_;  // until then it is no fault that no pose is there yet
+  std::string warned_;         // status that was warned about last, until there is a good pose
   int time_jumps_ = 0;
   std::map<StepRemark::Kind, std::string> tools_said_;  // since the diagnostics were last told
   bool was_late_ = false;                               // likewise
-  ros::WallTime rate_told_;
+  ros::SteadyTime rate_told_;
   std::uint64_t tidy_revision_ = 0;  // of the surface, when memory was given back last
-  ros::WallTime tidied_;             // that time
+  ros::SteadyTime tidied_;           // that time
   diagnostic_updater::Updater diagnostics_;
   std::unique_ptr<TissueServices> services_;
   std::unique_ptr<SurgeryServices> surgery_;
   std::unique_ptr<LiveParameters> live_;
   ros::Timer timer_;
-  ros::WallTimer wall_timer_;  // in simulated time, until there is some
-  PoseWatch watch_;            // the first to go: it calls into the others
+  ros::SteadyTimer steady_timer_;  // in simulated time, until there is some
+  PoseWatch watch_;                // the first to go: it calls into the others
 };
 
 }  // namespace robot_tissue

@@ -46,8 +46,11 @@ class TissuePublisher {
   // Nothing but what goes out once a second and at every pose is to be published.
   bool isUpToDate() const;
   bool tellsWrenches() const { return wrenches_.isListenedTo(); }
-  // When there is no good pose: what is wrong, with the last good shape; no wrenches.
-  void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status);
+  // When there is no good pose: what is wrong, with the last good shape. kOld: the wrenches are
+  // told on, with the stamp of the pose that they belong to.
+  enum class Wrenches { kNone, kOld };
+  void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status,
+                          Wrenches wrenches);
 
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {

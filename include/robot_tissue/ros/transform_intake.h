@@ -28,7 +28,7 @@ class TransformIntake {
   struct Ahead {
     std::string frame;
     ros::Time stamp;
-    ros::WallTime seen;
+    ros::SteadyTime seen;
   };
 
   bool hasPlace(const geometry_msgs::TransformStamped& transform);
@@ -40,7 +40,7 @@ class TransformIntake {
   std::map<std::string, ros::Time> newest_;  // stamps put in, by child frame
   std::optional<ros::Time> went_back_to_;    // the last time that time did
   std::optional<Ahead> ahead_;               // left out and not warned about yet
-  ros::WallTime warned_;
+  ros::SteadyTime warned_;
 };
 
 }  // namespace robot_tissue
