@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 
 #include "robot_checks.h"
 #include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/mesh/regular_file.h"
-#include "robot_tissue/ros/node_parameters.h"
+#include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
 #include "scene_checks.h"
@@ -21,31 +22,22 @@ constexpr double kMostSeconds = 60.0;            // of the trial press
 
 const char* const kUsage =
     "usage: check_setup SCENE.yaml [--urdf FILE]\n"
-    "Looks at the scene, at the robot of FILE or of the running master (parameter\n"
-    "robot_description, /tf), and presses a sphere 1 mm in. A line each, with its remedy.\n"
+    "Looks at the scene, at the robot of FILE or of the running master (the parameter that\n"
+    "robot_description_param of the scene names, /tf), and presses a sphere 1 mm in. A line each,\n"
+    "with its remedy.\n"
     "Exit code 0: fine; 1: warnings; 2: it cannot run, or wrong arguments.\n";
 
 struct Arguments {
   std::string scene;
-  std::string urdf;  // a file; empty: what runs
+  std::optional<std::string> urdf;  // a file; none: what runs
+  bool help = false;
 };
 
-Arguments parse(const std::vector<std::string>& arguments) {
-  Arguments parsed;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i] == "--urdf") {
-      if (i + 1 == arguments.size() || arguments[i + 1].rfind("--", 0) == 0) {
-        throw InputError("--urdf: missing, must be a URDF's file");
-      }
-      parsed.urdf = arguments[++i];
-    } else if (arguments[i].rfind("--", 0) == 0 || !parsed.scene.empty()) {
-      throw InputError(shortText(arguments[i]) + ": is not known, must be SCENE.yaml or --urdf");
-    } else {
-      parsed.scene = arguments[i];
-    }
-  }
-  if (parsed.scene.empty()) throw InputError("SCENE.yaml: missing, must be a scene's file");
-  return parsed;
+Arguments parse(const std::vector<std::string>& words) {
+  const CommandLine line = readCommandLine(words, {{"--urdf"}, {"--help"}});
+  const Arguments parsed{line.file(0), line.value("--urdf"), line.has("--help")};
+  if (parsed.help || !parsed.scene.empty()) return parsed;
+  throw InputError("SCENE.yaml is missing, must be check_setup SCENE.yaml [--urdf FILE]");
 }
 
 const char* wordOf(Finding::Level level) {
@@ -82,14 +74,15 @@ class Teller {
   Finding::Level worst_ = Finding::Level::kNote;
 };
 
-Robot robotOf(const Arguments& arguments, const Scene& scene, const LookAtRobot& look) {
-  if (arguments.urdf.empty()) return look(scene);
+Robot robotOf(const Arguments& arguments, const NodeParameters& parameters,
+              const LookAtRobot& look) {
+  if (!arguments.urdf) return look(parameters);
   try {
-    const std::string urdf = readRegularFile(arguments.urdf, kLargestUrdf);
+    const std::string urdf = readRegularFile(*arguments.urdf, kLargestUrdf);
     requireUrdf(urdf);
     return {urdf, {}};
   } catch (const InputError& error) {
-    throw InputError("--urdf = " + onOneLine(arguments.urdf) + ": " + error.what() +
+    throw InputError("--urdf = " + onOneLine(*arguments.urdf) + ": " + error.what() +
                      ", must be a URDF file that can be read");
   }
 }
@@ -100,10 +93,11 @@ void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) 
   source.name = arguments.scene;
   source.folder = std::filesystem::absolute(arguments.scene).parent_path().string();
   teller.tell(checkUnits(text, source.folder));
-  const Scene scene = parseNodeParameters(text, source).scene;
+  const NodeParameters parameters = parseNodeParameters(text, source);
+  const Scene& scene = parameters.scene;
   teller.tell(checkWalls(scene.tissue));
   teller.tell(checkForNode(scene));
-  const Robot robot = robotOf(arguments, scene, look);
+  const Robot robot = robotOf(arguments, parameters, look);
   teller.tell(robot.findings);
   teller.tell(checkTools(scene, robot.urdf.value_or("")));
   teller.tell(checkPress(scene, kMostSeconds));
@@ -111,16 +105,16 @@ void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) 
 
 }  // namespace
 
-int checkSetup(const std::vector<std::string>& arguments, const LookAtRobot& look,
-               std::ostream& out, std::ostream& err) {
-  const auto is_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
-  if (std::any_of(arguments.begin(), arguments.end(), is_help)) {
-    out << kUsage;
-    return kFine;
-  }
+int checkSetup(const std::vector<std::string>& words, const LookAtRobot& look, std::ostream& out,
+               std::ostream& err) {
   Teller teller(out);
   try {
-    check(parse(arguments), look, teller);
+    const Arguments arguments = parse(words);
+    if (arguments.help) {
+      out << kUsage;
+    } else {
+      check(arguments, look, teller);
+    }
   } catch (const std::exception& error) {
     err << "check_setup: " << error.what() << '\n';
     return kCannotRun;

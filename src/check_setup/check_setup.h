@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "finding.h"
-#include "robot_tissue/core/scene.h"
+#include "robot_tissue/ros/node_parameters.h"
 
 namespace robot_tissue {
 
@@ -22,10 +22,10 @@ struct Robot {
   std::optional<std::string> urdf;
   Findings findings;  // of its description and transforms
 };
-using LookAtRobot = std::function<Robot(const Scene& scene)>;
+using LookAtRobot = std::function<Robot(const NodeParameters& parameters)>;
 
 // `look` is asked where --urdf does not tell the description. Returns the exit code.
-int checkSetup(const std::vector<std::string>& arguments, const LookAtRobot& look,
-               std::ostream& out, std::ostream& err);
+int checkSetup(const std::vector<std::string>& words, const LookAtRobot& look, std::ostream& out,
+               std::ostream& err);
 
 }  // namespace robot_tissue

@@ -6,6 +6,8 @@
 
 #include "check_setup.h"
 #include "robot_checks.h"
+#include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/ros/robot_description.h"
 
 namespace {
 
@@ -23,11 +25,11 @@ Findings checkFrames(const robot_tissue::Scene& scene) {
   const auto is_known = [&](const std::string& frame) {
     return buffer.canTransform(tissue, frame, ros::Time(0));
   };
-  const ros::WallTime end = ros::WallTime::now() + kPatience;
+  const ros::SteadyTime end = ros::SteadyTime::now() + kPatience;
   do {
     missing.erase(std::remove_if(missing.begin(), missing.end(), is_known), missing.end());
     if (!missing.empty()) kPause.sleep();
-  } while (!missing.empty() && ros::WallTime::now() < end);
+  } while (!missing.empty() && ros::SteadyTime::now() < end);
   Findings findings;
   for (const std::string& frame : missing) {
     const bool has_tissue = buffer._frameExists(tissue);
@@ -41,22 +43,32 @@ Findings checkFrames(const robot_tissue::Scene& scene) {
   return findings;
 }
 
-robot_tissue::Robot lookAtMaster(const robot_tissue::Scene& scene) {
+// As the node of its usual name looks for it.
+robot_tissue::Robot describedRobot(const robot_tissue::NodeParameters& parameters) {
+  const std::string& parameter = parameters.robot_description_param;
+  const std::string remedy = "load the robot's URDF to this parameter";
+  try {
+    const ros::NodeHandle node("robot_tissue");
+    const auto urdf = robot_tissue::robotDescription(node, parameter);
+    if (urdf) {
+      robot_tissue::requireUrdf(*urdf);
+      return {urdf, {}};
+    }
+    return {{}, {{Finding::Level::kWarning, "parameter '" + parameter + "' is not set", remedy}}};
+  } catch (const robot_tissue::InputError& error) {
+    return {{}, {{Finding::Level::kError, error.what(), remedy}}};
+  }
+}
+
+robot_tissue::Robot lookAtMaster(const robot_tissue::NodeParameters& parameters) {
   if (!ros::master::check()) {
     return {{},
             {{Finding::Level::kNote, "no master runs: links and transforms were not looked at",
               "--urdf FILE, or start the robot first"}}};
   }
-  ros::NodeHandle node;
-  robot_tissue::Robot robot;
-  std::string urdf;
-  if (node.getParam("robot_description", urdf)) {
-    robot.urdf = urdf;
-  } else if (!scene.tools.empty()) {
-    robot.findings.push_back({Finding::Level::kWarning, "robot_description: is not set",
-                              "load the robot's URDF to this parameter"});
-  }
-  const Findings frames = checkFrames(scene);
+  const bool is_needed = !parameters.scene.tools.empty();
+  robot_tissue::Robot robot = is_needed ? describedRobot(parameters) : robot_tissue::Robot();
+  const Findings frames = checkFrames(parameters.scene);
   robot.findings.insert(robot.findings.end(), frames.begin(), frames.end());
   return robot;
 }

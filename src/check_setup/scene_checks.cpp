@@ -69,8 +69,18 @@ Findings checkWalls(const TissueConfig& tissue) {
 Findings checkForNode(const Scene& scene) {
   Findings findings;
   const auto names_link = [](const ToolLink& link) { return !link.link.empty(); };
+  // Of scissors without jaws the runner reads the tool's own link three times.
+  const auto has_no_jaws = [](const ToolConfig& tool) {
+    return tool.role.shears && tool.links.back().path == tool.links.front().path;
+  };
   for (const ToolConfig& tool : scene.tools) {
-    if (std::any_of(tool.links.begin(), tool.links.end(), names_link)) continue;
+    if (std::any_of(tool.links.begin(), tool.links.end(), names_link)) {
+      if (!has_no_jaws(tool)) continue;
+      findings.push_back({Finding::Level::kError,
+                          "tools: '" + tool.name + "' has no jaws: only simulate runs it",
+                          "jaws: the two links of the robot's URDF that its edges are on"});
+      continue;
+    }
     findings.push_back({Finding::Level::kWarning,
                         "tools: '" + tool.name + "' names no link: only simulate runs it",
                         "link: a link of the robot's URDF"});

@@ -61,7 +61,7 @@ class CheckSetup : public ::testing::Test {
 
   int check(const std::string& scene, const std::string& urdf = urdfOf("<sphere radius='0.01'/>")) {
     std::ostringstream out, err;
-    const auto look = [&](const Scene&) {
+    const auto look = [&](const NodeParameters&) {
       Robot robot;
       robot.urdf = urdf;
       return robot;
@@ -164,6 +164,33 @@ TEST_F(CheckSetup, JawsAreLinksEnough) {
       << out_ << err_;
 }
 
+// The node refuses what the runner can do without.
+TEST_F(CheckSetup, ScissorsOfTheRobotNeedJaws) {
+  const std::string edges =
+      "edges: [[[0, 0, 0], [0.02, 0, 0]], [[0, 0, 0], [0.02, 0, 0]]], opening_axis: [0, 0, 1]}]\n";
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [";
+  EXPECT_EQ(check(scene + "{name: shears, role: scissors, link: tip, " + edges), kCannotRun);
+  EXPECT_TRUE(says("error: tools: 'shears' has no jaws")) << out_ << err_;
+  EXPECT_TRUE(says("remedy: jaws: ")) << out_;
+  EXPECT_EQ(check(scene + "{name: shears, role: scissors, " + edges, ""), kHasWarnings);
+  EXPECT_TRUE(says("'shears' names no link")) << out_ << err_;
+  check(scene + "{name: shears, role: scissors, jaws: [base, tip], " + edges);
+  EXPECT_FALSE(says("has no jaws")) << out_ << err_;
+}
+
+TEST_F(CheckSetup, TheRobotsDescriptionIsLookedForWhereTheSceneSays) {
+  const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest +
+                                                    "robot_description_param: arm\n");
+  std::string asked;
+  const auto look = [&](const NodeParameters& parameters) {
+    asked = parameters.robot_description_param;
+    return Robot();
+  };
+  std::ostringstream out, err;
+  checkSetup({scene}, look, out, err);
+  EXPECT_EQ(asked, "arm") << err.str();
+}
+
 TEST_F(CheckSetup, TheNodesOwnKeysAreTakenAndChecked) {
   const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
   EXPECT_EQ(check(scene + "rate: 50\nwrench_rate: 200\ncolor: strain\n"), kFine) << out_ << err_;
@@ -176,7 +203,7 @@ TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_EQ(check("tissue: {spacing: 0.01}"), kCannotRun);
   EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_;
   std::ostringstream out, err;
-  const auto nobody = [](const Scene&) { return Robot(); };
+  const auto nobody = [](const NodeParameters&) { return Robot(); };
   EXPECT_EQ(checkSetup({}, nobody, out, err), kCannotRun);
   EXPECT_EQ(checkSetup({"a.yaml", "b.yaml"}, nobody, out, err), kCannotRun);
   EXPECT_EQ(checkSetup({"a.yaml", "--urdf"}, nobody, out, err), kCannotRun);
@@ -186,7 +213,7 @@ TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
 // Also where no tool is of one of its links.
 TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
   const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest);
-  const auto nobody = [](const Scene&) { return Robot(); };
+  const auto nobody = [](const NodeParameters&) { return Robot(); };
   const std::vector<std::string> texts = {"", "no XML", "<robot name='r'>"};
   for (const std::string& text : texts) {
     const std::vector<std::string> arguments = {scene, "--urdf", write("robot.urdf", text)};
