@@ -2,8 +2,9 @@
 
 A bar of 400 x 40 x 40 mm, clamped at one end, is let go: frequencies and damping of bending, and of stretching, where
 a stress wave runs to and fro. A sphere and a box's edge are dragged over a block, 200 poses a second, with time and
-without: milliseconds a pose, and how the force jumps from pose to pose.
-Out: doc/data/motion.csv, doc/data/motion_drag.csv, doc/images/motion.png.
+without: milliseconds a pose, and how the force jumps from pose to pose. A soft bar is squeezed far beyond where it
+buckles, and let go.
+Out: doc/data/motion.csv, doc/data/motion_drag.csv, doc/data/motion_squeezed.csv, doc/images/motion.png.
 """
 
 import math
@@ -19,6 +20,7 @@ from studies.common import (DATA, IMAGES, add_plot, add_programs, numbers, perce
                             program, progress, pyplot, rows_of, worst, write_rows)
 
 BARS, DRAGS, SWING = DATA / "motion.csv", DATA / "motion_drag.csv", DATA / "motion_swing.csv.gz"
+SQUEEZED = DATA / "motion_squeezed.csv"
 LENGTH, THICK, MODULUS, POISSON, DENSITY = 0.4, 0.04, 1e7, 0.25, 1000.0
 INTERVAL = 0.001                # s, between rows
 FREE = "free"
@@ -178,6 +180,35 @@ def measure_drag(simulate, tool, spacing, damping_time):
             f"{100.0 * jumps.max() / greatest:.3g}"}
 
 
+BAR_WIDE, BAR_HIGH = 0.02, 0.08     # m
+SQUEEZES = (0.008, 0.02)            # m
+SQUEEZED_FOR = (0.02, 0.05, 0.1, 0.2)  # s
+
+
+def squeezed_scene(method, damping_time, squeeze, duration):
+    top = {"name": "top", "min": [-1, -1, BAR_HIGH - 1e-6], "max": [1, 1, 1], "displacement": [0, 0, -squeeze]}
+    return {"tissue": {"shape": {"type": "box", "min": [0, 0, 0], "max": [BAR_WIDE, BAR_WIDE, BAR_HIGH]},
+                       "spacing": 0.005, "material": {"young_modulus": 1e4, "poisson_ratio": 0.45},
+                       "fixed": [{"min": [-1, -1, -1e-6], "max": [1, 1, 1e-6]}],
+                       "time": {"damping_time": damping_time}},
+            "solver": {"method": method},
+            "steps": [{"load": {"patches": [top]}}, {"release": {"patches": ["top"]}},
+                      {"wait": {"duration": duration, "increments": 1}}]}
+
+
+def measure_squeezed(simulate, method, damping_time, squeeze, duration):
+    with simulated(simulate, squeezed_scene(method, damping_time, squeeze, duration)) as folder:
+        rows = [row for row in rows_of(Path(folder) / "increments.csv") if row["step"] == "2"]
+        nodes = np.array([[float(row[axis]) for axis in ("x", "y", "z", "ux", "uy", "uz")]
+                          for row in rows_of(Path(folder) / "nodes.csv")])
+    top = nodes[nodes[:, 2] > BAR_HIGH - 1e-6]
+    middle = np.abs(top[:, :2] - BAR_WIDE / 2.0).max(axis=1) < 1e-6
+    return {"method": method, "damping_time_s": damping_time, "squeezed_m": squeeze, "time_s": duration,
+            "status": worst(rows), "left_of_way": f"{-top[:, 5].mean() / squeeze:.3g}",
+            "aside_mm": f"{1e3 * np.linalg.norm(top[middle][0, 3:5]):.3g}",
+            "ms_a_simulated_ms": f"{sum(numbers(rows, 'update_ms')) / (1e3 * duration):.3g}"}
+
+
 def measure(options):
     simulate = program("simulate", options.programs)
     bars, swings = [], []
@@ -187,6 +218,10 @@ def measure(options):
         swings += swing
     drags = [measure_drag(simulate, tool, 0.005, damping_time)
              for tool in TOOLS for damping_time in DAMPING_TIMES]
+    squeezed = [measure_squeezed(simulate, method, damping_time, squeeze, duration)
+                for method, damping_times in (("layered", (0.01, 0.03, 0.1, 0.3)), ("newton", (0.03, 0.1)))
+                for damping_time in damping_times for squeeze in SQUEEZES for duration in SQUEEZED_FOR]
+    write_rows(SQUEEZED, list(squeezed[0]), squeezed)
     write_rows(BARS, list(bars[0]), bars)
     write_rows(SWING, list(swings[0]), swings)
     write_rows(DRAGS, list(drags[0]), drags)
@@ -218,4 +253,4 @@ def run(options):
     if not options.plot:
         measure(options)
     draw()
-    print_rows(rows_of(BARS) + rows_of(DRAGS))
+    print_rows(rows_of(BARS) + rows_of(DRAGS) + rows_of(SQUEEZED))

@@ -56,7 +56,7 @@ struct MembraneConfig {
 };
 
 // The tissue moves in time, by its mass; in its stress the rate of strain counts, too:
-// stress = elastic + damping_time * rate of it.
+// stress = elastic + damping_time (2 mu D + lambda tr D), D the rate of strain (doc/time.md).
 struct TimeConfig {
   double damping_time = 0.0;  // s
 };

@@ -2,6 +2,10 @@
 // the cells and m_i the mass of a node:
 //
 //   elastic_scale E(u) + per_mass / 2 sum m_i |u_i|^2 - sum force_i . u_i
+//
+// or, with V what damps strain (material/viscosity.h) for the elastic moduli,
+//
+//   E(u) + (elastic_scale - 1) V(u; rate_from) + ...
 #pragma once
 
 #include <vector>
@@ -11,7 +15,7 @@
 namespace robot_tissue {
 
 struct InertialTerm {
-  double elastic_scale = 1.0;     // stress that the rate of strain adds to is so much greater
+  double elastic_scale = 1.0;     // so much stiffer are the cells, with what damps
   double per_mass = 0.0;          // stiffness that a kilogram has against motion (1/s^2)
   std::vector<Vec3> force;        // per node, ghosts last (N)
   std::vector<Vec3> free_motion;  // displacements to which nodes would go without a force (m)

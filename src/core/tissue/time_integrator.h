@@ -5,18 +5,20 @@
 // at high ones (Chung and Hulbert 1993; rho = 0, alpha_f = 0), which is the backward
 // differentiation formula of second order in one-step form:
 //
-//   (2 m / h^2) (u' - u - h v) = f(u') + damping_time df/dt + m g
+//   (2 m / h^2) (u' - u - h v) = f(u') + d + m g
 //   a' = (u' - u - h v) / h^2 + a / 2,   v' = v - h a / 2 + 3 h a' / 2
 //
-// f has the rate (f(u') - f(u + h v / 3 - h^2 a / 6)) 3 / (2 h). The first step after a rest, or
-// after a load came or went at once, takes a' = 2 (u' - u - h v) / h^2, v' = v + h a';
+// d damps, by damping_time times the rate of strain (material/viscosity.h), or, by methods that
+// have no such damping, that of f: of the way to u' from u + h v / 3 - h^2 a / 6, times 3 / (2 h).
+// The first step after a rest, or after a load came or went at once, takes
+// a' = 2 (u' - u - h v) / h^2, v' = v + h a';
 //
 // Euler's backward method where tools or supports touch. A touch that comes or goes changes
 // velocities at once; a formula of second order goes on with what was before, so that what is
 // pushed runs ahead of its tool and meets it again. This one cannot: where E is convex, the energy
 // never grows, whatever the lengths of the steps are.
 //
-//   (m / h^2) (u' - u - h v) = f(u') + damping_time (f(u') - f(u)) / h + m g + contacts
+//   (m / h^2) (u' - u - h v) = f(u') + d + m g + contacts,   d of the way from u, over h
 //   v' = (u' - u) / h
 //
 // Both make an energy least (material/inertial_term.h).
