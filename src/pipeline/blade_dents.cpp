@@ -181,6 +181,7 @@ bool Blades::breakIn() {
 // The tissue comes back to where it is without the edge, which at the end of the stride cuts what
 // it swept since it touched.
 void Blades::goIn(std::size_t tool) {
+  load_step_.forgetUnderWay();  // in which it touches
   setPhase(tool, EdgePhase::kInside);
   world_.sliding.clear(static_cast<int>(tool));
   world_.dead_end.reset();

@@ -75,6 +75,7 @@ void Pipeline::finish() {
 // Loads that there was no time for.
 void Pipeline::loadOn() {
   const Stopwatch watch(world_.report.solve_ms);
+  parts_->load_step.forgetUnderWay();  // begun with less of them
   world_.tissue.loadOn([&](int, int, const SolveReport&) {
     world_.sliding.commit(world_.pose, world_.tissue);
     world_.sliding.ride(world_.pose, world_.tissue);

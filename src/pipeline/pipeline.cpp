@@ -324,8 +324,9 @@ void Pipeline::forgetTools() {
   state_.was_near = false;
 }
 
-// After the tissue changed by other means than the tools' motion.
+// After the tissue, or friction, changed by other means than the tools' motion.
 void Pipeline::touch() {
+  parts_->load_step.forgetUnderWay();  // begun as it was before
   // A shape that is taken back bit for bit is not solved for, so nobody asked for its contacts.
   parts_->contact_update.takeSurface();
   world_.sliding.commit(world_.pose, world_.tissue);

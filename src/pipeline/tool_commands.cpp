@@ -15,6 +15,7 @@ void Pipeline::grasp(std::size_t tool) {
                      "; allowed: a tool with the role " + toolRolesWith(&ToolRole::holds));
   }
   if (!world_.last_pose) throw InputError(name + ": has no pose yet; allowed: a tool that stands");
+  parts_->load_step.forgetUnderWay();  // in which the tool does not hold
   if (!parts_->grasping.grasp(tool)) {
     const std::string why = parts_->grasping.whyItHoldsNothing(tool, true);
     throw InputError(name + ": holds nothing: " +
@@ -26,6 +27,7 @@ void Pipeline::grasp(std::size_t tool) {
 }
 
 void Pipeline::letGo(std::size_t tool) {
+  parts_->load_step.forgetUnderWay();  // in which the tool holds
   if (!parts_->grasping.letGo(tool)) return;
   state_.touched = true;
   describeTools();

@@ -120,6 +120,7 @@ void ToolMotion::checkIn(const RobotPose& pose) {
 // pose.
 void ToolMotion::startAnew(RobotPose& pose, Entry entry) {
   world_.dead_end.reset();
+  load_step_.forgetUnderWay();
   world_.sticking.clear();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     world_.sliding.clear(static_cast<int>(tool));
