@@ -140,6 +140,15 @@ void ContactFinder::useShapes(std::size_t link, std::size_t count) {
   impl_->found = {};
 }
 
+void ContactFinder::forget() {
+  impl_->found = {};
+  for (TouchingLink& link : impl_->links) {
+    link.face_pairs.assign(link.shapes.size(), {});
+    link.known_minima.assign(link.shapes.size(), {});
+    link.clear_points.assign(link.shapes.size(), {});
+  }
+}
+
 std::shared_ptr<const ContactFinder::Kept> ContactFinder::kept() const {
   auto kept = std::make_shared<Kept>();
   kept->found = impl_->found;

@@ -22,6 +22,15 @@ void SlidingContacts::setRecess(int link, double depth) {
   }
 }
 
+// Of links that touch nothing.
+void SlidingContacts::forgetRecesses() {
+  std::vector<std::uint8_t> touch_something(recesses_.size(), 0);
+  for (const ContactConstraint& touch : touches_) touch_something[at(touch.contact.link)] = 1;
+  for (std::size_t link = 0; link < recesses_.size(); ++link) {
+    if (touch_something[link] == 0) recesses_[link] = {};
+  }
+}
+
 // The link's ball that all of these touch, as a stylus does with its tip.
 const Ball* SlidingContacts::ballUnder(const Touches& touches, const Pose& tissue_T_link,
                                        const Tissue& tissue) const {

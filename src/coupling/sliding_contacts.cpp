@@ -341,6 +341,7 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
     return gapOf(touch.spring, *since_displacement_) > far + touch.entry;
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), left), touches_.end());
+  forgetRecesses();
   for (ContactConstraint& touch : touches_) touch.entry *= std::exp(-went_s / tuning::kEntryTime);
 }
 
@@ -348,15 +349,13 @@ void SlidingContacts::pass(const RobotPose& pose) {
   if (!since_links_.empty()) since_links_ = pose.links;
 }
 
-void SlidingContacts::clear() {
-  touches_.clear();
-  recesses_.assign(forms_.size(), {});
-  since_links_.clear();
-}
+void SlidingContacts::clear() { *this = SlidingContacts(friction_, forms_); }
 
 void SlidingContacts::clear(int tool) {
   const auto its = [&](const ContactConstraint& touch) { return touch.contact.tool == tool; };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), its), touches_.end());
+  pressed_[at(tool)] = {};
+  forgetRecesses();
 }
 
 ContactSprings SlidingContacts::springsOf(int tool) const {

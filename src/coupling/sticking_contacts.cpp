@@ -181,6 +181,8 @@ std::vector<Vec3> StickingContacts::displacement(const Tissue& tissue) const {
 
 void StickingContacts::clear() {
   for (auto& attachments : attachments_) attachments.clear();
+  places_.clear();
+  left_.clear();
 }
 
 bool StickingContacts::empty() const {

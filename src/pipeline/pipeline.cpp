@@ -33,7 +33,8 @@ void Pipeline::takeTools(const std::vector<ToolGeometry>& tools) {
   parts_->blades.forget();
   parts_->burrs.forget();
   parts_->scissors.forget();
-  state_.gave_up = false;
+  state_.touches = TouchState();
+  state_.gave_up = state_.was_near = false;
   state_.late_iterations = 0;
 }
 
@@ -280,7 +281,7 @@ std::optional<StillPose> Pipeline::stillPose() const {
 void Pipeline::reset() {
   forgetTools();
   world_.tissue.reset();
-  world_.sliding.commit(world_.pose, world_.tissue);
+  meetNewTissue();
   describeTools();
 }
 
@@ -289,7 +290,7 @@ SolveReport Pipeline::loadState(const std::string& bytes) {
   forgetTools();
   const Bounded bounded(*this);
   const SolveReport report = world_.tissue.loadState(*saved);
-  world_.sliding.commit(world_.pose, world_.tissue);
+  meetNewTissue();
   describeTools();
   return report;
 }
@@ -301,11 +302,19 @@ void Pipeline::takeOver(const Tissue& other, Tissue::Displacements displacement)
   describeTools();
 }
 
-// They hold and touch nothing, and come in from outside.
+// A surface that was taken over touches nothing, so that no touch is to be brought onto it.
+void Pipeline::meetNewTissue() {
+  parts_->contact_update.takeSurface();
+  world_.sliding.commit(world_.pose, world_.tissue);
+}
+
+// They hold and touch nothing, and come in from outside: nothing that was before is any matter.
 void Pipeline::forgetTools() {
   endTrial();
   world_.sticking.clear();
   world_.sliding.clear();
+  world_.forgetSearches();
+  state_.touches = TouchState();
   parts_->grasping.forgetLetGo();
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     parts_->grasping.forgetJaws(tool);

@@ -83,6 +83,10 @@ void World::setEdge(std::size_t tool, Edge edge) {
   finder.useShapes(link, sides + (edge == Edge::kTouches ? bars : 0));
 }
 
+void World::forgetSearches() {
+  for (ContactFinder* each : {&finder, &drills, &edges}) each->forget();
+}
+
 void World::takeBack(const WorldState& state) {
   static_cast<WorldState&>(*this) = state;
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {

@@ -65,6 +65,9 @@ struct World : WorldState {
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);
 
+  // As if no tool had been looked for in the tissue yet.
+  void forgetSearches();
+
   // All is as it was when the state was copied; the tissue and its tools are those of then.
   void takeBack(const WorldState& state);
 

@@ -68,6 +68,8 @@ class ContactFinder {
   // mesh since it looked for them; it does not look for these anew.
   void followPlaces();
 
+  // As if nothing had been searched for yet.
+  void forget();
   // What is kept of the last searches: the next answers hang on it by less than their accuracy.
   struct Kept;
   std::shared_ptr<const Kept> kept() const;

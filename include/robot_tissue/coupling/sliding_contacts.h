@@ -119,6 +119,7 @@ class SlidingContacts {
   // As commit(), but for the tissue, which is as it was at the last one: no tool touches.
   void pass(const RobotPose& pose);
 
+  // Of nothing that was before anything is left, or of a tool alone.
   void clear();
   void clear(int tool);
   // Coulomb's, of a tool that tissue does not stick to; from the next solve on.
@@ -188,6 +189,7 @@ class SlidingContacts {
   const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
                         const Tissue& tissue) const;
   void forgetLost(const Held& held);
+  void forgetRecesses();
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;

@@ -171,6 +171,7 @@ class Pipeline {
 
   void takeTools(const std::vector<ToolGeometry>& tools);
   void forgetTools();
+  void meetNewTissue();
   void endTrial();
   void beginReport();
   const StepReport& endReport();
