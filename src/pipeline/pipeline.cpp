@@ -131,6 +131,7 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   }
   const bool arrived = goInLegs(there);
   world_.asked = goal;
+  state_.told = pose;
   // Shapes to go back to may have patches on what was dropped.
   if (world_.tissue.droppedPieces().size() > dropped) parts_->motion.checkInAnew();
   state_.touched = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
@@ -150,8 +151,7 @@ SolveReport Pipeline::wait(double duration) {
     describeTools();
     return report;
   }
-  RobotPose pose = world_.last_pose ? world_.asked : world_.tools.complete({});
-  pose.links.resize(world_.tools.linkCount());
+  RobotPose pose = world_.last_pose ? state_.told : RobotPose();
   pose.stamp_s = world_.reached_s.value_or(0.0) + duration;
   step(pose);
   return world_.tissue.lastReport();

@@ -31,6 +31,7 @@ struct Pipeline::State {
   std::vector<BurrState> burrs;
   std::vector<ScissorsState> scissors;
   WayBehind way_behind;
+  RobotPose told;             // in the last step: tools that a force drives are farther
   int late_iterations = 0;    // of the method, where the tools stand
   bool gave_up = false;       // a solve that did not converge while they stood
   bool touched = true;        // the reports are to be brought up to date

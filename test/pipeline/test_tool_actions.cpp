@@ -36,6 +36,21 @@ TEST(DrivenTool, KeepsItsForceWhileItsPoseGoesAside) {
   }
 }
 
+// Its way counts from where it was told to be, not from where it was driven.
+TEST(DrivenTool, StaysWhereItIsWhileTimePasses) {
+  Pipeline pipeline(block(), {}, {probe()});
+  pipeline.step(pressed(-0.001));
+  pipeline.push(0, Vec3(0.0, 0.0, -0.2));
+  for (int i = 0; i < 20 && pipeline.step(pressed(-0.001)).changed; ++i) {
+  }
+  const Vec3 place = pipeline.pose()->links.front().translation();
+  for (int i = 0; i < 3; ++i) {
+    pipeline.wait(0.1);
+    EXPECT_LT((pipeline.pose()->links.front().translation() - place).norm(), 1e-5) << i;
+    EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), 0.2, 0.01 * 0.2) << i;
+  }
+}
+
 TEST(DrivenTool, ThatFindsNothingStops) {
   Pipeline pipeline(block(), {}, {probe()});
   pipeline.step(pressed(-0.01));
