@@ -19,7 +19,7 @@ Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
 Pipeline::Bounded::~Bounded() { pipeline_.world_.tissue.setDeadline(pipeline_.end_); }
 
 const StepReport& Pipeline::carryOn() {
-  beginReport();
+  beginReport(true);
   if (!isLate()) return world_.report;
   world_.tools_move = false;
   const Bounded bounded(*this);

@@ -72,12 +72,7 @@ void Pipeline::setEnd(const Deadline& end) {
 const StepReport& Pipeline::step(const RobotPose& pose) {
   const RobotPose goal = state_.drive.driven(world_.tools.complete(pose), world_.tools);
   const bool stands = parts_->motion.standsStill(goal) && !state_.touched;
-  // Not once all are where the robot has them, as where the tissue let go of them.
-  const bool was_lost = stands && world_.report.lost && !world_.report.behind.empty();
-  const std::vector<std::size_t> behind = world_.report.behind;
-  beginReport();
-  world_.report.lost = was_lost;
-  if (was_lost) world_.report.behind = behind;
+  beginReport(stands);
   const bool time_passes =
       world_.tissue.isMoving() && goal.stamp_s > world_.reached_s.value_or(goal.stamp_s);
   if (stands && !isLate() && !time_passes) {
@@ -99,10 +94,14 @@ const StepReport& Pipeline::step(const RobotPose& pose) {
   return endReport();
 }
 
-void Pipeline::beginReport() {
+void Pipeline::beginReport(bool tools_stand) {
   StepReport report;
   report.changed = state_.touched;
   report.gave_up = state_.gave_up;
+  report.hopeless = world_.tissue.patience().cutsOff();
+  // Not once all are where the robot has them, as where the tissue let go of them.
+  report.lost = tools_stand && world_.report.lost && !world_.report.behind.empty();
+  if (report.lost) report.behind = std::move(world_.report.behind);
   report.tools = std::move(world_.report.tools);                    // till they are described anew
   report.would_take_all = std::move(world_.report.would_take_all);  // till burrs go on
   world_.report = std::move(report);
@@ -326,7 +325,9 @@ void Pipeline::forgetTools() {
   parts_->motion.forget();
   parts_->load_step.forgetUnderWay();
   world_.last_pose.reset();
-  world_.pose = world_.tools.complete({});
+  world_.asked = world_.pose = world_.tools.complete({});
+  world_.report.lost = false;
+  world_.report.behind.clear();
   world_.unfinished = state_.gave_up = false;
   state_.late_iterations = 0;
   state_.touched = true;

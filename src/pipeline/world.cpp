@@ -49,7 +49,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
     forms.push_back({finder.thickness(link), finder.hasMesh(link), finder.balls(link)});
   }
   sliding = SlidingContacts(friction, forms);
-  pose = tools.complete({});
+  asked = pose = tools.complete({});
   sliding.commit(pose, tissue);
   unfinished = false;
   report = StepReport();

@@ -144,28 +144,60 @@ TEST(LateWork, ToolsThatAppearInsideComeInOneByOneWithoutTime) {
               0.05 * report.tools[0].force_on_tool.z());
 }
 
-// What no shape follows is told for as long as the tools stand there.
-TEST(LateWork, LostToolsHaveNotArrivedHoweverLongTheyStand) {
-  ToolGeometry above = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "above");
-  ToolGeometry below = toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "below");
-  TissueConfig tissue = block("elastic", 2.0 * kSpacing);
-  tissue.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)});
-  Pipeline pipeline(tissue, methodOf("elastic"), {above, below});
-  const auto squeezed = [](double gap) {
+// Between plates that close until no shape follows.
+class LostTools : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    pipeline_.step(squeezed(kTop + 0.002));
+    double gap = kTop;
+    for (; gap > 0.0 && !pipeline_.report().lost; gap -= 0.01) pipeline_.step(squeezed(gap));
+    if (!pipeline_.report().lost) pipeline_.step(squeezed(-0.002));
+    ASSERT_TRUE(pipeline_.report().lost);
+    stand_ = squeezed(gap > 0.0 ? gap + 0.01 : -0.002);
+  }
+  static TissueConfig tissue() {
+    TissueConfig tissue = block("elastic", 2.0 * kSpacing);
+    tissue.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1e-6, 1.0, 1.0)});
+    return tissue;
+  }
+  static std::vector<ToolGeometry> plates() {
+    return {toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "above"),
+            toolOf(boxOf(Vec3(0.2, 0.2, 0.01)), "below")};
+  }
+  static RobotPose squeezed(double gap) {
     const double middle = 0.5 * kTop, half = 0.5 * gap + 0.005;
     return at({Vec3(0.13, kMiddle, middle + half), Vec3(0.13, kMiddle, middle - half)});
-  };
-  pipeline.step(squeezed(kTop + 0.002));
-  double gap = kTop;
-  for (; gap > 0.0 && !pipeline.report().lost; gap -= 0.01) pipeline.step(squeezed(gap));
-  if (!pipeline.report().lost) pipeline.step(squeezed(-0.002));
-  ASSERT_TRUE(pipeline.report().lost);
-  const RobotPose stands = squeezed(gap > 0.0 ? gap + 0.01 : -0.002);
-  for (int step = 0; step < 3; ++step) {
-    pipeline.step(stands);
-    EXPECT_TRUE(pipeline.report().lost);
-    EXPECT_FALSE(pipeline.hasArrived());
   }
+
+  Pipeline pipeline_{tissue(), methodOf("elastic"), plates()};
+  RobotPose stand_;
+};
+
+// What no shape follows is told for as long as the tools stand there.
+TEST_F(LostTools, HaveNotArrivedHoweverLongTheyStand) {
+  for (int step = 0; step < 3; ++step) {
+    pipeline_.step(stand_);
+    EXPECT_TRUE(pipeline_.report().lost);
+    EXPECT_FALSE(pipeline_.hasArrived());
+  }
+}
+
+TEST_F(LostTools, AreToldAlsoWhileTheyHaveNoPose) {
+  const std::vector<std::size_t> behind = pipeline_.report().behind;
+  ASSERT_FALSE(behind.empty());
+  for (int call = 0; call < 3; ++call) {
+    pipeline_.carryOn();
+    EXPECT_TRUE(pipeline_.report().lost);
+    EXPECT_EQ(pipeline_.report().behind, behind);
+  }
+}
+
+TEST_F(LostTools, AreNowhereAfterAReset) {
+  ASSERT_GT(pipeline_.report().tools.front().max_penetration, 0.0);
+  pipeline_.reset();
+  EXPECT_FALSE(pipeline_.report().lost);
+  EXPECT_TRUE(pipeline_.report().behind.empty());
+  for (const ToolReport& tool : pipeline_.report().tools) EXPECT_EQ(tool.max_penetration, 0.0);
 }
 
 // Tissue snaps off a needle by solves that take many updates' time: they go on with what the last

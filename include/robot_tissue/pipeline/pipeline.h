@@ -173,7 +173,7 @@ class Pipeline {
   void forgetTools();
   void meetNewTissue();
   void endTrial();
-  void beginReport();
+  void beginReport(bool tools_stand);
   const StepReport& endReport();
   void stepTo(const RobotPose& goal, const RobotPose& pose);
   bool goInLegs(const RobotPose& pose);
