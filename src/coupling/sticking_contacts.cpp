@@ -15,7 +15,7 @@ StickingContacts::StickingContacts(const Lattice& lattice, std::vector<std::stri
 void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   places_.clear();
   cells_ = tissue.state().cells;
-  holdNamedLoads(tissue);
+  taken_ = fixedOrLoaded(tissue);
   left_.clear();
   for (std::size_t tool = 0; tool < attachments_.size(); ++tool) {
     for (auto attachment = attachments_[tool].begin(); attachment != attachments_[tool].end();) {
@@ -39,7 +39,7 @@ void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
 void StickingContacts::takeCells(const Tissue& tissue) {
   const std::shared_ptr<const CellSet> before = std::exchange(cells_, tissue.state().cells);
   if (before == nullptr || before == cells_) return;
-  holdNamedLoads(tissue);
+  taken_ = fixedOrLoaded(tissue);
   const auto renumber = [&](auto& by_node) {
     std::decay_t<decltype(by_node)> renumbered;
     for (const auto& [node, value] : by_node) {
@@ -218,9 +218,9 @@ Vec3 StickingContacts::pushed(int tool, const RobotPose& pose) const {
 void StickingContacts::hold(int tool, int link, const Pose& tissue_T_link,
                             const std::vector<int>& nodes, const Tissue& tissue) {
   const Pose link_T_tissue = tissue_T_link.inverse();
-  const std::vector<std::uint8_t> held = heldNodes(tissue);
+  const std::vector<std::uint8_t> taken = takenNodes(tissue);
   for (const int node : nodes) {
-    if (held[at(node)] != 0) continue;
+    if (taken[at(node)] != 0) continue;
     Attachment& attachment = attachments_[at(tool)][node];
     attachment.link = link;
     attachment.grasped = true;
@@ -251,11 +251,21 @@ std::vector<std::uint8_t> StickingContacts::heldNodes(const Tissue& tissue) cons
     if (byForce(tissue.patches()[patch])) continue;
     for (const int node : hardNodes(tissue.patches()[patch])) held[at(node)] = 1;
   }
+  markAttached(held);
+  return held;
+}
+
+std::vector<std::uint8_t> StickingContacts::takenNodes(const Tissue& tissue) const {
+  std::vector<std::uint8_t> taken = fixedOrLoaded(tissue);
+  markAttached(taken);
+  return taken;
+}
+
+void StickingContacts::markAttached(std::vector<std::uint8_t>& nodes) const {
   for (const auto& attachments : attachments_) {
     for (const auto& [node, attachment] : attachments)
-      held[at(node)] = attachment.grasped ? kGrasped : 1;
+      nodes[at(node)] = attachment.grasped ? kGrasped : 1;
   }
-  return held;
 }
 
 std::vector<StickingContacts::Carrier> StickingContacts::supportOf(
@@ -303,11 +313,13 @@ void StickingContacts::findOutwardNormals(const Tissue& tissue) {
   surface_revision_ = tissue.surface().revision;
 }
 
-void StickingContacts::holdNamedLoads(const Tissue& tissue) {
-  taken_ = fixedNodes(tissue);
+// Per node, 1 = fixed, or in a named load.
+std::vector<std::uint8_t> StickingContacts::fixedOrLoaded(const Tissue& tissue) const {
+  std::vector<std::uint8_t> taken = fixedNodes(tissue);
   for (std::size_t patch = 0; patch < tissue.namedPatches(); ++patch) {
-    for (const int node : tissue.patches()[patch].nodes) taken_[at(node)] = 1;
+    for (const int node : tissue.patches()[patch].nodes) taken[at(node)] = 1;
   }
+  return taken;
 }
 
 }  // namespace robot_tissue

@@ -203,9 +203,9 @@ std::vector<int> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw, d
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
+  const std::vector<std::uint8_t> taken = world_.sticking.takenNodes(world_.tissue);
   const auto is_others = [&](int node) {
-    return isGone(world_.tissue.state(), node) || (held[at(node)] != 0 && seats.count(node) == 0);
+    return isGone(world_.tissue.state(), node) || (taken[at(node)] != 0 && seats.count(node) == 0);
   };
   nodes.erase(std::remove_if(nodes.begin(), nodes.end(), is_others), nodes.end());
   return nodes;

@@ -198,6 +198,34 @@ TEST_P(Grasper, CannotHoldWhatIsNotThere) {
   EXPECT_THROW(pusher.grasp(0), InputError);
 }
 
+// What a load moves, by a force or not, is the load's.
+TEST_P(Grasper, CannotHoldWhatALoadMoves) {
+  ToolGeometry wide = gripper();
+  wide.grasp.close_gap = 0.012;
+  wide.grasp.open_gap = 0.013;
+  for (const bool by_force : {true, false}) {
+    Pipeline pipeline(ridge(), solver(), {wide});
+    LoadStep load;
+    load.patches.push_back({});
+    PatchConfig& patch = load.patches.front();
+    patch.name = "load";
+    patch.box = {Vec3(-1.0, -1.0, 0.014), Vec3(1.0, 1.0, 1.0)};
+    if (by_force) {
+      patch.force = Vec3(0.0, 0.0, -0.01);
+    } else {
+      patch.displacement = {{0.0, 0.0, -0.0001}};
+    }
+    pipeline.step(at(jaws(0.014)));
+    pipeline.load(load);
+    pipeline.step(at(jaws(0.0084)));
+    EXPECT_FALSE(pipeline.report().tools.front().grasps) << by_force;
+    EXPECT_THROW(pipeline.grasp(0), InputError) << by_force;
+    EXPECT_NE(pipeline.report().tools.front().holds_nothing.find("held by others"),
+              std::string::npos)
+        << by_force << ": " << pipeline.report().tools.front().holds_nothing;
+  }
+}
+
 // However fast they close, what they hold has been pressed aside, not been left within them.
 TEST_P(Grasper, TissueStaysOutOfJawsThatCloseFastAndOn) {
   Pipeline pipeline(ridge(), solver(), {gripper()});

@@ -74,6 +74,8 @@ class StickingContacts {
   // of these patches; kGrasped: it moves with a grasper.
   static constexpr std::uint8_t kGrasped = SlidingContacts::kGrasped;
   std::vector<std::uint8_t> heldNodes(const Tissue& tissue) const;
+  // Per node, not 0 = no tool may take it: likewise, but with all nodes of named loads.
+  std::vector<std::uint8_t> takenNodes(const Tissue& tissue) const;
 
  private:
   // A free node that carries a contact's point.
@@ -98,7 +100,8 @@ class StickingContacts {
   void attach(int node, std::size_t tool, int link, const Vec3& moved, const Tissue& tissue,
               const RobotPose& pose);
   const std::vector<std::uint8_t>& fixedNodes(const Tissue& tissue) const;
-  void holdNamedLoads(const Tissue& tissue);
+  std::vector<std::uint8_t> fixedOrLoaded(const Tissue& tissue) const;
+  void markAttached(std::vector<std::uint8_t>& nodes) const;
   void findOutwardNormals(const Tissue& tissue);
   bool letsGo(int node, const Vec3& displacement, const Vec3& way_out, const Tissue& tissue);
 
