@@ -151,6 +151,19 @@ TEST(CurvedSurface, IsAsHollowAsABowl) {
   });
 }
 
+TEST(CurvedSurface, IsNotHollowWhereATriangleHasCollapsed) {
+  const TissueSurface surface = square();
+  std::vector<Vec3> collapsed = onBall(surface, -1.0);
+  const MeshTriangle& corners = surface.triangles[surface.triangles.size() / 2];
+  for (const std::size_t corner : {1U, 2U})
+    collapsed[at(corners[corner])] = collapsed[at(corners[0])];
+  CurvedSurface curved;
+  curved.take(surface, collapsed);
+  for (int triangle = 0; triangle < static_cast<int>(surface.triangles.size()); ++triangle) {
+    EXPECT_TRUE(curved.hollowAt({triangle, Vec3::Constant(1.0 / 3.0)}).allFinite()) << triangle;
+  }
+}
+
 // What is kept of the shape before, or of another surface, leaves no trace.
 TEST(CurvedSurface, IsOfTheShapeThatWasTakenLast) {
   const TissueSurface flat = square();

@@ -45,7 +45,7 @@ class CurvedSurface {
   // How it changes with the weight of each corner, the others as they are: a column each (m).
   Eigen::Matrix3d bulgeSlopesAt(const SurfacePoint& point) const;
   // Where it is hollow, how fast its normal turns against the way along it (1/m): symmetric, of no
-  // negative direction.
+  // negative direction. Zero where the point's triangle has no area.
   Eigen::Matrix3d hollowAt(const SurfacePoint& point) const;
   // Twice the sum of the areas of all triangles at the vertex, outwards (m^2).
   Vec3 doubleAreaAt(int vertex) const;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "robot_tissue/core/triangle_mesh.h"
@@ -115,6 +116,7 @@ Vec3 CurvedSurface::normalAt(const SurfacePoint& point) const {
 Eigen::Matrix3d CurvedSurface::hollowAt(const SurfacePoint& point) const {
   const MeshTriangle& corners = cornersOf(point.triangle);
   const Vec3 area = doubleArea(vertices_, corners);
+  if (!std::isnormal(area.squaredNorm())) return Eigen::Matrix3d::Zero();
   Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 across = vertices_[at(corners[(k + 2) % 3])] - vertices_[at(corners[(k + 1) % 3])];
