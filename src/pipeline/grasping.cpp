@@ -303,6 +303,8 @@ void Grasping::endOverpulled() {
     any_lost = true;
   }
   if (!any_lost) return;
+  const Stopwatch watch(world_.report.solve_ms);
+  world_.report.changed = true;
   world_.sticking.ride(world_.pose, world_.tissue);
   world_.tissue.follow(patchesOfTools(world_), world_.sticking.left(), beddingOf(world_));
   world_.sliding.commit(world_.pose, world_.tissue);
