@@ -46,6 +46,7 @@ RobotPose ToolMotion::walk(const RobotPose& pose) {
   const bool goes_back = turnsBack(start, pose);
   behind_.last_goal = pose;
   const bool moves = world_.tissue.isMoving();
+  if (!moves) letPass(world_.pose, pose);  // wherever the others come to
   if (!moves && letPass(start, pose)) {
     passTo(pose);
     return pose;
@@ -94,6 +95,7 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   const bool arrived = end == LoadStepEnd::kArrived;
   const int made = world_.tissue.lastReport().iterations;
   behind_.late_iterations += std::max(1, made);
+  letPass(world_.pose, pose);  // the load step began before they passed
   if (arrived) start = world_.pose;
   const bool is_done = arrived && !world_.unfinished;
   if (is_done) behind_.late_iterations = 0;

@@ -121,6 +121,24 @@ TEST(MaxIterations, ThatAreManyChangeNothing) {
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i], other[i]) << i;
 }
 
+// A load step that is under way holds up no tool that passes the tissue by.
+TEST(MaxIterations, ToolsThatTouchNothingAreNeverBehind) {
+  Pipeline pipeline(block(), methodOf("elastic"), {edge(), probe("other")});
+  pipeline.setMostIterations(4);
+  int held_up = 0;
+  for (int step = 0; step <= 80; ++step) {
+    const double gone = 0.0005 * step;
+    RobotPose pose = edgeAt(0.0213 + std::max(0.0, gone - kDepth), std::min(gone, kDepth));
+    pose.links.push_back(Pose::Identity());
+    pose.links.back().translation() = Vec3(0.001 * step, kMiddle, 0.2);
+    const StepReport& report = pipeline.step(pose);
+    held_up += report.too_fast ? 1 : 0;
+    EXPECT_EQ(std::count(report.behind.begin(), report.behind.end(), 1U), 0) << step;
+    EXPECT_EQ(pipeline.pose()->links.back().translation(), pose.links.back().translation()) << step;
+  }
+  EXPECT_GT(held_up, 0);
+}
+
 // A force is met to half a percent by contacts that are settled.
 TEST(MaxIterations, DrivenToolMeetsItsForce) {
   Dragged dragged(kMost);
