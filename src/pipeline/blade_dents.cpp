@@ -170,8 +170,9 @@ void Blades::press(std::size_t tool) {
 bool Blades::breakIn() {
   bool any = false;
   for (std::size_t tool = 0; tool < states_.size(); ++tool) {
-    const bool presses = !states_[tool].path.empty() && pressingOf(tool).any();
-    if (world_.is_trial || !presses) continue;
+    const BladeState& state = states_[tool];
+    if (world_.is_trial || state.phase == EdgePhase::kInside || state.path.empty()) continue;
+    if (!pressingOf(tool).any()) continue;
     goIn(tool);
     any = true;
   }
