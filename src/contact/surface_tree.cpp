@@ -1,15 +1,8 @@
 #include "surface_tree.h"
 
-#include <cstring>
+#include "robot_tissue/core/same_bits.h"
 
 namespace robot_tissue {
-namespace {
-
-bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
-}
-
-}  // namespace
 
 const TriangleBvh& SurfaceTree::of(const TissueSurface& surface,
                                    const std::vector<Vec3>& vertices) {

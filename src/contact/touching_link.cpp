@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "link_penetration.h"
+#include "robot_tissue/core/same_bits.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
-namespace {
-
-// Bit for bit.
-bool areSame(const Pose& a, const Pose& b) {
-  return std::memcmp(a.data(), b.data(), sizeof(Pose::MatrixType)) == 0;
-}
-
-}  // namespace
 
 TouchingLink::TouchingLink(int tool_index, const std::string& tool_name,
                            const LinkGeometry& geometry, std::vector<std::string>& warnings)

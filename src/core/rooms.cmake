@@ -2,7 +2,7 @@
 # Layering and doc/architecture.md have the same table.
 robot_tissue_room(base
   PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
-    shared_const.h sparse_values.h types.h
+    same_bits.h shared_const.h sparse_values.h types.h
   FILES text_of.h)
 robot_tissue_room(simd
   USES base
@@ -11,13 +11,13 @@ robot_tissue_room(simd
 robot_tissue_room(geometry
   USES base
   PUBLIC cell_fill.h grid.h mesh_checks.h mesh_walls.h triangle_mesh.h triangle_point.h
-  FILES bent_grid.h cell_fill.cpp exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
+  FILES bent_grid.h cell_fill.cpp connected_triangles.cpp connected_triangles.h exact_points.cpp exact_points.h grid.cpp index_hash.h mesh_checks.cpp mesh_columns.cpp
     mesh_columns.h mesh_pieces.cpp mesh_pieces.h mesh_points.cpp mesh_points.h mesh_refinement.cpp mesh_slicing.cpp
     mesh_slicing.h mesh_walls.cpp polygon_triangles.cpp polygon_triangles.h self_intersection.cpp tetrahedron.cpp
     tetrahedron.h triangle_mesh.cpp tuning.h)
 robot_tissue_room(config
   USES base geometry
-  PUBLIC body_load.h removed_space.h scene.h suture.h suture_ranges.h tool_role.h
+  PUBLIC body_load.h name_rules.h removed_space.h scene.h suture.h suture_ranges.h tool_role.h
   FILES material.cpp material.h tool_role.cpp)
 robot_tissue_room(lattice
   USES base geometry config
@@ -54,7 +54,7 @@ robot_tissue_room(loads
     dof_constraints.h driven_places.cpp driven_places.h loading_patch.cpp narrow_contact.cpp narrow_contact.h patch_rim.cpp
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
-  USES base lattice cutting loads
+  USES base config lattice cutting loads
   FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_pieces.cpp
     saved_pieces.h saved_state.cpp saved_state.h saved_sutures.cpp saved_sutures.h)
 robot_tissue_room(solvers

@@ -9,6 +9,11 @@ namespace robot_tissue {
 
 using Corners = std::array<Vec3, 3>;
 
+// Twice the triangle's area, along its normal (m^2).
+inline Vec3 doubleArea(const Corners& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+}
+
 // Weights of the triangle's point that is nearest to p; sum to 1. Ericson, "Real-Time Collision
 // Detection", section 5.1.5: Voronoi regions of the triangle.
 inline Vec3 nearestInTriangle(const Vec3& p, const Corners& corners) {

@@ -29,10 +29,6 @@ constexpr double kNoArea = 1e-9;
 using Corners = BladeSurface::Corners;
 using Point = Eigen::Vector2d;
 
-Vec3 twiceArea(const Corners& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-}
-
 double distanceToEdge(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 edge = to - from;
   const double length = std::max(edge.squaredNorm(), std::numeric_limits<double>::min());
@@ -110,11 +106,11 @@ BladeSurface::BladeSurface(const std::vector<Corners>& triangles, double spacing
     : slack_(kOnSurface * spacing) {
   std::map<Edge, int> faces;  // of each edge
   for (const Corners& corners : triangles) {
-    if (!(twiceArea(corners).norm() > kNoArea * spacing * spacing)) continue;
+    if (!(doubleArea(corners).norm() > kNoArea * spacing * spacing)) continue;
     for (std::size_t i = 0; i < 3; ++i) ++faces[edgeOf(corners[i], corners[(i + 1) % 3])];
   }
   for (const Corners& corners : triangles) {
-    const Vec3 twice_area = twiceArea(corners);
+    const Vec3 twice_area = doubleArea(corners);
     if (!(twice_area.norm() > kNoArea * spacing * spacing)) continue;
     Triangle triangle;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/text_of.h"
+#include "geometry/connected_triangles.h"
 #include "geometry/exact_points.h"
 #include "geometry/tuning.h"
-#include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
 namespace {
@@ -65,21 +66,13 @@ std::optional<std::string> edgeFault(const TriangleMesh& mesh) {
   return std::nullopt;
 }
 
-// Triangles joined by their corners.
 std::vector<std::vector<MeshTriangle>> shellsOf(const TriangleMesh& mesh) {
-  DisjointSets corners(mesh.vertices.size());
-  for (const MeshTriangle& t : mesh.triangles) {
-    for (const int corner : {t[1], t[2]}) corners.join(t[0], corner);
-  }
+  std::vector<int> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0);
   std::vector<std::vector<MeshTriangle>> shells;
-  std::vector<int> shell_of_root(mesh.vertices.size(), -1);
-  for (const MeshTriangle& t : mesh.triangles) {
-    int& shell = shell_of_root[at(corners.lowest(t[0]))];
-    if (shell < 0) {
-      shell = static_cast<int>(shells.size());
-      shells.emplace_back();
-    }
-    shells[at(shell)].push_back(t);
+  for (const auto& list : connectedTriangles(mesh.triangles, all, mesh.vertices.size())) {
+    shells.emplace_back();
+    for (const int triangle : list) shells.back().push_back(mesh.triangles[at(triangle)]);
   }
   return shells;
 }

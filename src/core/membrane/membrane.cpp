@@ -33,10 +33,7 @@ constexpr std::size_t countOf(const Law&) {
 }
 
 double areaOf(const TissueSurface& surface, int triangle) {
-  const MeshTriangle& corners = surface.triangles[at(triangle)];
-  const Vec3& first = surface.rest[at(corners[0])];
-  return 0.5 *
-         (surface.rest[at(corners[1])] - first).cross(surface.rest[at(corners[2])] - first).norm();
+  return 0.5 * doubleArea(surface.rest, surface.triangles[at(triangle)]).norm();
 }
 
 // Those with an area.

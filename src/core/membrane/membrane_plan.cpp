@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "robot_tissue/core/disjoint_sets.h"
+#include "geometry/connected_triangles.h"
 #include "robot_tissue/core/triangle_point.h"
 
 namespace robot_tissue {
@@ -28,22 +28,9 @@ Vec3 normalOf(const TissueSurface& surface, int triangle) {
   return doubleArea(surface.rest, surface.triangles[at(triangle)]);
 }
 
-// Triangles that hang together over their corners, as lists.
 std::vector<std::vector<int>> connected(const TissueSurface& surface,
                                         const std::vector<int>& triangles) {
-  DisjointSets sets(surface.rest.size());
-  for (const int triangle : triangles) {
-    const MeshTriangle& corners = surface.triangles[at(triangle)];
-    sets.join(corners[0], corners[1]);
-    sets.join(corners[0], corners[2]);
-  }
-  std::map<int, std::vector<int>> parts;  // by the lowest corner
-  for (const int triangle : triangles) {
-    parts[sets.lowest(surface.triangles[at(triangle)][0])].push_back(triangle);
-  }
-  std::vector<std::vector<int>> lists;
-  for (auto& [root, part] : parts) lists.push_back(std::move(part));
-  return lists;
+  return connectedTriangles(surface.triangles, triangles, surface.rest.size());
 }
 
 std::vector<int> allOf(const TissueSurface& surface) {

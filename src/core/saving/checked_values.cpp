@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot_tissue/core/name_rules.h"
+
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kLongestName = 64;  // bytes, as a scene allows
-constexpr double kLargest = 1e15;         // of any number of a load or suture; none is as large
+constexpr double kLargest = 1e15;  // of any number of a load or suture; none is as large
 
 }  // namespace
 
@@ -33,11 +34,8 @@ bool takeTruth(ByteReader& in) {
 
 std::string takeName(ByteReader& in) {
   const std::string name = in.text();
-  const auto allowed = [](char c) {
-    return c != ',' && c != '"' && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
-  };
   if (name.empty() || name.size() > kLongestName ||
-      !std::all_of(name.begin(), name.end(), allowed)) {
+      !std::all_of(name.begin(), name.end(), mayBeInName)) {
     failAsDamaged("a name is none that a scene allows");
   }
   return name;

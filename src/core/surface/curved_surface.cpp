@@ -3,18 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "robot_tissue/core/same_bits.h"
 #include "robot_tissue/core/triangle_mesh.h"
 
 namespace robot_tissue {
-namespace {
-
-bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
-}
-
-}  // namespace
 
 Vec3 CurvedSurface::cornerWeights(const std::vector<Vec3>& rest, const MeshTriangle& corners) {
   const Vec3 &a = rest[at(corners[0])], &b = rest[at(corners[1])], &c = rest[at(corners[2])];

@@ -79,9 +79,7 @@ class Holding {
     }
     const double share = distance / radius_;
     if (share >= 1.0) return;
-    const Vec3 twice_area =
-        (part.places[1] - part.places[0]).cross(part.places[2] - part.places[0]);
-    const double weight = (1.0 - share * share) * twice_area.norm();
+    const double weight = (1.0 - share * share) * doubleArea(part.places).norm();
     whole_ += weight;
     moment_ += weight * (middle - center_);
     for (std::size_t i = 0; i < 3; ++i) {
