@@ -212,8 +212,8 @@ bool ToolRims::findTurn(const std::vector<Vec3>& vertices, Link& link) const {
   return true;
 }
 
-// The neighbors of firm vertices, and their neighbors: at corners of faces, and where the last
-// column on the face is not firm, none is nearer.
+// Three columns from the firm vertices on, each of neighbors of those before: at corners of faces,
+// and where the last column on the face is not firm, none is nearer.
 void ToolRims::lookAround(const std::vector<Vec3>& vertices, const Link& link) {
   const TissueSurface& surface = world_.tissue.surface();
   struct Guess {
