@@ -226,7 +226,7 @@ void LoadStepper::pushRigid(const RobotPose& pose) {
     ContactSet contacts =
         touch_finder_.contactsAt(pose, world_.sticking.displacement(world_.tissue));
     auto& all = contacts.contacts;
-    const double touches = tuning::kTouchingGap * world_.tissue.lattice().spacing();
+    const double touches = tuning::kStaysOnRigid * world_.tissue.lattice().spacing();
     const auto is_others = [&](const Contact& contact) {
       return !world_.tools.isRigid(contact.tool) || contact.depth_m < -touches;
     };

@@ -72,8 +72,9 @@ constexpr int kMoreSolves = 2;
 constexpr int kRigidRounds = 6;
 // Passes of one push: a curved tool's way out turns as the surface moves. Chosen.
 constexpr int kPushPasses = 4;
-// Of the spacing (1): a gap that is none, so that its node stays in the patch. Chosen.
-constexpr double kTouchingGap = 0.02;
+// Of the spacing (1): a gap that is none, so that its node stays in the patch. More: nodes that
+// came off the tool stick to it; less: what only trembles lets go. Chosen.
+constexpr double kStaysOnRigid = 0.02;
 
 // Contacts: where they are looked for.
 // Of the spacing (1): gaps up to it are contacts, as a solve may close them. More: more springs
