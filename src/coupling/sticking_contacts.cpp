@@ -185,11 +185,6 @@ void StickingContacts::clear() {
   left_.clear();
 }
 
-bool StickingContacts::empty() const {
-  return std::all_of(attachments_.begin(), attachments_.end(),
-                     [](const auto& attachments) { return attachments.empty(); });
-}
-
 LoadingPatch StickingContacts::loadingPatch(int tool) const {
   LoadingPatch patch;
   patch.name = names_[at(tool)];
@@ -205,14 +200,6 @@ std::vector<int> StickingContacts::nodes(int tool) const {
   std::vector<int> nodes;
   for (const auto& [node, attachment] : attachments_[at(tool)]) nodes.push_back(node);
   return nodes;
-}
-
-Vec3 StickingContacts::pushed(int tool, const RobotPose& pose) const {
-  Vec3 sum = Vec3::Zero();
-  for (const auto& [node, attachment] : attachments_[at(tool)]) {
-    sum += pose.links[at(attachment.link)].linear() * attachment.pushed;
-  }
-  return sum;
 }
 
 void StickingContacts::hold(int tool, int link, const Pose& tissue_T_link,

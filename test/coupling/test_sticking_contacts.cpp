@@ -104,6 +104,15 @@ class StickingContactsTest : public ::testing::Test {
 
   // The jaw, tool and link 1, holds nodes from where they are.
   void grasp(const std::vector<int>& nodes) { patches_.hold(1, 1, pose_.links[1], nodes, tissue_); }
+  bool areEmpty() const { return !patches_.holds(0) && !patches_.holds(1); }
+  // Sum over its nodes (m).
+  Vec3 wayOutOf(std::size_t tool) const {
+    Vec3 sum = Vec3::Zero();
+    for (const auto& [node, seat] : patches_.attachments()[tool]) {
+      sum += pose_.links[at(seat.link)].linear() * seat.pushed;
+    }
+    return sum;
+  }
 
   Tissue tissue_;
   StickingContacts patches_;
@@ -112,11 +121,10 @@ class StickingContactsTest : public ::testing::Test {
 
 TEST_F(StickingContactsTest, WithoutContactThereIsNoPatch) {
   push({});
-  EXPECT_TRUE(patches_.empty());
   EXPECT_FALSE(patches_.holds(0));
   EXPECT_TRUE(patches_.loadingPatch(0).nodes.empty());
   EXPECT_TRUE(patches_.nodes(0).empty());
-  EXPECT_TRUE(patches_.pushed(0, pose_).isZero());
+  EXPECT_TRUE(wayOutOf(0).isZero());
   EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
 }
 
@@ -127,7 +135,7 @@ TEST_F(StickingContactsTest, ContactAtAVertexIsPushedOutByItsDepth) {
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{middle}));
   EXPECT_TRUE(patches_.nodes(1).empty());
   EXPECT_LT((patches_.displacement(tissue_)[at(middle)] - 1e-3 * normal).norm(), 1e-15);
-  EXPECT_LT((patches_.pushed(0, pose_) - 1e-3 * normal).norm(), 1e-15);
+  EXPECT_LT((wayOutOf(0) - 1e-3 * normal).norm(), 1e-15);
   const LoadingPatch load = patches_.loadingPatch(0);
   EXPECT_EQ(load.name, "probe");
   EXPECT_EQ(load.drive, LoadingPatch::Drive::kDisplacement);
@@ -163,7 +171,7 @@ TEST_F(StickingContactsTest, NeighboringContactsAreAllPushedOut) {
 
 TEST_F(StickingContactsTest, FixedNodesAreNeverTaken) {
   push({contact(triangleAt(0.0), Vec3::Constant(1.0 / 3.0), 1e-3, Vec3::UnitZ())});
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   // A triangle of a side wall that has a fixed edge: its free nodes alone do it.
   int mixed = -1;
   const TissueSurface& surface = tissue_.surface();
@@ -187,7 +195,7 @@ TEST_F(StickingContactsTest, NodesOfNamedLoadsAreNeverTaken) {
   const Box box = nodeBox(kBlock, {2, 2, 3}, {3, 3, 3});
   tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
   push({atNode(node(3, 3, 3), 1e-3)});
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   EXPECT_EQ(patches_.displacement(tissue_), tissue_.state().displacement);
   push({atNode(node(4, 4, 3), 1e-3)});
   EXPECT_EQ(patches_.nodes(0), (std::vector<int>{node(4, 4, 3)}));
@@ -195,11 +203,11 @@ TEST_F(StickingContactsTest, NodesOfNamedLoadsAreNeverTaken) {
 
 TEST_F(StickingContactsTest, NodeThatANamedLoadTakesIsLeftToIt) {
   push({atNode(node(3, 3, 3), 5e-4)});
-  ASSERT_FALSE(patches_.empty());
+  ASSERT_FALSE(areEmpty());
   const Box box = nodeBox(kBlock, {2, 2, 3}, {3, 3, 3});
   tissue_.load(loadOf({displacedPatch("named", box, Vec3(0.0, 0.0, -5e-4))}));
   patches_.ride(pose_, tissue_);
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   EXPECT_EQ(patches_.left(), (std::vector<int>{node(3, 3, 3)}));
 }
 
@@ -220,7 +228,7 @@ TEST_F(StickingContactsTest, NodesRideRigidlyWithTheirTool) {
     EXPECT_LT((rest + patches_.displacement(tissue_)[at(each)] - moved).norm(), 1e-14);
   }
   const Vec3 way_out = motion.linear() * (3e-3 * kInto);  // the sum over its nodes
-  EXPECT_LT((patches_.pushed(0, pose_) - way_out).norm(), 1e-15);
+  EXPECT_LT((wayOutOf(0) - way_out).norm(), 1e-15);
 }
 
 TEST_F(StickingContactsTest, RidingOfOneToolLeavesTheOther) {
@@ -243,7 +251,7 @@ TEST_F(StickingContactsTest, NodeLiftedAboveItsRestPlaceIsLetGo) {
   ASSERT_GT(tissue_.nodeForce(middle).z(), 0.0);  // the tissue pushes back
   pose_.links[0].translation().z() += 1.5e-3;     // 0.5 mm above rest
   patches_.ride(pose_, tissue_);
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   EXPECT_EQ(patches_.left(), (std::vector<int>{middle}));
   follow();
   expectAtRest(tissue_);
@@ -264,7 +272,7 @@ TEST_F(StickingContactsTest, NodePulledAwayOnTheNearSideOfItsRestPlaceIsLetGo) {
   ASSERT_LT(tissue_.state().displacement[at(middle)].x(), 0.0);
   ASSERT_GT(Vec3(0.8, 0.0, -0.6).dot(tissue_.nodeForce(middle)), 0.0);  // now it is pulled off
   patches_.ride(pose_, tissue_);
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   EXPECT_EQ(patches_.left(), (std::vector<int>{middle}));
   follow();
   expectAtRest(tissue_);
@@ -286,9 +294,9 @@ TEST_F(StickingContactsTest, NodeHeldBelowItsRestPlaceStays) {
 
 TEST_F(StickingContactsTest, ClearLetsEveryNodeGo) {
   push({atNode(node(3, 3, 3), 1e-3), atNode(node(5, 5, 3), 5e-4, kInto, 1)});
-  ASSERT_FALSE(patches_.empty());
+  ASSERT_FALSE(areEmpty());
   patches_.clear();
-  EXPECT_TRUE(patches_.empty());
+  EXPECT_TRUE(areEmpty());
   EXPECT_TRUE(loadingPatches().empty());
 }
 
@@ -312,7 +320,7 @@ TEST_F(StickingContactsTest, GraspedNodesRideOnTheLinkFromWhereTheyAre) {
         tissue_.lattice().restPosition(grasped[i]) + patches_.displacement(tissue_)[at(grasped[i])];
     EXPECT_LT((now - motion * places[i]).norm(), 1e-14);
   }
-  EXPECT_TRUE(patches_.pushed(1, pose_).isZero());  // it was not pushed out of the jaw
+  EXPECT_TRUE(wayOutOf(1).isZero());  // it was not pushed out of the jaw
 }
 
 TEST_F(StickingContactsTest, GraspedNodesStayAlsoWhereTheTissuePullsThemOff) {

@@ -60,7 +60,6 @@ class StickingContacts {
   // With the tissue in the shape that it had.
   void restore(const Attachments& attachments, const Tissue& tissue);
 
-  bool empty() const;
   // The tool's patch; without nodes when it holds none.
   LoadingPatch loadingPatch(int tool) const;
   // Nodes that left a patch in the last ride.
@@ -68,8 +67,6 @@ class StickingContacts {
   // The tissue's displacements (m), with the patches where they are now.
   std::vector<Vec3> displacement(const Tissue& tissue) const;
   std::vector<int> nodes(int tool) const;
-  // Sum of the ways out of the tool over its nodes (m, tissue frame).
-  Vec3 pushed(int tool, const RobotPose& pose) const;
   // Per node, not 0 = it does not give way: fixed, hard in a named load by displacement, or in one
   // of these patches; kGrasped: it moves with a grasper.
   static constexpr std::uint8_t kGrasped = SlidingContacts::kGrasped;
