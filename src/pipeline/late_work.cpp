@@ -57,8 +57,7 @@ bool Pipeline::hasArrived() const {
 void Pipeline::finish() {
   world_.unfinished = false;
   if (anyToolIn(world_.tissue.patches(), world_)) {
-    LoadStepper& load_step = parts_->load_step;
-    const LoadStepEnd end = load_step.finish(world_.last_pose.value_or(world_.pose));
+    const LoadStepEnd end = parts_->motion.finishStanding();
     const bool is_under_way = end == LoadStepEnd::kUnderWay;
     if (end != LoadStepEnd::kArrived && !is_under_way) world_.report.lost = true;
     world_.unfinished = world_.unfinished || is_under_way;

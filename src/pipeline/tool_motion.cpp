@@ -107,6 +107,14 @@ bool ToolMotion::finishes(RobotPose& start, const RobotPose& pose) {
   return false;
 }
 
+LoadStepEnd ToolMotion::finishStanding() {
+  const RobotPose stands = world_.last_pose.value_or(world_.pose);
+  const LoadStepEnd end = load_step_.finish(stands);
+  letPass(world_.pose, stands);  // a load step under way began before they passed
+  if (end == LoadStepEnd::kArrived && world_.last_pose) world_.last_pose = world_.pose;
+  return end;
+}
+
 // Whether an update leaves what a load step has no iterations for to the next one.
 bool ToolMotion::isBounded() const { return world_.mostIterations() > 0; }
 

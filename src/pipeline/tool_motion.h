@@ -38,6 +38,8 @@ class ToolMotion {
         behind_(behind) {}
 
   RobotPose walk(const RobotPose& pose);
+  // What the last load step had no time for; tools come to where one that is under way leads.
+  LoadStepEnd finishStanding();
   void startAnew(RobotPose& pose, Entry entry = Entry::kAppears);
   void comeAndGo(RobotPose& pose, Entry entry = Entry::kAppears);
   void goBackTo(RobotPose& pose);

@@ -139,6 +139,25 @@ TEST(MaxIterations, ToolsThatTouchNothingAreNeverBehind) {
   EXPECT_GT(held_up, 0);
 }
 
+// A load step that is gone on with while there is no pose takes the tool along.
+TEST(MaxIterations, WithoutAPoseTheToolIsToldWhereItCameTo) {
+  Dragged dragged(8);
+  Pipeline& pipeline = dragged.pipeline;
+  int went_on = 0;
+  for (int step = 0; step <= 80; ++step) {
+    const double gone = 0.0005 * step;
+    const RobotPose pose = edgeAt(0.0213 + std::max(0.0, gone - kDepth), std::min(gone, kDepth));
+    pipeline.step(pose);
+    if (!pipeline.report().too_fast) continue;
+    ASSERT_FALSE(pipeline.hasArrived());
+    pipeline.carryOn();
+    if (!pipeline.hasArrived()) continue;
+    ++went_on;
+    EXPECT_EQ(pipeline.pose()->links.front().matrix(), pose.links.front().matrix()) << step;
+  }
+  EXPECT_GT(went_on, 0);
+}
+
 // A force is met to half a percent by contacts that are settled.
 TEST(MaxIterations, DrivenToolMeetsItsForce) {
   Dragged dragged(kMost);
