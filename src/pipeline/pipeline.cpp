@@ -298,12 +298,13 @@ void Pipeline::takeOver(const Tissue& other, Tissue::Displacements displacement)
   forgetTools();
   world_.tissue.takeOver(other);
   putInPlace(std::move(displacement), world_.tissue.state().cells);
+  meetNewTissue();
   describeTools();
 }
 
-// A surface that was taken over touches nothing, so that no touch is to be brought onto it.
+// Once no tool touches: no touch is to be brought onto the new surface in the first solve.
 void Pipeline::meetNewTissue() {
-  parts_->contact_update.takeSurface();
+  parts_->contact_update.beginAnew();
   world_.sliding.commit(world_.pose, world_.tissue);
 }
 
@@ -314,10 +315,7 @@ void Pipeline::forgetTools() {
   world_.sliding.clear();
   world_.forgetSearches();
   state_.touches = TouchState();
-  parts_->grasping.forgetLetGo();
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    parts_->grasping.forgetJaws(tool);
-  }
+  parts_->grasping.setTools(world_.tools.size());
   state_.drive.setTools(world_.tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();

@@ -158,6 +158,11 @@ ToolContactUpdate::Touches ToolContactUpdate::takeSurface() {
   return goes_on ? Touches::kGoOn : Touches::kMetAnew;
 }
 
+void ToolContactUpdate::beginAnew() {
+  takeSurface();
+  left_inside_ = 0.0;
+}
+
 // The shape was solved for the contacts of before: are they those of the shape?
 bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, Round round) {
   contacts_ms_ = 0.0;

@@ -27,6 +27,8 @@ class ToolContactUpdate : public ContactUpdate {
   // Where the surface is another one, as after a cut, what touches and holds it is brought onto it.
   enum class Touches { kOfThisSurface, kGoOn, kMetAnew };
   Touches takeSurface();
+  // On another tissue, which no tool touches yet.
+  void beginAnew();
 
  private:
   // Of a link: in the box a vertex goes so far at once and no farther (m), and on that way it is

@@ -109,6 +109,23 @@ TEST_P(BeginAnew, WithOtherTools) {
   EXPECT_EQ(pressAndDrag(*pipeline), pressAndDrag(*once));
 }
 
+// Jaws that overlap from the first pose on are told of only once they were apart.
+TEST(BeginAnewWithJaws, TheyWereNeverApart) {
+  ToolGeometry tool;
+  tool.role = toolRole("grasper");
+  tool.links = {{"left", {boxOf(Vec3::Constant(0.004))}},
+                {"right", {boxOf(Vec3::Constant(0.004))}}};
+  Pipeline pipeline(block(), methodOf("elastic"), {tool});
+  const auto jaws = [](double apart) {
+    return at({Vec3(kMiddle, kMiddle, 0.1), Vec3(kMiddle, kMiddle + apart, 0.1)});
+  };
+  for (const double apart : {0.0, 0.01, 0.0}) pipeline.step(jaws(apart));
+  ASSERT_TRUE(pipeline.report().tools.front().jaws_overlap);
+  pipeline.reset();
+  pipeline.step(jaws(0.0));
+  EXPECT_FALSE(pipeline.report().tools.front().jaws_overlap);
+}
+
 INSTANTIATE_TEST_SUITE_P(Tool, BeginAnew,
                          ::testing::Values(Way{"Edge", edge, 0.004}, Way{"Stylus", stylus, 0.001},
                                            Way{"Stamp", stamp, 0.003}, Way{"Mesh", spike, 0.003}),
