@@ -112,6 +112,8 @@ void Runner::performAll() {
 }
 
 void Runner::perform(const SettleStep&) {
+  pipeline_.stopTime();
+  catchUp();
   const SolveReport report = pipeline_.settle();
   followPushes();
   keep(report);

@@ -87,6 +87,7 @@ class Runner {
   void endPush(std::size_t tool);
   void follow();
   void followPushes();
+  void catchUp();
   void update();
   void remarkHolds();
   void remarkCut(std::size_t tool);

@@ -167,6 +167,17 @@ void Runner::follow() {
   followPushes();
 }
 
+// Tools that are behind go to where they stand, in load steps of as many iterations as they take.
+void Runner::catchUp() {
+  pipeline_.setMostIterations(0);
+  for (int i = 0; i < tuning::kMostUpdates && !pipeline_.report().behind.empty(); ++i) {
+    updates_.worst = SolveStatus::kOk;  // those before were on the way
+    update();
+    if (pipeline_.report().lost || deadline_.isOver()) break;
+  }
+  pipeline_.setMostIterations(scene_.solver.max_iterations.value_or(0));
+}
+
 // Tools by a force follow the tissue, unless it takes far too long.
 void Runner::followPushes() {
   const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });

@@ -306,6 +306,29 @@ TEST(ToolSteps, RemarksGoToStderrUnlessQuiet) {
   fs::remove_all(pattern);
 }
 
+// With few iterations a load step, the tool is not followed to where it leaves the tissue.
+TEST(ToolSteps, SettleBringsAToolThatIsBehindToItsPlace) {
+  const std::string scene =
+      "tissue:\n"
+      "  shape: {type: box, min: [0, 0, 0], max: [0.06, 0.06, 0.03]}\n"
+      "  spacing: 0.005\n"
+      "  material: {young_modulus: 20000}\n"
+      "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+      "solver: {tolerance: 0.001, max_iterations: 6}\n"
+      "tools: [{name: probe, shapes: [{type: sphere, radius: 0.01}]}]\n"
+      "steps:\n" +
+      placed("probe", Vec3(0.031, 0.029, 0.045), Vec3(0.031, 0.029, 0.034), 1) +
+      moved("probe", Vec3(0.022, 0.023, 0.034), 1) + moved("probe", Vec3(0.031, 0.029, 0.045), 1) +
+      "  - settle: {}\n";
+  const RunResult result = run(scene);
+  ASSERT_EQ(result.increments[2].report.status, SolveStatus::kLate) << "nothing is behind";
+  EXPECT_EQ(result.increments.back().report.status, SolveStatus::kOk);
+  const ToolRow settled = rowsOf(result, 3, "probe").back();
+  EXPECT_EQ(settled.contacts, 0);
+  EXPECT_EQ(settled.force, Vec3(Vec3::Zero()));
+  for (const Vec3& displacement : result.displacement) EXPECT_LT(displacement.norm(), 1e-5);
+}
+
 // So near that its contacts are looked for, but do not push: nothing is solved for as the cuts are
 // taken back.
 TEST(ToolSteps, ASphereThatHoversTouchesTissueThatWasMended) {
