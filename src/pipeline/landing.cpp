@@ -45,6 +45,14 @@ double dampingTime(const TissueConfig& tissue, double extent) {
   return tuning::kLandingDamping * extent / wave_speed;
 }
 
+double farthestBetween(const std::vector<Vec3>& one, const std::vector<Vec3>& other) {
+  double farthest = 0.0;
+  for (std::size_t node = 0; node < one.size(); ++node) {
+    farthest = std::max(farthest, (one[node] - other[node]).squaredNorm());
+  }
+  return std::sqrt(farthest);
+}
+
 }  // namespace
 
 std::unique_ptr<const Landing> Landing::ofScene(const TissueConfig& tissue,
@@ -65,27 +73,51 @@ Landing::Landing(const TissueConfig& tissue, const SolverConfig& solver,
   for (Region& region : tissue_.regions) region.material.tear_stretch = 0.0;
   solver_.method = "layered";
   solver_.max_ms = 0.0;
+  solver_.tolerance = std::max(solver_.tolerance, tuning::kLandingTolerance);
 }
 
-Tissue::Displacements Landing::from(const Tissue& tissue, const Deadline& end) const {
+Landing::End Landing::from(const Tissue& tissue, const Deadline& end, const Lies& lies) const {
   const Tissue::Displacements start = lowered(tissue);
-  if (start == nullptr) return nullptr;
+  if (start == nullptr) return End::kNothingBelow;
+  const double extent = tissue.bounds().sizes().maxCoeff();
   TissueConfig config = tissue_;
-  config.time->damping_time = dampingTime(config, tissue.bounds().sizes().maxCoeff());
+  config.time->damping_time = dampingTime(config, extent);
   Pipeline in_time(config, solver_, {}, supports_);
+  in_time.limitPatience(tuning::kLandingPatience);
+  in_time.startClock(0.0);
   in_time.setEnd(end);
   in_time.takeOver(tissue, start);
   const Vec3 middle = in_time.tissue().bounds().center();
-  const double farthest = tuning::kFarthestLanding * tissue.bounds().sizes().maxCoeff();
   const auto is_near = [&] {
-    return (in_time.tissue().bounds().center() - middle).norm() < farthest;
+    return (in_time.tissue().bounds().center() - middle).norm() < tuning::kFarthestLanding * extent;
   };
-  for (double gone = 0.0; in_time.tissue().isMoving(); gone += tuning::kLandingPause) {
-    if (gone > tuning::kLongestLanding || !is_near() || end.isOver()) return nullptr;
-    const SolveReport report = in_time.wait(tuning::kLandingPause);
-    if (report.status == SolveStatus::kUnconverged) return nullptr;
+  // What is about to topple grows by e in about the time in which it falls its extent.
+  double next_look = tuning::kFirstLook * std::sqrt(extent / tissue_.gravity.norm());
+  double last_way = 0.0;
+  for (double gone = 0.0; gone < tuning::kLongestLanding && is_near() && !end.isOver();) {
+    const Tissue::Displacements before = in_time.tissue().displacements();
+    in_time.wait(tuning::kLandingPause);
+    gone += tuning::kLandingPause;
+    const Tissue::Displacements now = in_time.tissue().displacements();
+    const bool rests = !in_time.tissue().isMoving();
+    const bool ends = rests || in_time.report().hopeless;
+    const double way = farthestBetween(*before, *now);
+    const bool may_lie = gone >= next_look && way < std::min(slowWay(), last_way);
+    if (rests || ends || may_lie) {
+      const Look look = rests ? Look::kAtRest : ends ? Look::kLast : Look::kOnItsWay;
+      if (lies(now, look)) return End::kLies;
+      next_look = tuning::kLaterLook * gone;
+    }
+    if (ends) break;
+    last_way = way;
   }
-  return in_time.tissue().displacements();
+  return End::kGoesOn;
+}
+
+// m, in a pause: so fast is what fell a share of the spacing.
+double Landing::slowWay() const {
+  const double height = tuning::kSlowLanding * tissue_.spacing;
+  return tuning::kLandingPause * std::sqrt(2.0 * tissue_.gravity.norm() * height);
 }
 
 // Whether there is tissue below one of these pieces: it would fall through that, as tissue is not

@@ -3,6 +3,7 @@
 // so its way is followed in time, by a pipeline of its own, until it rests.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -24,15 +25,29 @@ class Landing {
   Landing(const TissueConfig& tissue, const SolverConfig& solver,
           std::vector<SupportConfig> supports);
 
-  // Displacements (m) in which the tissue, which no tool touches, rests, on its way from its
-  // present shape; null: it does not within kLongestLanding, or before the end, or there is nothing
-  // below it, or other tissue.
-  Tissue::Displacements from(const Tissue& tissue, const Deadline& end) const;
+  // When it is looked whether the tissue lies.
+  enum class Look {
+    kOnItsWay,  // it has become slow
+    kLast,      // it is followed no further
+    kAtRest
+  };
+  // Whether it lies in these displacements (m).
+  using Lies = std::function<bool(const Tissue::Displacements&, Look)>;
+
+  enum class End {
+    kLies,
+    kNothingBelow,  // or other tissue
+    kGoesOn         // it lies nowhere within kLongestLanding, or before the end, or takes far too
+                    // long (Patience)
+  };
+  // Follows the tissue, which no tool touches, from its present shape until it lies.
+  End from(const Tissue& tissue, const Deadline& end, const Lies& lies) const;
 
  private:
   Tissue::Displacements lowered(const Tissue& tissue) const;
   bool anyLiesOnTissue(const Tissue& tissue, const std::map<int, double>& pieces) const;
   double clearance(const Vec3& point) const;
+  double slowWay() const;
 
   TissueConfig tissue_;  // with time, and without tearing
   SolverConfig solver_;

@@ -62,7 +62,7 @@ const std::optional<RobotPose>& Pipeline::pose() const { return world_.last_pose
 
 ForceBalance Pipeline::forceBalance() const { return forceBalanceOf(world_); }
 
-void Pipeline::limitPatience() { world_.tissue.patience().limit(); }
+void Pipeline::limitPatience(double times) { world_.tissue.patience().limit(times); }
 
 void Pipeline::setEnd(const Deadline& end) {
   end_ = end;

@@ -35,19 +35,25 @@ SolveReport Pipeline::balance() {
   return parts_->load_step.balance();
 }
 
-// What lies flat is in balance soon; what does not is followed on its way.
+// What lies flat is in balance soon; what does not, or is thrown away by the solve, is followed on
+// its way.
 SolveReport Pipeline::settleLoose() {
   LoadStepper& load_step = parts_->load_step;
   const Checkpoint before = load_step.checkpoint();
   {
     const LoadStepBound::Scope bound(world_.tissue.patience().bound(), tuning::kIterationsOfLying);
     const SolveReport report = balance();
-    if (report.status == SolveStatus::kOk && !world_.tissue.anyHangs()) return report;
+    const bool is_lying = report.status == SolveStatus::kOk && !world_.tissue.anyHangs();
+    if (is_lying && !wentFartherFrom(*before.shape.displacement, tuning::kMostLeap)) return report;
   }
   const bool any_tool = anyToolIn(world_.tissue.patches(), world_);
   if (!any_tool) return land(before.shape);
   load_step.goBackTo(before);
-  return balance();
+  balance();
+  if (wentFartherFrom(*before.shape.displacement, tuning::kMostLeap)) {
+    world_.tissue.noteUnconverged();
+  }
+  return world_.tissue.lastReport();
 }
 
 std::optional<Tissue::Shape> Pipeline::shapeOfLoose() const {
@@ -61,18 +67,43 @@ SolveReport Pipeline::comeToLie(const std::optional<Tissue::Shape>& before,
   return falls && !anyToolIn(world_.tissue.patches(), world_) ? land(*before) : report;
 }
 
-// From where it was. What does not come to lie stays there; what hangs is in balance so.
+// From where it was. What does not come to lie stays there; what hangs over nothing is in balance.
 SolveReport Pipeline::land(const Tissue::Shape& before) {
   const bool any_hangs = world_.tissue.anyHangs();
   putInPlace(before.displacement, before.cells);
-  const Tissue::Displacements lain = landing_->from(world_.tissue, end_.value_or(Deadline()));
-  if (lain != nullptr) {
-    putInPlace(lain, world_.tissue.state().cells);
-  } else if (!any_hangs) {
-    world_.tissue.noteUnconverged();
-    return world_.tissue.lastReport();
+  const std::shared_ptr<const CellSet> cells = world_.tissue.state().cells;
+  const auto lies = [&](const Tissue::Displacements& there, Landing::Look look) {
+    const bool is_on_its_way = look == Landing::Look::kOnItsWay;
+    const LoadStepBound::Scope bound(world_.tissue.patience().bound(),
+                                     is_on_its_way ? tuning::kIterationsOfLying : 0);
+    putInPlace(there, cells);
+    return liesNear(*there, look == Landing::Look::kAtRest);
+  };
+  const Landing::End end = landing_->from(world_.tissue, end_.value_or(Deadline()), lies);
+  if (end == Landing::End::kLies) return world_.tissue.lastReport();
+  putInPlace(before.displacement, before.cells);
+  if (end == Landing::End::kNothingBelow && any_hangs) return balance();
+  world_.tissue.noteUnconverged();
+  return world_.tissue.lastReport();
+}
+
+// Whether the tissue, which is there, is in balance near to it. What rests there lies in any case,
+// but a solve that throws it away is no answer.
+bool Pipeline::liesNear(const std::vector<Vec3>& there, bool rests) {
+  const SolveStatus status = balance().status;
+  const bool is_lying = status == SolveStatus::kOk && !world_.tissue.anyHangs();
+  return (rests || is_lying) && !wentFartherFrom(there, tuning::kMostToLie);
+}
+
+// Whether a node is farther from there than so many spacings.
+bool Pipeline::wentFartherFrom(const std::vector<Vec3>& there, double spacings) const {
+  const std::vector<Vec3>& now = world_.tissue.state().displacement;
+  const std::vector<int>& piece_of = world_.tissue.pieceOfNodes();
+  const double most = spacings * world_.tissue.lattice().spacing();
+  for (std::size_t node = 0; node < std::min(now.size(), there.size()); ++node) {
+    if (piece_of[node] >= 0 && (now[node] - there[node]).squaredNorm() > most * most) return true;
   }
-  return balance();
+  return false;
 }
 
 // Displacements (m) of these cells' nodes; supports are met anew.

@@ -321,9 +321,23 @@ constexpr int kIterationsOfLying = 60;
 // Of the time in which a wave crosses the tissue (1): its viscosity. More: what rolls is slower;
 // less: it swings longer. Chosen.
 constexpr double kLandingDamping = 0.5;
+// Its solver.tolerance, at least. More: faster, but what bounces comes to lie elsewhere. Chosen.
+constexpr double kLandingTolerance = 1e-2;
 // s: what has not come to rest by then, as on a slope, does not. And after which it is looked at.
 constexpr double kLongestLanding = 30.0;
-constexpr double kLandingPause = 0.1;
+constexpr double kLandingPause = 0.05;
+// Of the spacing (1): what is as slow as after a fall from that height may lie; whether it does is
+// looked at, each time after so many times the time (1). More of the first: more looks in vain.
+constexpr double kSlowLanding = 1e-3;
+constexpr double kLaterLook = 1.5;
+// Of the time in which the tissue would fall about its extent (1): the first such look. Less: what
+// is about to topple is left standing. Chosen.
+constexpr double kFirstLook = 5.0;
+// Of the work that is forborne in a scene (1), what may be spent on one landing. More: what bounces
+// and trembles for long is followed longer before it is given up. Chosen.
+constexpr double kLandingPatience = 5.0;
+// Spacings: what is balanced farther from where it came to lie was thrown away. Chosen.
+constexpr double kMostToLie = 2.0;
 // Of the tissue's extent (1): likewise what goes farther on the way, as down a slope. Chosen.
 constexpr double kFarthestLanding = 20.0;
 

@@ -203,6 +203,17 @@ TEST(Patience, IsOfOneWayUntilItIsLimited) {
   EXPECT_FALSE(patience.isOver());
 }
 
+TEST(Patience, LastsAsManyTimesAsItIsTold) {
+  const auto lasts = [](double times) {
+    Patience patience(kUsual);
+    patience.limit(times);
+    int hard = 0;
+    for (; hard < 1000 && !patience.isOver(); ++hard) solve(patience, 200, false);
+    return hard;
+  };
+  EXPECT_NEAR(lasts(3.0), 3.0 * lasts(1.0), 2.0);
+}
+
 TEST(Patience, TrialsSpendTheirOwn) {
   Patience patience = forScene();
   patience.beginTrial();

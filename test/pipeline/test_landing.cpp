@@ -83,6 +83,30 @@ TEST(Landing, WhatSlidesWithoutEndStaysWhereItWas) {
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
+TEST(Landing, WhatFallsAndSlidesWithoutEndIsUnconverged) {
+  SupportConfig slope = tableAt(-0.05, 0.1);
+  slope.shape.pose.linear() = Eigen::AngleAxisd(std::atan(0.6), Vec3::UnitY()).toRotationMatrix();
+  Pipeline pipeline(loose(), {}, {}, {slope});
+  EXPECT_EQ(pipeline.settle().status, SolveStatus::kUnconverged);
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+// Two cells wide, borne 2 mm past the middle: there a solve goes astray, off the edge.
+TEST(Landing, ACubeThatAnEdgeJustBearsStaysOnIt) {
+  constexpr double kCube = 0.02;
+  TissueConfig tissue = loose();
+  tissue.shape.max() = Vec3::Constant(kCube);
+  tissue.material.young_modulus = 5.3e4;
+  tissue.material.poisson_ratio = 0.25;
+  const SupportConfig ledge = {"ledge", boxOf(Vec3(0.022, 0.04, 0.01), Vec3(0.001, 0.01, -0.005)),
+                               0.8};
+  Pipeline pipeline(tissue, {}, {}, {ledge});
+  EXPECT_EQ(pipeline.settle().status, SolveStatus::kOk);
+  EXPECT_LT(greatestDisplacement(pipeline.tissue()), 0.1 * kStep);
+  const ForceBalance balance = pipeline.forceBalance();
+  EXPECT_NEAR(balance.supports.z(), -balance.weight.z(), 0.02 * -balance.weight.z());
+}
+
 // Its wall would be missing on the way.
 TEST(Landing, TissueWithAMembraneHangs) {
   constexpr double kBall = 0.03;

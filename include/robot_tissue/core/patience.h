@@ -39,8 +39,8 @@ class Patience {
 
   // From here on it is for all of a scene, and once it is over load steps have the usual work at
   // most; before, it is for one way of the tools, counts what did not converge alone, and
-  // bounds no solve.
-  void limit() { is_for_scene_ = true; }
+  // bounds no solve. `times` that of a scene.
+  void limit(double times = 1.0);
   bool isForScene() const { return is_for_scene_; }
   void forget() { spent_ = spent_by_trials_ = 0; }
   // A way begins, or went on by a whole load step.
@@ -83,6 +83,7 @@ class Patience {
   LoadStepBound bound_;
   int usual_;               // iterations
   double usual_when_over_;  // work, of a load step
+  double most_of_scene_;    // work, usually
   double most_;             // work, spent over a scene
   double most_on_a_way_;    // likewise
   bool is_for_scene_ = false;

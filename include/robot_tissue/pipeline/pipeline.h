@@ -94,7 +94,8 @@ class Pipeline {
   bool hasArrived() const;
   // From here on load steps that take far too long again and again, counted by iterations over all
   // solves since the last reset, are cut off, and ways given up (Patience, StepReport::hopeless).
-  void limitPatience();
+  // `times`: of the usual patience with a scene.
+  void limitPatience(double times = 1.0);
   // No call begins a solve after it; what a call leaves then it tells as late.
   void setEnd(const Deadline& end);
 
@@ -194,6 +195,8 @@ class Pipeline {
   std::optional<Tissue::Shape> shapeOfLoose() const;
   SolveReport comeToLie(const std::optional<Tissue::Shape>& before, const SolveReport& report);
   SolveReport land(const Tissue::Shape& before);
+  bool liesNear(const std::vector<Vec3>& there, bool rests);
+  bool wentFartherFrom(const std::vector<Vec3>& there, double spacings) const;
   void putInPlace(Tissue::Displacements displacement, std::shared_ptr<const CellSet> cells);
   bool isBehind() const;  // the shape shown is not yet the one of the tools' pose, in balance
 

@@ -23,8 +23,14 @@ double largeness(int nodes) { return std::max(1.0, nodes / tuning::kManyNodes); 
 Patience::Patience(int usual_iterations, int nodes)
     : usual_(usual_iterations),
       usual_when_over_(tuning::kUsualWork * usual_iterations / largeness(nodes)),
-      most_(tuning::kMostSpent * usual_iterations / largeness(nodes)),
+      most_of_scene_(tuning::kMostSpent * usual_iterations / largeness(nodes)),
+      most_(most_of_scene_),
       most_on_a_way_(tuning::kMostSpentOnAWay) {}
+
+void Patience::limit(double times) {
+  is_for_scene_ = true;
+  most_ = times * most_of_scene_;
+}
 
 int Patience::mostOfLoadStep() const {
   return isKnown() ? static_cast<int>(std::lround(tuning::kMostOfLoadStep * usual_)) : kNoBound;
