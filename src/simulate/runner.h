@@ -33,6 +33,7 @@ class Runner {
     int steps = 1;
     int gone = 0;  // load steps that were walked
     bool is_given_up = false;
+    bool ends_free = false;  // given up, but its end was reached past the tissue
   };
   // Whether there were updates of the tools since the last row, the worst status of them, and the
   // time of their solves.
@@ -83,6 +84,7 @@ class Runner {
   int loadSteps(double steps) const;
   void walkTo(Way& way, double share);
   void giveUp(Way& way, int gone);
+  bool isFreeInBalance() const;
   void place(const Way& way, double share);
   void endPush(std::size_t tool);
   void follow();

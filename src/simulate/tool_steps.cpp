@@ -32,7 +32,10 @@ void Runner::perform(const MoveStep& step) {
       place(way, share);
       follow();
     }
-    if (way.is_given_up) updates_ = {true, SolveStatus::kUnconverged, updates_.solve_ms};
+    if (way.is_given_up) {
+      const bool is_ok = way.ends_free && increment == increments;
+      updates_ = {true, is_ok ? SolveStatus::kOk : SolveStatus::kUnconverged, updates_.solve_ms};
+    }
     keep(SolveReport(), increment, increments);
     if (is_between) pipeline_.undoTrial();
   }
@@ -97,6 +100,16 @@ void Runner::giveUp(Way& way, int gone) {
   follow();
   place(way, 1.0);
   follow();
+  way.ends_free = isFreeInBalance();
+}
+
+// No tool touches the tissue, which is in balance.
+bool Runner::isFreeInBalance() const {
+  const std::vector<ToolReport>& tools = pipeline_.report().tools;
+  const bool any_touches = std::any_of(tools.begin(), tools.end(),
+                                       [](const ToolReport& tool) { return tool.contacts > 0; });
+  return !any_touches && pipeline_.hasArrived() &&
+         pipeline_.tissue().lastReport().status == SolveStatus::kOk;
 }
 
 void Runner::place(const Way& way, double share) {
