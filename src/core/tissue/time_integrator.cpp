@@ -173,6 +173,23 @@ double TimeIntegrator::negligibleWay(double displacement) const {
   return tuning::kTrembling * tolerance_ * displacement;
 }
 
+// A bound of the angle by which the tissue has turned in the step (rad), where it is damped: what
+// is farther from the mean way than that over half of the tissue's width, of a cube of so many
+// nodes.
+double TimeIntegrator::turnOf(const LatticeState& state) const {
+  if (damping_time_ == 0.0) return 0.0;
+  const auto nodes = static_cast<double>(before_.size());
+  Vec3 mean = Vec3::Zero();
+  for (std::size_t node = 0; node < before_.size(); ++node) {
+    mean += (state.displacement[node] - before_[node]) / nodes;
+  }
+  double farthest = 0.0;
+  for (std::size_t node = 0; node < before_.size(); ++node) {
+    farthest = std::max(farthest, (state.displacement[node] - before_[node] - mean).squaredNorm());
+  }
+  return std::sqrt(farthest) / (0.5 * spacing_ * std::cbrt(nodes));
+}
+
 // The local error of a step is h^2 |a' - a| / 3, or h^2 |a'| / 2 of Euler's (tuning.h); it is held
 // against what moves: the way of the step, and the displacement.
 void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
@@ -201,7 +218,8 @@ void TimeIntegrator::judge(const LatticeState& state, NodeMotion& motion) {
   const double scale =
       std::max({std::sqrt(way), tuning::kShareOfDisplacement * std::sqrt(displacement), least});
   const double share = is_first_order ? tuning::kErrorOfEulersStep : tuning::kErrorOfStep;
-  error_ratio_ = share * h * h * std::sqrt(error) / (tolerance_ * scale);
+  error_ratio_ = std::max(share * h * h * std::sqrt(error) / (tolerance_ * scale),
+                          std::pow(turnOf(state) / tuning::kMostTurn, is_first_order ? 2.0 : 3.0));
   const double growth =
       std::pow(tuning::kSafety / std::max(error_ratio_, 1e-9), is_first_order ? 0.5 : 1.0 / 3.0);
   motion.next_duration =

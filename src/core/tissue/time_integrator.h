@@ -104,6 +104,7 @@ class TimeIntegrator {
   std::vector<Vec3> rateFrom() const;  // displacements where the rate of f is taken from
   bool comesNowhere(const LatticeState& state);
   double negligibleWay(double displacement) const;
+  double turnOf(const LatticeState& state) const;
   void judge(const LatticeState& state, NodeMotion& motion);
 
   double damping_time_, spacing_, tolerance_;

@@ -5,6 +5,7 @@
 
 #include "material/viscosity.h"
 #include "simd/field_kernel.h"
+#include "solvers/multigrid/level/cell_strain.h"
 
 namespace robot_tissue {
 namespace {
@@ -190,26 +191,15 @@ void CellOperator<Real>::setViscosity(double share, const Field<Real>& rate_from
       nodes[at(corner)] =
           cell + (corner & 1) + (corner >> 1 & 1) * grid_.row + (corner >> 2 & 1) * grid_.plane;
     }
-    const std::array<Real, kNine> inverse = inverseOfStrain(rate_from, nodes);
+    const std::array<Real, kNine> inverse = inverseOf(meanStrain(rate_from, nodes));
     for (std::size_t i = 0; i < kNine; ++i) inverse_[i][at(cell)] = inverse[i];
   }
-  for (LooseCell<Real>& cell : loose_) cell.inverse = inverseOfStrain(rate_from, cell.nodes);
-  for (LooseCell<Real>& cell : filled_) cell.inverse = inverseOfStrain(rate_from, cell.nodes);
+  for (LooseCell<Real>& cell : loose_) cell.inverse = inverseOf(meanStrain(rate_from, cell.nodes));
+  for (FilledCell<Real>& cell : filled_) cell.inverse = inverseOf(meanStrain(rate_from, cell));
 }
 
-// Of the mean of F over the whole cell, also where it is filled in part: what the strain is taken
-// with is the same at both ends of the step.
 template <typename Real>
-std::array<Real, kNine> CellOperator<Real>::inverseOfStrain(
-    const Field<Real>& displacement, const std::array<int, kCorners>& nodes) const {
-  Eigen::Matrix3d strain = Eigen::Matrix3d::Identity();
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const std::size_t node = at(nodes[at(corner)]);
-    const Vec3 moved(displacement[0][node], displacement[1][node], displacement[2][node]);
-    for (int axis = 0; axis < 3; ++axis) {
-      strain.col(axis) += ((corner >> axis & 1) != 0 ? 0.25 : -0.25) * moved;
-    }
-  }
+std::array<Real, kNine> CellOperator<Real>::inverseOf(const Eigen::Matrix3d& strain) const {
   const Eigen::Matrix3d inverse = viscosity::inverseOf(strain);
   std::array<Real, kNine> numbers;
   for (std::size_t i = 0; i < kNine; ++i) {

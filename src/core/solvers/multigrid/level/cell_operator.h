@@ -112,8 +112,7 @@ class CellOperator {
   void findForces(const Loads& loads, Find what, const Blocks& blocks);
   void findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first, int end,
                   Sums& sums);
-  std::array<Real, kNine> inverseOfStrain(const Field<Real>& displacement,
-                                          const std::array<int, kCorners>& nodes) const;
+  std::array<Real, kNine> inverseOf(const Eigen::Matrix3d& strain) const;
   CellGrid<Real> gridOf(const Loads& loads) const;
   void addPlane(const Loads& loads, Find what, const std::vector<CellBlock>& blocks, int plane,
                 Sums& sums) const;
