@@ -116,6 +116,19 @@ TEST_P(SpringInContact, ForceIsMinusTheEnergysSlope) {
   }
 }
 
+// As where rims bear all of a touch.
+TEST_P(SpringInContact, ForceIsMinusTheEnergysSlopeAlsoWithoutStiffness) {
+  constexpr double kDifference = 1e-7;
+  spring_.stiffness = spring_.friction_stiffness = 0.0;
+  const Vec3 force = forceOf(spring_, displacement_);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kDifference * Vec3::Unit(axis);
+    const double slope = (energyOf(spring_, movedBy(step)) - energyOf(spring_, movedBy(-step))) /
+                         (2.0 * kDifference);
+    EXPECT_NEAR(force[axis], -slope, 1e-7);
+  }
+}
+
 TEST_P(SpringInContact, ForceOnTheNodesIsMinusTheEnergysSlope) {
   constexpr double kDifference = 1e-7;
   LoadingPatch patch;

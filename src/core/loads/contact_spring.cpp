@@ -49,6 +49,27 @@ Eigen::Matrix3d threadStiffnessAt(const ContactSpring& thread, const Vec3& way) 
          (thread.stiffness - across) * along * along.transpose();
 }
 
+// J. Without stiffness, as where rims bear all of a touch, the force is the same everywhere.
+double pressEnergyAt(const ContactSpring& spring, const Vec3& point) {
+  const double force = pressAt(spring, point);
+  return spring.stiffness > 0.0 ? 0.5 * force * force / spring.stiffness
+                                : -force * spring.normal.dot(point - spring.plane_point);
+}
+
+// J, likewise.
+double frictionEnergyAt(const ContactSpring& spring, const Vec3& point) {
+  if (spring.friction_bound <= 0.0) return 0.0;
+  const Vec3 trial = trialFriction(spring, point);
+  const double length = trial.norm();
+  const double most = spring.friction_bound;
+  if (spring.friction_stiffness <= 0.0) {
+    const double share = length > most ? most / length : 1.0;
+    return -share * trial.dot(point - spring.anchor);
+  }
+  const double squared = length <= most ? 0.5 * length * length : most * (length - 0.5 * most);
+  return squared / spring.friction_stiffness;
+}
+
 // From the point to the tool's surface (m).
 Vec3 offTool(const ContactSpring& spring, double compliance, double force) {
   const double recess = force > 0.0 ? spring.recess : 0.0;
@@ -117,15 +138,9 @@ double energyOf(const ContactSpring& spring, const std::vector<Vec3>& displaceme
     const double tension = tensionOf(spring, displacement);
     return 0.5 * tension * tension / spring.stiffness;
   }
-  const double normal_force = normalForceOf(spring, displacement);
   const Vec3 point = pointOf(spring, displacement), slid = point - spring.turned_from;
-  const double energy =
-      0.5 * normal_force * normal_force / spring.stiffness + 0.5 * slid.dot(spring.turning * slid);
-  if (spring.friction_bound <= 0.0) return energy;
-  const double length = trialFriction(spring, point).norm();
-  const double most = spring.friction_bound;
-  const double of_friction = length <= most ? 0.5 * length * length : most * (length - 0.5 * most);
-  return energy + of_friction / spring.friction_stiffness;
+  const double energy = pressEnergyAt(spring, point) + 0.5 * slid.dot(spring.turning * slid);
+  return energy + frictionEnergyAt(spring, point);
 }
 
 Eigen::Matrix3d stiffnessOf(const ContactSpring& spring, const std::vector<Vec3>& displacement) {
