@@ -88,13 +88,18 @@ TEST(ViscousCell, LetsWhatIsStrainedTurn) {
   EXPECT_LT(Damped(from, turned).energy(), 1e-6 * Damped(from, sheared).energy());
 }
 
+TissueConfig barInTime(int wide, int high, double poisson_ratio, double damping_time) {
+  TissueConfig config = withFixedBottom(blockOf(wide, wide, high, kSpacing));
+  config.model = "elastic";
+  config.material.poisson_ratio = poisson_ratio;
+  config.time = TimeConfig{damping_time};
+  return config;
+}
+
 // A bar that is squeezed by a quarter, far beyond where it buckles, and let go. Damped by 0.1 s it
 // creeps back straight.
 TEST(SqueezedBar, CreepsBackStraight) {
-  TissueConfig config = withFixedBottom(blockOf(4, 4, 16, kSpacing));
-  config.model = "elastic";
-  config.material.poisson_ratio = 0.45;
-  config.time = TimeConfig{0.1};
+  const TissueConfig config = barInTime(4, 16, 0.45, 0.1);
   const Box top = nodeBox(config, {0, 0, 16}, {4, 4, 16});
   const double way = -0.02;
   double last = way;
@@ -113,10 +118,7 @@ TEST(SqueezedBar, CreepsBackStraight) {
 }
 
 TEST(SqueezedBar, DoesByLayeredWhatItDoesByNewton) {
-  TissueConfig config = withFixedBottom(blockOf(3, 3, 8, kSpacing));
-  config.model = "elastic";
-  config.material.poisson_ratio = 0.4;
-  config.time = TimeConfig{0.02};
+  const TissueConfig config = barInTime(3, 8, 0.4, 0.02);
   const Box top = nodeBox(config, {0, 0, 8}, {3, 3, 8});
   SolverConfig layered, newton;
   layered.tolerance = newton.tolerance = 1e-3;

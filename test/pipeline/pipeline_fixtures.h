@@ -114,6 +114,25 @@ inline RobotPose pressed(double depth, double x = kMiddle) {
   return at({Vec3(x, kMiddle, kTop + kRadius - depth)});
 }
 
+// Two plates that close on the ridge along y.
+inline ToolGeometry ridgeGripper(const std::string& name, double close_gap, double open_gap) {
+  ToolGeometry tool;
+  tool.name = name;
+  tool.role = toolRole("grasper");
+  const Vec3 plate(0.016, 0.004, 0.01);
+  tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
+                {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};
+  tool.grasp.close_gap = close_gap;
+  tool.grasp.open_gap = open_gap;
+  return tool;
+}
+
+// Where its links are, with the plates' inner faces `gap` apart around the ridge's upper part.
+inline std::vector<Vec3> jawsOnRidge(double gap, double lift = 0.0) {
+  return {Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005 + lift),
+          Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005 + lift)};
+}
+
 // Brings the tools from one place to another in increments of the given length (m).
 inline void walk(Pipeline& pipeline, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
                  double increment = 0.0005) {

@@ -4,24 +4,6 @@
 namespace robot_tissue::test_commands_under_way {
 namespace {
 
-// Two plates that close on the ridge along y, and hold and let go only when they are told to.
-ToolGeometry gripper() {
-  ToolGeometry tool;
-  tool.name = "gripper";
-  tool.role = toolRole("grasper");
-  const Vec3 plate(0.016, 0.004, 0.01);
-  tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
-                {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};
-  tool.grasp.close_gap = 0.0;
-  tool.grasp.open_gap = 1.0;
-  return tool;
-}
-
-std::vector<Vec3> jaws(double gap, double lift = 0.0) {
-  return {Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005 + lift),
-          Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005 + lift)};
-}
-
 const ToolReport& tool(const Pipeline& pipeline) { return pipeline.report().tools.front(); }
 
 // Steps on until the tools stay where they are, in a load step that takes another update.
@@ -37,12 +19,13 @@ template <class PoseOf>
   return ::testing::AssertionFailure() << "no load step takes a second update";
 }
 
+// Of jaws that hold and let go only when they are told to.
 class GraspUnderWay : public ::testing::Test {
  protected:
-  Pipeline pipeline_{ridge(), methodOf("elastic"), {gripper()}};
-  RobotPose there_ = at(jaws(0.008, 0.008));
+  Pipeline pipeline_{ridge(), methodOf("elastic"), {ridgeGripper("gripper", 0.0, 1.0)}};
+  RobotPose there_ = at(jawsOnRidge(0.008, 0.008));
 
-  void close() { walk(pipeline_, jaws(0.014), jaws(0.008)); }
+  void close() { walk(pipeline_, jawsOnRidge(0.014), jawsOnRidge(0.008)); }
   void pull() {
     pipeline_.setMostIterations(1);
     ASSERT_TRUE(comesUnderWay(pipeline_, [&](int) { return there_; }));

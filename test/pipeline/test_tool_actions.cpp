@@ -73,14 +73,7 @@ class Grasper : public ::testing::TestWithParam<const char*> {
   static constexpr double kCloseGap = 0.0085, kOpenGap = 0.0095;
 
   static ToolGeometry gripper(double max_force = 0.0) {
-    ToolGeometry tool;
-    tool.name = "gripper";
-    tool.role = toolRole("grasper");
-    const Vec3 plate(0.016, 0.004, 0.01);
-    tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
-                  {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};
-    tool.grasp.close_gap = kCloseGap;
-    tool.grasp.open_gap = kOpenGap;
+    ToolGeometry tool = ridgeGripper("gripper", kCloseGap, kOpenGap);
     tool.grasp.max_force = max_force;
     return tool;
   }
@@ -89,12 +82,7 @@ class Grasper : public ::testing::TestWithParam<const char*> {
     solver.method = GetParam();
     return solver;
   }
-  // Its inner faces `gap` apart, around the ridge's upper part.
-  static std::vector<Vec3> jaws(double gap, double lift = 0.0) {
-    return {Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005 + lift),
-            Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005 + lift)};
-  }
-  void close(Pipeline& pipeline) const { walk(pipeline, jaws(0.014), jaws(0.008)); }
+  void close(Pipeline& pipeline) const { walk(pipeline, jawsOnRidge(0.014), jawsOnRidge(0.008)); }
 };
 
 TEST_P(Grasper, LiftsWhatIsBetweenItsJawsAndLetsGo) {
@@ -107,13 +95,13 @@ TEST_P(Grasper, LiftsWhatIsBetweenItsJawsAndLetsGo) {
   const Lattice& lattice = pipeline.tissue().lattice();
   const int held = lattice.node(3, 1, 5);
   const double before = pipeline.tissue().nodePosition(held).z();
-  walk(pipeline, jaws(0.008), jaws(0.008, 0.004));
+  walk(pipeline, jawsOnRidge(0.008), jawsOnRidge(0.008, 0.004));
   EXPECT_NEAR(pipeline.tissue().nodePosition(held).z(), before + 0.004, 1e-6);
   EXPECT_LT(tool().force_on_tool.z(), -0.05);  // the tissue draws it down
   const ForceBalance balance = pipeline.forceBalance();
   EXPECT_LT((balance.tools + tool().force_on_tool).norm(), 1e-9);
   EXPECT_LT((balance.tools + balance.fixed).norm(), 0.02 * balance.tools.norm());
-  walk(pipeline, jaws(0.008, 0.004), jaws(0.016, 0.004));
+  walk(pipeline, jawsOnRidge(0.008, 0.004), jawsOnRidge(0.016, 0.004));
   EXPECT_FALSE(tool().grasps);
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
   EXPECT_EQ(tool().force_on_tool, Vec3::Zero());
@@ -130,12 +118,12 @@ TEST_P(Grasper, HoldsAndLetsGoWhenItIsTold) {
   pipeline.grasp(0);
   EXPECT_TRUE(pipeline.report().tools.front().grasps) << "told at once, with no update";
   EXPECT_GT(pipeline.report().tools.front().nodes.size(), 0U);
-  walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
+  walk(pipeline, jawsOnRidge(0.008), jawsOnRidge(0.008, 0.003));
   EXPECT_TRUE(pipeline.report().tools.front().grasps);
   EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), -0.05);
   pipeline.letGo(0);
   EXPECT_FALSE(pipeline.report().tools.front().grasps);
-  walk(pipeline, jaws(0.008, 0.003), jaws(0.016, 0.003));
+  walk(pipeline, jawsOnRidge(0.008, 0.003), jawsOnRidge(0.016, 0.003));
   EXPECT_FALSE(pipeline.report().tools.front().grasps);
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
@@ -147,7 +135,7 @@ TEST_P(Grasper, PulledTooHardItLosesTheTissue) {
   ASSERT_TRUE(pipeline.report().tools.front().grasps);
   bool torn = false;
   for (int i = 1; i <= 40 && !torn; ++i) {
-    torn = !pipeline.step(at(jaws(0.008, 0.0005 * i))).torn_off.empty();
+    torn = !pipeline.step(at(jawsOnRidge(0.008, 0.0005 * i))).torn_off.empty();
     EXPECT_LE(pipeline.report().tools.front().force_on_tool.norm(), kMost + 1e-9);
   }
   EXPECT_TRUE(torn);
@@ -163,7 +151,7 @@ TEST_P(Grasper, PulledTooHardItTakesOutWhatItHolds) {
   std::vector<std::size_t> torn_out;
   double height = 0.0;
   while (torn_out.empty() && height < 0.02) {
-    torn_out = pipeline.step(at(jaws(0.008, height += 0.0005))).torn_out;
+    torn_out = pipeline.step(at(jawsOnRidge(0.008, height += 0.0005))).torn_out;
   }
   ASSERT_EQ(torn_out.size(), 1U);
   EXPECT_GT(pipeline.report().springs_torn, 0);
@@ -174,7 +162,7 @@ TEST_P(Grasper, PulledTooHardItTakesOutWhatItHolds) {
   const std::vector<int> nodes = pipeline.report().tools.front().nodes;
   ASSERT_FALSE(nodes.empty());
   const double before = tissue.nodePosition(nodes.front()).z();
-  walk(pipeline, jaws(0.008, height), jaws(0.008, height + 0.01));
+  walk(pipeline, jawsOnRidge(0.008, height), jawsOnRidge(0.008, height + 0.01));
   EXPECT_TRUE(pipeline.report().tools.front().grasps);
   EXPECT_NEAR(tissue.nodePosition(nodes.front()).z(), before + 0.01, 1e-6);
   EXPECT_LT(pipeline.report().tools.front().force_on_tool.norm(), 1e-3);
@@ -189,9 +177,9 @@ TEST_P(Grasper, PulledTooHardItTakesOutWhatItHolds) {
 
 TEST_P(Grasper, CannotHoldWhatIsNotThere) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
-  pipeline.step(at(jaws(0.014, 0.05)));
+  pipeline.step(at(jawsOnRidge(0.014, 0.05)));
   EXPECT_THROW(pipeline.grasp(0), InputError);
-  pipeline.step(at(jaws(0.014, 0.051)));
+  pipeline.step(at(jawsOnRidge(0.014, 0.051)));
   EXPECT_EQ(pipeline.report().tools.front().holds_nothing, "") << "open jaws need hold nothing";
   Pipeline pusher(ridge(), solver(), {probe()});
   pusher.step(pressed(-0.01));
@@ -215,9 +203,9 @@ TEST_P(Grasper, CannotHoldWhatALoadMoves) {
     } else {
       patch.displacement = {{0.0, 0.0, -0.0001}};
     }
-    pipeline.step(at(jaws(0.014)));
+    pipeline.step(at(jawsOnRidge(0.014)));
     pipeline.load(load);
-    pipeline.step(at(jaws(0.0084)));
+    pipeline.step(at(jawsOnRidge(0.0084)));
     EXPECT_FALSE(pipeline.report().tools.front().grasps) << by_force;
     EXPECT_THROW(pipeline.grasp(0), InputError) << by_force;
     EXPECT_NE(pipeline.report().tools.front().holds_nothing.find("held by others"),
@@ -230,9 +218,9 @@ TEST_P(Grasper, CannotHoldWhatALoadMoves) {
 TEST_P(Grasper, TissueStaysOutOfJawsThatCloseFastAndOn) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
   const auto tool = [&]() -> const ToolReport& { return pipeline.report().tools.front(); };
-  pipeline.step(at(jaws(0.014)));
+  pipeline.step(at(jawsOnRidge(0.014)));
   for (const double gap : {0.008, 0.007, 0.006}) {
-    pipeline.step(at(jaws(gap)));
+    pipeline.step(at(jawsOnRidge(gap)));
     ASSERT_TRUE(tool().grasps);
     EXPECT_LT(tool().max_penetration, 0.05 * kSpacing) << gap;
   }
@@ -247,7 +235,7 @@ TEST_P(RigidGrasper, HoldsWhatItHasPressedAside) {
   Pipeline pipeline(ridge(), solver(), {rigid});
   close(pipeline);
   ASSERT_TRUE(pipeline.report().tools.front().grasps);
-  walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
+  walk(pipeline, jawsOnRidge(0.008), jawsOnRidge(0.008, 0.003));
   EXPECT_TRUE(pipeline.report().tools.front().grasps);
   EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.05 * kSpacing);
   EXPECT_LT(pipeline.report().tools.front().force_on_tool.z(), -0.15);  // 0.35 of conforming ones
@@ -262,7 +250,7 @@ TEST_P(RigidGrasper, KeepsTheLastGoodShapeWhereNoneFollows) {
   double pressed = 0.0;
   bool lost = false;
   for (int i = 0; i <= 28 && !lost; ++i) {
-    const StepReport& report = pipeline.step(at(jaws(0.014 - 0.0005 * i)));
+    const StepReport& report = pipeline.step(at(jawsOnRidge(0.014 - 0.0005 * i)));
     const ToolReport& tool = report.tools.front();
     EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
     EXPECT_LT(tool.force_on_tool.norm(), 5.0);  // N: E times the area of a jaw
@@ -277,30 +265,30 @@ TEST_P(RigidGrasper, KeepsTheLastGoodShapeWhereNoneFollows) {
 // Its jaws come back around the ridge, not down on it.
 TEST_P(Grasper, ThatAppearsClosedAroundTissueHoldsIt) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
-  pipeline.step(at(jaws(0.008)));
+  pipeline.step(at(jawsOnRidge(0.008)));
   const auto tool = [&]() -> const ToolReport& { return pipeline.report().tools.front(); };
   EXPECT_EQ(pipeline.report().were_inside, std::vector<std::size_t>{0});
   EXPECT_TRUE(tool().grasps);
   Pipeline watched(ridge(), solver(), {gripper()});
   close(watched);
   EXPECT_LT(relativeDifference(pipeline.tissue(), watched.tissue()), 0.15);
-  walk(pipeline, jaws(0.008), jaws(0.008, 0.003));
+  walk(pipeline, jawsOnRidge(0.008), jawsOnRidge(0.008, 0.003));
   EXPECT_LT(tool().force_on_tool.z(), -0.05);
 }
 
 TEST_P(Grasper, ThatCannotCloseOnTissueKeepsTheLastGoodShape) {
   Pipeline pipeline(ridge(), solver(), {gripper()});
-  walk(pipeline, jaws(0.014), jaws(0.006));
-  const std::vector<Vec3> outside = jaws(-0.001);
+  walk(pipeline, jawsOnRidge(0.014), jawsOnRidge(0.006));
+  const std::vector<Vec3> outside = jawsOnRidge(-0.001);
   pipeline.step(at(outside));
   ASSERT_TRUE(pipeline.report().lost);
   EXPECT_EQ(pipeline.report().behind, std::vector<std::size_t>{0});
   EXPECT_TRUE(pipeline.report().tools.front().jaws_overlap);
   EXPECT_EQ(pipeline.tissue().lastReport().inverted_cells, 0);
   const auto shape = pipeline.tissue().state().displacement;
-  pipeline.step(at(jaws(-0.0015)));
+  pipeline.step(at(jawsOnRidge(-0.0015)));
   EXPECT_EQ(pipeline.tissue().state().displacement, shape);
-  walk(pipeline, outside, jaws(0.016), 0.001);
+  walk(pipeline, outside, jawsOnRidge(0.016), 0.001);
   EXPECT_FALSE(pipeline.report().tools.front().jaws_overlap);
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }

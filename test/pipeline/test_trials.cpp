@@ -118,18 +118,8 @@ TEST(Trial, OfABladeLeavesNothing) {
 
 // Jaws that close on a ridge in the trial alone.
 TEST(Trial, OfAGrasperLeavesNothing) {
-  ToolGeometry tool;
-  tool.name = "grasper";
-  tool.role = toolRole("grasper");
-  const Vec3 plate(0.016, 0.004, 0.01);
-  tool.links = {{"left", {boxOf(plate, Vec3(0.0, -0.002, 0.0))}},
-                {"right", {boxOf(plate, Vec3(0.0, 0.002, 0.0))}}};
-  tool.grasp.close_gap = 0.0085;
-  tool.grasp.open_gap = 0.0095;
-  const auto jaws = [](double gap) {
-    return at({Vec3(0.015, 0.5 * (kRidge - gap), kRidgeTop - 0.005),
-               Vec3(0.015, 0.5 * (kRidge + gap), kRidgeTop - 0.005)});
-  };
+  const ToolGeometry tool = ridgeGripper("grasper", 0.0085, 0.0095);
+  const auto jaws = [](double gap) { return at(jawsOnRidge(gap)); };
   Pipeline plain(ridge(), {}, {tool}), tried(ridge(), {}, {tool});
   expectNothingLeft(plain, tried, {jaws(0.014), jaws(0.0098), jaws(0.008), jaws(0.016)},
                     {jaws(0.0075), jaws(0.0075), jaws(0.011)});

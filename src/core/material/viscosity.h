@@ -3,9 +3,11 @@
 //
 // Over the step from displacements u_0, with F_0 the deformation gradient there, strain grows by
 // the symmetric part D of (F - F_0) F_0^-1, and what is dissipated, V [mu |D|^2 + lambda / 2 tr
-// D^2] times the step's factor, is never negative: where the tissue would buckle, too. A turn alone
-// makes no stress. (The rate of the whole elastic force would drive what buckles.) Bending and
-// twisting of a cell have the viscosity that they have at rest.
+// D^2] times the step's factor, is never negative: where the tissue would buckle, too. (The rate of
+// the whole elastic force would drive what buckles.) D is linear in the way of the step: a turn by
+// x counts as a contraction by x^2 / 2, so that steps are to turn by little
+// (TimeIntegrator::turnOf). Bending and twisting of a cell have the viscosity that they have at
+// rest.
 #pragma once
 
 #include <Eigen/Core>

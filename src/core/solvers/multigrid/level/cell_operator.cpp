@@ -172,9 +172,9 @@ void CellOperator<Real>::share(Workers& workers) {
 template <typename Real>
 void CellOperator<Real>::findViscousForces(const Loads& loads) {
   const Real elastic = std::exchange(elastic_, Real(0));
-  const Numbers<Real> inertia_kept = std::exchange(inertia, {});
+  Numbers<Real> inertia_kept = std::exchange(inertia, {});
   findForces(loads, Find::kForces, blocks_);
-  inertia = inertia_kept;
+  inertia = std::move(inertia_kept);
   elastic_ = elastic;
 }
 

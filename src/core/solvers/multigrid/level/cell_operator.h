@@ -23,6 +23,12 @@ namespace robot_tissue {
 template <typename Real>
 using Field = std::array<Numbers<Real>, 3>;
 
+template <typename Real>
+Vec3 vectorAt(const Field<Real>& field, int node) {
+  return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
+          static_cast<double>(field[2][at(node)])};
+}
+
 // Greatest absolute value of any component of the first `count` nodes.
 template <typename Real>
 double greatestIn(const Field<Real>& field, int count) {

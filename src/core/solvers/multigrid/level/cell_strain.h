@@ -5,48 +5,37 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "simd/numbers.h"
-#include "solvers/multigrid/level/cell_kernel.h"
+#include "solvers/multigrid/level/cell_operator.h"
 
 namespace robot_tissue {
 
-template <typename Real>
-Vec3 motionOf(const std::array<Numbers<Real>, 3>& displacement, int node) {
-  return {static_cast<double>(displacement[0][at(node)]),
-          static_cast<double>(displacement[1][at(node)]),
-          static_cast<double>(displacement[2][at(node)])};
-}
-
 // m_s = M_s / 4 of cell_kernel.h.
 template <typename Real>
-std::array<Vec3, kCorners> modesOf(const std::array<Numbers<Real>, 3>& displacement,
-                                   const std::array<int, kCorners>& nodes) {
-  std::array<Vec3, kCorners> modes;
-  for (int mode = 0; mode < kCorners; ++mode) {
-    modes[at(mode)].setZero();
-    for (int corner = 0; corner < kCorners; ++corner) {
-      const bool odd = __builtin_popcount(static_cast<unsigned>(mode & corner)) % 2 != 0;
-      modes[at(mode)] += (odd ? -0.25 : 0.25) * motionOf(displacement, nodes[at(corner)]);
-    }
+Vec3 modeOf(const Field<Real>& displacement, const std::array<int, kCorners>& nodes, int mode) {
+  Vec3 sum = Vec3::Zero();
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const bool odd = __builtin_popcount(static_cast<unsigned>(mode & corner)) % 2 != 0;
+    sum += (odd ? -0.25 : 0.25) * vectorAt(displacement, nodes[at(corner)]);
   }
-  return modes;
+  return sum;
 }
 
 // Of a full cell.
 template <typename Real>
-Eigen::Matrix3d meanStrain(const std::array<Numbers<Real>, 3>& displacement,
+Eigen::Matrix3d meanStrain(const Field<Real>& displacement,
                            const std::array<int, kCorners>& nodes) {
-  const std::array<Vec3, kCorners> modes = modesOf(displacement, nodes);
   Eigen::Matrix3d strain = Eigen::Matrix3d::Identity();
-  for (int axis = 0; axis < 3; ++axis) strain.col(axis) -= modes[at(1 << axis)];
+  for (int axis = 0; axis < 3; ++axis) strain.col(axis) -= modeOf(displacement, nodes, 1 << axis);
   return strain;
 }
 
 // Of one that is filled in part, over its fill (FilledBlock::shiftModes, reachOut).
 template <typename Real>
-Eigen::Matrix3d meanStrain(const std::array<Numbers<Real>, 3>& displacement,
-                           const FilledCell<Real>& cell) {
-  const std::array<Vec3, kCorners> modes = modesOf(displacement, cell.nodes);
+Eigen::Matrix3d meanStrain(const Field<Real>& displacement, const FilledCell<Real>& cell) {
+  std::array<Vec3, kCorners> modes;
+  for (int mode = 1; mode < kCorners; ++mode) {
+    modes[at(mode)] = modeOf(displacement, cell.nodes, mode);
+  }
   Eigen::Matrix3d strain = Eigen::Matrix3d::Identity();
   const auto centroid = [&](int axis) { return static_cast<double>(cell.centroid[at(axis)]); };
   for (int a0 = 0; a0 < 3; ++a0) {
@@ -65,7 +54,7 @@ Eigen::Matrix3d meanStrain(const std::array<Numbers<Real>, 3>& displacement,
             0.5 * (s_b * centroid(b) + s_c * centroid(c)) + s_b * s_c * pairs + 0.25;
         const int beyond = cell.reach.nodes[at(kFaceNodes * side + r)];
         const int before = cell.nodes[at(faceCorner(side, r))];
-        second += share * (motionOf(displacement, beyond) - motionOf(displacement, before));
+        second += share * (vectorAt(displacement, beyond) - vectorAt(displacement, before));
       }
       shift += static_cast<double>(cell.reach.share[at(side)]) * second;
     }

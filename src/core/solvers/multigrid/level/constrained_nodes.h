@@ -51,12 +51,6 @@ struct LevelGroup {
 using GroupVector = Eigen::Matrix<double, 6, 1>;  // shift, turn; or force, moment
 
 template <typename Real>
-Vec3 vectorAt(const Field<Real>& field, int node) {
-  return {static_cast<double>(field[0][at(node)]), static_cast<double>(field[1][at(node)]),
-          static_cast<double>(field[2][at(node)])};
-}
-
-template <typename Real>
 Eigen::Matrix3d matrixAt(const SymmetricField<Real>& field, int node) {
   const auto number = [&](std::size_t part) { return static_cast<double>(field[part][at(node)]); };
   Eigen::Matrix3d matrix;
