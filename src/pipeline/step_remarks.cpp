@@ -73,50 +73,49 @@ void addOfBurrs(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
   }
 }
 
+// What a list of tools did, where it is not empty.
+void addOfTools(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
+  const StepReport& report = pipeline.report();
+  const struct {
+    const std::vector<std::size_t>& tools;
+    Kind kind;
+    const char* did;
+  } all[] = {
+      {report.were_inside, Kind::kInside, "appeared inside the tissue: walked in from outside"},
+      {report.hooked, Kind::kHooked, "dragged tissue away that was hooked on it: let go of it"},
+      {report.jammed, Kind::kJammed,
+       "let go where no shape followed, as between tools that meet: walked in anew from outside"},
+      {report.torn_off, Kind::kTornOff,
+       "lost the tissue: pulled harder than it holds (grasp.max_force)"},
+      {report.torn_out, Kind::kTornOff,
+       "tore out the tissue that it holds: pulled harder than that bears (grasp.max_force)"},
+      {report.jumped, Kind::kTooFast, "jumped, farther than is followed: the tools come in anew"},
+  };
+  for (const auto& some : all) {
+    if (some.tools.empty()) continue;
+    remarks.push_back({some.kind, namesOf(some.tools, pipeline.tools()) + " " + some.did});
+  }
+}
+
+void addOfFollowing(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
+  const StepReport& report = pipeline.report();
+  const std::string behind = namesOf(report.behind, pipeline.tools());
+  if (report.too_fast && (report.jumped.empty() || !report.behind.empty())) {
+    remarks.push_back(
+        {Kind::kTooFast, behind + " moved further than could be followed in time: catching up"});
+  }
+  if (report.lost) {
+    remarks.push_back({Kind::kLost, "no shape follows " + behind +
+                                        ", as between tools that meet: the last good one stays"});
+  }
+}
+
 }  // namespace
 
 std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
-  const StepReport& report = pipeline.report();
   std::vector<StepRemark> remarks;
-  const auto names = [&](const auto& numbers) { return namesOf(numbers, pipeline.tools()); };
-  if (!report.were_inside.empty()) {
-    remarks.push_back({Kind::kInside, names(report.were_inside) +
-                                          " appeared inside the tissue: walked in from outside"});
-  }
-  if (!report.hooked.empty()) {
-    remarks.push_back({Kind::kHooked, names(report.hooked) +
-                                          " dragged tissue away that was hooked on it: let go of "
-                                          "it"});
-  }
-  if (!report.jammed.empty()) {
-    remarks.push_back({Kind::kJammed, names(report.jammed) +
-                                          " let go where no shape followed, as between tools "
-                                          "that meet: walked in anew from outside"});
-  }
-  if (!report.torn_off.empty()) {
-    remarks.push_back({Kind::kTornOff, names(report.torn_off) +
-                                           " lost the tissue: pulled harder than it holds "
-                                           "(grasp.max_force)"});
-  }
-  if (!report.torn_out.empty()) {
-    remarks.push_back({Kind::kTornOff, names(report.torn_out) +
-                                           " tore out the tissue that it holds: pulled harder than "
-                                           "that bears (grasp.max_force)"});
-  }
-  if (!report.jumped.empty()) {
-    remarks.push_back(
-        {Kind::kTooFast,
-         names(report.jumped) + " jumped, farther than is followed: the tools come in anew"});
-  }
-  if (report.too_fast && (report.jumped.empty() || !report.behind.empty())) {
-    remarks.push_back({Kind::kTooFast, names(report.behind) +
-                                           " moved further than could be followed in time: "
-                                           "catching up"});
-  }
-  if (report.lost) {
-    remarks.push_back({Kind::kLost, "no shape follows " + names(report.behind) +
-                                        ", as between tools that meet: the last good one stays"});
-  }
+  addOfTools(pipeline, remarks);
+  addOfFollowing(pipeline, remarks);
   const std::string of_law = remarkOnLaw(pipeline.tissue());
   if (!of_law.empty()) remarks.push_back({Kind::kBeyondLaw, of_law});
   const std::string of_adrift = remarkOnAdrift(pipeline.tissue());

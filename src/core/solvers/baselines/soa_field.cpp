@@ -220,24 +220,8 @@ void SoaField::takeRims(const ConstrainedState& shape) {
 // by one: cells filled in part, parts of cut ones, and nodes in contact or in cells that the
 // kernels do not do.
 void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patch_hold) {
-  std::vector<std::uint8_t> has_cell(at(size_), 0), has_node(at(size_), 0);
-  std::vector<std::uint8_t> odd(slots_.size(), 0);
-  std::fill(scratch_.begin(), scratch_.end(), Vec3::Zero());
-  if (inertia_ != nullptr) scratch_ = inertia_->force;
-  lane_masses_.assign(inertia_ == nullptr ? 0 : slots_.size(), 0.0);
-  for (const int index : lane_cells_) {
-    const Cell& cell = cells_->all()[at(index)];
-    const int slot = slotOf(cell.nodes[0]);
-    const Moduli moduli = model_.cellModuli(cell);
-    shear_[slot] = static_cast<float>(moduli.shear / rest_modulus_);
-    bulk_[slot] = static_cast<float>(moduli.bulk / rest_modulus_);
-    if (stiffens_) stiffening_[slot] = static_cast<float>(moduli.stiffening);
-    has_cell[at(slot)] = 1;
-    const Vec3 weight = model_.cornerWeight(cell, 0);  // alike at all corners
-    for (const int node : cell.nodes) scratch_[at(node)] += weight;
-    if (inertia_ == nullptr) continue;
-    for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell, 0);
-  }
+  const std::vector<std::uint8_t> has_cell = takeLaneCells();
+  std::vector<std::uint8_t> has_node(at(size_), 0), odd(slots_.size(), 0);
   for (const int index : odd_cells_) {
     for (const int node : reachedNodes(cells_->all()[at(index)])) {
       if (node >= 0) odd[at(node)] = 1;
@@ -245,12 +229,11 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
   }
   for (const int node : patch_hold.touched()) odd[at(node)] = 1;
   odd_nodes_.clear();
-  weight_ = scratch_;
   for (std::size_t node = 0; node < slots_.size(); ++node) {
     const int slot = slots_[node];
     const bool lane = odd[node] == 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double weight = scratch_[node][static_cast<Eigen::Index>(axis)];
+      const double weight = weight_[node][static_cast<Eigen::Index>(axis)];
       load_[axis][slot] = static_cast<float>(weight / force_unit_);
       lane_free_[axis][slot] = lane ? free_[axis][slot] : 0.0F;
     }
@@ -264,7 +247,32 @@ void SoaField::sortOut(const ConstrainedState& shape, const DofConstraints& patc
   }
   takeRims(shape);
   watch(shape, patch_hold);
-  if (inertia_ == nullptr) return;
+  if (inertia_ != nullptr) takeFreeMotion();
+}
+
+// Moduli, weights and masses of the cells that the vector kernels do. Their slots are 1.
+std::vector<std::uint8_t> SoaField::takeLaneCells() {
+  std::vector<std::uint8_t> has_cell(at(size_), 0);
+  weight_.assign(slots_.size(), Vec3::Zero());
+  if (inertia_ != nullptr) weight_ = inertia_->force;
+  lane_masses_.assign(inertia_ == nullptr ? 0 : slots_.size(), 0.0);
+  for (const int index : lane_cells_) {
+    const Cell& cell = cells_->all()[at(index)];
+    const int slot = slotOf(cell.nodes[0]);
+    const Moduli moduli = model_.cellModuli(cell);
+    shear_[slot] = static_cast<float>(moduli.shear / rest_modulus_);
+    bulk_[slot] = static_cast<float>(moduli.bulk / rest_modulus_);
+    if (stiffens_) stiffening_[slot] = static_cast<float>(moduli.stiffening);
+    has_cell[at(slot)] = 1;
+    const Vec3 weight = model_.cornerWeight(cell, 0);  // alike at all corners
+    for (const int node : cell.nodes) weight_[at(node)] += weight;
+    if (inertia_ == nullptr) continue;
+    for (const int node : cell.nodes) lane_masses_[at(node)] += model_.cornerMass(cell, 0);
+  }
+  return has_cell;
+}
+
+void SoaField::takeFreeMotion() {
   for (std::size_t node = 0; node < slots_.size(); ++node) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double moved = inertia_->free_motion[node][static_cast<Eigen::Index>(axis)];

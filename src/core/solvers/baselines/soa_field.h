@@ -85,6 +85,8 @@ class SoaField {
   void findCompliance(const ConstrainedState& shape);
   void takeInertia();
   void sortOut(const ConstrainedState& shape, const DofConstraints& hold);
+  std::vector<std::uint8_t> takeLaneCells();
+  void takeFreeMotion();
   void watch(const ConstrainedState& shape, const DofConstraints& hold);
   void give(const std::vector<int>& nodes, LatticeState& state) const;
   SoaArrays lanes(const Arrays& free) const;
