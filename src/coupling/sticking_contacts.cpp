@@ -21,8 +21,7 @@ void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     for (auto attachment = attachments_[tool].begin(); attachment != attachments_[tool].end();) {
       const int node = attachment->first;
       const Pose& tissue_T_link = pose.links[at(attachment->second.link)];
-      const Vec3 moved =
-          tissue_T_link * attachment->second.point - restPosition(*lattice_, *cells_, node);
+      const Vec3 moved = placeOf(attachment->second, pose) - restPosition(*lattice_, *cells_, node);
       const Vec3 way_out = tissue_T_link.linear() * attachment->second.pushed;
       const bool leaves = !attachment->second.grasped && letsGo(node, moved, way_out, tissue);
       if (taken_[at(node)] != 0 || leaves) {
@@ -34,6 +33,14 @@ void StickingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
       }
     }
   }
+}
+
+// In the tissue's frame.
+Vec3 StickingContacts::placeOf(const Attachment& attachment, const RobotPose& pose) {
+  const Vec3 on_link = pose.links[at(attachment.link)] * attachment.point;
+  if (attachment.share_of_other == 0.0) return on_link;
+  const Vec3 on_other = pose.links[at(attachment.other_link)] * attachment.point_on_other;
+  return on_link + attachment.share_of_other * (on_other - on_link);
 }
 
 void StickingContacts::takeCells(const Tissue& tissue) {
@@ -202,17 +209,20 @@ std::vector<int> StickingContacts::nodes(int tool) const {
   return nodes;
 }
 
-void StickingContacts::hold(int tool, int link, const Pose& tissue_T_link,
-                            const std::vector<int>& nodes, const Tissue& tissue) {
-  const Pose link_T_tissue = tissue_T_link.inverse();
+void StickingContacts::hold(int tool, const std::vector<Grip>& grips, const RobotPose& pose,
+                            const Tissue& tissue) {
   const std::vector<std::uint8_t> taken = takenNodes(tissue);
-  for (const int node : nodes) {
-    if (taken[at(node)] != 0) continue;
-    Attachment& attachment = attachments_[at(tool)][node];
-    attachment.link = link;
+  for (const Grip& grip : grips) {
+    if (taken[at(grip.node)] != 0) continue;
+    const Vec3 position = tissue.nodePosition(grip.node);
+    Attachment& attachment = attachments_[at(tool)][grip.node];
+    attachment.link = grip.link;
     attachment.grasped = true;
-    attachment.point = link_T_tissue * tissue.nodePosition(node);
-    places_[node] = tissue.state().displacement[at(node)];
+    attachment.other_link = grip.other_link;
+    attachment.share_of_other = grip.share_of_other;
+    attachment.point = pose.links[at(grip.link)].inverse() * position;
+    attachment.point_on_other = pose.links[at(grip.other_link)].inverse() * position;
+    places_[grip.node] = tissue.state().displacement[at(grip.node)];
   }
 }
 

@@ -145,8 +145,8 @@ void Grasping::watchJaws(std::size_t tool) {
   }
 }
 
-// What is between the jaws sticks to the nearer one, in place of what they have pushed. Returns how
-// many nodes.
+// What is between the jaws sticks to the nearer one, and by its place between them to the other, in
+// place of what they have pushed. Returns how many nodes.
 std::size_t Grasping::hold(std::size_t tool) {
   const std::size_t jaw = world_.tools.firstJaw(tool);
   const auto pinch = narrowestPinch(tool, world_.pose);
@@ -166,11 +166,28 @@ std::size_t Grasping::hold(std::size_t tool) {
                       world_.pose.links[jaw + 1].inverse() * middle};
   world_.sticking.letGo(static_cast<int>(tool));
   world_.sliding.clear(static_cast<int>(tool));
-  for (const std::size_t link : {jaw, jaw + 1}) {
-    world_.sticking.hold(static_cast<int>(tool), static_cast<int>(link), world_.pose.links[link],
-                         link == jaw ? of_first : of_second, world_.tissue);
-  }
+  std::vector<StickingContacts::Grip> grips = gripsOf(of_first, jaw, jaw + 1);
+  for (const auto& grip : gripsOf(of_second, jaw + 1, jaw)) grips.push_back(grip);
+  world_.sticking.hold(static_cast<int>(tool), grips, world_.pose, world_.tissue);
   return count;
+}
+
+// Were all of a node's place the nearer jaw's, jaws that close on would squeeze the middle alone.
+std::vector<StickingContacts::Grip> Grasping::gripsOf(const std::vector<int>& nodes,
+                                                      std::size_t jaw, std::size_t other) const {
+  std::vector<StickingContacts::Grip> grips;
+  for (const int node : nodes) {
+    StickingContacts::Grip grip{node, static_cast<int>(jaw), static_cast<int>(other), 0.0};
+    const Vec3 position = world_.tissue.nodePosition(node);
+    const auto here = world_.finder.wayOut(jaw, world_.pose.links[jaw], position, kAnywhere);
+    const auto there = world_.finder.wayOut(other, world_.pose.links[other], position, kAnywhere);
+    if (here && there && here->normal.dot(there->normal) <= tuning::kOpposed) {
+      const double to_here = std::max(0.0, -here->depth_m), to_there = -there->depth_m;
+      if (to_there > 0.0) grip.share_of_other = to_here / (to_here + to_there);
+    }
+    grips.push_back(grip);
+  }
+  return grips;
 }
 
 // Nodes that the ways out of the two jaws lead to from opposite sides, with no more tissue on

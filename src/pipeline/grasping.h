@@ -71,6 +71,8 @@ class Grasping {
   void watchJaws(std::size_t tool);
   std::size_t hold(std::size_t tool);
   std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
+  std::vector<StickingContacts::Grip> gripsOf(const std::vector<int>& nodes, std::size_t jaw,
+                                              std::size_t other) const;
   bool pushesWith(std::size_t link) const;
   std::vector<std::size_t> overpulled() const;
   bool tearOut(std::size_t tool);

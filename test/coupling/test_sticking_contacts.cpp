@@ -103,7 +103,11 @@ class StickingContactsTest : public ::testing::Test {
   SolveReport follow() { return tissue_.follow(loadingPatches(), patches_.left()); }
 
   // The jaw, tool and link 1, holds nodes from where they are.
-  void grasp(const std::vector<int>& nodes) { patches_.hold(1, 1, pose_.links[1], nodes, tissue_); }
+  void grasp(const std::vector<int>& nodes) {
+    std::vector<StickingContacts::Grip> grips;
+    for (const int node : nodes) grips.push_back({node, 1, 1, 0.0});
+    patches_.hold(1, grips, pose_, tissue_);
+  }
   bool areEmpty() const { return !patches_.holds(0) && !patches_.holds(1); }
   // Sum over its nodes (m).
   Vec3 wayOutOf(std::size_t tool) const {
@@ -392,8 +396,7 @@ TEST_F(StickingContactsTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
 TEST_F(StickingContactsTest, NodesOfOneToolRideOnDifferentLinks) {
   StickingContacts gripper(tissue_.lattice(), {"gripper"});
   gripper.ride(pose_, tissue_);
-  gripper.hold(0, 0, pose_.links[0], {node(2, 3, 3)}, tissue_);
-  gripper.hold(0, 1, pose_.links[1], {node(4, 3, 3)}, tissue_);
+  gripper.hold(0, {{node(2, 3, 3), 0, 1, 0.0}, {node(4, 3, 3), 1, 0, 0.0}}, pose_, tissue_);
   pose_.links[0].translation() += Vec3(1e-3, 0.0, 0.0);
   pose_.links[1].translation() += Vec3(-1e-3, 0.0, 0.0);
   gripper.ride(pose_, tissue_);

@@ -4,10 +4,11 @@
 // Rigid: a node that a contact pushed out of the tool rides on it from then on, as part of one hard
 // piece, and so sticks sideways. It leaves the patch when the tool has lifted it above the
 // surface's rest place, when it is on the near side of its rest place and the tissue pulls it away
-// from the tool, or when nothing around it touches the tool. Grasped: nodes ride on a jaw until
-// they are let go. In: contacts of tools with rigid patches (tissue frame, normals from the tool
-// into the tissue), poses of the links. Out: one patch a tool that has nodes, displacements from
-// rest (m). Fixed nodes and the nodes of named loads are never taken.
+// from the tool, or when nothing around it touches the tool. Grasped: nodes ride between two jaws
+// until they are let go, so that all that is between them is squeezed alike as they close. In:
+// contacts of tools with rigid patches (tissue frame, normals from the tool into the tissue), poses
+// of the links. Out: one patch a tool that has nodes, displacements from rest (m). Fixed nodes and
+// the nodes of named loads are never taken.
 #pragma once
 
 #include <cstdint>
@@ -37,9 +38,14 @@ class StickingContacts {
   void keepTouching(const ContactSet& contacts, const Tissue& tissue);
   // Moves the nodes under the contacts until each contact's depth is gone.
   void pushOut(const ContactSet& contacts, const Tissue& tissue, const RobotPose& pose);
-  // Grasped: the nodes ride on the link from where they are.
-  void hold(int tool, int link, const Pose& tissue_T_link, const std::vector<int>& nodes,
-            const Tissue& tissue);
+  // A node that goes with the one link and, by a share (1), with the other.
+  struct Grip {
+    int node = 0;
+    int link = 0, other_link = 0;  // indices into RobotPose::links
+    double share_of_other = 0.0;
+  };
+  // Grasped: the nodes ride on the links from where they are.
+  void hold(int tool, const std::vector<Grip>& grips, const RobotPose& pose, const Tissue& tissue);
   void letGo(int tool);
   bool holds(int tool) const;
 
@@ -47,8 +53,11 @@ class StickingContacts {
   struct Attachment {
     int link = 0;  // index into RobotPose::links
     bool grasped = false;
+    int other_link = 0;  // likewise; of a grasped node (Grip)
+    double share_of_other = 0.0;
     Vec3 point = Vec3::Zero();
-    Vec3 pushed = Vec3::Zero();  // sum of its motions out of the tool (m): its way out
+    Vec3 point_on_other = Vec3::Zero();  // in the other link's frame
+    Vec3 pushed = Vec3::Zero();          // sum of its motions out of the tool (m): its way out
   };
   using Attachments =
       std::vector<std::map<int, Attachment>>;  // per tool: node -> seat; ordered, so repeatable
@@ -88,6 +97,7 @@ class StickingContacts {
     double multiplier = 0.0;  // m; > 0: the contact pushes
   };
 
+  static Vec3 placeOf(const Attachment& attachment, const RobotPose& pose);
   std::vector<Carrier> supportOf(const Contact& contact, const TissueSurface& surface) const;
   void scale(std::vector<Push>& pushes) const;
   static double deepen(const std::vector<Contact>& contacts, const std::map<int, Vec3>& motion,
