@@ -1,6 +1,8 @@
 // Tools that a force drives, and graspers.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_tool_actions {
@@ -223,6 +225,29 @@ TEST_P(Grasper, TissueStaysOutOfJawsThatCloseFastAndOn) {
     pipeline.step(at(jawsOnRidge(gap)));
     ASSERT_TRUE(tool().grasps);
     EXPECT_LT(tool().max_penetration, 0.05 * kSpacing) << gap;
+  }
+}
+
+// What they hold is squeezed on, and stretched again, all of it alike.
+TEST_P(Grasper, JawsThatCloseOnSqueezeAllThatTheyHoldAlike) {
+  Pipeline pipeline(ridge(), solver(), {gripper()});
+  const auto layers = [&] {
+    const Tissue& tissue = pipeline.tissue();
+    std::array<double, 2> thickness;
+    for (int j = 0; j < 2; ++j) {
+      const int here = tissue.lattice().node(3, j, 5), next = tissue.lattice().node(3, j + 1, 5);
+      thickness[at(j)] = (tissue.nodePosition(next) - tissue.nodePosition(here)).norm();
+    }
+    return thickness;
+  };
+  close(pipeline);
+  ASSERT_TRUE(pipeline.report().tools.front().grasps);
+  const std::array<double, 2> before = layers();
+  walk(pipeline, jawsOnRidge(0.008), jawsOnRidge(0.005));
+  ASSERT_TRUE(pipeline.report().tools.front().grasps);
+  const std::array<double, 2> after = layers();
+  for (std::size_t layer = 0; layer < before.size(); ++layer) {
+    EXPECT_NEAR(after[layer] / before[layer], 5.0 / 8.0, 0.01) << layer;
   }
 }
 
