@@ -8,8 +8,8 @@
 
 namespace robot_tissue {
 
-// Counts the work of load steps beyond what is usual: little where it led to balance, but for time
-// steps, and all the work where they do not converge or no shape follows. A slip or two are
+// Counts the work of load steps beyond what is usual: little where it led to balance, and all the
+// work where they do not converge or no shape follows. A slip or two are
 // forgiven by and by; tissue that is crushed between tools, or tears beside one, asks for hundreds
 // of iterations in every other load step, for as long as it goes on.
 //

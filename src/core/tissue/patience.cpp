@@ -68,7 +68,7 @@ void Patience::endLoadStep() {
   if (is_for_scene_ && !settled) {
     spend(taken_);
   } else if (is_for_scene_ && taken_ > usual) {
-    spend((in_time_ ? 1.0 : tuning::kSpentBySettled) * (taken_ - usual));
+    spend(tuning::kSpentBySettled * (taken_ - usual));
   } else if (settled) {
     const double forgiven = tuning::kForgiven * usual;
     spent_ = std::max(spent_ - (in_time_ ? forgiven / tuning::kTimesInTimeStep : forgiven), 0.0);

@@ -74,10 +74,10 @@ constexpr double kUsualWork = 1.5;
 // about all of it.
 constexpr double kMostSpent = 1500.0 / 30.0;
 constexpr double kForgiven = 0.5;
-// What a load step that ends in balance spends of the work beyond the usual (1); a time step all of
-// it. More: drags of an edge, off which tissue slips once a spacing, are given up on their way;
-// less: jams whose load steps end well are followed for longer. Chosen: a box's edge dragged 8 mm
-// deep takes 6,000 iterations over 30 mm.
+// What a load step that ends in balance spends of the work beyond the usual (1). More: drags of an
+// edge, off which tissue slips once a spacing, are given up on their way, and, in time, tissue that
+// springs back between jaws; less: jams whose load steps end well are followed for longer. Chosen:
+// a box's edge dragged 8 mm deep takes 6,000 iterations over 30 mm.
 constexpr double kSpentBySettled = 0.1;
 // Nodes (1) beyond which kMostSpent, and what load steps have once it is over, is less in
 // proportion, as iterations are longer. Less: large scenes are given up earlier; more: their jams

@@ -1,6 +1,7 @@
 #include "solvers/multigrid/cycle/fas_cg_iteration.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "solvers/multigrid/cycle/trial_at_rest.h"
 #include "solvers/multigrid/cycle/tuning.h"
@@ -115,11 +116,19 @@ bool FasCgIteration<Real>::wentTooFar() const {
   return limits_.areExceeded([this](int node) { return shape_.levels().displacements().of(node); });
 }
 
+// What is left of a time step, whose way may be small beside the displacement, is rounding: in
+// single precision further cycles are in vain.
+template <typename Real>
+bool FasCgIteration<Real>::isRounded(const SolveContext& solve) const {
+  const double digit = std::numeric_limits<Real>::epsilon() * shape_.displacementNorm();
+  return solve.in_time && estimator_.left().now <= tuning::kRoundedDigits * digit;
+}
+
 // What went beyond its limit is cut back: the rest of the solve would be in vain.
 template <typename Real>
 bool FasCgIteration<Real>::isHopeless(const SolveContext& solve) const {
   const int cycles = solve.cycles;
-  if (cycles > 0 && wentTooFar()) return true;
+  if (cycles > 0 && (wentTooFar() || isRounded(solve))) return true;
   const bool whole = shape_.levels().isWhole();
   if (!whole && progress_.isStuck(cycles, tuning::kPatienceInPart)) return true;
   const int most = solve.in_contact ? options_.max_cycles_in_contact : options_.max_cycles;

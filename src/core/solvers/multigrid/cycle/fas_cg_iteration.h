@@ -54,6 +54,7 @@ class FasCgIteration {
   bool isBalanced(const SolveContext& solve) const;
   bool isEasy(const SolveContext& solve) const;
   bool isQuiet(double rough_before) const;
+  bool isRounded(const SolveContext& solve) const;
   bool isHopeless(const SolveContext& solve) const;
   void makeCycle(const SolveContext& solve);
   void finish(const SolveContext& solve);

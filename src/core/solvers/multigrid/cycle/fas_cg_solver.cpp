@@ -145,12 +145,14 @@ SolveReport FasCgSolver<Real>::run(ConstrainedState& shape, const DofConstraints
 }
 
 // Where tissue is about to buckle, a motion has hardly any stiffness: forces are balanced up to
-// rounding, and that, over the stiffness, is more than the tolerance. In contact a solve ends
+// rounding, and that, over the stiffness, is more than the tolerance; so is it in short time steps
+// of viscous tissue, whose ways are small beside their displacements. In contact a solve ends
 // unconverged for other reasons, too, and its load step is tried in shorter ones; so does one that
 // had few cycles, of which there would be no more in double.
 template <typename Real>
 bool FasCgSolver<Real>::isForDouble(const SolveContext& solve, SolveStatus status) const {
-  return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged && !solve.in_contact &&
+  return std::is_same_v<Real, float> && status == SolveStatus::kUnconverged &&
+         (!solve.in_contact || solve.in_time) &&
          (solve.cycles < solve.budget.mostCycles() || solve.cycles > 2 * tuning::kUsualCycles) &&
          forces_.residual(solve.shape) <= tuning::kRoundedForces;
 }
