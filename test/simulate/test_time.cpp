@@ -121,6 +121,23 @@ TEST(TimeSteps, AFloatingBlockThatWasHitKeepsItsMomentum) {
   }
 }
 
+// Its steps are short, and their ways smaller than what single precision tells apart.
+TEST(TimeSteps, ViscousTissueThatHardlyGivesWayIsPressedToATightTolerance) {
+  const RunResult result =
+      run("tissue:\n"
+          "  shape: {type: box, min: [0, 0, 0], max: [0.01, 0.01, 0.01]}\n"
+          "  spacing: 0.0025\n"
+          "  material: {young_modulus: 20000.0, poisson_ratio: 0.49}\n"
+          "  fixed: [{min: [-1, -1, -1.0e-6], max: [1, 1, 1.0e-6]}]\n"
+          "  time: {damping_time: 0.02}\n"
+          "solver: {tolerance: 0.003}\n"
+          "tools: [{name: probe, friction: 0.3, shapes: [{type: sphere, radius: 0.0095}]}]\n"
+          "steps:\n" +
+          inTime("probe", Vec3(0.0056, 0.0068, 0.022), Vec3(0.0056, 0.0068, 0.0166), 0.5, 1));
+  EXPECT_TRUE(result.allOk());
+  EXPECT_GT(result.tools.back().force.z(), 0.1);
+}
+
 // What a cut leaves without a hold falls on a table and comes to rest there.
 TEST(TimeSteps, APieceLandsOnASupportAndComesToRest) {
   const std::string scene =
