@@ -200,6 +200,10 @@ double ContactFinder::reach(std::size_t link) const { return impl_->links[link].
 
 Vec3 ContactFinder::center(std::size_t link) const { return impl_->links[link].center(); }
 
+std::vector<Vec3> ContactFinder::innerPoints(std::size_t link) const {
+  return impl_->links[link].innerPoints();
+}
+
 double ContactFinder::thickness(std::size_t link) const { return impl_->links[link].thickness(); }
 
 std::vector<Ball> ContactFinder::balls(std::size_t link) const {
@@ -345,6 +349,13 @@ std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& 
     depths[i] = impl_->penetration(here, links[i], pose.links[links[i]], surface, vertices, bulge);
   }
   return depths;
+}
+
+bool ContactFinder::isInside(const Vec3& point, const TissueSurface& surface,
+                             const std::vector<Vec3>& vertices) const {
+  requireVertices(surface, vertices);
+  return impl_->boundsOf(surface, vertices).contains(point) &&
+         impl_->surface_tree.of(surface, vertices).isInside(point);
 }
 
 bool ContactFinder::hasFlatFaces(std::size_t link) const {

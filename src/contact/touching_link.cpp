@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inner_points.h"
 #include "link_penetration.h"
 #include "robot_tissue/core/same_bits.h"
 #include "triangle_minimum.h"
@@ -19,6 +20,7 @@ TouchingLink::TouchingLink(int tool_index, const std::string& tool_name,
     shapes.emplace_back(geometry.shapes[i], owner + ", shape " + std::to_string(i + 1), warnings);
     gap_shapes.emplace_back(shapes.back());
     surface_points.push_back(surfacePoints(shapes.back()));
+    inner_points.push_back(robot_tissue::innerPoints(shapes.back()));
   }
   in_use_ = shapes.size();
   face_pairs.resize(shapes.size());
@@ -91,6 +93,14 @@ Vec3 TouchingLink::center() const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < in_use_; ++i) sum += shapes[i].poseInLink().translation();
   return in_use_ == 0 ? sum : Vec3(sum / static_cast<double>(in_use_));
+}
+
+std::vector<Vec3> TouchingLink::innerPoints() const {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    for (const Vec3& point : inner_points[i]) points.push_back(shapes[i].poseInLink() * point);
+  }
+  return points;
 }
 
 double TouchingLink::thickness() const {

@@ -29,6 +29,7 @@ class TouchingLink {
   // As ContactFinder has them.
   double reach() const;
   Vec3 center() const;
+  std::vector<Vec3> innerPoints() const;
   double thickness() const;
   std::vector<Ball> balls() const;
   // As ContactFinder::wayOut. Of the same point again, as where a way out along a direction begins,
@@ -42,6 +43,7 @@ class TouchingLink {
   std::vector<CollisionShape> shapes;
   std::vector<GapShape> gap_shapes;               // as shapes
   std::vector<std::vector<Vec3>> surface_points;  // as shapes; shape's frame (m)
+  std::vector<std::vector<Vec3>> inner_points;    // likewise
   std::vector<KeptFacePairs> face_pairs;          // as shapes; of meshes
   std::vector<KnownMinima> known_minima;          // as shapes; of meshes
   std::vector<ClearPoints> clear_points;          // as shapes

@@ -96,6 +96,16 @@ constexpr double kLooksAhead = 8.0;
 // Of the thickness (1): a move that brings less is the last. Less: more moves. Chosen.
 constexpr double kLeastGain = 1e-5;
 
+// Where a shape is, if no point of its surface tells.
+// Faces of a mesh behind which the largest ball is sought, the largest faces first; one at least of
+// each of its parts. More: points deeper inside, at loading only. Chosen.
+constexpr std::size_t kInnerBalls = 32;
+// Times that a ball shrinks, at most. More: deeper by little. Chosen.
+constexpr int kMostShrinks = 24;
+// Of a ball's radius (1): with the surface no nearer to its middle, it touches all around. Less: it
+// shrinks less often, and is a little off the deepest place. Chosen.
+constexpr double kFillsBall = 0.999;
+
 // The tree over the tissue's surface.
 // Triangles of one of its parts, at most the greater of these two: a number, and all over so many
 // parts. More triangles a part: fewer boxes are made anew at each look, but more where a tool is.

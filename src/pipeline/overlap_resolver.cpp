@@ -44,14 +44,16 @@ ContactSet OverlapResolver::overlapOf(const Links& links, const RobotPose& pose)
   return overlap;
 }
 
-// Of the first link whose middle is beneath the surface: that middle.
-std::optional<Vec3> OverlapResolver::middleBeneath(const Links& links,
-                                                   const RobotPose& pose) const {
+// A point in a shape of the links that is beneath the surface. Not any point of a link: tissue may
+// be between its shapes, as in a fork, or in a ring.
+std::optional<Vec3> OverlapResolver::pointBeneath(const Links& links, const RobotPose& pose) const {
   for (std::size_t link = links.first; link < links.end; ++link) {
-    if (ToolSet::isAway(pose.links[link]) || world_.finder.reach(link) <= 0.0) continue;
-    const Vec3 middle = pose.links[link] * world_.finder.center(link);
-    if (encloses(world_.tissue.vertices(), world_.tissue.surface().triangles, middle)) {
-      return middle;
+    if (ToolSet::isAway(pose.links[link])) continue;
+    for (const Vec3& inner : world_.finder.innerPoints(link)) {
+      const Vec3 point = pose.links[link] * inner;
+      if (world_.finder.isInside(point, world_.tissue.surface(), world_.tissue.vertices())) {
+        return point;
+      }
     }
   }
   return std::nullopt;
@@ -65,7 +67,7 @@ bool OverlapResolver::isInTissue(const Links& links, const RobotPose& pose) cons
 std::optional<double> OverlapResolver::depthIn(const Links& links, const RobotPose& pose) const {
   const double touches = tuning::kOverlapRounding * world_.tissue.lattice().spacing();
   const double depth = deepest(overlapOf(links, pose));
-  if (depth > touches || middleBeneath(links, pose)) return depth;
+  if (depth > touches || pointBeneath(links, pose)) return depth;
   return std::nullopt;
 }
 
@@ -74,7 +76,7 @@ bool OverlapResolver::isInTissue(std::size_t tool, const RobotPose& pose) const 
 }
 
 // Unit directions out of the tissue that may be short: as the surface looks where the links go
-// through it, against the contacts' normals, from their middle to the nearest vertex of the
+// through it, against the contacts' normals, from a point in them to the nearest vertex of the
 // surface, and along the axes.
 std::vector<Vec3> OverlapResolver::waysOut(const Links& links, const RobotPose& pose) const {
   const std::vector<Vec3>& vertices = world_.tissue.vertices();
@@ -87,12 +89,12 @@ std::vector<Vec3> OverlapResolver::waysOut(const Links& links, const RobotPose& 
   std::vector<Vec3> ways;
   addUnit(as_surface, ways);
   addUnit(against_tool, ways);
-  if (const auto middle = middleBeneath(links, pose)) {
+  if (const auto point = pointBeneath(links, pose)) {
     Vec3 nearest = vertices.front();
     for (const Vec3& vertex : vertices) {
-      if ((vertex - *middle).norm() < (nearest - *middle).norm()) nearest = vertex;
+      if ((vertex - *point).norm() < (nearest - *point).norm()) nearest = vertex;
     }
-    addUnit(nearest - *middle, ways);
+    addUnit(nearest - *point, ways);
   }
   for (int axis = 0; axis < 3; ++axis) {
     ways.push_back(Vec3::Unit(axis));
@@ -101,24 +103,51 @@ std::vector<Vec3> OverlapResolver::waysOut(const Links& links, const RobotPose& 
   return ways;
 }
 
+bool OverlapResolver::isOut(const Links& links, const RobotPose& pose) const {
+  return deepest(overlapOf(links, pose)) <= 0.0 && !pointBeneath(links, pose);
+}
+
+// Whether any of the surface in the links does; absent: there is none.
+std::optional<bool> OverlapResolver::givesWay(const ContactSet& overlap) const {
+  if (overlap.contacts.empty()) return std::nullopt;
+  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
+  return std::any_of(overlap.contacts.begin(), overlap.contacts.end(), [&](const Contact& contact) {
+    return SlidingContacts::givesWay(contact.place, world_.tissue, held);
+  });
+}
+
+// Of links all beneath the surface that are out after the step, as small ones are: whether what
+// they go through in between gives way back in. What meets nothing needs none.
+bool OverlapResolver::leavesByWhatGivesWay(const Links& links, const RobotPose& pose,
+                                           const Vec3& step) const {
+  double beneath = 0.0, out = 1.0;
+  for (int halvings = 0; halvings < tuning::kMostHalvings; ++halvings) {
+    const double half = 0.5 * (beneath + out);
+    const RobotPose there = moved(links, half * step, pose);
+    if (const auto gives_way = givesWay(overlapOf(links, there))) return *gives_way;
+    (pointBeneath(links, there) ? beneath : out) = half;
+  }
+  return true;
+}
+
 // Steps of one spacing along a way until the links are out; nothing when these are not fewer than
 // `most`, or the last of the tissue on the way is one that gives no way back in.
 std::optional<int> OverlapResolver::stepsOut(const Links& links, const RobotPose& pose,
                                              const Vec3& way, int most) const {
-  const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
-  bool gives_way = false;
+  const double length = world_.tissue.lattice().spacing();
+  RobotPose before = pose;
+  std::optional<bool> gives_way = true;
   for (int steps = 0, next = 1; steps < most; steps += next) {
-    const RobotPose there = moved(links, steps * world_.tissue.lattice().spacing() * way, pose);
+    const RobotPose there = moved(links, steps * length * way, pose);
+    if (isOut(links, there)) {
+      const bool comes_back =
+          gives_way ? *gives_way : leavesByWhatGivesWay(links, before, next * length * way);
+      return comes_back ? std::optional<int>(steps) : std::nullopt;
+    }
     const ContactSet overlap = overlapOf(links, there);
-    const double depth = deepest(overlap);
-    next = stepsWithin(depth, world_.tissue.lattice().spacing());
-    if (depth <= 0.0 && !middleBeneath(links, there)) {
-      return gives_way ? std::optional<int>(steps) : std::nullopt;
-    }
-    if (!overlap.contacts.empty()) gives_way = false;
-    for (const Contact& contact : overlap.contacts) {
-      gives_way = gives_way || SlidingContacts::givesWay(contact.place, world_.tissue, held);
-    }
+    next = stepsWithin(deepest(overlap), length);
+    gives_way = givesWay(overlap);
+    before = there;
   }
   return std::nullopt;
 }
@@ -129,11 +158,13 @@ bool OverlapResolver::resolveOverlap(const Links& links, RobotPose& pose) const 
   const std::vector<Vec3> ways = waysOut(links, pose);
   Vec3 shortest = ways.front();
   int fewest = Pipeline::kMostLoadSteps / 5;
+  bool is_found = false;
   for (const Vec3& way : ways) {
+    if (is_found && world_.deadline.isOver()) break;
     if (const auto steps = stepsOut(links, pose, way, fewest)) {
       shortest = way;
       fewest = *steps;
-      if (world_.deadline.isOver()) break;
+      is_found = true;
     }
   }
   const double length = world_.tissue.stepLength();

@@ -20,10 +20,13 @@ class OverlapResolver {
  private:
   static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);
   ContactSet overlapOf(const Links& links, const RobotPose& pose) const;
-  std::optional<Vec3> middleBeneath(const Links& links, const RobotPose& pose) const;
+  std::optional<Vec3> pointBeneath(const Links& links, const RobotPose& pose) const;
   bool isInTissue(const Links& links, const RobotPose& pose) const;
   std::optional<double> depthIn(const Links& links, const RobotPose& pose) const;
   std::vector<Vec3> waysOut(const Links& links, const RobotPose& pose) const;
+  bool isOut(const Links& links, const RobotPose& pose) const;
+  std::optional<bool> givesWay(const ContactSet& overlap) const;
+  bool leavesByWhatGivesWay(const Links& links, const RobotPose& pose, const Vec3& step) const;
   std::optional<int> stepsOut(const Links& links, const RobotPose& pose, const Vec3& way,
                               int most) const;
   bool resolveOverlap(const Links& links, RobotPose& pose) const;

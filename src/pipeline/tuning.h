@@ -226,6 +226,9 @@ constexpr double kCancelled = 1e-6;
 // Spacings: a tool that is deeper than that where it appears is in the tissue. Rounding of where it
 // touches.
 constexpr double kOverlapRounding = 1e-6;
+// Halvings of a step on its way out, at most, until it meets the surface that it goes through.
+// More: surfaces are found that cross the tool by less. Chosen: to the rounding above.
+constexpr int kMostHalvings = 20;
 
 // Blades and burrs.
 // Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,

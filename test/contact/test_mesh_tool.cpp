@@ -154,6 +154,42 @@ TEST(MeshTool, RoundMeshAgreesWithTheSphere) {
   }
 }
 
+// The middle of a fork is in its notch, that of two balls between them.
+TEST(MeshTool, InnerPointsAreDeepInsideEachPart) {
+  const double prong = 0.004, radius = 0.006;
+  std::vector<Triangle> balls = ballTriangles(12, radius);
+  for (Triangle triangle : ballTriangles(12, radius)) {
+    for (Vec3& corner : triangle) corner.x() += 0.05;
+    balls.push_back(triangle);
+  }
+  const Pose lifted = makePose(Vec3(0.0, 0.0, 0.1));
+  const std::string fork = writeStl("inner_fork.stl", forkTriangles(prong, 0.01, 0.02, 0.006));
+  const ContactFinder finder({makeTool({placedAt(lifted, mesh(fork))}),
+                              makeTool({mesh(writeStl("inner_balls.stl", balls))}),
+                              makeTool({box(Vec3::Constant(0.01)), sphere(0.01), plane()})});
+  const auto depth = [&](std::size_t link, const Vec3& point) {
+    return finder.wayOut(link, Pose::Identity(), point, 1.0)->depth_m;
+  };
+  ASSERT_EQ(finder.innerPoints(0).size(), 1U);
+  EXPECT_NEAR(depth(0, finder.innerPoints(0)[0]), 0.5 * prong, 0.15 * prong);
+  ASSERT_EQ(finder.innerPoints(1).size(), 2U);
+  for (const Vec3& point : finder.innerPoints(1)) EXPECT_GT(depth(1, point), 0.9 * radius);
+  EXPECT_GT((finder.innerPoints(1)[1] - finder.innerPoints(1)[0]).norm(), 0.04);
+  EXPECT_EQ(finder.innerPoints(2).size(), 2U) << "none of the plane";
+}
+
+TEST(ContactFinder, TellsInsideTheSurfaceFromOutside) {
+  const Sheet block = makeBlock({4, 4, 4}, 0.01);
+  const ContactFinder finder({makeTool({sphere(0.01)})});
+  const auto is_inside = [&](const Vec3& point) {
+    return finder.isInside(point, block.surface, block.vertices);
+  };
+  EXPECT_TRUE(is_inside(Vec3(0.02, 0.02, -0.02)));
+  EXPECT_TRUE(is_inside(Vec3(0.02, 0.02, -1e-6)));
+  EXPECT_FALSE(is_inside(Vec3(0.02, 0.02, 1e-6)));
+  EXPECT_FALSE(is_inside(Vec3(0.02, 0.05, -0.02)));
+}
+
 TEST(MeshTool, MeshThatCrossesItselfWorksAndIsWarnedOf) {
   std::vector<Triangle> cross = boxTriangles(Vec3(0.03, 0.01, 0.01));
   for (const Triangle& t : boxTriangles(Vec3(0.008, 0.04, 0.008))) cross.push_back(t);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "../contact/contact_fixtures.h"
 #include "pipeline_fixtures.h"
@@ -85,6 +87,75 @@ TEST(ToolInFixedTissue, LetsGoOfWhatItIsHookedOnOnceItIsOutside) {
   EXPECT_GT(drawn_out, 0.005);
   EXPECT_TRUE(was_hooked);
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+}
+
+// Around the block without a touch, or with only their origins in it.
+ToolShape ringAround() {
+  std::vector<Triangle> triangles;
+  const int sides = 24;
+  const auto corner = [&](double radius, int side, double z) -> Vec3 {
+    const double angle = 2.0 * M_PI * side / sides;
+    return {radius * std::cos(angle), radius * std::sin(angle), z};
+  };
+  const std::array<std::array<double, 2>, 4> section = {
+      {{0.06, -0.005}, {0.06, 0.005}, {0.05, 0.005}, {0.05, -0.005}}};
+  for (int side = 0; side < sides; ++side) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& [from, low] = section[k], &[ to, high ] = section[(k + 1) % 4];
+      const Vec3 a = corner(from, side, low), b = corner(from, side + 1, low),
+                 c = corner(to, side + 1, high), d = corner(to, side, high);
+      triangles.push_back({{a, b, c}});
+      triangles.push_back({{a, c, d}});
+    }
+  }
+  return mesh(writeStl("ring_around.stl", triangles));
+}
+
+ToolGeometry forkAround() {
+  ToolGeometry fork = toolOf(boxOf(Vec3(0.005, 0.02, 0.02), Vec3(-0.04, 0.0, 0.0)));
+  fork.links.front().shapes.push_back(boxOf(Vec3(0.005, 0.02, 0.02), Vec3(0.04, 0.0, 0.0)));
+  return fork;
+}
+
+ToolShape boxAboveItsOrigin() {
+  const Vec3 size = Vec3::Constant(0.02);
+  return mesh(writeStl("box_above_origin.stl", boxTriangles(size, Vec3(0.0, 0.0, 0.03))));
+}
+
+TEST(ToolBesideTheTissue, IsNotInside) {
+  const std::vector<ToolGeometry> around = {forkAround(), toolOf(ringAround()),
+                                            toolOf(boxAboveItsOrigin())};
+  for (std::size_t tool = 0; tool < around.size(); ++tool) {
+    Pipeline pipeline(block(), {}, {around[tool]});
+    const RobotPose there = at({Vec3(kMiddle, kMiddle, kTop - 0.005)});
+    EXPECT_FALSE(pipeline.isInTissue(0, there)) << tool;
+    const StepReport& report = pipeline.step(there);
+    EXPECT_TRUE(report.were_inside.empty()) << tool;
+    EXPECT_EQ(report.tools.front().force_on_tool, Vec3::Zero()) << tool;
+    EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0) << tool;
+  }
+}
+
+// Not their mean place alone: that of these balls is above the block.
+TEST(ToolInTheTissue, IsInsideWithAnyOfItsShapes) {
+  ToolGeometry dumbbell = toolOf(sphereOf(0.001));
+  dumbbell.links.front().shapes.push_back(sphereOf(0.001));
+  dumbbell.links.front().shapes.back().pose.translation().z() = 0.04;
+  Pipeline pipeline(block(), {}, {dumbbell});
+  EXPECT_TRUE(pipeline.isInTissue(0, at({Vec3(kMiddle, kMiddle, kTop - 0.0125)})));
+}
+
+// Smaller than a step out, which passes the surface without a touch.
+TEST(SmallTool, LeavesTheNearWayAndNotThroughTheFixedBottom) {
+  for (const double z : {kTop - 0.0025, 0.0025}) {
+    Pipeline pipeline(block(), {}, {toolOf(sphereOf(0.0005))});
+    const StepReport& report = pipeline.step(at({Vec3(0.0125, kMiddle, z)}));
+    EXPECT_EQ(report.were_inside, std::vector<std::size_t>{0});
+    const Vec3 force = report.tools.front().force_on_tool;
+    const Vec3 out = z > 0.5 * kTop ? Vec3(Vec3::UnitZ()) : Vec3(-Vec3::UnitX());
+    EXPECT_GT(force.dot(out), 0.5 * force.norm()) << z;
+    EXPECT_GT(force.norm(), 0.0) << z;
+  }
 }
 
 // Its walls are as far off on all sides, and no way out is short: not searched for step by step.

@@ -53,6 +53,9 @@ class ContactFinder {
   double reach(std::size_t link) const;
   // Mean place of the link's shapes, link frame (m).
   Vec3 center(std::size_t link) const;
+  // A point deep inside each of the link's shapes, of a mesh in parts inside each part; link frame
+  // (m). None of a plane.
+  std::vector<Vec3> innerPoints(std::size_t link) const;
   // Smallest width of the link's thinnest shape (m); infinite without shapes.
   double thickness(std::size_t link) const;
   // Of its shapes those that are balls, padding included; link's frame.
@@ -110,6 +113,10 @@ class ContactFinder {
   // within `reach` (m) of the point along the face, over it or beyond it; of several the nearest.
   std::optional<FlatFace> flatFace(std::size_t link, const Pose& tissue_T_link, const Vec3& facing,
                                    const Vec3& point, double reach) const;
+
+  // Whether the surface goes around the point (m, tissue frame). Throws InputError as find.
+  bool isInside(const Vec3& point, const TissueSurface& surface,
+                const std::vector<Vec3>& vertices) const;
 
   // Of each of these links the deepest point inside the surface, or of the surface inside the link
   // (m); 0 when they do not overlap: points of the surface as in find, and corners, edges and rims
