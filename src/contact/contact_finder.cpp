@@ -198,7 +198,9 @@ ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& 
 
 double ContactFinder::reach(std::size_t link) const { return impl_->links[link].reach(); }
 
-Vec3 ContactFinder::center(std::size_t link) const { return impl_->links[link].center(); }
+std::vector<Vec3> ContactFinder::surfacePoints(std::size_t link) const {
+  return impl_->links[link].surfacePoints();
+}
 
 std::vector<Vec3> ContactFinder::innerPoints(std::size_t link) const {
   return impl_->links[link].innerPoints();

@@ -19,7 +19,7 @@ TouchingLink::TouchingLink(int tool_index, const std::string& tool_name,
   for (std::size_t i = 0; i < geometry.shapes.size(); ++i) {
     shapes.emplace_back(geometry.shapes[i], owner + ", shape " + std::to_string(i + 1), warnings);
     gap_shapes.emplace_back(shapes.back());
-    surface_points.push_back(surfacePoints(shapes.back()));
+    surface_points.push_back(robot_tissue::surfacePoints(shapes.back()));
     inner_points.push_back(robot_tissue::innerPoints(shapes.back()));
   }
   in_use_ = shapes.size();
@@ -89,19 +89,18 @@ double TouchingLink::reach() const {
   return farthest;
 }
 
-Vec3 TouchingLink::center() const {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < in_use_; ++i) sum += shapes[i].poseInLink().translation();
-  return in_use_ == 0 ? sum : Vec3(sum / static_cast<double>(in_use_));
-}
-
-std::vector<Vec3> TouchingLink::innerPoints() const {
+std::vector<Vec3> TouchingLink::inLink(
+    const std::vector<std::vector<Vec3>>& points_of_shapes) const {
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < in_use_; ++i) {
-    for (const Vec3& point : inner_points[i]) points.push_back(shapes[i].poseInLink() * point);
+    for (const Vec3& point : points_of_shapes[i]) points.push_back(shapes[i].poseInLink() * point);
   }
   return points;
 }
+
+std::vector<Vec3> TouchingLink::surfacePoints() const { return inLink(surface_points); }
+
+std::vector<Vec3> TouchingLink::innerPoints() const { return inLink(inner_points); }
 
 double TouchingLink::thickness() const {
   double thinnest = std::numeric_limits<double>::infinity();

@@ -28,7 +28,7 @@ class TouchingLink {
   const PlacedLink& placedAt(const Pose& tissue_T_link) const;
   // As ContactFinder has them.
   double reach() const;
-  Vec3 center() const;
+  std::vector<Vec3> surfacePoints() const;
   std::vector<Vec3> innerPoints() const;
   double thickness() const;
   std::vector<Ball> balls() const;
@@ -49,6 +49,8 @@ class TouchingLink {
   std::vector<ClearPoints> clear_points;          // as shapes
 
  private:
+  std::vector<Vec3> inLink(const std::vector<std::vector<Vec3>>& points_of_shapes) const;
+
   struct Asked {
     Vec3 point = Vec3::Zero();
     double reach = 0.0;

@@ -165,7 +165,7 @@ bool TouchFinder::turnAside(const RobotPose& pose, Contact& contact) const {
   const double spacing = world_.tissue.lattice().spacing();
   const std::size_t link = at(contact.link);
   const Pose& tissue_T_link = pose.links[link];
-  const World::Sides sides = world_.sidesOf(link);
+  const BladeSides& sides = world_.sidesOn(link);
   const Vec3 across = tissue_T_link.linear() * sides.across;
   const double side = across.dot(inwardsAt(contact));
   if (std::abs(side) < tuning::kLipLooksAside) return false;

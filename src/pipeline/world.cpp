@@ -35,6 +35,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   drills = ContactFinder(shapesOf(all, [](const ToolRole& role) { return role.drills; }));
   edges = ContactFinder(edgesOf(all));
   edge_of.assign(tools.linkCount(), Edge::kTouches);
+  findSides();
   warnings = finder.warnings();
   warnings.insert(warnings.end(), drills.warnings().begin(), drills.warnings().end());
   warnOfSizes(geometry);
@@ -102,13 +103,16 @@ bool World::anyInWound() const {
   return std::find(edge_of.begin(), edge_of.end(), Edge::kInside) != edge_of.end();
 }
 
-// A blade is flat: it goes from its edge to the middle of its shapes.
-World::Sides World::sidesOf(std::size_t link) const {
-  const std::vector<Vec3>& edge = edgeOn(link);
-  if (edge.empty() || !(finder.reach(link) > 0.0)) return {};
-  const Vec3 middle = 0.5 * (edge.front() + edge.back());
-  const Vec3 along = edge.back() - edge.front();
-  return {middle, along.cross(finder.center(link) - middle).normalized()};
+// By the shapes of the first links alone, without the bars along their edges.
+void World::findSides() {
+  sides_.assign(tools.linkCount(), {});
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (!mayEdgeTouch(tool)) continue;
+    const std::size_t link = tools.firstLink(tool);
+    setEdge(tool, Edge::kFar);
+    sides_[link] = sidesOf(edgeOn(link), finder.surfacePoints(link));
+    setEdge(tool, Edge::kTouches);
+  }
 }
 
 // Round bars along its edge, as sharp as the lattice can tell.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "blade_sides.h"
 #include "robot_tissue/contact/contact_finder.h"
 #include "robot_tissue/core/deadline.h"
 #include "robot_tissue/core/tissue.h"
@@ -76,13 +77,8 @@ struct World : WorldState {
   // Of a tool whose edge is inside, the first link: its shapes push the lips of the wound aside.
   bool isInWound(std::size_t link) const;
   bool anyInWound() const;
-  // Of such a tool's first link: a point between its sides (m), and across them, unit; link frame.
-  // Zero without sides.
-  struct Sides {
-    Vec3 middle = Vec3::Zero();
-    Vec3 across = Vec3::Zero();
-  };
-  Sides sidesOf(std::size_t link) const;
+  // Of such a tool's first link.
+  const BladeSides& sidesOn(std::size_t link) const { return sides_[link]; }
   // Whether it may: a rigid patch has no place for what a line touches, and in time tissue would
   // not have come back when what it dented is cut.
   bool mayEdgeTouch(std::size_t tool) const;
@@ -114,10 +110,13 @@ struct World : WorldState {
   bool tools_move = false;  // of themselves, in the call under way [Pipeline]
 
  private:
+  void findSides();
   void warnOfSizes(const std::vector<ToolGeometry>& geometry);
   std::vector<ToolShape> barsAlong(const std::vector<Vec3>& edge) const;
   std::vector<ToolGeometry> withEdges(std::vector<ToolGeometry> all) const;
   std::vector<ToolGeometry> edgesOf(std::vector<ToolGeometry> all) const;
+
+  std::vector<BladeSides> sides_;  // per link
 };
 
 // What the patch of a tool or support exerts on the tissue; zero when it has none.

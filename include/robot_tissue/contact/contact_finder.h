@@ -51,8 +51,9 @@ class ContactFinder {
   // Farthest that a point of the link is from the link's origin (m); 0 without shapes, and for a
   // plane.
   double reach(std::size_t link) const;
-  // Mean place of the link's shapes, link frame (m).
-  Vec3 center(std::size_t link) const;
+  // Points of the surface of the link's shapes, corners, edges and rims among them; link frame (m).
+  // None of a plane.
+  std::vector<Vec3> surfacePoints(std::size_t link) const;
   // A point deep inside each of the link's shapes, of a mesh in parts inside each part; link frame
   // (m). None of a plane.
   std::vector<Vec3> innerPoints(std::size_t link) const;
