@@ -11,7 +11,8 @@ void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   Drive& drive = drives_[tool];
   const bool same_way =
       force && drive.force && force->normalized().dot(drive.force->normalized()) > 1.0 - 1e-9;
-  if (!same_way) drive.way = 0.0;
+  if (!same_way) drive.way = drive.came = 0.0;
+  if (same_way && *force != *drive.force) drive.way = drive.came;
   drive.off = kInfinity;
   drive.force = force;
 }
@@ -32,6 +33,11 @@ Vec3 ForceDrive::offset(std::size_t tool) const {
   return drive.force ? Vec3(drive.way * drive.force->normalized()) : Vec3(Vec3::Zero());
 }
 
+Vec3 ForceDrive::came(std::size_t tool) const {
+  const Drive& drive = drives_[tool];
+  return drive.force ? Vec3(drive.came * drive.force->normalized()) : Vec3(Vec3::Zero());
+}
+
 RobotPose ForceDrive::driven(RobotPose pose, const ToolSet& tools) const {
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
     if (!drives(tool)) continue;
@@ -41,6 +47,23 @@ RobotPose ForceDrive::driven(RobotPose pose, const ToolSet& tools) const {
     }
   }
   return pose;
+}
+
+void ForceDrive::noteReached(const RobotPose& pose, const RobotPose& reached,
+                             const ToolSet& tools) {
+  const RobotPose goal = driven(pose, tools);
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (!drives(tool)) continue;
+    const std::size_t link = tools.firstLink(tool);
+    if (ToolSet::isAway(goal.links[link]) || ToolSet::isAway(reached.links[link])) continue;
+    Drive& drive = drives_[tool];
+    const Vec3 beyond = reached.links[link].translation() - goal.links[link].translation();
+    drive.came = drive.way + beyond.dot(drive.force->normalized());
+  }
+}
+
+void ForceDrive::stay() {
+  for (Drive& drive : drives_) drive.way = drive.came;
 }
 
 // The corrections of one call.

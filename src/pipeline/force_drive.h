@@ -16,13 +16,19 @@ class ForceDrive {
  public:
   void setTools(std::size_t count) { drives_.assign(count, {}); }
 
-  // On the tissue (N, tissue frame); none: the tool is at its pose. Finite and not zero.
+  // On the tissue (N, tissue frame); none: the tool is at its pose. Finite and not zero. Another
+  // force along the same line goes on from where the tool came.
   void push(std::size_t tool, const std::optional<Vec3>& force);
   bool drives(std::size_t tool) const { return drives_[tool].force.has_value(); }
   bool drivesAny() const;
-  Vec3 offset(std::size_t tool) const;  // from its pose (m)
-  // The pose with the tools where their forces moved them.
+  Vec3 offset(std::size_t tool) const;  // of where it is to go, from its pose (m)
+  Vec3 came(std::size_t tool) const;    // of where it came on that way, likewise
+  // The pose with the tools where their forces move them.
   RobotPose driven(RobotPose pose, const ToolSet& tools) const;
+  // Where the tools, told to be in the pose, came in fact.
+  void noteReached(const RobotPose& pose, const RobotPose& reached, const ToolSet& tools);
+  // What is left of their ways, which no shape follows, is not tried again.
+  void stay();
 
   // Moves the tool until its force is met: load steps until it touches, then by the secant through
   // the last two. `longest`: a load step (m); `met`: the force on the tissue (N); `walk`: takes the
@@ -43,7 +49,8 @@ class ForceDrive {
  private:
   struct Drive {
     std::optional<Vec3> force;  // N
-    double way = 0.0;           // along the force, from its pose (m)
+    double way = 0.0;           // where it is to go along the force, from its pose (m)
+    double came = 0.0;          // of it (m)
     double off = kInfinity;     // from the force, where the calls that left a way ended (N)
     int waits = 0;              // in a row
   };

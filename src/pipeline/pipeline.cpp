@@ -139,6 +139,11 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   } else {
     parts_->grasping.forgetLetGo();
   }
+  if (world_.report.lost && state_.drive.drivesAny()) {
+    state_.drive.noteReached(world_.tools.complete(pose), *world_.last_pose, world_.tools);
+    state_.drive.stay();
+    world_.asked = state_.drive.driven(world_.tools.complete(pose), world_.tools);
+  }
   expectTouch();
   describeTools();
 }
@@ -352,10 +357,13 @@ void Pipeline::describeTools() {
   const double before_ms = world_.report.contact_ms;
   {
     const Stopwatch watch(world_.report.contact_ms);
+    if (world_.last_pose && state_.drive.drivesAny()) {
+      state_.drive.noteReached(world_.tools.complete(state_.told), *world_.last_pose, world_.tools);
+    }
     for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
       ToolReport& report = world_.report.tools[tool];
       report = describeTool(world_, parts_->grasping, tool);
-      report.offset = state_.drive.offset(tool);
+      report.offset = state_.drive.came(tool);
       parts_->blades.describe(tool, report);
       limitWrench(world_.tools[tool].max_force, report);
     }
