@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
+#include "known_touches.h"
 #include "rim_touch.h"
 #include "touch_places.h"
 #include "touch_spring.h"
@@ -70,9 +70,10 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
     touch.firm_stiffness = touch.spring.stiffness;
     soften(tissue, touch);
   }
+  KnownTouches known(touches_);
   for (const Contact& contact : contacts.contacts) {
     if (!friction_[at(contact.tool)] || contact.wanders) continue;
-    if (find(contact, tissue.surface()) == nullptr) add(contact, pose, tissue, held);
+    if (known.find(contact, tissue.surface()) == nullptr) add(contact, known, pose, tissue, held);
   }
   wander(contacts, wandering, pose, tissue, held);
   forgetLost(held);
@@ -114,9 +115,10 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
     if (wavers && touches_[i].found && tracked[i]) continue;
     if (!track(tracked[i], pose, tissue, touches_[i])) is_settled_ = false;
   }
+  KnownTouches known(touches_);
   for (const Contact& contact : found.contacts) {
     if (!friction_[at(contact.tool)] || contact.wanders) continue;
-    if (!take(contact, pose, tissue, held)) is_settled_ = false;
+    if (!take(contact, known, pose, tissue, held)) is_settled_ = false;
   }
   if (!wander(found, tracked, pose, tissue, held)) is_settled_ = false;
   forgetLost(held);
@@ -176,12 +178,12 @@ double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& ti
 // Takes a contact that the search found: as a new touch or, on a triangle whose deepest point has
 // moved, in the place of the known one. False, the update is not settled: it is deeper than the
 // slack.
-bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
-                           const Held& held) {
+bool SlidingContacts::take(const Contact& contact, KnownTouches& known, const RobotPose& pose,
+                           const Tissue& tissue, const Held& held) {
   const double depth = contact.depth_m - recessOf(contact.link);
-  ContactConstraint* touch = find(contact, tissue.surface());
+  ContactConstraint* touch = known.find(contact, tissue.surface());
   if (touch == nullptr) {
-    add(contact, pose, tissue, held);
+    add(contact, known, pose, tissue, held);
     return depth <= slackOf(touches_.back(), tissue);
   }
   const double deeper = tuning::kDeeperThanTouch * tissue.lattice().spacing();
@@ -189,11 +191,11 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
   const bool same_side = touch->spring.normal.dot(contact.normal) >= tuning::kSameSideOfTool;
   const bool deep = depth > tuning::kMostSlack * tissue.lattice().spacing();
   if (deep && (!same_side || touch->spring.multiplier > 0.0)) {
-    add(contact, pose, tissue, held);
+    add(contact, known, pose, tissue, held);
     return false;
   }
   if (hopsBack(*touch, contact, tissue)) {
-    add(contact, pose, tissue, held);
+    add(contact, known, pose, tissue, held);
     return depth <= slackOf(touches_.back(), tissue);
   }
   touch->left = touch->contact.place.barycentric;
@@ -207,6 +209,7 @@ bool SlidingContacts::take(const Contact& contact, const RobotPose& pose, const 
     putPlane(*touch);
     anchor(pose, *touch);
   }
+  known.moved(*touch);
   return depth <= slackOf(*touch, tissue);
 }
 
@@ -241,36 +244,13 @@ void SlidingContacts::forgetLost(const Held& held) {
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
 }
 
-// The touch that a contact is of: the same vertex or, within a triangle, the nearest within
-// kSamePoint. What a vertex beside a face touches besides, as the tool's side, is another.
-SlidingContacts::ContactConstraint* SlidingContacts::find(const Contact& contact,
-                                                          const TissueSurface& surface) {
-  const int vertex = vertexAt(surface, contact.place);
-  ContactConstraint* nearest = nullptr;
-  double least = tuning::kSamePoint;
-  for (ContactConstraint& touch : touches_) {
-    if (touch.contact.link != contact.link || touch.vertex != vertex) continue;
-    const Rim &known_rim = touch.contact.rim, &rim = contact.rim;
-    const bool either_is_at_none = known_rim.edges.empty() || rim.edges.empty();
-    if (known_rim.is_beyond != rim.is_beyond && either_is_at_none) continue;
-    if (vertex >= 0) return &touch;
-    const SurfacePoint& known = touch.contact.place;
-    if (known.triangle != contact.place.triangle) continue;
-    const double off = (known.barycentric - contact.place.barycentric).cwiseAbs().maxCoeff();
-    if (off >= least) continue;
-    least = off;
-    nearest = &touch;
-  }
-  return nearest;
-}
-
-void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
-                          const Held& held) {
+void SlidingContacts::add(const Contact& contact, KnownTouches& known, const RobotPose& pose,
+                          const Tissue& tissue, const Held& held) {
   ContactConstraint touch;
   touch.contact = contact;
   touch.vertex = vertexAt(tissue.surface(), contact.place);
   touch.tool_point = contact.point;
-  touch.friction_ratio = frictionRatioAround(touch);
+  touch.friction_ratio = known.frictionRatioNear(contact.link, contact.point);
   if (tissue.goesInTime()) {
     const double most = tuning::kMostEntry * tissue.lattice().spacing();
     touch.entry = std::min(std::max(contact.depth_m, 0.0), most);
@@ -279,20 +259,6 @@ void SlidingContacts::add(const Contact& contact, const RobotPose& pose, const T
   if (touches_.size() == touches_.capacity()) touches_.reserve(9 * touches_.size() / 8 + 8);
   touches_.push_back(touch);
   put(contact, pose, tissue, held, touches_.back());
-}
-
-// Friction over normal force of the link's nearest touch that pushes; zero when none does.
-Vec3 SlidingContacts::frictionRatioAround(const ContactConstraint& touch) const {
-  Vec3 ratio = Vec3::Zero();
-  double least = std::numeric_limits<double>::infinity();
-  for (const ContactConstraint& other : touches_) {
-    if (other.spring.multiplier <= 0.0 || other.contact.link != touch.contact.link) continue;
-    const double off = (other.tool_point - touch.tool_point).norm();
-    if (off >= least) continue;
-    least = off;
-    ratio = other.friction_ratio;
-  }
-  return ratio;
 }
 
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
@@ -332,8 +298,10 @@ void SlidingContacts::commit(const RobotPose& pose, const Tissue& tissue) {
                       turningForceOf(spring, *since_displacement_);
     touch.friction_ratio = link_R_tissue * drag / spring.multiplier;
   }
+  KnownTouches known(touches_);
   for (ContactConstraint& touch : touches_) {
-    if (touch.spring.multiplier <= 0.0) touch.friction_ratio = frictionRatioAround(touch);
+    if (touch.spring.multiplier > 0.0) continue;
+    touch.friction_ratio = known.frictionRatioNear(touch.contact.link, touch.tool_point);
   }
   const auto left = [&](const ContactConstraint& touch) {
     if (touch.spring.multiplier > 0.0) return false;

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "known_touches.h"
 #include "rim_touch.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
 #include "touch_spring.h"
@@ -36,9 +37,10 @@ bool SlidingContacts::wander(const ContactSet& found, const Tracked& tracked, co
     is_taken[place] = 1;
     is_settled = moveTo(*places[place], pose, tissue, held, touches_[touch]) && is_settled;
   }
+  KnownTouches now(touches_);
   for (std::size_t place = 0; place < places.size(); ++place) {
     if (is_taken[place] != 0) continue;
-    add(*places[place], pose, tissue, held);
+    add(*places[place], now, pose, tissue, held);
     is_settled = places[place]->depth_m <= slackOf(touches_.back(), tissue) && is_settled;
   }
   for (std::size_t i = 0; i < known; ++i) {

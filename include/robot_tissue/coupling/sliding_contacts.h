@@ -39,6 +39,8 @@
 
 namespace robot_tissue {
 
+class KnownTouches;
+
 // Of a touch at a rim (m/N).
 struct TouchCompliance {
   double normal = 0.0;
@@ -160,8 +162,8 @@ class SlidingContacts {
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void stickFirst(const Tissue& tissue);
   double fineness(int link, double spacing) const;
-  ContactConstraint* find(const Contact& contact, const TissueSurface& surface);
-  void add(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
+  void add(const Contact& contact, KnownTouches& known, const RobotPose& pose, const Tissue& tissue,
+           const Held& held);
   void put(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
            ContactConstraint& touch);
   bool track(const std::optional<Contact>& contact, const RobotPose& pose, const Tissue& tissue,
@@ -175,7 +177,8 @@ class SlidingContacts {
   bool moveTo(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
               ContactConstraint& touch);
   bool handOn(const ContactConstraint& lost, double reach, const Tissue& tissue);
-  bool take(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held);
+  bool take(const Contact& contact, KnownTouches& known, const RobotPose& pose,
+            const Tissue& tissue, const Held& held);
   bool hopsBack(const ContactConstraint& touch, const Contact& contact, const Tissue& tissue) const;
   std::vector<PressGrowth::Press> presses(std::size_t links) const;
   void takeMeans(const Tissue& tissue);
@@ -193,7 +196,6 @@ class SlidingContacts {
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
-  Vec3 frictionRatioAround(const ContactConstraint& touch) const;
 
   std::vector<std::optional<double>> friction_;
   std::vector<LinkForm> forms_;

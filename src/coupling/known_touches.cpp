@@ -1,0 +1,101 @@
+#include "known_touches.h"
+
+#include <optional>
+#include <utility>
+
+#include "tuning.h"
+
+namespace robot_tissue {
+
+std::uint64_t KnownTouches::placeOf(int link, int vertex, int triangle) {
+  const int place = vertex >= 0 ? vertex : -1 - triangle;
+  return std::uint64_t{static_cast<std::uint32_t>(link)} << 32 | static_cast<std::uint32_t>(place);
+}
+
+std::size_t KnownTouches::newestAt(std::uint64_t place) {
+  if (before_.empty()) newest_.reserve(touches_.size());
+  while (before_.size() < touches_.size()) {
+    const Touch& touch = touches_[before_.size()];
+    const std::uint64_t there =
+        placeOf(touch.contact.link, touch.vertex, touch.contact.place.triangle);
+    const auto [known, is_first] = newest_.emplace(there, before_.size());
+    const std::size_t before = is_first ? kNone : std::exchange(known->second, before_.size());
+    before_.push_back(before);
+  }
+  const auto found = newest_.find(place);
+  return found == newest_.end() ? kNone : found->second;
+}
+
+std::vector<std::size_t> KnownTouches::touchesAt(const Contact& contact,
+                                                 const TissueSurface& surface) {
+  std::vector<std::size_t> touches;
+  const int vertex = vertexAt(surface, contact.place);
+  for (std::size_t i = newestAt(placeOf(contact.link, vertex, contact.place.triangle)); i != kNone;
+       i = before_[i]) {
+    touches.push_back(i);
+  }
+  return touches;
+}
+
+// Of several on a vertex the oldest, as of those in a triangle that are as near.
+KnownTouches::Touch* KnownTouches::find(const Contact& contact, const TissueSurface& surface) {
+  const int vertex = vertexAt(surface, contact.place);
+  Touch* nearest = nullptr;
+  double least = tuning::kSamePoint;
+  for (std::size_t i = newestAt(placeOf(contact.link, vertex, contact.place.triangle)); i != kNone;
+       i = before_[i]) {
+    Touch& touch = touches_[i];
+    const Rim &known_rim = touch.contact.rim, &rim = contact.rim;
+    const bool either_is_at_none = known_rim.edges.empty() || rim.edges.empty();
+    if (known_rim.is_beyond != rim.is_beyond && either_is_at_none) continue;
+    if (vertex >= 0) {
+      nearest = &touch;
+      continue;
+    }
+    const Vec3 way = touch.contact.place.barycentric - contact.place.barycentric;
+    const double off = way.cwiseAbs().maxCoeff();
+    if (off > least || off >= tuning::kSamePoint) continue;
+    least = off;
+    nearest = &touch;
+  }
+  return nearest;
+}
+
+void KnownTouches::treePushing() {
+  std::map<int, std::vector<PointTree::Entry>> of_links;
+  pushing_ = 0;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (touches_[i].spring.multiplier <= 0.0) continue;
+    of_links[touches_[i].contact.link].push_back({touches_[i].tool_point, i});
+    ++pushing_;
+  }
+  trees_.clear();
+  for (auto& [link, entries] : of_links) trees_.emplace(link, PointTree(std::move(entries)));
+  strays_.clear();
+  has_trees_ = true;
+}
+
+// Looking at strays one by one costs no more than trees anew as long as they are few.
+void KnownTouches::moved(const Touch& touch) {
+  if (!has_trees_ || touch.spring.multiplier <= 0.0) return;
+  strays_.push_back(static_cast<std::size_t>(&touch - touches_.data()));
+  if (strays_.size() * strays_.size() > pushing_) has_trees_ = false;
+}
+
+Vec3 KnownTouches::frictionRatioNear(int link, const Vec3& point) {
+  if (!has_trees_) treePushing();
+  const auto is_still_there = [&](const PointTree::Entry& entry) {
+    return touches_[entry.id].tool_point == entry.point;
+  };
+  const auto tree = trees_.find(link);
+  std::optional<PointTree::Nearest> nearest;
+  if (tree != trees_.end()) nearest = tree->second.nearest(point, is_still_there);
+  for (const std::size_t stray : strays_) {
+    if (touches_[stray].contact.link != link) continue;
+    const PointTree::Nearest here{(touches_[stray].tool_point - point).norm(), stray};
+    if (!nearest || here.isBefore(*nearest)) nearest = here;
+  }
+  return nearest ? touches_[nearest->id].friction_ratio : Vec3::Zero();
+}
+
+}  // namespace robot_tissue
