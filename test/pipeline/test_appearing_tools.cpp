@@ -101,7 +101,8 @@ ToolShape ringAround() {
       {{0.06, -0.005}, {0.06, 0.005}, {0.05, 0.005}, {0.05, -0.005}}};
   for (int side = 0; side < sides; ++side) {
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto& [from, low] = section[k], &[ to, high ] = section[(k + 1) % 4];
+      const auto& [from, low] = section[k];
+      const auto& [to, high] = section[(k + 1) % 4];
       const Vec3 a = corner(from, side, low), b = corner(from, side + 1, low),
                  c = corner(to, side + 1, high), d = corner(to, side, high);
       triangles.push_back({{a, b, c}});
