@@ -58,6 +58,7 @@ bool Pipeline::drive(const RobotPose& pose) {
       continue;
     }
     const auto walk = [&] {
+      world_.report.lost = false;  // where a shape follows back, none is lost any more
       world_.last_pose =
           parts_->motion.walk(state_.drive.driven(world_.tools.complete(pose), world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();
