@@ -67,7 +67,7 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
     touch.left.reset();
     if (!tissue.goesInTime()) touch.entry = 0.0;
     touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
-    touch.firm_stiffness = touch.spring.stiffness;
+    takeStiffness(tissue, held, touch);
     soften(tissue, touch);
   }
   KnownTouches known(touches_);
@@ -161,14 +161,15 @@ bool SlidingContacts::driftsEvenly(const ContactConstraint& touch, const Tissue&
 
 // The depth or gap that counts as none (m): closing it at all of the tool's n touches would change
 // its force by less than kSlackOfForce of it, within bounds. Together they are sqrt(n) times as
-// stiff as one: a half-space is as stiff as its contact is wide. Where the touch gives way by c,
-// beside the tissue's stiffness K, closing a gap changes the force by so much less: by K gap / (1 +
-// c K).
+// stiff as one: a half-space is as stiff as its contact is wide. Those that share their stiffness
+// (crowding) are one. Where the touch gives way by c, beside the tissue's stiffness K, closing a
+// gap changes the force by so much less: by K gap / (1 + c K).
 double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& tissue) const {
-  const double stiffness = touch.firm_stiffness / tuning::kContactStiffness;
+  const double stiffness = touch.crowding * touch.firm_stiffness / tuning::kContactStiffness;
   const double spacing = tissue.lattice().spacing();
   const Pressed& pressed = pressed_[at(touch.contact.tool)];
-  const double of_all = stiffness * std::sqrt(std::max(1, pressed.touches));
+  const double touches = std::max(1.0, pressed.touches / touch.crowding);
+  const double of_all = stiffness * std::sqrt(touches);
   const double slack = of_all > 0.0 ? tuning::kSlackOfForce * pressed.force / of_all : 0.0;
   const double of_firm = std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
                                   tuning::kMostSlack * spacing);
@@ -261,13 +262,21 @@ void SlidingContacts::add(const Contact& contact, KnownTouches& known, const Rob
   put(contact, pose, tissue, held, touches_.back());
 }
 
+// Of its spring as it was carried.
+void SlidingContacts::takeStiffness(const Tissue& tissue, const Held& held,
+                                    ContactConstraint& touch) {
+  crowding_.take(tissue.surface(), held.size());
+  touch.crowding = crowding_.under(touch.spring.carriers);
+  touch.firm_stiffness = touch.spring.stiffness / touch.crowding;
+}
+
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
   touch.recess = recessOf(contact.link);
   putContact(contact, tissue.surface(), touch);
   touch.stiffening = carry(touch.contact, tissue, held, touch.spring);
-  touch.firm_stiffness = touch.spring.stiffness;
+  takeStiffness(tissue, held, touch);
   touch.spring.normal = contact.normal;
   touch.spring.turned_from = contact.point;
   touch.tool_point = planePointOf(contact, tissue);

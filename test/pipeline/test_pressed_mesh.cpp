@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../core/mesh_fixtures.h"
 #include "pipeline_fixtures.h"
@@ -67,6 +68,32 @@ TEST_F(PressedBall, ToolInAnEmptyCornerOfTheGridIsOutside) {
   pipeline_.step(at({0.96 * corner}));
   EXPECT_GT(greatestDisplacement(pipeline_.tissue()), 0.0);
   EXPECT_LT(tool().normal.dot(corner.normalized()), -0.9);
+}
+
+// Of the last solves of all updates; and the force at the end (N).
+std::pair<int, double> iterationsAndForce(int subdivisions) {
+  TissueConfig tissue;
+  tissue.mesh = std::make_shared<const TriangleMesh>(sphereMesh(kBall, subdivisions));
+  tissue.spacing = kBallCell;
+  tissue.material.young_modulus = 1e4;
+  tissue.material.poisson_ratio = 0.45;
+  tissue.fixed.push_back({Vec3(-1, -1, -1), Vec3(1, 1, -0.02)});
+  Pipeline pipeline(tissue, {}, {probe()});
+  int iterations = 0;
+  for (int update = -1; update <= 20; ++update) {
+    pipeline.step(at({Vec3(0.0, 0.0, kBall + kRadius - 0.00025 * update)}));
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << update;
+    iterations += pipeline.tissue().lastReport().iterations;
+  }
+  return {iterations, pipeline.report().tools.front().force_on_tool.z()};
+}
+
+// Hundreds of vertices touch on a few tens of nodes.
+TEST(FineMesh, CostsAToolNoMoreThanACoarserOne) {
+  const auto [on_coarse, coarse] = iterationsAndForce(3);
+  const auto [on_fine, fine] = iterationsAndForce(5);
+  EXPECT_LT(on_fine, 1.5 * on_coarse);
+  EXPECT_NEAR(fine, coarse, 0.05 * coarse);  // the coarser ball is smaller
 }
 
 TEST_F(PressedBall, CutUnderLoadStaysClosedAndTheToolStaysOut) {

@@ -36,6 +36,7 @@
 #include "robot_tissue/core/triangle_point.h"
 #include "robot_tissue/coupling/plane_drift.h"
 #include "robot_tissue/coupling/press_growth.h"
+#include "robot_tissue/coupling/surface_crowding.h"
 
 namespace robot_tissue {
 
@@ -63,6 +64,7 @@ class SlidingContacts {
     Vec3 solved_at = Vec3::Zero();     // where in the triangle that was, by weights
     Vec3 solved_bulge = Vec3::Zero();  // Contact::bulge there
     double firm_stiffness = 0.0;       // k, without its compliance (N/m)
+    double crowding = 1.0;             // touches that share that of one alone
     TouchCompliance compliance;
     Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
@@ -160,6 +162,7 @@ class SlidingContacts {
   };
 
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
+  void takeStiffness(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   void stickFirst(const Tissue& tissue);
   double fineness(int link, double spacing) const;
   void add(const Contact& contact, KnownTouches& known, const RobotPose& pose, const Tissue& tissue,
@@ -202,6 +205,7 @@ class SlidingContacts {
   std::vector<Pressed> pressed_;      // per tool
   std::vector<LinkRecess> recesses_;  // per link
   PressGrowth growth_;
+  SurfaceCrowding crowding_;
   bool is_settled_ = false;                   // since the last update
   int cut_rounds_ = 0;                        // updates in a row of shapes on the way to balance
   std::vector<ContactConstraint> touches_;    // in the order in which they were found
