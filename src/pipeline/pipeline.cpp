@@ -128,12 +128,18 @@ void Pipeline::stepTo(const RobotPose& goal, const RobotPose& pose) {
   } else {
     parts_->motion.comeAndGo(there);
   }
+  std::optional<Checkpoint> before;
+  if (state_.drive.drivesAny() && world_.tissue.hasTime() &&
+      there.stamp_s > world_.reached_s.value_or(there.stamp_s)) {
+    before = parts_->load_step.checkpoint();
+  }
   const bool arrived = goInLegs(there);
   world_.asked = goal;
   state_.told = pose;
   // Shapes to go back to may have patches on what was dropped.
   if (world_.tissue.droppedPieces().size() > dropped) parts_->motion.checkInAnew();
-  state_.touched = !arrived || world_.report.too_fast || drive(pose);  // there is a way left to go
+  // There is a way left to go.
+  state_.touched = !arrived || world_.report.too_fast || drive(pose, before ? &*before : nullptr);
   if (world_.report.too_fast || world_.report.lost) {
     world_.report.behind = parts_->motion.toolsBehind();
   } else {

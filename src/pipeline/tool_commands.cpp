@@ -47,9 +47,14 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
   state_.touched = true;
 }
 
-// True: a driven tool has a way left to go.
-bool Pipeline::drive(const RobotPose& pose) {
+// True: a driven tool has a way left to go. Without time a correction goes on from where the last
+// one led. In time that would leave the tissue where it is: the update is made again, to another
+// end, unless it changed the tissue itself.
+bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
   bool goes_on = false;
+  const bool in_time = world_.tissue.isInTime();
+  const bool may_repeat = before != nullptr && before->shape.cells == world_.tissue.state().cells;
+  if (in_time && !may_repeat) return true;
   const StepReport& report = world_.report;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!state_.drive.drives(tool)) continue;
@@ -59,6 +64,10 @@ bool Pipeline::drive(const RobotPose& pose) {
     }
     const auto walk = [&] {
       world_.report.lost = false;  // where a shape follows back, none is lost any more
+      if (in_time) {
+        parts_->load_step.goBackTo(*before);
+        world_.last_pose = before->pose;
+      }
       world_.last_pose =
           parts_->motion.walk(state_.drive.driven(world_.tools.complete(pose), world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();

@@ -191,8 +191,9 @@ void Runner::catchUp() {
   pipeline_.setMostIterations(scene_.solver.max_iterations.value_or(0));
 }
 
-// Tools by a force follow the tissue, unless it takes far too long.
+// Tools by a force follow the tissue, unless it takes far too long. In time they go as it goes by.
 void Runner::followPushes() {
+  if (pipeline_.tissue().isInTime()) return;
   const auto any = std::any_of(pushes_.begin(), pushes_.end(), [](const auto& p) { return p; });
   for (int i = 0; any && i < tuning::kMostUpdates; ++i) {
     const StepReport& report = pipeline_.report();
@@ -242,6 +243,9 @@ void Runner::remarkCut(std::size_t tool) {
 void Runner::judgePush(std::size_t tool) {
   const ToolReport& report = pipeline_.report().tools[tool];
   if (report.saturated) return;  // its force is not told
+  // What a cut or a release changes moves the tissue, and the tool, in the time to come.
+  const bool no_time = !result_.increments.empty() && result_.increments.back().time == time_;
+  if (pipeline_.tissue().isInTime() && no_time) return;
   const Pose& tissue_T_link = pipeline_.pose()->links[tools_.firstLink(tool)];
   const double wanted = pushes_[tool]->norm();
   const Vec3 force = -(tissue_T_link.linear() * report.force_on_tool);

@@ -240,6 +240,30 @@ TEST(AnEdgeInTime, IsDraggedWithoutJumps) {
   EXPECT_LT(jump, 0.1 * greatest);
 }
 
+// A tool that a force drives goes with the tissue that another one moves in time.
+TEST(DrivenToolInTime, KeepsItsForceWhileTheTissueMoves) {
+  TissueConfig tissue = inTime(block("elastic", kSpacing), 0.02);
+  Pipeline pipeline(tissue, methodOf("elastic"), {probe()});
+  RobotPose pose = pressed(-0.001);
+  pipeline.step(pose);
+  const double force = 0.1;  // N
+  pipeline.push(0, Vec3(0.0, 0.0, -force));
+  PatchConfig side;
+  side.name = "side";
+  side.box = {Vec3(0.0, 0.0, kTop), Vec3(0.01, kWidth, kTop)};
+  side.displacement = {{0.0, 0.0, -0.003}};
+  for (int update = 1; update <= 60; ++update) {
+    if (update == 20) pipeline.load({1, {side}});
+    if (update == 40) pipeline.release({"side"});
+    pose.stamp_s += 0.005;
+    pipeline.step(pose);
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << update;
+    if (update % 20 < 3) continue;  // on its way
+    const double met = pipeline.report().tools.front().force_on_tool.z();
+    EXPECT_NEAR(met, force, 0.01 * force) << update;
+  }
+}
+
 // Tissue that was never in balance falls, or sags, beside tools and supports that it does not meet
 // as it does without them.
 TEST(TissueUnderGravity, MovesFromTheStartAlsoBesideToolsThatAreAway) {

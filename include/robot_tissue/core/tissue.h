@@ -186,6 +186,7 @@ class Tissue {
   // shape stays as it is. After stopTime, and before the first step, shapes are equilibria, at
   // rest.
   bool hasTime() const;
+  bool isInTime() const;  // since the last stopTime time has gone by: nothing else moves the shape
   bool isMoving() const;  // time will change the shape
   // This, expectTimeStep, beginTimeStep and wait: only where hasTime().
   double longestTimeStep() const;  // that the error of the last one allows (s)

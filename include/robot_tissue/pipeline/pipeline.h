@@ -29,6 +29,7 @@
 namespace robot_tissue {
 
 class Landing;
+struct Checkpoint;
 struct World;
 
 class Pipeline {
@@ -180,7 +181,8 @@ class Pipeline {
   bool goInLegs(const RobotPose& pose);
   void goTo(RobotPose pose);
   bool partAlongWay();
-  bool drive(const RobotPose& pose);
+  // before: where time began to go by in this update; null: it did not.
+  bool drive(const RobotPose& pose, const Checkpoint* before);
   void touch();
   void describeTools();
   void expectTouch();  // expected_touch.cpp

@@ -67,6 +67,7 @@ bool Tissue::isRoundForNextCall() const { return parts_->data.bounds.isRoundForN
 void Tissue::expectTouch() { parts_->solver.expectTouch(); }
 SolveReport Tissue::settle() { return parts_->program.settle(); }
 bool Tissue::hasTime() const { return parts_->data.motion.hasTime(); }
+bool Tissue::isInTime() const { return parts_->data.motion.isInTime(); }
 bool Tissue::isMoving() const { return parts_->data.motion.isMoving(); }
 double Tissue::longestTimeStep() const { return parts_->data.motion.integrator().longestStep(); }
 void Tissue::expectTimeStep(double duration, Touched touched) {
