@@ -81,6 +81,31 @@ TEST(CutsInTime, LetWhatIsLeftComeToRest) {
   EXPECT_LT(farthestOff(tissue.state().displacement), 1e-3 * kSpacing);
 }
 
+// A load and a settle are at rest also where there is time: all that tears does so at once.
+TEST(TearsInTime, OfALoadAreThoseWithoutTime) {
+  TissueConfig config = blockOf(5, 3, 2, kSpacing);
+  config.model = "elastic";
+  config.material.poisson_ratio = 0.4;
+  config.material.tear_stretch = 1.2;
+  config.fixed.push_back({Vec3(-1.0, -1.0, -1.0), Vec3(1.0, 1.0, 1e-6)});
+  PatchConfig patch;
+  patch.name = "pull";
+  patch.box = {Vec3(-1.0, -1.0, 0.019), Vec3(0.011, 0.021, 1.0)};
+  patch.displacement = {{0.002, 0.0, 0.004}};
+  const auto torn = [&](const TissueConfig& tissue_config) {
+    Tissue tissue(tissue_config, solverOf("layered", 0.01));
+    tissue.load({1, {patch}});
+    const int by_load = tissue.springsTorn();
+    tissue.settle();
+    EXPECT_EQ(tissue.springsTorn(), by_load);
+    return by_load;
+  };
+  const int without_time = torn(config);
+  EXPECT_GT(without_time, 1);
+  config.time = TimeConfig{0.001};
+  EXPECT_EQ(torn(config), without_time);
+}
+
 // With a damping of 100 s the block creeps for minutes to where it stands without time.
 TEST(CreepInTime, EndsInBalance) {
   TissueConfig config = withFixedBottom(blockOf(4, 4, 4, kSpacing));

@@ -113,7 +113,7 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, data_.loads.patches());
   const Tissue::Shape before = data_.shape();
-  data_.motion.stop();
+  const TissueMotion::Standstill stands(data_.motion);
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : targets) {
     ramps.push_back(makeRamp(target, data_.loads.find(target.name)));
@@ -143,7 +143,7 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
 
 void LoadProgram::loadOn(const Tissue::OnIncrement& on_increment) {
   if (!data_.loads.isLoading()) return;
-  data_.motion.stop();
+  const TissueMotion::Standstill stands(data_.motion);
   std::vector<LoadRamp> ramps;
   for (const LoadingPatch& target : data_.loads.takeDue()) {
     const LoadingPatch* standing = data_.loads.find(target.name);
@@ -193,7 +193,7 @@ SolveReport LoadProgram::follow(std::vector<LoadingPatch> tool_patches,
 }
 
 SolveReport LoadProgram::settle() {
-  data_.motion.stop();
+  const TissueMotion::Standstill stands(data_.motion);
   solver_.solve(data_.body.freeNodes());
   return surgery_.tear();
 }

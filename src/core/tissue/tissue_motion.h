@@ -29,7 +29,7 @@ class TissueMotion {
   bool expectsTimeStep() const { return expects_step_; }
   bool goesInTime() const { return in_step_ || expects_step_; }
   // Whether loads that go and cuts leave the shape as it is, to be moved by time.
-  bool takesNoTime() const { return hasTime() && !in_step_; }
+  bool takesNoTime() const { return hasTime() && !in_step_ && !stands_; }
   // Null: at rest.
   TimeIntegrator::Motion nodes() const { return hasTime() ? integrator_->motion() : nullptr; }
   const TimeIntegrator& integrator() const { return *integrator_; }  // where it has time
@@ -44,6 +44,20 @@ class TissueMotion {
   void noteOtherCells();     // cuts or removals made them, maybe within a time step
   void halt();               // velocities are zero; between two steps
   void stop();
+  // While one lives time stands still: what changes comes to balance at once, at rest.
+  class Standstill {
+   public:
+    explicit Standstill(TissueMotion& motion) : motion_(motion) {
+      motion_.stop();
+      motion_.stands_ = true;
+    }
+    ~Standstill() { motion_.stands_ = false; }
+    Standstill(const Standstill&) = delete;
+    Standstill& operator=(const Standstill&) = delete;
+
+   private:
+    TissueMotion& motion_;
+  };
   void restore(TimeIntegrator::Motion motion, bool in_time);  // of another shape
   void setTolerance(double tolerance);
 
@@ -67,6 +81,7 @@ class TissueMotion {
   bool in_time_ = false;
   bool in_step_ = false;
   bool expects_step_ = false;
+  bool stands_ = false;
 };
 
 }  // namespace robot_tissue
