@@ -219,7 +219,8 @@ TEST(ShapeDistance, MeasuresOfALink) {
   EXPECT_EQ(finder.linkCount(), 3U);
   EXPECT_NEAR(finder.thickness(0), 0.006, 1e-12);
   EXPECT_NEAR(finder.reach(0), Vec3(0.003, 0.003, 0.101).norm(), 1e-12);
-  EXPECT_NEAR((finder.center(0) - Vec3(0.0, 0.0, 0.025)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR(boundsOf(finder.surfacePoints(0)).max().z(), 0.101, 1e-12);
+  EXPECT_TRUE(finder.surfacePoints(1).empty());
   const Box box = finder.bounds(0, makePose(Vec3(1.0, 0.0, 0.0), 0.5 * M_PI, Vec3::UnitY()));
   EXPECT_NEAR((box.min() - Vec3(0.995, -0.005, -0.005)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((box.max() - Vec3(1.101, 0.005, 0.005)).norm(), 0.0, 1e-12);

@@ -59,5 +59,43 @@ TEST(ForceDrive, AForceThatTissueLeapsPastIsLookedForNoFurther) {
   EXPECT_LT(tool.walks(), 60);
 }
 
+// A tool of one link that is told to be at the origin and comes to so much of a way along z (m).
+class HaltedTool {
+ public:
+  explicit HaltedTool(double came) : tools_({ToolGeometry{"probe", {{"probe", {}}}}}, {}) {
+    drive_.setTools(1);
+    drive_.push(0, Vec3(0.0, 0.0, kWanted));
+    drive_.meetForce(0, {kLoadStep, [] { return Vec3(Vec3::Zero()); }, [] { return false; },
+                         [] { return true; }});
+    RobotPose told, reached;
+    told.links = {Pose::Identity()};
+    reached.links = {Pose(Eigen::Translation3d(0.0, 0.0, came))};
+    drive_.noteReached(told, reached, tools_);
+  }
+  ForceDrive& drive() { return drive_; }
+
+ private:
+  ToolSet tools_;
+  ForceDrive drive_;
+};
+
+TEST(ForceDrive, AnotherForceGoesOnFromWhereTheToolCame) {
+  const double came = 0.3 * kLoadStep;
+  HaltedTool tool(came);
+  ForceDrive& drive = tool.drive();
+  EXPECT_NEAR(drive.offset(0).z(), kLoadStep, 1e-15);
+  EXPECT_NEAR(drive.came(0).z(), came, 1e-15);
+  drive.push(0, Vec3(0.0, 0.0, kWanted));
+  EXPECT_NEAR(drive.offset(0).z(), kLoadStep, 1e-15) << "the same: it is on its way";
+  drive.push(0, Vec3(0.0, 0.0, 0.5 * kWanted));
+  EXPECT_NEAR(drive.offset(0).z(), came, 1e-15);
+}
+
+TEST(ForceDrive, ToolThatNoShapeFollowsStaysWhereItCame) {
+  HaltedTool tool(0.3 * kLoadStep);
+  tool.drive().stay();
+  EXPECT_NEAR(tool.drive().offset(0).z(), 0.3 * kLoadStep, 1e-15);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_force_drive

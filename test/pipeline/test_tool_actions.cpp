@@ -63,30 +63,27 @@ TEST(DrivenTool, ThatFindsNothingStops) {
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
-// Not from where it was to go to, which is deeper.
-TEST(DrivenTool, GoesBackAtOnceFromWhereNoShapeFollowedIt) {
+// Not where it was to go to, which is deeper.
+TEST(DrivenTool, IsToldWhereItCameToWhereNoShapeFollows) {
   ToolShape sphere;
   sphere.radius = 0.008;
-  Pipeline pipeline(block(), {}, {toolOf(sphere)});
-  const RobotPose above = at({Vec3(kMiddle + 0.0037, kMiddle + 0.0061, kTop + 0.0081)});
-  pipeline.step(above);
-  const auto push = [&](double force) {
-    pipeline.push(0, Vec3(0.0, 0.0, -force));
-    for (int i = 0; i < 20 && pipeline.step(above).changed; ++i) {
-    }
-  };
+  TissueConfig tissue = block();
+  tissue.shape.max().z() = 0.03;
+  Pipeline pipeline(tissue, {}, {toolOf(sphere)});
+  const RobotPose above = at({Vec3(kMiddle + 0.0037, kMiddle + 0.0061, 0.0375)});
+  walk(pipeline, {Vec3(kMiddle + 0.0037, kMiddle + 0.0061, 0.04)},
+       {above.links.front().translation()});
   bool is_lost = false;
-  for (const double force : {20.0, 40.0, 60.0}) {
-    push(force);
+  for (const double force : {10.0, 20.0, 30.0, 60.0}) {
+    pipeline.push(0, Vec3(0.0, 0.0, -force));
+    for (int i = 0; i < 200 && pipeline.step(above).changed; ++i) {
+    }
     is_lost = is_lost || pipeline.report().lost;
     const Vec3 came = pipeline.pose()->links.front().translation();
     const Vec3 offset = pipeline.report().tools.front().offset;
     EXPECT_LT((above.links.front().translation() + offset - came).norm(), 1e-12) << force;
   }
   ASSERT_TRUE(is_lost);
-  push(0.3);
-  EXPECT_FALSE(pipeline.report().lost);
-  EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), 0.3, 0.01 * 0.3);
 }
 
 TEST(DrivenTool, ForceThatIsZeroOrNotFiniteIsRefused) {
