@@ -59,10 +59,17 @@ TEST(ForceDrive, AForceThatTissueLeapsPastIsLookedForNoFurther) {
   EXPECT_LT(tool.walks(), 60);
 }
 
+ToolGeometry probe() {
+  ToolGeometry tool;
+  tool.name = "probe";
+  tool.links = {{"probe", {}}};
+  return tool;
+}
+
 // A tool of one link that is told to be at the origin and comes to so much of a way along z (m).
 class HaltedTool {
  public:
-  explicit HaltedTool(double came) : tools_({ToolGeometry{"probe", {{"probe", {}}}}}, {}) {
+  explicit HaltedTool(double came) : tools_({probe()}, {}) {
     drive_.setTools(1);
     drive_.push(0, Vec3(0.0, 0.0, kWanted));
     drive_.meetForce(0, {kLoadStep, [] { return Vec3(Vec3::Zero()); }, [] { return false; },
