@@ -234,9 +234,9 @@ constexpr int kMostHalvings = 20;
 // Of the spacing (1): what a blade swept on so much of its way is cut at once. More: fewer solves,
 // but what gives way as it is cut is met where it was. Chosen: no spring is passed in one.
 constexpr double kBladeStride = 0.25;
-// Of the farthest point of a blade from its edge (1): with the middle of its shapes nearer to it, the
-// way from the edge to the middle does not tell how the blade lies. More: blades that are not flat
-// have their sides where they are narrowest, too. Chosen: a blade with one edge has 0.5.
+// Of the farthest point of a blade from its edge (1): with the middle of its shapes nearer to it,
+// the way from the edge to the middle does not tell how the blade lies. More: blades that are not
+// flat have their sides where they are narrowest, too. Chosen: a blade with one edge has 0.5.
 constexpr double kEdgeInMiddle = 0.1;
 // Directions in half a turn in which such a blade's width is measured first. More: a narrow width
 // between two of them is found surely, when tools are set only. Chosen.
