@@ -171,8 +171,9 @@ double SlidingContacts::slackOf(const ContactConstraint& touch, const Tissue& ti
   const double touches = std::max(1.0, pressed.touches / touch.crowding);
   const double of_all = stiffness * std::sqrt(touches);
   const double slack = of_all > 0.0 ? tuning::kSlackOfForce * pressed.force / of_all : 0.0;
-  const double of_firm = std::min(std::max(slack, tuning::kLeastSlack * spacing / touch.stiffening),
-                                  tuning::kMostSlack * spacing);
+  const double least = tissue.hasTime() ? tuning::kLeastSlackInTime : tuning::kLeastSlack;
+  const double of_firm =
+      std::min(std::max(slack, least * spacing / touch.stiffening), tuning::kMostSlack * spacing);
   return (1.0 + touch.compliance.normal * stiffness) * of_firm;
 }
 

@@ -28,6 +28,12 @@ bool ForceDrive::drivesAny() const {
                      [](const Drive& drive) { return drive.force.has_value(); });
 }
 
+bool ForceDrive::isMet(std::size_t tool, const Vec3& met) const {
+  const Vec3& force = *drives_[tool].force;
+  const double wanted = force.norm();
+  return std::abs(met.dot(force) / wanted - wanted) <= tuning::kForceMet * wanted;
+}
+
 Vec3 ForceDrive::offset(std::size_t tool) const {
   const Drive& drive = drives_[tool];
   return drive.force ? Vec3(drive.way * drive.force->normalized()) : Vec3(Vec3::Zero());

@@ -21,8 +21,9 @@ class ForceDrive {
   void push(std::size_t tool, const std::optional<Vec3>& force);
   bool drives(std::size_t tool) const { return drives_[tool].force.has_value(); }
   bool drivesAny() const;
-  Vec3 offset(std::size_t tool) const;  // of where it is to go, from its pose (m)
-  Vec3 came(std::size_t tool) const;    // of where it came on that way, likewise
+  bool isMet(std::size_t tool, const Vec3& met) const;  // by a force on the tissue (N)
+  Vec3 offset(std::size_t tool) const;                  // of where it is to go, from its pose (m)
+  Vec3 came(std::size_t tool) const;                    // of where it came on that way, likewise
   // The pose with the tools where their forces move them.
   RobotPose driven(RobotPose pose, const ToolSet& tools) const;
   // Where the tools, told to be in the pose, came in fact.

@@ -54,10 +54,13 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
   bool goes_on = false;
   const bool in_time = world_.tissue.isInTime();
   const bool may_repeat = before != nullptr && before->shape.cells == world_.tissue.state().cells;
-  if (in_time && !may_repeat) return true;
   const StepReport& report = world_.report;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!state_.drive.drives(tool)) continue;
+    if (in_time && !may_repeat) {
+      goes_on = goes_on || !state_.drive.isMet(tool, answerOf(world_, tool).force);
+      continue;
+    }
     if (state_.drive.waits(tool, isLate())) {
       goes_on = true;
       continue;

@@ -131,5 +131,28 @@ TEST(BallOnALayer, IsNotTakenToBeOnAHalfSpace) {
   EXPECT_NEAR(force(kSpacing), fine, 0.2 * fine);
 }
 
+// A light touch, for which all gaps were small enough to be let be.
+TEST(LightTouch, IsFeltAlikeWhereverTheBallCameFrom) {
+  constexpr double kSmall = 0.005, kHeight = 0.03, kDepth = 0.0002;  // m
+  TissueConfig tissue = block("elastic", 0.005);
+  tissue.shape.max() = Vec3(0.06, 0.06, kHeight);
+  tissue.material.poisson_ratio = 0.3;
+  ToolShape ball;
+  ball.type = ToolShape::Type::kSphere;
+  ball.radius = kSmall;
+  Pipeline pipeline(tissue, SolverConfig(), {withFriction(0.0, toolOf(ball))});
+  const auto force_at = [&](double depth) {
+    pipeline.step(at({Vec3(0.0278544, 0.0243124, kHeight + kSmall - depth)}));
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << depth;
+    return pipeline.report().tools.front().force_on_tool.z();
+  };
+  force_at(-0.005);
+  const double first = force_at(kDepth);
+  for (const double other : {0.00012, 0.00024, 0.0003, -0.0002}) {
+    force_at(other);
+    EXPECT_NEAR(force_at(kDepth), first, 0.2 * first) << other << " m";
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_narrow_contacts
