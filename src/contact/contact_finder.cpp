@@ -379,7 +379,8 @@ bool ContactFinder::hasMesh(std::size_t link) const {
                      [](const CollisionShape& shape) { return shape.isMesh(); });
 }
 
-double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose) const {
+double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose,
+                          double reach) const {
   requireLinks(pose, impl_->links.size());
   const TouchingLink& a = impl_->links[link];
   const TouchingLink& b = impl_->links[other];
@@ -388,8 +389,10 @@ double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& 
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < a_here.size(); ++i) {
     for (std::size_t j = 0; j < b_here.size(); ++j) {
-      least = std::min(least, gapBetween({&a_here[i], &a.gap_shapes[i], &a.surface_points[i]},
-                                         {&b_here[j], &b.gap_shapes[j], &b.surface_points[j]}));
+      const double gap =
+          gapBetween({&a_here[i], &a.gap_shapes[i], &a.surface_points[i]},
+                     {&b_here[j], &b.gap_shapes[j], &b.surface_points[j]}, std::min(least, reach));
+      least = std::min(least, gap);
     }
   }
   return least;

@@ -119,9 +119,13 @@ GapShape::GapShape(GapShape&&) noexcept = default;
 
 namespace {
 
-std::optional<double> gapByFcl(const GapSide& a, const GapSide& b) {
+// FCL looks for what is nearer than the result has it.
+std::optional<double> gapByFcl(const GapSide& a, const GapSide& b, double reach) {
+  const double padding = a.placed->shape->padding() + b.placed->shape->padding();
   const fcl::DistanceRequestd request(false, false, 0.0, 0.0, 1e-9);
   fcl::DistanceResultd result;
+  const double beyond = reach + padding + tuning::kBeyondReach;
+  if (std::isfinite(beyond)) result.min_distance = tuning::kUnitsPerM * beyond;
   try {
     fcl::distance(a.shape->object()->geometry.get(), fclPlace(*a.placed),
                   b.shape->object()->geometry.get(), fclPlace(*b.placed), request, result);
@@ -130,12 +134,14 @@ std::optional<double> gapByFcl(const GapSide& a, const GapSide& b) {
   }
   const double gap = result.min_distance / tuning::kUnitsPerM;
   if (!std::isfinite(gap) || std::abs(gap) > 1e6) return std::nullopt;
-  return std::max(0.0, gap) - a.placed->shape->padding() - b.placed->shape->padding();
+  return std::max(0.0, gap) - padding;
 }
 
 }  // namespace
 
-double gapBetween(const GapSide& a, const GapSide& b) {
+double gapBetween(const GapSide& a, const GapSide& b, double reach) {
+  const double between_boxes = a.placed->bounds.exteriorDistance(b.placed->bounds);
+  if (between_boxes > reach + tuning::kBeyondReach) return between_boxes;
   double gap = 0.0;
   if (a.placed->shape->isPlane()) {
     gap = gapOverPlane(*a.placed, b);
@@ -146,7 +152,7 @@ double gapBetween(const GapSide& a, const GapSide& b) {
   } else if (isSphere(*b.placed)) {
     gap = gapOfSphere(*b.placed, *a.placed);
   } else if (!isWithin(*a.placed, *b.placed) && !isWithin(*b.placed, *a.placed)) {
-    const auto found = gapByFcl(a, b);
+    const auto found = gapByFcl(a, b, reach);
     gap = found ? *found : std::min(gapOfPoints(a, b), gapOfPoints(b, a));
   }
   return std::max(0.0, gap);

@@ -27,7 +27,8 @@ struct GapSide {
   const std::vector<Vec3>* points = nullptr;  // surfacePoints()
 };
 
-// Between the padded shapes (m), 0 when they overlap.
-double gapBetween(const GapSide& a, const GapSide& b);
+// Between the padded shapes (m), 0 when they overlap. One that is wider than `reach` (m) may be
+// told less, but wider than that.
+double gapBetween(const GapSide& a, const GapSide& b, double reach);
 
 }  // namespace robot_tissue

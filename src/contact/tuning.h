@@ -137,6 +137,9 @@ constexpr double kLeastStep = 0.1;
 // Units of FCL in a meter: libccd's tolerances are absolute and made for shapes about one unit
 // wide. With 1, gaps would be wrong by micrometers; far more, and large shapes are. Chosen.
 constexpr double kUnitsPerM = 100.0;
+// m: gaps that are so much wider than is asked for are not measured. Less: where gaps are as wide
+// as that, rounding may tell them wider; more: more is measured. Rounding.
+constexpr double kBeyondReach = 1e-9;
 // Directions in which a mesh's thickness is measured, at most. More: thin places are found surely,
 // at loading only. Chosen.
 constexpr std::size_t kWidthDirections = 400;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
+#include "robot_tissue/core/same_bits.h"
 #include "stopwatch.h"
 #include "tuning.h"
 
@@ -29,10 +31,20 @@ bool Grasping::hasJaws(std::size_t tool, const RobotPose& pose) const {
          !ToolSet::isAway(pose.links[jaw]);
 }
 
-// Wherever they are nearest to each other (m); nothing without jaws.
-std::optional<double> Grasping::leastGap(std::size_t tool, const RobotPose& pose) const {
+// Wherever they are nearest to each other (m), as ContactFinder::gap tells it; nothing without
+// jaws.
+std::optional<double> Grasping::leastGap(std::size_t tool, const RobotPose& pose,
+                                         double reach) const {
   if (!hasJaws(tool, pose)) return std::nullopt;
-  return world_.finder.gap(world_.tools.firstJaw(tool), world_.tools.firstJaw(tool) + 1, pose);
+  const std::size_t jaw = world_.tools.firstJaw(tool);
+  const Pose jaw_T_other = pose.links[jaw].inverse() * pose.links[jaw + 1];
+  std::optional<Gap>& last = last_gaps_[tool];
+  const bool stand_still =
+      last && (last->jaw_T_other.matrix() - jaw_T_other.matrix()).norm() <= tuning::kSameOpening;
+  if (!stand_still || !last->tells(reach)) {
+    last = Gap{jaw_T_other, reach, world_.finder.gap(jaw, jaw + 1, pose, reach)};
+  }
+  return last->gap;
 }
 
 // The jaws' points that are nearest to this one.
@@ -48,27 +60,43 @@ std::optional<Grasping::Pinch> Grasping::pinchAt(std::size_t tool, const RobotPo
                one->normal.dot(other->normal) < 0.0};
 }
 
-// The narrowest around a point of the surface that is between the jaws, or touches one.
-std::optional<Grasping::Pinch> Grasping::narrowestPinch(std::size_t tool,
-                                                        const RobotPose& pose) const {
+// Of the surface, in a box around both; and what touches them.
+std::vector<Vec3> Grasping::pointsNearJaws(std::size_t tool, const RobotPose& pose) const {
   const std::size_t jaw = world_.tools.firstJaw(tool);
   Box around = world_.finder.bounds(jaw, pose.links[jaw]);
   const Box other = world_.finder.bounds(jaw + 1, pose.links[jaw + 1]);
   around.extend(other);
   const Box tissue = world_.tissue.bounds();
-  std::optional<Pinch> narrowest;
-  if (!around.intersects(tissue)) return narrowest;
-  const auto look = [&](const Vec3& point) {
-    if (!around.contains(point)) return;
-    const auto pinch = pinchAt(tool, pose, point);
-    if (!pinch || !pinch->is_between) return;
-    if (!narrowest || pinch->gap < narrowest->gap) narrowest = pinch;
+  std::vector<Vec3> points;
+  if (!around.intersects(tissue)) return points;
+  const auto take = [&](const Vec3& point) {
+    if (around.contains(point)) points.push_back(point);
   };
-  for (const Vec3& vertex : world_.tissue.vertices()) look(vertex);
+  for (const Vec3& vertex : world_.tissue.vertices()) take(vertex);
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (at(touch.contact.tool) == tool)
-      look(pointOf(touch.spring, world_.tissue.state().displacement));
+      take(pointOf(touch.spring, world_.tissue.state().displacement));
   }
+  return points;
+}
+
+// The narrowest around a point of the surface that is between the jaws, or touches one.
+std::optional<Grasping::Pinch> Grasping::narrowestPinch(std::size_t tool,
+                                                        const RobotPose& pose) const {
+  const std::size_t jaw = world_.tools.firstJaw(tool);
+  std::vector<Vec3> points = pointsNearJaws(tool, pose);
+  std::optional<Look>& last = last_looks_[tool];
+  if (last && areSame(last->jaws[0], pose.links[jaw]) &&
+      areSame(last->jaws[1], pose.links[jaw + 1]) && areSame(last->points, points)) {
+    return last->narrowest;
+  }
+  std::optional<Pinch> narrowest;
+  for (const Vec3& point : points) {
+    const auto pinch = pinchAt(tool, pose, point);
+    if (!pinch || !pinch->is_between) continue;
+    if (!narrowest || pinch->gap < narrowest->gap) narrowest = pinch;
+  }
+  last = Look{{pose.links[jaw], pose.links[jaw + 1]}, std::move(points), narrowest};
   return narrowest;
 }
 
@@ -120,7 +148,7 @@ void Grasping::closeJaws() {
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     if (!hasJaws(tool, world_.pose)) continue;
     Jaws& jaws = jaws_[tool];
-    jaws.were_apart = jaws.were_apart || *leastGap(tool, world_.pose) > 0.0;
+    jaws.were_apart = jaws.were_apart || *leastGap(tool, world_.pose, 0.0) > 0.0;
     if (!jaws.let_go) watchJaws(tool);
   }
 }
@@ -234,7 +262,7 @@ std::string Grasping::whyItHoldsNothing(std::size_t tool, bool is_asked) const {
   const GraspConfig& grasp = world_.tools[tool].grasp;
   const auto gap = gapAtTissue(tool, world_.pose);
   if (!gap) {
-    const bool closed = *leastGap(tool, world_.pose) < grasp.close_gap;
+    const bool closed = *leastGap(tool, world_.pose, grasp.close_gap) < grasp.close_gap;
     return closed || is_asked ? "no tissue is between its jaws" : "";
   }
   const std::string open_first =
@@ -272,7 +300,7 @@ bool Grasping::pushesWith(std::size_t link) const {
 
 bool Grasping::jawsOverlap(std::size_t tool) const {
   if (!world_.last_pose || !jaws_[tool].were_apart) return false;
-  const auto gap = leastGap(tool, world_.report.lost ? world_.asked : world_.pose);
+  const auto gap = leastGap(tool, world_.report.lost ? world_.asked : world_.pose, 0.0);
   return gap && *gap <= 0.0;
 }
 

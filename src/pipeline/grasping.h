@@ -33,7 +33,11 @@ class Grasping {
   // The jaws, of each tool, are kept by the caller.
   Grasping(World& world, std::vector<Jaws>& jaws) : world_(world), jaws_(jaws) {}
 
-  void setTools(std::size_t count) { jaws_.assign(count, {}); }
+  void setTools(std::size_t count) {
+    jaws_.assign(count, {});
+    last_looks_.assign(count, std::nullopt);
+    last_gaps_.assign(count, std::nullopt);
+  }
   const std::vector<Jaws>& jaws() const { return jaws_; }
   void restore(const std::vector<Jaws>& jaws) { jaws_ = jaws; }
 
@@ -65,8 +69,26 @@ class Grasping {
     bool is_between = false;  // the point is between them
   };
 
-  std::optional<double> leastGap(std::size_t tool, const RobotPose& pose) const;
+  // For narrowestPinch(): that is asked several times an update.
+  struct Look {
+    std::array<Pose, 2> jaws;
+    std::vector<Vec3> points;
+    std::optional<Pinch> narrowest;
+  };
+
+  // For leastGap(): between meshes that takes long, and it stays while neither moves relative to
+  // the other.
+  struct Gap {
+    Pose jaw_T_other = Pose::Identity();
+    double reach = 0.0;  // m
+    double gap = 0.0;    // m: as ContactFinder::gap tells it
+
+    bool tells(double asked_reach) const { return asked_reach <= reach || gap <= reach; }
+  };
+
+  std::optional<double> leastGap(std::size_t tool, const RobotPose& pose, double reach) const;
   std::optional<Pinch> pinchAt(std::size_t tool, const RobotPose& pose, const Vec3& point) const;
+  std::vector<Vec3> pointsNearJaws(std::size_t tool, const RobotPose& pose) const;
   std::optional<Pinch> narrowestPinch(std::size_t tool, const RobotPose& pose) const;
   void watchJaws(std::size_t tool);
   std::size_t hold(std::size_t tool);
@@ -79,7 +101,9 @@ class Grasping {
   void lose(std::size_t tool);
 
   World& world_;
-  std::vector<Jaws>& jaws_;  // per tool
+  std::vector<Jaws>& jaws_;                              // per tool
+  mutable std::vector<std::optional<Look>> last_looks_;  // likewise
+  mutable std::vector<std::optional<Gap>> last_gaps_;    // likewise
 };
 
 }  // namespace robot_tissue

@@ -220,6 +220,8 @@ constexpr int kDepthTrials = 4;
 // Graspers and reports.
 // Cosine between the ways out of two jaws: below it, they lead to opposite sides. Chosen.
 constexpr double kOpposed = -0.5;
+// m, and of a turn (1): jaws that moved less relative to each other stand as they did. Rounding.
+constexpr double kSameOpening = 1e-12;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
 

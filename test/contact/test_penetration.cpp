@@ -225,6 +225,29 @@ TEST(Gap, IsZeroForShapesThatOverlap) {
             0.0);
 }
 
+TEST(Gap, IsToldAsItIsWithinReachAndWiderBeyond) {
+  const Vec3 size(0.01, 0.02, 0.004);
+  const ToolShape as_mesh = mesh(writeStl("jaw_reach.stl", boxTriangles(size)));
+  const ToolShape round = mesh(writeStl("ball_reach.stl", ballTriangles(8, 0.005)));
+  const Pose tilted(Eigen::AngleAxisd(0.6, Vec3(1.0, 2.0, 0.5).normalized()));
+  for (const ToolShape& a : {as_mesh, round, box(size), cylinder(0.005, 0.02), sphere(0.005)}) {
+    for (const ToolShape& b : {as_mesh, round, box(size), cylinder(0.005, 0.02), plane()}) {
+      const ContactFinder finder({makeTool({a}, 0.0002), makeTool({b}, 0.0002)});
+      for (const double off : {0.001, 0.007, 0.011, 0.03}) {
+        RobotPose pose;
+        pose.links = {makePose(off * Vec3(0.3, 1.0, 1.0)), tilted};
+        const double gap = finder.gap(0, 1, pose);
+        EXPECT_EQ(finder.gap(0, 1, pose, gap), gap);
+        EXPECT_EQ(finder.gap(0, 1, pose, gap + 0.01), gap);
+        if (gap == 0.0) continue;
+        for (const double part : {0.0, 0.5, 0.99}) {
+          EXPECT_GT(finder.gap(0, 1, pose, part * gap), part * gap);
+        }
+      }
+    }
+  }
+}
+
 TEST(Gap, OfCornersAndOverAPlane) {
   const ToolShape cube = box(Vec3::Constant(0.01));
   EXPECT_NEAR(gapOf(cube, Pose::Identity(), cube, makePose(Vec3::Constant(0.013))),

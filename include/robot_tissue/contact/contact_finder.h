@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -129,8 +130,9 @@ class ContactFinder {
                                    const Bulge& bulge = {}) const;
 
   // Distance between two links (m), e.g. jaws; 0 when they overlap, infinite when one has no shapes
-  // or no rigid pose.
-  double gap(std::size_t link, std::size_t other, const RobotPose& pose) const;
+  // or no rigid pose. A gap that is wider than `reach` (m) may be told less, but wider than that.
+  double gap(std::size_t link, std::size_t other, const RobotPose& pose,
+             double reach = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Impl;
