@@ -226,22 +226,23 @@ bool SlidingContacts::hopsBack(const ContactConstraint& touch, const Contact& co
   return off.cwiseAbs().maxCoeff() < 0.5 * gone.cwiseAbs().maxCoeff();
 }
 
-bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, const Held& held) {
+bool SlidingContacts::givesWay(const std::vector<NodeWeight>& carriers, int tool,
+                               const Held& held) {
   double free = 0.0;
   for (const auto& [node, weight] : carriers) {
-    if (held[at(node)] == kGrasped) return false;
+    if (held[at(node)] == graspedBy(tool)) return false;
     if (held[at(node)] == 0) free += weight;
   }
   return free >= tuning::kLeastFree;
 }
 
-bool SlidingContacts::givesWay(const SurfacePoint& point, const Tissue& tissue, const Held& held) {
-  return givesWay(carriersAt(tissue.surface(), point), held);
+bool SlidingContacts::givesWay(const Contact& contact, const Tissue& tissue, const Held& held) {
+  return givesWay(carriersAt(tissue.surface(), contact.place), contact.tool, held);
 }
 
 void SlidingContacts::forgetLost(const Held& held) {
   const auto lost = [&](const ContactConstraint& touch) {
-    return !touch.found || !givesWay(touch.spring.carriers, held);
+    return !touch.found || !givesWay(touch.spring.carriers, touch.contact.tool, held);
   };
   touches_.erase(std::remove_if(touches_.begin(), touches_.end(), lost), touches_.end());
 }

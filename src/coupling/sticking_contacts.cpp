@@ -259,9 +259,9 @@ std::vector<std::uint8_t> StickingContacts::takenNodes(const Tissue& tissue) con
 }
 
 void StickingContacts::markAttached(std::vector<std::uint8_t>& nodes) const {
-  for (const auto& attachments : attachments_) {
-    for (const auto& [node, attachment] : attachments)
-      nodes[at(node)] = attachment.grasped ? kGrasped : 1;
+  for (std::size_t tool = 0; tool < attachments_.size(); ++tool) {
+    for (const auto& [node, attachment] : attachments_[tool])
+      nodes[at(node)] = attachment.grasped ? SlidingContacts::graspedBy(static_cast<int>(tool)) : 1;
   }
 }
 

@@ -112,7 +112,7 @@ std::optional<bool> OverlapResolver::givesWay(const ContactSet& overlap) const {
   if (overlap.contacts.empty()) return std::nullopt;
   const std::vector<std::uint8_t> held = world_.sticking.heldNodes(world_.tissue);
   return std::any_of(overlap.contacts.begin(), overlap.contacts.end(), [&](const Contact& contact) {
-    return SlidingContacts::givesWay(contact.place, world_.tissue, held);
+    return SlidingContacts::givesWay(contact, world_.tissue, held);
   });
 }
 

@@ -142,7 +142,7 @@ std::vector<double> ToolContactUpdate::depthsIn(const std::vector<Vec3>& vertice
     if (contact.depth_m <= 0.0) continue;
     if (at(contact.link) >= depths.size() || world_.tools.isRigid(contact.tool)) continue;
     if (world_.isInWound(at(contact.link))) continue;
-    if (!SlidingContacts::givesWay(contact.place, world_.tissue, held)) continue;
+    if (!SlidingContacts::givesWay(contact, world_.tissue, held)) continue;
     const double depth = touch_finder_.ownDepth(contact, contact.depth_m);
     depths[at(contact.link)] = std::max(depths[at(contact.link)], depth);
   }

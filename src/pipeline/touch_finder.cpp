@@ -227,7 +227,7 @@ ContactSet TouchFinder::touchesAt(const RobotPose& pose, const std::vector<std::
                                   double way) {
   ContactSet contacts = contactsAt(pose, world_.tissue.state().displacement, way);
   const auto stands = [&](const Contact& contact) {
-    return !SlidingContacts::givesWay(contact.place, world_.tissue, held);
+    return !SlidingContacts::givesWay(contact, world_.tissue, held);
   };
   auto& all = contacts.contacts;
   all.erase(std::remove_if(all.begin(), all.end(), stands), all.end());
@@ -273,7 +273,7 @@ void TouchFinder::takeRims(const std::vector<std::uint8_t>& held, ContactSet& co
   for (Contact& contact : all) rims_.mark(contact);
   all.erase(std::remove_if(all.begin(), all.end(), ToolRims::isTakenOver), all.end());
   for (const Contact& contact : rims_.beyond(vertices_).contacts) {
-    if (SlidingContacts::givesWay(contact.place, world_.tissue, held)) all.push_back(contact);
+    if (SlidingContacts::givesWay(contact, world_.tissue, held)) all.push_back(contact);
   }
 }
 

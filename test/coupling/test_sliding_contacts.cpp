@@ -356,6 +356,15 @@ TEST_F(PlaneOnABlock, PointsThatOnlyHeldNodesCarryAreNeverTaken) {
   }
 }
 
+TEST(GivesWay, BesideGraspedNodesToOtherToolsByFourTenthsOfItsWeightToTheJawsNever) {
+  const int jaws = 1, other = 0;
+  const std::vector<std::uint8_t> held = {SlidingContacts::graspedBy(jaws), 0};
+  EXPECT_TRUE(SlidingContacts::givesWay({{0, 0.55}, {1, 0.45}}, other, held));
+  EXPECT_FALSE(SlidingContacts::givesWay({{0, 0.65}, {1, 0.35}}, other, held));
+  EXPECT_FALSE(SlidingContacts::givesWay({{0, 0.05}, {1, 0.95}}, jaws, held));
+  EXPECT_TRUE(SlidingContacts::givesWay({{1, 1.0}}, jaws, held));
+}
+
 TEST_F(PlaneOnABlock, ToolThatTheTissueSticksToIsNotItsOwn) {
   make(std::nullopt);
   goTo(Vec3(0.02, 0.02, 0.03 - 5e-4));

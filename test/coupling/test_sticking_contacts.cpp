@@ -388,8 +388,8 @@ TEST_F(StickingContactsTest, HeldAreFixedNodesThoseOfDisplacedLoadsAndOfTools) {
     EXPECT_EQ(held[at(each)] != 0, tissue_.lattice().isFixed(each) || loaded || of_tool)
         << "node " << each;
   }
-  EXPECT_EQ(held[at(node(5, 5, 3))], StickingContacts::kGrasped);
-  EXPECT_NE(held[at(node(3, 3, 3))], StickingContacts::kGrasped);
+  EXPECT_EQ(held[at(node(5, 5, 3))], SlidingContacts::graspedBy(1));
+  EXPECT_EQ(held[at(node(3, 3, 3))], 1);
 }
 
 // A gripper with two jaws: each node goes with the link that holds it.

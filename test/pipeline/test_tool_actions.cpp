@@ -341,6 +341,32 @@ TEST_P(Grasper, ThatCannotCloseOnTissueKeepsTheLastGoodShape) {
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
 }
 
+// Pressed down at some distance along the ridge from the middle of the jaws, which hold it (m).
+double depthBesideJaws(const std::string& method, double along) {
+  TissueConfig tissue = ridge();
+  tissue.shape = Box(Vec3(-0.03, -0.01, 0.0), Vec3(0.03, 0.01, kRidgeTop));
+  tissue.fixed = {bottomOf(tissue.shape)};
+  ToolGeometry gripper = ridgeGripper("gripper", 0.016, 0.018);
+  for (LinkGeometry& jaw : gripper.links) jaw.shapes.front().size.x() = 0.02;
+  ToolShape ball;
+  ball.radius = 0.006;
+  SolverConfig solver;
+  solver.method = method;
+  Pipeline pipeline(tissue, solver, {gripper, withFriction(0.2, toolOf(ball))});
+  const auto places = [&](double gap, double z) -> std::vector<Vec3> {
+    return {Vec3(0.0, -0.5 * gap, 0.026), Vec3(0.0, 0.5 * gap, 0.026), Vec3(along, 0.0, z)};
+  };
+  walk(pipeline, places(0.026, 0.045), places(0.0135, 0.045), 0.001);
+  EXPECT_TRUE(pipeline.report().tools.front().grasps);
+  walk(pipeline, places(0.0135, 0.045), places(0.0135, 0.029), 0.001);
+  EXPECT_FALSE(pipeline.report().lost);
+  return pipeline.report().tools.back().max_penetration;
+}
+
+TEST_P(Grasper, HoldsTissueThatOthersPressBesideIt) {
+  EXPECT_LT(depthBesideJaws(GetParam(), 0.02), 2e-4);
+}
+
 INSTANTIATE_TEST_SUITE_P(Method, RigidGrasper, ::testing::Values("layered"),
                          [](const auto& row) { return std::string(row.param); });
 INSTANTIATE_TEST_SUITE_P(Method, Grasper, ::testing::Values("layered", "newton"),

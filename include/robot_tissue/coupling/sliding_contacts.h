@@ -10,7 +10,8 @@
 // and the planes where the touches are now. A load step begins with ride() and meet(), calls
 // update() until that says the contacts are settled, and ends with commit(). In: contacts (tissue
 // frame, normals from the tool into the tissue), poses of the links. Out: the springs of each tool.
-// Points that held nodes carry, but for four tenths of their weight at most, are never taken.
+// Points that held nodes carry, but for four tenths of their weight at most, are never taken, and
+// by jaws none that hangs on a node that they have grasped.
 //
 // In time a point that is found deep, as between points that touched before, comes out by and by:
 // its plane is in the tool by `entry`, which goes to zero. At once it would have a speed that it
@@ -24,6 +25,7 @@
 // f = multiplier - k' (g + c multiplier), k' = k / (1 + k c), f is the multiplier for g = -c f.)
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <tuple>
@@ -51,7 +53,6 @@ struct TouchCompliance {
 
 class SlidingContacts {
  public:
-  static constexpr std::uint8_t kGrasped = 2;
   using Tracked = std::vector<std::optional<Contact>>;  // of each touch, in the order of touches()
 
   // What is kept of a contact from round to round, and from load step to load step.
@@ -89,10 +90,14 @@ class SlidingContacts {
   // links.
   SlidingContacts(std::vector<std::optional<double>> friction, std::vector<LinkForm> links);
 
-  // Whether a point with these carriers, or of the surface, can be pushed; `held` as in meet().
-  static bool givesWay(const std::vector<NodeWeight>& carriers,
+  // What `held` has for a node that this tool has grasped; those far back in the list share one.
+  static std::uint8_t graspedBy(int tool) {
+    return static_cast<std::uint8_t>(std::min(2 + tool, 255));
+  }
+  // Whether the tool can push a point with these carriers, or that contact's; `held` as in meet().
+  static bool givesWay(const std::vector<NodeWeight>& carriers, int tool,
                        const std::vector<std::uint8_t>& held);
-  static bool givesWay(const SurfacePoint& point, const Tissue& tissue,
+  static bool givesWay(const Contact& contact, const Tissue& tissue,
                        const std::vector<std::uint8_t>& held);
 
   // The links go to where they are now, and planes and anchors with them; forces go on as they
@@ -105,7 +110,7 @@ class SlidingContacts {
   bool takeSurface(const RobotPose& pose, const Tissue& tissue);
 
   // What the links touch anew where they are now. `held`: per node, not 0 = it does not give way;
-  // kGrasped: a tool has it, and what hangs on such a node is not pushed.
+  // graspedBy(tool): that tool's jaws have it, and do not push what hangs on it.
   // `wandering`: of touches that wander, as `tracked` in update(); those that have none and are not
   // found hand on their force.
   void meet(const ContactSet& contacts, const RobotPose& pose, const Tissue& tissue,

@@ -77,8 +77,7 @@ class StickingContacts {
   std::vector<Vec3> displacement(const Tissue& tissue) const;
   std::vector<int> nodes(int tool) const;
   // Per node, not 0 = it does not give way: fixed, hard in a named load by displacement, or in one
-  // of these patches; kGrasped: it moves with a grasper.
-  static constexpr std::uint8_t kGrasped = SlidingContacts::kGrasped;
+  // of these patches; SlidingContacts::graspedBy(tool): it moves with that grasper.
   std::vector<std::uint8_t> heldNodes(const Tissue& tissue) const;
   // Per node, not 0 = no tool may take it: likewise, but with all nodes of named loads.
   std::vector<std::uint8_t> takenNodes(const Tissue& tissue) const;
