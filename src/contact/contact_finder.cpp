@@ -12,6 +12,7 @@
 #include "link_contacts.h"
 #include "link_penetration.h"
 #include "placed_link.h"
+#include "shape_face.h"
 #include "shape_gap.h"
 #include "surface_traversal.h"
 #include "surface_tree.h"

@@ -1,5 +1,5 @@
-// Flat faces with sharp edges of a link's shapes, and where a point is from their edges (own).
-// Boxes and cylinders' ends by formula; of meshes the edges where they fold outwards.
+// The flat face of a link at a point, and where the point is from its edges (own; doc/contact.md,
+// "The rim").
 #pragma once
 
 #include <optional>
@@ -8,8 +8,6 @@
 #include "robot_tissue/contact/contact_finder.h"
 
 namespace robot_tissue {
-
-bool hasFlatFaces(const CollisionShape& shape);
 
 // As ContactFinder::flatFace.
 std::optional<FlatFace> flatFaceOf(const PlacedLink& link, const Vec3& facing, const Vec3& point,

@@ -129,6 +129,19 @@ constexpr double kFaces = 0.819;
 // Cosine between two edges of a face that bound it on different sides (1): 60 degrees. More:
 // rounded outlines have several edges near to each other. Chosen.
 constexpr double kOtherSide = 0.5;
+// Of the reach in which edges are looked for (1), itself 2.5 spacings: a length that the lattice
+// can feel. A face that goes on so far beyond an edge does not end there. More: wider gaps between
+// shapes, and grooves, are none. Chosen: a fifth of the spacing.
+constexpr double kFeltOfReach = 0.08;
+// Sine of the angle by which what is beyond an edge must turn away from the face (1): 30 degrees,
+// less than a mesh folds at a sharp edge. More: shapes that are joined aslant, or with a step, are
+// one face. Chosen.
+constexpr double kTurnsAway = 0.5;
+// Of that length (1): a narrow shape so near beyond an edge goes on with the face, too. Chosen.
+constexpr double kJustBeyond = 0.25;
+// Cosine between an edge and one farther on in the face of the shape that goes on there (1): this
+// one is seen past the first. Above rounding; more: edges aslant to each other are not seen.
+constexpr double kSameWay = 0.1;
 
 // Others.
 // Of the clearance that is sought (1): the shortest step along a direction out of a shape. More:

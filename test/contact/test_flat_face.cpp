@@ -1,6 +1,7 @@
 // Flat faces of links: where their edges are from a point.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "contact_fixtures.h"
@@ -92,6 +93,108 @@ TEST(FlatFace, TurnsWithItsLink) {
   ASSERT_TRUE(face);
   EXPECT_NEAR((face->normal - pose.linear() * kDown).norm(), 0.0, 1e-12);
   EXPECT_NEAR(depthAlong(*face, pose.linear() * Vec3::UnitX()), 0.003, 1e-12);
+}
+
+ToolShape boxAt(const Vec3& center, const Vec3& size) {
+  return placedAt(makePose(center), box(size));
+}
+
+// Points under, beside and over a face of 20 mm by 20 mm that looks down at z = 0.
+std::vector<Vec3> pointsAround() {
+  std::vector<Vec3> points;
+  for (const double x : {-0.0115, -0.008, -0.0003, 0.003, 0.009, 0.0115}) {
+    for (const double y : {-0.006, 0.0007, 0.008, 0.0118}) {
+      for (const double z : {-0.0004, 0.0, 0.0005}) points.emplace_back(x, y, z);
+    }
+  }
+  return points;
+}
+
+// The same edges on the same sides, wherever the face is looked at.
+void expectFaceOf(const std::vector<ToolShape>& shapes, const ToolShape& whole, double reach) {
+  const ContactFinder joined({makeTool(shapes)}), one({makeTool({whole})});
+  for (const Vec3& point : pointsAround()) {
+    const auto face = joined.flatFace(0, Pose::Identity(), kDown, point, reach);
+    const auto of_one = one.flatFace(0, Pose::Identity(), kDown, point, reach);
+    ASSERT_EQ(face.has_value(), of_one.has_value()) << point.transpose();
+    if (!face) continue;
+    EXPECT_NEAR(face->height_m, of_one->height_m, 1e-12);
+    ASSERT_EQ(face->edges.size(), of_one->edges.size()) << point.transpose();
+    for (const FaceEdge& edge : of_one->edges) {
+      EXPECT_NEAR(depthAlong(*face, edge.outward), edge.depth_m, 1e-9) << point.transpose();
+    }
+  }
+}
+
+void expectFaceOfInAnyOrder(std::vector<ToolShape> shapes, const ToolShape& whole) {
+  for (const double reach : {0.0125, 0.005}) {
+    expectFaceOf(shapes, whole, reach);
+    std::reverse(shapes.begin(), shapes.end());
+    expectFaceOf(shapes, whole, reach);
+  }
+}
+
+// Where shapes of a link are parts of one face, what is between them is no edge.
+TEST(FlatFace, SeamsBetweenShapesAreNoEdges) {
+  const Vec3 up(0.0, 0.0, 0.01);
+  const ToolShape whole = boxAt(up, Vec3(0.02, 0.02, 0.02));
+  const Vec3 half(0.01, 0.02, 0.02);
+  const Vec3 aside(0.005, 0.0, 0.0);
+  expectFaceOfInAnyOrder({boxAt(up - aside, half), boxAt(up + aside, half)}, whole);
+  const Vec3 overlapping(0.014, 0.02, 0.02), less_aside(0.003, 0.0, 0.0);
+  expectFaceOfInAnyOrder({boxAt(up - less_aside, overlapping), boxAt(up + less_aside, overlapping)},
+                         whole);
+  const Vec3 with_a_slot(0.00995, 0.02, 0.02), more_aside(0.005025, 0.0, 0.0);
+  expectFaceOfInAnyOrder({boxAt(up - more_aside, with_a_slot), boxAt(up + more_aside, with_a_slot)},
+                         whole);
+  std::vector<ToolShape> tiles;
+  for (const double x : {-0.0075, -0.0025, 0.0025, 0.0075}) {
+    for (const double y : {-0.005, 0.005}) {
+      tiles.push_back(boxAt(Vec3(x, y, 0.01), Vec3(0.005, 0.01, 0.02)));
+    }
+  }
+  expectFaceOfInAnyOrder(tiles, whole);
+}
+
+TEST(FlatFace, AShapeInsideAnotherHasNoEdges) {
+  const ToolShape whole = boxAt(Vec3(0.0, 0.0, 0.01), Vec3(0.02, 0.02, 0.02));
+  for (const double short_of : {0.0, 1e-4}) {
+    const Vec3 center(0.001, 0.002, 0.01 + short_of);
+    expectFaceOfInAnyOrder({whole, boxAt(center, Vec3(0.008, 0.008, 0.02))}, whole);
+  }
+  // The legs of an L, with one bottom.
+  const Vec3 sole(0.02, 0.02, 0.0005), leg(0.0005, 0.02, 0.02);
+  const ToolShape bottom = boxAt(Vec3(0.0, 0.0, 0.00025), sole);
+  expectFaceOfInAnyOrder({bottom, boxAt(Vec3(-0.00975, 0.0, 0.01), leg)}, bottom);
+  const ToolShape disk = placedAt(makePose(Vec3(0.0, 0.0, 0.01)), cylinder(0.01, 0.02));
+  expectFaceOfInAnyOrder({disk, boxAt(Vec3(0.0, 0.0, 0.01), Vec3(0.013, 0.013, 0.02))}, disk);
+}
+
+TEST(FlatFace, MeshesAreJoinedAsBoxesAre) {
+  const auto half = [](const std::string& name, double x) {
+    return mesh(writeStl(name, boxTriangles(Vec3(0.01, 0.02, 0.02), Vec3(x, 0.0, 0.01))));
+  };
+  const ContactFinder joined({makeTool({half("left.stl", -0.005), half("right.stl", 0.005)})});
+  const auto face = joined.flatFace(0, Pose::Identity(), kDown, Vec3(0.002, 0.001, 0.0003), 0.0125);
+  ASSERT_TRUE(face);
+  EXPECT_NEAR(depthAlong(*face, Vec3::UnitX()), 0.008, 1e-8);
+  EXPECT_NEAR(depthAlong(*face, -Vec3::UnitX()), 0.012, 1e-8);
+  EXPECT_NEAR(depthAlong(*face, Vec3::UnitY()), 0.009, 1e-8);
+  EXPECT_NEAR(depthAlong(*face, -Vec3::UnitY()), 0.011, 1e-8);
+}
+
+// A slot that is wide enough to be felt, and a shape that stands higher, end a face.
+TEST(FlatFace, FacesApartKeepTheirEdges) {
+  const Vec3 half(0.01, 0.02, 0.02);
+  for (const Vec3& other : {Vec3(0.013, 0.0, 0.01), Vec3(0.005, 0.0, 0.013)}) {
+    const ContactFinder apart(
+        {makeTool({boxAt(Vec3(-0.005, 0.0, 0.01), half), boxAt(other, half)})});
+    const auto face =
+        apart.flatFace(0, Pose::Identity(), kDown, Vec3(-0.002, 0.001, 0.0003), 0.0125);
+    ASSERT_TRUE(face);
+    EXPECT_NEAR(depthAlong(*face, Vec3::UnitX()), 0.002, 1e-12);
+    EXPECT_NEAR(depthAlong(*face, -Vec3::UnitX()), 0.008, 1e-12);
+  }
 }
 
 }  // namespace

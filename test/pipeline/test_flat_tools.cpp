@@ -63,6 +63,29 @@ TEST(FlatTools, CornersAreAlike) {
   EXPECT_LT(tool.force_on_tool.head<2>().norm(), 0.02 * tool.force_on_tool.z());
 }
 
+// Shapes of one link whose faces are parts of one press as one, in any order.
+TEST(FlatTools, SeamsDoNotPress) {
+  const auto pressedBy = [](const std::vector<ToolShape>& shapes) {
+    ToolGeometry tool = withFriction(0.0, toolOf(shapes.front()));
+    tool.links.front().shapes = shapes;
+    Pipeline pipeline(block(), SolverConfig(), {tool});
+    walk(pipeline, {placeOf(-0.0005, 0.0013)}, {placeOf(0.003, 0.0013)});
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+    EXPECT_LT(pipeline.report().tools[0].max_penetration, 0.05 * kSpacing);
+    return pipeline.report().tools[0].force_on_tool;
+  };
+  const Vec3 whole = pressedBy({boxOf(kTool)});
+  const Vec3 half(0.5 * kTool.x(), kTool.y(), kTool.z()), aside(0.25 * kTool.x(), 0.0, 0.0);
+  const ToolShape left = boxOf(half, -aside), right = boxOf(half, aside);
+  const ToolShape inside = boxOf(Vec3(0.01, 0.01, kTool.z()));
+  for (const auto& shapes : std::vector<std::vector<ToolShape>>{
+           {left, right}, {right, left}, {boxOf(kTool), inside}, {inside, boxOf(kTool)}}) {
+    const Vec3 force = pressedBy(shapes);
+    EXPECT_NEAR(force.z(), whole.z(), 0.01 * whole.z());
+    EXPECT_LT(force.head<2>().norm(), 0.01 * whole.z());
+  }
+}
+
 // A box that is narrower than two columns of nodes, one on its edge and a ball have no rim.
 TEST(FlatTools, TouchesOfOtherToolsDoNotGiveWay) {
   const auto gives_way = [](ToolShape shape) {
