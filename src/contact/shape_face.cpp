@@ -62,7 +62,10 @@ std::optional<ShapeFace> meshFace(const Asked& asked) {
     Vec3 foot;
   };
   std::vector<Seen> near;
-  for (const ToolMesh::SharpEdge& edge : asked.shape.mesh().sharpEdges()) {
+  const ToolMesh& mesh = asked.shape.mesh();
+  const double felt = tuning::kFeltOfReach * asked.reach;
+  for (std::size_t i = 0; i < mesh.sharpEdges().size(); ++i) {
+    const ToolMesh::SharpEdge& edge = mesh.sharpEdges()[i];
     if (edge.normal.dot(asked.facing) < tuning::kFaces) continue;
     const Vec3 along = edge.ends[1] - edge.ends[0];
     const double share = (asked.point - edge.ends[0]).dot(along) / along.squaredNorm();
@@ -71,6 +74,7 @@ std::optional<ShapeFace> meshFace(const Asked& asked) {
     const double height = edge.normal.dot(way);
     const double off = (way - height * edge.normal).norm();
     if (off > asked.reach || std::abs(height) > asked.reach) continue;
+    if (!mesh.isFelt(i, felt)) continue;
     near.push_back({&edge, way.dot(edge.outward) > 0.0 ? -off : off, foot});
   }
   if (near.empty()) return std::nullopt;

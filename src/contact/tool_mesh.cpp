@@ -40,6 +40,15 @@ TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const s
   }
 }
 
+// So low over its longest side that its normal is rounding, or nearly.
+bool isSliver(const Corners& c) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest = std::max(longest, (c[(k + 1) % 3] - c[k]).squaredNorm());
+  }
+  return (c[1] - c[0]).cross(c[2] - c[0]).norm() < tuning::kSliver * longest;
+}
+
 }  // namespace
 
 ToolMesh::ToolMesh(const std::string& resource, const Vec3& scale, const std::string& owner,
@@ -129,21 +138,55 @@ void ToolMesh::findSharpEdges() {
   }
   for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
     if (sides[edge][1] < 0) continue;
-    const std::array<Vec3, 2> normals = {normals_[at(sides[edge][0])],
-                                         normals_[at(sides[edge][1])]};
-    if (normals[0].dot(normals[1]) > tuning::kSharpEdge) continue;
-    const std::array<Vec3, 2> ends = {mesh_.vertices[at(edges_[edge].ends[0])],
-                                      mesh_.vertices[at(edges_[edge].ends[1])]};
-    const Vec3 along = (ends[1] - ends[0]).stableNormalized();
     for (std::size_t side = 0; side < 2; ++side) {
-      const Vec3 across = along.cross(normals[side]);
-      const Vec3 outward = across.dot(normals[1 - side]) > 0.0 ? across : Vec3(-across);
-      Vec3 inside = Vec3::Zero();  // of the side's own triangle, to tell a fold outwards
-      for (const Vec3& corner : corners(sides[edge][side])) inside += (corner - ends[0]) / 3.0;
-      if (inside.dot(outward) >= 0.0) continue;
-      sharp_edges_.push_back({ends, normals[side], outward});
+      addSharpEdge(edge, sides[edge][side], sides[edge][1 - side]);
     }
   }
+}
+
+// A sliver is no face. Its normal is noise: what is beyond it tells whether a face ends there
+// (isFelt).
+void ToolMesh::addSharpEdge(std::size_t edge, int face, int beyond) {
+  if (isSliver(corners(face))) return;
+  const std::array<Vec3, 2> ends = {mesh_.vertices[at(edges_[edge].ends[0])],
+                                    mesh_.vertices[at(edges_[edge].ends[1])]};
+  const Vec3& normal = normals_[at(face)];
+  const Vec3 across = (ends[1] - ends[0]).stableNormalized().cross(normal);
+  Vec3 inside = Vec3::Zero();  // of the face's own triangle, to tell a fold outwards
+  for (const Vec3& corner : corners(face)) inside += (corner - ends[0]) / 3.0;
+  if (isSliver(corners(beyond))) {
+    sharp_edges_.push_back({ends, normal, inside.dot(across) < 0.0 ? across : Vec3(-across)});
+    return;
+  }
+  if (normal.dot(normals_[at(beyond)]) > tuning::kSharpEdge) return;
+  const Vec3 outward = across.dot(normals_[at(beyond)]) > 0.0 ? across : Vec3(-across);
+  if (inside.dot(outward) < 0.0) sharp_edges_.push_back({ends, normal, outward});
+}
+
+bool ToolMesh::isFelt(std::size_t sharp_edge, double length) const {
+  if (felt_.length != length) felt_ = {length, {}};
+  felt_.edges.resize(sharp_edges_.size());
+  std::optional<bool>& is_felt = felt_.edges[sharp_edge];
+  if (!is_felt) is_felt = endsFace(sharp_edges_[sharp_edge], length);
+  return *is_felt;
+}
+
+bool ToolMesh::endsFace(const SharpEdge& edge, double length) const {
+  const auto off = [this](const Vec3& point) {
+    return distance(point, std::numeric_limits<double>::infinity())
+        .value_or(SignedDistance{kInfinity, Vec3::Zero()})
+        .value;
+  };
+  const double just = tuning::kJustBeyond * length;
+  for (const double along : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
+    const Vec3 place = edge.ends[0] + along * (edge.ends[1] - edge.ends[0]);
+    const auto turnsAway = [&](double beyond) {
+      return off(place + beyond * edge.outward) > tuning::kTurnsAway * beyond;
+    };
+    const bool is_face = std::abs(off(place - just * edge.outward)) <= tuning::kTurnsAway * just;
+    if (is_face && turnsAway(just) && turnsAway(length)) return true;
+  }
+  return false;
 }
 
 void ToolMesh::measureThickness() {

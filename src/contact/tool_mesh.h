@@ -49,6 +49,9 @@ class ToolMesh {
   const std::vector<std::vector<int>>& neighbors() const { return neighbors_; }
   // Twice, once for each of its two faces.
   const std::vector<SharpEdge>& sharpEdges() const { return sharp_edges_; }
+  // Whether a face ends at that one of them as far as a length can feel (m): the face is not much
+  // narrower, and the mesh still turns away so far beyond. Kept for one length.
+  bool isFelt(std::size_t sharp_edge, double length) const;
   // Mean of the normals around a vertex, weighted by their angles; unit.
   const std::vector<Vec3>& vertexNormals() const { return vertex_normals_; }
   const TriangleBvh& tree() const { return tree_; }
@@ -62,9 +65,11 @@ class ToolMesh {
   void findNormals();
   void findConcaveEdges();
   void findSharpEdges();
+  void addSharpEdge(std::size_t edge, int face, int beyond);
   void measureThickness();
   SignedDistance signedBy(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
   bool isInside(const Vec3& point, const TriangleBvh::Nearest& nearest) const;
+  bool endsFace(const SharpEdge& edge, double length) const;
 
   bool crosses_itself_ = false;
   TriangleMesh mesh_;  // frame of the shape (m), facing outwards
@@ -79,6 +84,11 @@ class ToolMesh {
   std::vector<Vec3> vertex_normals_;
   std::vector<Vec3> edge_normals_;  // sums of the two triangles'
   double thickness_ = 0.0;
+  struct Felt {
+    double length = 0.0;
+    std::vector<std::optional<bool>> edges;  // as sharp_edges_; those that were asked for
+  };
+  mutable Felt felt_;
 };
 
 }  // namespace robot_tissue

@@ -123,6 +123,10 @@ constexpr double kPairsAhead = 1.0;
 // Cosine of the angle by which a mesh folds at the edge of a face (1): 40 degrees. Less: fewer
 // edges are sharp. Chosen.
 constexpr double kSharpEdge = 0.766;
+// Of its longest side (1): a triangle of a mesh that is lower is no face, as fillers between
+// vertices that do not meet are. Less: these end the faces around them; more: long narrow faces are
+// none. Chosen: a micrometer on 10 mm.
+constexpr double kSliver = 1e-4;
 // Cosine between a flat face and where its link presses to (1): 35 degrees. Less: more tilted faces
 // are looked at. Chosen.
 constexpr double kFaces = 0.819;

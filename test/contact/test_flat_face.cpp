@@ -197,5 +197,54 @@ TEST(FlatFace, FacesApartKeepTheirEdges) {
   }
 }
 
+// A mesh of a box, 20 mm wide, has the edges of one, whatever folds there are between.
+void expectEdgesOfBox(const std::vector<Triangle>& triangles, const std::string& what) {
+  const ContactFinder plain(
+      {makeTool({mesh(writeStl("plain.stl", boxTriangles(Vec3::Constant(0.02))))})});
+  const ContactFinder folded({makeTool({mesh(writeStl("folded.stl", triangles))})});
+  const double reach = 0.0125;
+  for (const double x : {0.0004, 0.004, -0.0075, 0.011}) {
+    for (const double y : {0.0004, -0.006}) {
+      const Vec3 point(x, y, -0.0101);
+      const auto face = folded.flatFace(0, Pose::Identity(), kDown, point, reach);
+      const auto expected = plain.flatFace(0, Pose::Identity(), kDown, point, reach);
+      ASSERT_TRUE(face && expected) << what;
+      ASSERT_EQ(face->edges.size(), expected->edges.size()) << what << " " << x << " " << y;
+      for (const FaceEdge& edge : expected->edges) {
+        EXPECT_NEAR(depthAlong(*face, edge.outward), edge.depth_m, 2e-6) << what << " " << x;
+      }
+    }
+  }
+}
+
+// Vertices beside edges that they are not of, and fillers between, as CAD programs leave them.
+TEST(FlatFace, SliversOfAMeshAreNoEdges) {
+  for (const double height : {0.0, 1e-7, 1e-6, -1e-6}) {
+    std::vector<Triangle> triangles = boxTriangles(Vec3::Constant(0.02));
+    const Triangle lower = triangles[1], side = triangles[4];  // of the bottom, and beside it
+    const Vec3 middle = 0.5 * (lower[0] + lower[1]) + height * Vec3::UnitZ();
+    triangles[1] = {{lower[0], middle, lower[2]}};
+    triangles.push_back({{middle, lower[1], lower[2]}});
+    triangles.push_back({{lower[0], lower[1], middle}});
+    const Vec3 at_rim = 0.4 * side[0] + 0.6 * side[1] + height * Vec3::UnitY();
+    triangles[4] = {{side[0], at_rim, side[2]}};
+    triangles.push_back({{at_rim, side[1], side[2]}});
+    triangles.push_back({{side[0], side[1], at_rim}});
+    expectEdgesOfBox(triangles, "height " + std::to_string(1e6 * height) + " um");
+  }
+}
+
+TEST(FlatFace, FoldsThatAreNotFeltAreNoEdges) {
+  for (const double deep : {1e-5, 1e-4, 5e-4}) {
+    const double half = 0.00025, low = -0.01, high = 0.01;
+    const std::vector<Eigen::Vector2d> outline = {
+        {low, low},  {-half, low}, {-half, low + deep}, {half, low + deep},
+        {half, low}, {high, low},  {high, high},        {low, high}};
+    const auto grooved = prismTriangles(
+        outline, {{0, 1, 2}, {0, 2, 7}, {2, 3, 6}, {2, 6, 7}, {3, 4, 5}, {3, 5, 6}}, 0.02);
+    expectEdgesOfBox(grooved, "groove of " + std::to_string(1e6 * deep) + " um");
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_flat_face
