@@ -209,6 +209,22 @@ std::vector<Vec3> ContactFinder::innerPoints(std::size_t link) const {
 
 double ContactFinder::thickness(std::size_t link) const { return impl_->links[link].thickness(); }
 
+double ContactFinder::thickness(const Contact& contact) const {
+  const TouchingLink& link = impl_->links[at(contact.link)];
+  return contact.shape < 0 ? link.thickness() : link.shapes[at(contact.shape)].thickness();
+}
+
+double ContactFinder::thicknessIn(const Box& box, std::size_t link,
+                                  const Pose& tissue_T_link) const {
+  return impl_->links[link].thicknessIn(box, tissue_T_link);
+}
+
+std::vector<double> ContactFinder::thicknesses(std::size_t link) const {
+  std::vector<double> all;
+  for (const CollisionShape& shape : impl_->links[link].shapes) all.push_back(shape.thickness());
+  return all;
+}
+
 std::vector<Ball> ContactFinder::balls(std::size_t link) const {
   return impl_->links[link].balls();
 }

@@ -75,8 +75,8 @@ class JoinedFaces {
     for (const Part& part : parts_) {
       if (leastDepth(part.face) < -reach_) continue;
       const Part& under = deepestBeside(part);
-      FlatFace face{under.face.normal, under.face.height_m, link_[under.shape].shape->padding(),
-                    nearestOfSides(edgesAround(under))};
+      FlatFace face{under.face.normal, under.face.height_m, static_cast<int>(under.shape),
+                    link_[under.shape].shape->padding(), nearestOfSides(edgesAround(under))};
       if (!face.edges.empty()) return face;
     }
     return std::nullopt;
@@ -233,7 +233,7 @@ std::optional<FlatFace> faceOfOne(const PlacedShape& placed, const Vec3& facing,
   edges = nearestOfSides(std::move(edges));
   if (edges.empty()) return std::nullopt;
   for (FaceEdge& edge : edges) edge.outward = placed.tissue_T_shape.linear() * edge.outward;
-  return FlatFace{placed.tissue_T_shape.linear() * found->normal, found->height_m,
+  return FlatFace{placed.tissue_T_shape.linear() * found->normal, found->height_m, 0,
                   placed.shape->padding(), edges};
 }
 

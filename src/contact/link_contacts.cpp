@@ -91,13 +91,15 @@ const LinkContacts::Seen& LinkContacts::seen(std::size_t shape, int vertex) {
 void LinkContacts::askVertex(int vertex, const Vec3& weights, ContactSet& found) {
   std::optional<SignedDistance> least;
   Vec3 normal = Vec3::Zero();
+  std::size_t deepest = 0;
   for (std::size_t shape = 0; shape < link_->size(); ++shape) {
     const Seen& here = seen(shape, vertex);
     if (!here.is_near || (least && here.distance.value >= least->value)) continue;
     least = here.distance;
+    deepest = shape;
     normal = (*link_)[shape].tissue_T_shape.linear() * least->slope;
   }
-  if (least && least->value < margin_) add(weights, -least->value, normal, found);
+  if (least && least->value < margin_) add(deepest, weights, -least->value, normal, found);
 }
 
 std::vector<TriangleMinimum> LinkContacts::minimaOf(std::size_t shape,
@@ -159,7 +161,7 @@ void LinkContacts::askShape(std::size_t shape, const MeshTriangle& triangle, Con
       if (deepest && deepest->depth_m > -minimum.distance.value + tuning::kDeeper) continue;
     }
     if (isOnKnownEdge(minimum.weights, shape, triangle)) continue;
-    add(minimum.weights, -minimum.distance.value,
+    add(shape, minimum.weights, -minimum.distance.value,
         placed.tissue_T_shape.linear() * minimum.distance.slope, found);
   }
 }
@@ -202,11 +204,13 @@ bool LinkContacts::isOnKnownEdge(const Vec3& weights, std::size_t shape,
   return false;
 }
 
-void LinkContacts::add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found) {
+void LinkContacts::add(std::size_t shape, const Vec3& weights, double depth, const Vec3& normal,
+                       ContactSet& found) {
   const Corners corners = cornersOf(surface_->triangles[at(triangle_)]);
   Contact contact;
   contact.tool = tool_;
   contact.link = link_index_;
+  contact.shape = static_cast<int>(shape);
   contact.place = {triangle_, weights};
   contact.point = pointOf(corners, weights);
   contact.normal = normal.isZero() ? inward(corners) : normal;

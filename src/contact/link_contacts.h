@@ -53,7 +53,8 @@ class LinkContacts {
   bool isVertexAlready(const TriangleMinimum& minimum, std::size_t shape,
                        const MeshTriangle& triangle, double accuracy);
   bool isOnKnownEdge(const Vec3& weights, std::size_t shape, const MeshTriangle& triangle);
-  void add(const Vec3& weights, double depth, const Vec3& normal, ContactSet& found);
+  void add(std::size_t shape, const Vec3& weights, double depth, const Vec3& normal,
+           ContactSet& found);
 
   const PlacedLink* link_ = nullptr;
   const std::vector<const FacePairs*>* faces_ = nullptr;

@@ -110,6 +110,18 @@ double TouchingLink::thickness() const {
   return thinnest;
 }
 
+double TouchingLink::thicknessIn(const Box& box, const Pose& tissue_T_link) const {
+  if (in_use_ < 2) return thickness();
+  PlacedLink here = placed(shapes, tissue_T_link);
+  if (here.size() > in_use_) here.resize(in_use_);
+  std::optional<double> thinnest;
+  for (const PlacedShape& shape : here) {
+    if (!shape.bounds.intersects(box)) continue;
+    thinnest = std::min(thinnest.value_or(kInfinity), shape.shape->thickness());
+  }
+  return thinnest.value_or(thickness());
+}
+
 std::vector<Ball> TouchingLink::balls() const {
   std::vector<Ball> balls;
   for (std::size_t i = 0; i < in_use_; ++i) {

@@ -31,6 +31,7 @@ class TouchingLink {
   std::vector<Vec3> surfacePoints() const;
   std::vector<Vec3> innerPoints() const;
   double thickness() const;
+  double thicknessIn(const Box& box, const Pose& tissue_T_link) const;
   std::vector<Ball> balls() const;
   // As ContactFinder::wayOut. Of the same point again, as where a way out along a direction begins,
   // it is known.

@@ -21,8 +21,15 @@ SlidingContacts::SlidingContacts(std::vector<std::optional<double>> friction,
       recesses_(forms_.size()) {}
 
 // The length that slips and gaps are measured by (m): the spacing, or the thickness of a thin link.
-double SlidingContacts::fineness(int link, double spacing) const {
-  return std::min(spacing, forms_[at(link)].thickness);
+double SlidingContacts::fineness(const Contact& contact, double spacing) const {
+  return std::min(spacing, thicknessAt(contact));
+}
+
+// Of the shape that the contact is with (m), or of the link's thinnest.
+double SlidingContacts::thicknessAt(const Contact& contact) const {
+  const std::vector<double>& all = forms_[at(contact.link)].thicknesses;
+  if (contact.shape >= 0) return all[at(contact.shape)];
+  return all.empty() ? kInfinity : *std::min_element(all.begin(), all.end());
 }
 
 void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
@@ -156,7 +163,7 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
 bool SlidingContacts::driftsEvenly(const ContactConstraint& touch, const Tissue& tissue) const {
   const double thick = tuning::kThickForDrift * tissue.lattice().spacing();
   return touch.vertex < 0 && !touch.contact.wanders && touch.contact.rim.edges.empty() &&
-         forms_[at(touch.contact.link)].thickness >= thick && !tissue.hasTime();
+         thicknessAt(touch.contact) >= thick && !tissue.hasTime();
 }
 
 // The depth or gap that counts as none (m): closing it at all of the tool's n touches would change

@@ -87,7 +87,7 @@ bool SlidingContacts::updateMultipliers(const Tissue& tissue) {
     bounds_now += friction_bound;
     spring.multiplier = std::min(force, mostForceOf(spring, tissue));
     spring.friction_bound = friction_bound;
-    const double fine = fineness(touch.contact.link, spacing);
+    const double fine = fineness(touch.contact, spacing);
     const double soft = frictionStiffness(touch.firm_stiffness);
     const double stiffness =
         std::min(std::max(soft, friction_bound / (tuning::kMostElasticSlip * fine)),

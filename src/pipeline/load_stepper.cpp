@@ -257,7 +257,8 @@ double LoadStepper::wayOfKnownPlaces() const {
   const double spacing = world_.tissue.lattice().spacing();
   bool any_mesh = false;
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
-    if (world_.finder.thickness(link) < tuning::kThickForPlaces * spacing) return 0.0;
+    const double thickness = world_.thicknessNear(link, world_.pose.links[link]);
+    if (thickness < tuning::kThickForPlaces * spacing) return 0.0;
     any_mesh = any_mesh || world_.finder.hasMesh(link);
   }
   return (any_mesh ? tuning::kKnownPlacesOnMesh : tuning::kKnownPlaces) * spacing;

@@ -57,7 +57,7 @@ bool ShapeJudge::wentThrough(const std::vector<double>& depths_before) const {
     const std::size_t end = std::min(world_.tools.endLink(tool), depths.size());
     for (std::size_t link = world_.tools.firstLink(tool); link < end; ++link) {
       const double before = link < depths_before.size() ? depths_before[link] : 0.0;
-      if (depths[link] > std::max(throughAt(link), before)) return true;
+      if (depths[link] > std::max(throughAt(link, world_.pose), before)) return true;
     }
   }
   return false;
@@ -86,15 +86,15 @@ bool ShapeJudge::isAnyThrough(const std::vector<std::size_t>& links, const Robot
   const std::vector<double> depths =
       world_.finder.penetrations(links, pose, world_.tissue.surface(), world_.tissue.vertices());
   for (std::size_t i = 0; i < links.size(); ++i) {
-    if (depths[i] > throughAt(links[i])) return true;
+    if (depths[i] > throughAt(links[i], pose)) return true;
   }
   return false;
 }
 
 // Depth in the surface (m) beyond which a link is on its way to the other side of it.
-double ShapeJudge::throughAt(std::size_t link) const {
+double ShapeJudge::throughAt(std::size_t link, const RobotPose& pose) const {
   return std::min(tuning::kThrough * world_.tissue.lattice().spacing(),
-                  tuning::kThroughOfThickness * world_.finder.thickness(link));
+                  tuning::kThroughOfThickness * world_.thicknessNear(link, pose.links[link]));
 }
 
 }  // namespace robot_tissue

@@ -33,7 +33,7 @@ class ShapeJudge {
   bool turnedOver(const Checkpoint& good) const;
   bool wentThrough(const std::vector<double>& depths_before) const;
   bool isSwallowed(const SlidingContacts& contacts_before) const;
-  double throughAt(std::size_t link) const;
+  double throughAt(std::size_t link, const RobotPose& pose) const;
 
   const World& world_;
   const TouchFinder& touch_finder_;

@@ -75,8 +75,9 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
           parts_->motion.walk(state_.drive.driven(world_.tools.complete(pose), world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();
     };
+    const std::size_t link = world_.tools.firstLink(tool);
     const bool on = state_.drive.meetForce(
-        tool, {parts_->ways.stepOf(world_.tools.firstLink(tool)),
+        tool, {parts_->ways.stepOf(link, world_.pose.links[link]),
                [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
     goes_on = goes_on || on;
   }

@@ -38,8 +38,8 @@ std::vector<ToolContactUpdate::Surroundings> ToolContactUpdate::surroundings() c
     Surroundings here;
     here.box = grownBy(spacing, world_.finder.bounds(link, world_.pose.links[link]));
     here.longest = tuning::kLongestWay * spacing;
-    here.stride =
-        std::min(here.longest, tuning::kStrideOfThickness * world_.finder.thickness(link));
+    const double thickness = world_.thicknessNear(link, world_.pose.links[link]);
+    here.stride = std::min(here.longest, tuning::kStrideOfThickness * thickness);
     all.push_back(here);
   }
   return all;
@@ -89,8 +89,9 @@ double ToolContactUpdate::shareOutside(double share, int strides,
   const auto is_deep = [&](double part) {
     const std::vector<double> depths = depthsAt(part, start);
     for (std::size_t link = 0; link < depths.size(); ++link) {
+      const double thickness = world_.thicknessNear(link, world_.pose.links[link]);
       const double most = std::min(tuning::kDeepestOnWay * world_.tissue.lattice().spacing(),
-                                   tuning::kDeepestOfThickness * world_.finder.thickness(link));
+                                   tuning::kDeepestOfThickness * thickness);
       if (depths[link] <= most) continue;
       const auto goes_deeper = [&] {
         const double at_start = link < before.size() ? before[link] : 0.0;

@@ -263,6 +263,7 @@ void ToolRims::put(int vertex, const Vec3& place, const std::vector<Vec3>& verti
   if (!face) return;
   AtRim at_rim;
   at_rim.tool = link.tool;
+  at_rim.shape = face->shape;
   at_rim.normal = face->normal;
   at_rim.height = face->height_m + face->normal.dot(vertices[at(vertex)] - place);
   at_rim.rim.share = shareAt(*face, link);
@@ -351,6 +352,7 @@ Contact ToolRims::contactOf(int link, int vertex, const AtRim& at_rim,
   Contact contact;
   contact.tool = at_rim.tool;
   contact.link = link;
+  contact.shape = at_rim.shape;
   contact.place = places_[at(vertex)];
   contact.point = vertices[at(vertex)];
   contact.normal = at_rim.normal;

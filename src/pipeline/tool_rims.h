@@ -20,7 +20,7 @@ namespace robot_tissue {
 // What a look at the rims leaves to the next; of links and vertices.
 struct RimState {
   struct AtRim {
-    int tool = 0;
+    int tool = 0, shape = 0;
     Vec3 normal = Vec3::Zero();  // of the face
     double height = 0.0;         // over it (m)
     Rim rim;

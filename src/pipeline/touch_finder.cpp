@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "deepest_place.h"
@@ -104,19 +105,21 @@ bool TouchFinder::deepen(const RobotPose& pose, const std::vector<Vec3>& vertice
   return true;
 }
 
-// A link thinner than half a spacing is among so few triangles that these count by themselves, one
+// What is thinner than half a spacing is among so few triangles that these count by themselves, one
 // thicker than a spacing touches the smooth surface. Under a flat face normals are the face's;
 // triangles at its edge lie partly on it, and their smooth normals would let it in.
 std::vector<double> TouchFinder::smoothnesses(const RobotPose& pose, const ContactSet& contacts,
                                               const std::vector<Vec3>& vertices) const {
   const double spacing = world_.tissue.lattice().spacing();
   std::vector<double> smooth(pose.links.size(), 0.0);
-  std::set<int> touching;
+  std::map<int, double> thicknesses;  // of what touches (m)
   for (const Contact& contact : contacts.contacts) {
-    if (!rims_.isSticking(contact.tool)) touching.insert(contact.link);
+    if (rims_.isSticking(contact.tool)) continue;
+    double& thinnest = thicknesses.try_emplace(contact.link, kInfinity).first->second;
+    thinnest = std::min(thinnest, world_.finder.thickness(contact));
   }
-  for (const int link : touching) {
-    const double thick = 2.0 * world_.finder.thickness(at(link)) / spacing - 1.0;
+  for (const auto& [link, thickness] : thicknesses) {
+    const double thick = 2.0 * thickness / spacing - 1.0;
     if (thick <= 0.0) continue;
     smooth[at(link)] = std::min(1.0, thick) *
                        (1.0 - rims_.flatness(link, pose.links[at(link)], contacts, vertices));
@@ -138,8 +141,9 @@ bool TouchFinder::turnOut(const RobotPose& pose, Contact& contact) const {
   const auto nearest =
       world_.finder.wayOut(link, tissue_T_link, contact.point, tuning::kReach * spacing);
   if (!nearest) return false;
-  const double farthest = tuning::kDetour * std::max(nearest->depth_m, 0.0) +
-                          tuning::kDetourBeyond * std::min(spacing, world_.finder.thickness(link));
+  const double farthest =
+      tuning::kDetour * std::max(nearest->depth_m, 0.0) +
+      tuning::kDetourBeyond * std::min(spacing, world_.finder.thickness(contact));
   const double off =
       tuning::kOffEdge + state_.smooth[link] * (tuning::kOffSharpEdge - tuning::kOffEdge);
   const auto along = world_.finder.wayOutAlong(link, tissue_T_link, contact.point, inwards,

@@ -1,7 +1,8 @@
 // The numbers of the pipeline in one place: unit, where each comes from, and what turning it does.
-// "spacing" is the lattice's, "thickness" that of a link's thinnest shape, "load step" the longest
-// motion between two solves (WayLengths::stepOf). Chosen: by judgment, and kept as the tests of
-// physics and the contact study (doc/contact.md) passed; no other value was measured against it.
+// "spacing" is the lattice's, "thickness" that of the thinnest of a link's shapes near the tissue,
+// or of the shape that touches, "load step" the longest motion between two solves
+// (WayLengths::stepOf). Chosen: by judgment, and kept as the tests of physics and the contact study
+// (doc/contact.md) passed; no other value was measured against it.
 #pragma once
 
 #include <cstddef>

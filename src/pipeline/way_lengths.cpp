@@ -9,17 +9,25 @@
 
 namespace robot_tissue {
 
-// Longest load step of a link (m): a thin one must not be through the tissue before it is met.
-double WayLengths::stepOf(std::size_t link) const {
+// A thin link must not be through the tissue before it is met.
+double WayLengths::stepOf(std::size_t link, const Pose& tissue_T_link) const {
   return std::min(world_.tissue.stepLength(),
-                  tuning::kStepOfThickness * world_.finder.thickness(link));
+                  tuning::kStepOfThickness * world_.thicknessNear(link, tissue_T_link));
+}
+
+// A point of a link is never farther than half of its way from the nearer end.
+double WayLengths::stepOf(std::size_t link, const RobotPose& from, const RobotPose& to) const {
+  const double half = 0.5 * longestWay(from.links[link], to.links[link], world_.reach(link));
+  const double thickness = std::min(world_.thicknessNear(link, from.links[link], half),
+                                    world_.thicknessNear(link, to.links[link], half));
+  return std::min(world_.tissue.stepLength(), tuning::kStepOfThickness * thickness);
 }
 
 double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) const {
   double steps = 0.0;
   for (std::size_t link = 0; link < to.links.size(); ++link) {
     const double way = longestWay(from.links[link], to.links[link], world_.reach(link));
-    steps = std::max(steps, way / stepOf(link));
+    steps = std::max(steps, way / stepOf(link, from, to));
   }
   return steps;
 }
@@ -34,7 +42,7 @@ std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotP
       const double way = longestWay(from.links[link], goal.links[link], world_.reach(link));
       // An edge that is too thin to be met in longer steps goes in.
       const bool cuts = world_.tools[tool].role.has_edge;
-      steps = std::max(steps, way / (cuts ? world_.tissue.stepLength() : stepOf(link)));
+      steps = std::max(steps, way / (cuts ? world_.tissue.stepLength() : stepOf(link, from, goal)));
     }
     if (steps > Pipeline::kMostLoadSteps && !passesBy(tool, from, goal)) far.push_back(tool);
   }
@@ -47,7 +55,7 @@ double WayLengths::freeSteps(const RobotPose& from, const RobotPose& to) const {
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
     if (longestWay(from.links[link], to.links[link], world_.reach(link)) == 0.0) continue;
     const Box box = world_.bounds(link, from.links[link]);
-    steps = std::min(steps, distance(box, world_.tissue.bounds()) / stepOf(link));
+    steps = std::min(steps, distance(box, world_.tissue.bounds()) / stepOf(link, from, to));
   }
   return steps;
 }

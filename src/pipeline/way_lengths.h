@@ -12,7 +12,9 @@ class WayLengths {
  public:
   explicit WayLengths(const World& world) : world_(world) {}
 
-  double stepOf(std::size_t link) const;
+  // Longest load step of a link (m) at a pose, and on the way from one to another.
+  double stepOf(std::size_t link, const Pose& tissue_T_link) const;
+  double stepOf(std::size_t link, const RobotPose& from, const RobotPose& to) const;
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& from, const RobotPose& to) const;
   std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;

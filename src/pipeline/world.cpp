@@ -47,7 +47,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
   }
   std::vector<SlidingContacts::LinkForm> forms;
   for (std::size_t link = 0; link < finder.linkCount(); ++link) {
-    forms.push_back({finder.thickness(link), finder.hasMesh(link), finder.balls(link)});
+    forms.push_back({finder.thicknesses(link), finder.hasMesh(link), finder.balls(link)});
   }
   sliding = SlidingContacts(friction, forms);
   asked = pose = tools.complete({});
@@ -164,6 +164,11 @@ double World::reach(std::size_t link) const {
   double reach = std::max(finder.reach(link), drills.reach(link));
   for (const Vec3& point : edgeOn(link)) reach = std::max(reach, point.norm());
   return reach;
+}
+
+double World::thicknessNear(std::size_t link, const Pose& tissue_T_link, double way) const {
+  const Box near = grownBy(tissue.lattice().spacing() + way, tissue.bounds());
+  return finder.thicknessIn(near, link, tissue_T_link);
 }
 
 Box World::bounds(std::size_t link, const Pose& tissue_T_link) const {

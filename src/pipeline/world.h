@@ -62,6 +62,9 @@ struct World : WorldState {
   // link's origin, and a box around them in the tissue's frame (m).
   double reach(std::size_t link) const;
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;
+  // Smallest width of the link's shapes (m), of those that are within a spacing and a way (m) of
+  // the tissue's box if any is.
+  double thicknessNear(std::size_t link, const Pose& tissue_T_link, double way = 0.0) const;
   const std::vector<Vec3>& edgeOn(std::size_t link) const;  // of a blade or a jaw; else empty
 
   void setTools(const std::vector<ToolGeometry>& tools, const std::vector<SupportConfig>& supports);

@@ -31,7 +31,7 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
 
   // No friction: the tissue sticks to it. Of two tools the other one is elsewhere.
   void make(std::optional<double> friction) {
-    contacts_ = SlidingContacts({friction, 0.0}, {{kThick, is_uneven_, {}}});
+    contacts_ = SlidingContacts({friction, 0.0}, {{{kThick}, is_uneven_, {}}});
     SolverConfig solver;
     solver.method = "newton";
     tissue_ = std::make_unique<Tissue>(softBlock(), solver);
@@ -66,8 +66,14 @@ class PlaneOnABlock : public ::testing::Test, public ContactUpdate {
         const Vec3 point = tissue_->vertices()[at(vertex)];
         if (seen[at(vertex)] != 0 || depthOf(point) <= -kNear) continue;
         seen[at(vertex)] = 1;
-        set.contacts.push_back(
-            {0, 0, {static_cast<int>(i), Vec3::Unit(corner)}, point, normal(), depthOf(point), {}});
+        set.contacts.push_back({0,
+                                0,
+                                0,
+                                {static_cast<int>(i), Vec3::Unit(corner)},
+                                point,
+                                normal(),
+                                depthOf(point),
+                                {}});
       }
     }
     return set;
@@ -160,7 +166,7 @@ class TwoBumpsOnABlock : public PlaneOnABlock {
     const SurfacePoint place{top, weights};
     const Corners corners = cornersOf(surface.triangles[at(top)], tissue_->vertices());
     const Vec3 point = pointOf(corners, weights);
-    return {0, 0, place, point, normal(), depthOf(point), {}};
+    return {0, 0, 0, place, point, normal(), depthOf(point), {}};
   }
   Vec3 middleAtRest(const MeshTriangle& triangle) const {
     return pointOf(cornersOf(triangle, tissue_->surface().rest), Vec3::Constant(1.0 / 3.0));

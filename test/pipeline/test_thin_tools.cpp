@@ -83,5 +83,30 @@ TEST_P(Needle, DraggedAndDrawnOutNeverGoesThrough) {
 
 INSTANTIATE_TEST_SUITE_P(Beside, Needle, ::testing::Values(Vec3::Zero(), Vec3(0.0023, 0.0, 0.0)));
 
+// What a link has far above the tissue, as a wire at its back, is not felt by what it drags below.
+TEST(ThinShapes, AboveTheTissueDoNotCount) {
+  const auto draggedBy = [](const std::vector<ToolShape>& shapes) {
+    ToolGeometry tool = withFriction(0.3, toolOf(shapes.front()));
+    tool.links.front().shapes = shapes;
+    Pipeline pipeline(block(), SolverConfig(), {tool});
+    walk(pipeline, {{0.018, kMiddle, kTop + 0.0061}}, {{0.018, kMiddle, kTop + 0.001}});
+    walk(pipeline, {{0.018, kMiddle, kTop + 0.001}}, {{0.025, kMiddle, kTop + 0.001}});
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+    return pipeline.report().tools.front().force_on_tool;
+  };
+  ToolShape roller;
+  roller.type = ToolShape::Type::kCylinder;
+  roller.radius = 0.006;
+  roller.length = 0.02;
+  roller.pose.linear() = Eigen::AngleAxisd(M_PI / 2.0, Vec3::UnitX()).toRotationMatrix();
+  const Vec3 alone = draggedBy({roller});
+  EXPECT_LT(alone.x(), -0.02);
+  for (const double radius : {0.001, 0.0001}) {
+    ToolShape wire = uprightCylinder(radius, 0.03);
+    wire.pose.translation().z() += 0.015;
+    EXPECT_LT((draggedBy({roller, wire}) - alone).norm(), 0.01 * alone.norm()) << radius;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_thin_tools

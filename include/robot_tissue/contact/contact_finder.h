@@ -33,6 +33,7 @@ struct WayOut {
 struct FlatFace {
   Vec3 normal = Vec3::Zero();   // unit, out of the link
   double height_m = 0.0;        // of the point over the face; < 0: in the link
+  int shape = 0;                // number in the link
   double roundness_m = 0.0;     // radius of the edges
   std::vector<FaceEdge> edges;  // those within reach, each of another side, the nearest first
 };
@@ -60,6 +61,13 @@ class ContactFinder {
   std::vector<Vec3> innerPoints(std::size_t link) const;
   // Smallest width of the link's thinnest shape (m); infinite without shapes.
   double thickness(std::size_t link) const;
+  // The same of the shape that a contact is with.
+  double thickness(const Contact& contact) const;
+  // The same of those of its shapes that come into a box (tissue frame) at a pose, of all where
+  // none does.
+  double thicknessIn(const Box& box, std::size_t link, const Pose& tissue_T_link) const;
+  // Of each of its shapes.
+  std::vector<double> thicknesses(std::size_t link) const;
   // Of its shapes those that are balls, padding included; link's frame.
   std::vector<Ball> balls(std::size_t link) const;
   // Axis-aligned box around the link's shapes in the tissue's frame (m); empty (min > max) without,
@@ -113,6 +121,7 @@ class ContactFinder {
   bool hasMesh(std::size_t link) const;
   // The face that looks along `facing` (unit, tissue frame), by 35 degrees at most, and has an edge
   // within `reach` (m) of the point along the face, over it or beyond it; of several the nearest.
+  // Faces of several shapes in one plane are one, with no edge where they meet.
   std::optional<FlatFace> flatFace(std::size_t link, const Pose& tissue_T_link, const Vec3& facing,
                                    const Vec3& point, double reach) const;
 

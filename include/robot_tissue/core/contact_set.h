@@ -29,8 +29,9 @@ struct Rim {
 // A point of the surface that is inside a tool, or near it: the one form of what was found. What
 // is kept of it from solve to solve has it as a part (SlidingContacts::ContactConstraint).
 struct Contact {
-  int tool = 0;  // index into the scene's tools
-  int link = 0;  // index into RobotPose::links
+  int tool = 0;    // index into the scene's tools
+  int link = 0;    // index into RobotPose::links
+  int shape = -1;  // number in its link; -1: not known
   SurfacePoint place;
   Vec3 point = Vec3::Zero();   // where that is now; tissue frame, m
   Vec3 normal = Vec3::Zero();  // unit, from the tool into the tissue: the way out of the tool

@@ -80,9 +80,9 @@ class SlidingContacts {
 
   // What is to be known of a link.
   struct LinkForm {
-    double thickness = 0.0;   // m
-    bool is_uneven = false;   // a mesh: a triangle may lie on it at several places
-    std::vector<Ball> balls;  // among its shapes; link's frame
+    std::vector<double> thicknesses;  // of its shapes (m)
+    bool is_uneven = false;           // a mesh: a triangle may lie on it at several places
+    std::vector<Ball> balls;          // among its shapes; link's frame
   };
 
   SlidingContacts() = default;  // of no tools
@@ -169,7 +169,8 @@ class SlidingContacts {
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void takeStiffness(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   void stickFirst(const Tissue& tissue);
-  double fineness(int link, double spacing) const;
+  double thicknessAt(const Contact& contact) const;
+  double fineness(const Contact& contact, double spacing) const;
   void add(const Contact& contact, KnownTouches& known, const RobotPose& pose, const Tissue& tissue,
            const Held& held);
   void put(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
