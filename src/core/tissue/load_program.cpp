@@ -9,6 +9,7 @@
 #include "base/text_of.h"
 #include "loads/patch_rim.h"
 #include "material/tissue_model.h"
+#include "tissue/solve_total.h"
 
 namespace robot_tissue {
 namespace {
@@ -152,7 +153,7 @@ void LoadProgram::loadOn(const Tissue::OnIncrement& on_increment) {
   if (ramps.empty()) return;
   for (LoadRamp& ramp : ramps) ramp.patch = data_.loads.place(ramp.start);
   leaveRimsToOwners(data_.loads.patches());
-  stepping_.stepLoadsByItself(ramps, on_increment);
+  endComingBack(stepping_.stepLoadsByItself(ramps, on_increment));
 }
 
 SolveReport LoadProgram::release(const std::vector<std::string>& names) {
@@ -204,6 +205,7 @@ SolveReport LoadProgram::solveFromRest() {
   StandingLoads& loads = data_.loads;
   const std::vector<LoadingPatch> standing = loads.patches();
   data_.methods.now().forget();
+  loads.beginComingBack();
   std::vector<Vec3>& displacement = data_.body.change().displacement;
   std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
   SolveReport report;
@@ -229,6 +231,27 @@ SolveReport LoadProgram::solveFromRest() {
     data_.outcome.report = report;
     data_.outcome.is_late = false;
   }
+  return endComingBack(report);
+}
+
+// The loads stand again, or are due: once they do, what they leave too much for breaks and tears.
+SolveReport LoadProgram::endComingBack(SolveReport report) {
+  if (!data_.loads.areComingBack() || data_.loads.isLoading()) return report;
+  data_.loads.endComingBack();
+  const bool in_balance =
+      report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged;
+  if (in_balance && data_.threads.isOneOver(data_.body.displacement())) {
+    SolveTotal total(report);
+    report = solver_.solve(data_.threads.nodes());
+    total.add(report);
+    total.tellIn(report);
+    data_.outcome.report = report;
+  }
+  if (data_.loads.patches().empty()) return report;
+  SolveTotal total(report);
+  report = surgery_.tear();
+  total.worsen(report.status);
+  report.status = total.worst;
   return report;
 }
 

@@ -33,6 +33,7 @@ class LoadProgram {
  private:
   SolveReport solveFromRest();
   SolveReport settleFromRest();
+  SolveReport endComingBack(SolveReport report);
   LoadingPatch makePatch(const PatchConfig& config) const;
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;
   Vec3 patchForce(const LoadingPatch& patch) const;

@@ -61,6 +61,7 @@ SolveReport LoadStepSolver::solve(const std::vector<int>& disturbed) {
 // Threads break in balance, one after the other: what one leaves, the others may bear.
 SolveReport LoadStepSolver::solveAndBreak(const std::vector<int>& disturbed) {
   SolveReport report = solveInRounds(disturbed);
+  if (data_.loads.areComingBack()) return report;
   while (report.status != SolveStatus::kLate && report.status != SolveStatus::kUnconverged) {
     const std::vector<int> left = data_.threads.breakOne(data_.body.displacement());
     if (left.empty()) break;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "robot_tissue/core/lattice.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -100,6 +102,7 @@ void StandingLoads::take(std::vector<LoadingPatch> named_loads) {
   patches_ = std::move(named_loads);
   named_ = patches_.size();
   due_.clear();
+  are_coming_back_ = false;
 }
 
 void StandingLoads::restore(const std::vector<LoadingPatch>& patches, std::size_t named) {
@@ -138,6 +141,7 @@ void StandingLoads::makeDue(const LoadingPatch& target) {
 void StandingLoads::dropDue(const std::string& name) {
   const auto is_it = [&](const LoadingPatch& patch) { return patch.name == name; };
   due_.erase(std::remove_if(due_.begin(), due_.end(), is_it), due_.end());
+  if (due_.empty()) are_coming_back_ = false;
 }
 
 }  // namespace robot_tissue

@@ -57,10 +57,17 @@ class StandingLoads {
   void dropDue(const std::string& name);
   std::vector<LoadingPatch> takeDue() { return std::exchange(due_, {}); }
 
+  // The shape is on its way from rest to these loads, which stood before: what it bears there it
+  // never bore, so nothing breaks or tears of it.
+  void beginComingBack() { are_coming_back_ = true; }
+  void endComingBack() { are_coming_back_ = false; }
+  bool areComingBack() const { return are_coming_back_; }
+
  private:
   std::vector<LoadingPatch> patches_;
   std::size_t named_ = 0;
   std::vector<LoadingPatch> due_;
+  bool are_coming_back_ = false;
 };
 
 }  // namespace robot_tissue

@@ -36,7 +36,7 @@ bool Surgery::tearOut(const std::vector<int>& nodes) {
 SolveReport Surgery::tear() {
   SolveOutcome& outcome = data_.outcome;
   dropLetGo();
-  if (tear_strains_.empty()) return outcome.report;
+  if (tear_strains_.empty() || data_.loads.areComingBack()) return outcome.report;
   SolveTotal total(outcome.report);
   bool any = false;
   std::optional<TopologyChange> change;

@@ -134,20 +134,31 @@ double Threads::correct(const std::vector<Vec3>& displacement) {
   return change;
 }
 
-std::vector<int> Threads::breakOne(const std::vector<Vec3>& displacement) {
-  SutureThread* weakest = nullptr;
+// The one that is farthest over its break force.
+std::optional<std::size_t> Threads::weakest(const std::vector<Vec3>& displacement) const {
+  std::optional<std::size_t> weakest;
   double most = 1.0;  // tension over break force
-  for (SutureThread& thread : threads_) {
+  for (std::size_t i = 0; i < threads_.size(); ++i) {
+    const SutureThread& thread = threads_[i];
     if (thread.broken || thread.break_force <= 0.0) continue;
     const double over = tensionOf(springOf(thread), displacement) / thread.break_force;
     if (over <= most) continue;
     most = over;
-    weakest = &thread;
+    weakest = i;
   }
+  return weakest;
+}
+
+bool Threads::isOneOver(const std::vector<Vec3>& displacement) const {
+  return weakest(displacement).has_value();
+}
+
+std::vector<int> Threads::breakOne(const std::vector<Vec3>& displacement) {
+  const std::optional<std::size_t> number = weakest(displacement);
   std::vector<int> nodes;
-  if (weakest == nullptr) return nodes;
-  weakest->broken = true;
-  addNodes(*weakest, nodes);
+  if (!number) return nodes;
+  threads_[*number].broken = true;
+  addNodes(threads_[*number], nodes);
   return nodes;
 }
 

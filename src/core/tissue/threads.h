@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +46,8 @@ class Threads {
               const std::vector<Vec3>& displacement);
   void harden();
   double correct(const std::vector<Vec3>& displacement);
+  // A thread is over its break force.
+  bool isOneOver(const std::vector<Vec3>& displacement) const;
   // Breaks the thread that is farthest over its break force. The nodes that it was on; none: no
   // thread is over.
   std::vector<int> breakOne(const std::vector<Vec3>& displacement);
@@ -53,6 +56,8 @@ class Threads {
   std::vector<int> rebind(const TissueSurface& surface, double spacing);
 
  private:
+  std::optional<std::size_t> weakest(const std::vector<Vec3>& displacement) const;
+
   std::vector<SutureThread> threads_;
   std::vector<ContactSpring> fronts_;
 };
