@@ -92,5 +92,70 @@ TEST(SutureBalance, AThreadDoesNotBreakOnALateWayFromRest) {
   EXPECT_NEAR(tissue.sutures()[0].tension, 0.0857, 0.005);
 }
 
+class StiffSuture : public ::testing::TestWithParam<double> {};
+
+SutureConfig stiffThread(double stiffness) {
+  SutureConfig thread = threadOf("s", {0.035, 0.03, 0.04}, {0.043, 0.03, 0.04});
+  thread.stiffness = stiffness;
+  return thread;
+}
+
+TEST_P(StiffSuture, OfNoLengthTellsTheTensionOfTheShape) {
+  const TissueConfig config = bedOf(6);
+  const SutureConfig thread = stiffThread(GetParam());
+  Tissue exact(config, solverWith("newton", 1e-6));
+  exact.suture(thread);
+  exact.settle();
+  const double tension = exact.sutures()[0].tension;
+  EXPECT_GT(tension, 1.0);
+  for (const char* method : {"layered", "newton"}) {
+    Tissue tissue(config, solverWith(method, 1e-2));
+    const SutureResult result = tissue.suture(thread);
+    EXPECT_EQ(result.solve.status, SolveStatus::kOk);
+    EXPECT_NEAR(result.suture.tension, tension, 0.005 * tension) << method;
+    tissue.load(loadOf(
+        {displacedPatch("b", nodeBox(config, {0, 0, 4}, {1, 1, 4}), Vec3(0.0, 0.0, 0.0002))}));
+    EXPECT_EQ(tissue.release({"b"}).status, SolveStatus::kOk);
+    EXPECT_NEAR(tissue.sutures()[0].tension, tension, 0.005 * tension) << method;
+  }
+}
+
+// What it pulls with while it is drawn in softly is no reason to break, or to hold.
+TEST_P(StiffSuture, BreaksByTheTensionOfTheShape) {
+  const TissueConfig config = bedOf(6);
+  SutureConfig thread = stiffThread(GetParam());
+  Tissue strong(config, {});
+  const double tension = strong.suture(thread).suture.tension;
+  for (const double share : {0.95, 1.05}) {
+    Tissue tissue(config, {});
+    thread.break_force = share * tension;
+    EXPECT_EQ(tissue.suture(thread).suture.broken, share < 1.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, StiffSuture, ::testing::Values(1000.0, 5000.0, 1e5));
+
+// Two on one wound that a load draws apart.
+TEST(SutureBalance, StiffThreadsSideBySideTellTheTensionOfTheShape) {
+  const TissueConfig config = bedOf(6);
+  Tissue exact(config, solverWith("newton", 1e-6)), tissue(config, solverWith("layered"));
+  for (Tissue* each : {&exact, &tissue}) {
+    each->cut(planeAt(0.035, 0.01));
+    each->load(loadOf(
+        {displacedPatch("a", nodeBox(config, {0, 0, 4}, {1, 6, 4}), Vec3(-0.006, 0.0, 0.0))}));
+    for (const double y : {0.025, 0.035}) {
+      SutureConfig thread = threadOf("s" + std::to_string(each->sutures().size()), {0.027, y, 0.04},
+                                     {0.033, y, 0.04});
+      thread.stiffness = 5e4;
+      EXPECT_EQ(each->suture(thread).solve.status, SolveStatus::kOk);
+    }
+  }
+  exact.settle();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double tension = exact.sutures()[i].tension;
+    EXPECT_NEAR(tissue.sutures()[i].tension, tension, 0.03 * tension);
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_suture_balance

@@ -22,7 +22,8 @@ ContactSpring springOf(const SutureThread& thread) {
   for (const auto& [node, weight] : weights) {
     if (std::abs(weight) > kNoWeight) spring.carriers.push_back({node, weight});
   }
-  spring.rest = (thread.to.rest + thread.to.to_middle) - (thread.from.rest + thread.from.to_middle);
+  spring.rest = (thread.to.rest + thread.to.to_middle) -
+                (thread.from.rest + thread.from.to_middle) + thread.offset;
   spring.stiffness =
       thread.softness > 0.0 ? 1.0 / (1.0 / thread.stiffness + thread.softness) : thread.stiffness;
   spring.rest_length = thread.length;

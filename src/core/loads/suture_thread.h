@@ -23,12 +23,13 @@ struct SutureThread {
 
   std::string name;
   End from, to;
-  double rest_length = 0.0;  // m
-  double stiffness = 0.0;    // N/m
-  double break_force = 0.0;  // N; 0: never
-  double bite = 0.0;         // m; 0: its ends are points
-  double length = 0.0;       // in the place of rest_length while it is drawn in to that (m)
-  double softness = 0.0;     // m/N, beside 1 / stiffness: likewise
+  double rest_length = 0.0;    // m
+  double stiffness = 0.0;      // N/m
+  double break_force = 0.0;    // N; 0: never
+  double bite = 0.0;           // m; 0: its ends are points
+  double length = 0.0;         // in the place of rest_length while it is drawn in to that (m)
+  double softness = 0.0;       // m/N, beside 1 / stiffness: likewise
+  Vec3 offset = Vec3::Zero();  // of its way: likewise, as its own stiffness would make it (m)
   bool broken = false;
 };
 

@@ -153,7 +153,7 @@ SolveReport Suturing::drawThreadsIn() {
     changes = true;
     in_time = solveOnThreads(report);
   }
-  data_.threads.harden();
+  changes = data_.threads.harden(data_.body.displacement()) || changes;
   if (in_time && changes) {
     solveOnThreads(report);
   } else if (changes) {

@@ -16,6 +16,11 @@ void addNodes(const SutureThread& thread, std::vector<int>& nodes) {
   }
 }
 
+// On `from` (N): along the way, as much as its tension.
+Vec3 pullOf(const SutureThread& thread, const std::vector<Vec3>& displacement) {
+  return -forceOf(springOf(thread), displacement);
+}
+
 }  // namespace
 
 bool Threads::anyWhole() const {
@@ -108,28 +113,33 @@ void Threads::soften(const std::function<double(int node)>& stiffness,
     addNodes(thread, nodes);
     double most = 0.0;
     for (const int node : nodes) most = std::max(most, stiffness(node));
-    const double tension = tensionOf(springOf(thread), displacement);
+    const Vec3 pull = pullOf(thread, displacement);
     thread.softness = most > 0.0 ? std::max(0.0, 1.0 / most - 1.0 / thread.stiffness) : 0.0;
-    thread.length = std::max(0.0, thread.length - tension * thread.softness);
+    thread.offset = thread.softness * pull;
   }
 }
 
-void Threads::harden() {
+bool Threads::harden(const std::vector<Vec3>& displacement) {
+  bool changes = false;
   for (SutureThread& thread : threads_) {
+    const bool was_soft = !thread.broken && thread.softness > 0.0;
+    changes = changes || (was_soft && tensionOf(springOf(thread), displacement) > 0.0);
     thread.softness = 0.0;
+    thread.offset.setZero();
     thread.length = thread.rest_length;
+    changes = changes || (was_soft && tensionOf(springOf(thread), displacement) > 0.0);
   }
+  return changes;
 }
 
-// Tension T stretches a soft thread by T (1 / k + softness), where it should be by T / k.
+// A pull T stretches a soft thread by T (1 / k + softness), where it should be by T / k.
 double Threads::correct(const std::vector<Vec3>& displacement) {
   double change = 0.0;
   for (SutureThread& thread : threads_) {
     if (thread.broken || thread.softness <= 0.0) continue;
-    const double before = thread.length;
-    const double tension = tensionOf(springOf(thread), displacement);
-    thread.length = std::max(0.0, thread.rest_length - tension * thread.softness);
-    change = std::max(change, std::abs(thread.length - before));
+    const Vec3 before = thread.offset;
+    thread.offset = thread.softness * pullOf(thread, displacement);
+    change = std::max(change, (thread.offset - before).norm());
   }
   return change;
 }

@@ -40,11 +40,12 @@ class Threads {
   void drawIn(double share);
   double wayLeft() const;
   // Threads stiffer than that (N/m) act with it, as hard as they pull now, until `harden`: then all
-  // have their own stiffness and their rest length. In between, `correct` gives each the length
-  // with which it pulls as hard as it would with these, and tells the greatest change of one (m).
+  // have their own stiffness and their rest length, and it tells whether one that was soft pulls.
+  // In between, `correct` adds to the way of each what its pull would stretch it by less with
+  // these, so that it comes to pull as hard, and tells the greatest change of one (m).
   void soften(const std::function<double(int node)>& stiffness,
               const std::vector<Vec3>& displacement);
-  void harden();
+  bool harden(const std::vector<Vec3>& displacement);
   double correct(const std::vector<Vec3>& displacement);
   // A thread is over its break force.
   bool isOneOver(const std::vector<Vec3>& displacement) const;
