@@ -221,7 +221,7 @@ TEST(HistoryOfManyChanges, IsBoundedAndLeadsBackToTheBeginning) {
     History::Entry entry;
     entry.severed.assign(kSprings, false);
     entry.severed[change] = true;
-    ASSERT_TRUE(history.begins(History::Kind::kByItself));
+    ASSERT_TRUE(history.begins(History::Kind::kByItself, {}));
     history.begin(History::Kind::kByItself, entry, {});
     history.end({});
   }

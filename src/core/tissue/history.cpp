@@ -10,7 +10,9 @@
 namespace robot_tissue {
 namespace {
 
-std::uint64_t hashOfLoads(const std::vector<LoadingPatch>& loads) {
+// Of what was asked for: where a load by force has come to is the shape's.
+std::uint64_t hashOfLoads(std::vector<LoadingPatch> loads) {
+  for (LoadingPatch& load : loads) load.place = PatchPlace();
   ByteWriter out;
   putLoads(loads, out);
   return hashOf(out.bytes());
@@ -29,11 +31,17 @@ std::size_t bytesOf(const std::shared_ptr<const SavedState>& state) {
 
 History::History() : History(tuning::kMostHistoryBytes, tuning::kMostTopologyBytes) {}
 
-bool History::begins(Kind kind) {
-  const bool goes_on = !changes_.empty() && (kind == Kind::kStrokeGoesOn ||
-                                             (kind == Kind::kTear && changes_.back().kind == kind));
-  is_under_way_ = is_under_way_ || goes_on;
-  return !goes_on;
+bool History::begins(Kind kind, const std::vector<LoadingPatch>& named_loads) {
+  const bool tears_on =
+      kind == Kind::kTear && tears_go_on_ && !changes_.empty() && changes_.back().kind == kind;
+  const bool goes_on = !changes_.empty() && (kind == Kind::kStrokeGoesOn || tears_on);
+  tears_go_on_ = kind == Kind::kTear;
+  if (!goes_on) return true;
+  is_under_way_ = true;
+  Change& last = changes_.back();
+  // The shape of before is one of other loads: what is taken back are not these.
+  if (last.loads_after != hashOfLoads(named_loads)) last.entry.state.reset();
+  return false;
 }
 
 void History::begin(Kind kind, Entry before, const std::vector<LoadingPatch>& named_loads) {
@@ -85,7 +93,15 @@ void History::end(const std::vector<LoadingPatch>& named_loads) {
   changes_.back().loads_after = hashOfLoads(named_loads);
 }
 
-void History::clear() { changes_.clear(); }
+void History::clear() {
+  changes_.clear();
+  tears_go_on_ = false;
+}
+
+void History::dropFrom(std::size_t change) {
+  changes_.resize(change);
+  tears_go_on_ = false;
+}
 
 void History::forgetStates() {
   for (Change& change : changes_) change.entry.state.reset();

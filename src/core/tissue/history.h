@@ -27,7 +27,7 @@ class History {
   };
 
   // Changes of these kinds that follow each other are one: a blade's stroke goes on, and tissue
-  // goes on to tear.
+  // goes on to tear under the loads that tore it, or that are on their way.
   enum class Kind { kByItself, kStrokeGoesOn, kTear };
 
   // Bytes of shapes, and of topologies, that are kept (tuning.h).
@@ -36,7 +36,9 @@ class History {
       : most_of_shapes_(most_of_shapes), most_of_topologies_(most_of_topologies) {}
 
   // False: it goes on with the last one.
-  bool begins(Kind kind);
+  bool begins(Kind kind, const std::vector<LoadingPatch>& named_loads);
+  // Loads are to be others from here on: what tears then is a change of its own.
+  void noteOtherLoads() { tears_go_on_ = false; }
   // Before the change, and after it.
   void begin(Kind kind, Entry before, const std::vector<LoadingPatch>& named_loads);
   bool isUnderWay() const { return is_under_way_; }
@@ -49,7 +51,7 @@ class History {
   const Entry& before(std::size_t change) const { return changes_[change].entry; }
   // The named loads are those of before that change, as changed by it and those after it alone.
   bool hasLoadsSince(std::size_t change, const std::vector<LoadingPatch>& named_loads) const;
-  void dropFrom(std::size_t change) { changes_.resize(change); }
+  void dropFrom(std::size_t change);
 
  private:
   struct Change {
@@ -65,6 +67,7 @@ class History {
   std::size_t most_of_shapes_, most_of_topologies_;
   std::vector<Change> changes_;
   bool is_under_way_ = false;
+  bool tears_go_on_ = false;  // the next tear is one with the last change, if that is a tear
 };
 
 }  // namespace robot_tissue

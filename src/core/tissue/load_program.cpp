@@ -128,6 +128,7 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
                 "the load needs " + std::to_string(increments) + " increments",
                 "at most " + std::to_string(most_increments) + ", so a smaller load");
   }
+  data_.history.noteOtherLoads();
   for (LoadRamp& ramp : ramps) {
     data_.loads.dropDue(ramp.target.name);
     ramp.patch = data_.loads.place(ramp.start);
@@ -162,6 +163,7 @@ SolveReport LoadProgram::release(const std::vector<std::string>& names) {
       refusePatch(name, "no standing patch has this name", "the name of a patch that was loaded");
     }
   }
+  data_.history.noteOtherLoads();
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
     const std::size_t number = *data_.loads.numberOf(name);
     std::vector<PatchAnswer>& answers = data_.outcome.report.patches;

@@ -14,7 +14,7 @@ class TopologyChange {
   // To be made before the change, where something will change. One within another is part of it.
   TopologyChange(TissueData& data, History::Kind kind)
       : data_(data), is_outermost_(!data.history.isUnderWay()) {
-    if (is_outermost_ && data_.history.begins(kind)) {
+    if (is_outermost_ && data_.history.begins(kind, data_.loads.namedLoads())) {
       const LatticeState& state = data_.body.state();
       data_.history.begin(kind,
                           {{state.severed.begin(), state.severed.end()},
