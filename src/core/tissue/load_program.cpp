@@ -203,13 +203,14 @@ SolveReport LoadProgram::settle() {
 
 // Without a load the rest shape is the equilibrium that every path ends in. The six-spring lattice
 // holds sheared shapes without a force, so relaxing back from a deformed shape would not find it.
+// Of a piece that nothing holds it is wherever that is; what is adrift stays as it is.
 SolveReport LoadProgram::solveFromRest() {
   StandingLoads& loads = data_.loads;
   const std::vector<LoadingPatch> standing = loads.patches();
+  const PieceRegistry::Adrift adrift = data_.adrift();
   data_.methods.now().forget();
   loads.beginComingBack();
-  std::vector<Vec3>& displacement = data_.body.change().displacement;
-  std::fill(displacement.begin(), displacement.end(), Vec3::Zero());
+  relax(adrift.nodes);
   SolveReport report;
   const bool sutured = data_.threads.anyWhole();
   if (data_.body.hasBodyLoad() || sutured) {
@@ -223,6 +224,8 @@ SolveReport LoadProgram::solveFromRest() {
     ramps.push_back(makeRamp(standing[patch], nullptr));
     ramps.back().patch = patch;
     ramps.back().start.force.setZero();
+    const bool stays = std::binary_search(adrift.patches.begin(), adrift.patches.end(), patch);
+    if (stays) ramps.back().start.place = standing[patch].place;
     loads.patches()[patch] = ramps.back().start;
   }
   if (!ramps.empty()) {
@@ -255,6 +258,12 @@ SolveReport LoadProgram::endComingBack(SolveReport report) {
   total.worsen(report.status);
   report.status = total.worst;
   return report;
+}
+
+void LoadProgram::relax(const std::vector<int>& but_for) {
+  std::vector<Vec3> relaxed = data_.pieces.relaxed();
+  for (const int node : but_for) relaxed[at(node)] = data_.body.displacement()[at(node)];
+  data_.body.change().displacement = std::move(relaxed);
 }
 
 // Under gravity and threads alone, these drawn in from where the rest shape has their ends. A shape

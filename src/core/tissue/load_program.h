@@ -32,6 +32,7 @@ class LoadProgram {
 
  private:
   SolveReport solveFromRest();
+  void relax(const std::vector<int>& but_for);
   SolveReport settleFromRest();
   SolveReport endComingBack(SolveReport report);
   LoadingPatch makePatch(const PatchConfig& config) const;

@@ -36,6 +36,9 @@ class PieceRegistry {
   std::vector<TissuePiece> deformed() const;  // by number
   std::vector<int> nodesOfFree() const;       // of pieces that nothing holds; ascending
   Adrift adrift() const;
+  // Displacements (m) without strain: zero where something holds the piece; one that is free stays
+  // where it is, but is rigid.
+  std::vector<Vec3> relaxed() const;  // relaxed_pieces.cpp
   // Nodes of each piece that no fixed node holds and nothing holds or touches; its center of mass
   // goes as gravity says.
   std::vector<const std::vector<int>*> falling();
@@ -69,6 +72,7 @@ class PieceRegistry {
   Holds findHolds(const std::vector<int>& touched, GivenForces forces) const;
   std::vector<int> nodesOf(const std::vector<int>& pieces) const;  // ascending, as these are
   std::vector<int> freePieces(const std::vector<int>& touched) const;
+  std::vector<std::vector<int>> nodesOfEachFree() const;  // relaxed_pieces.cpp
   void findLoose();
 
   const Body& body_;
