@@ -108,6 +108,9 @@ void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
   publisher_.shapeChanged();
   response.message = "taken back, " + std::to_string(pipeline_.tissue().undoable()) +
                      " more to take back" + endOfAnswer(report, pipeline_);
+  if (pipeline_.tissue().isOverstretched()) {
+    response.message += "; what tore is stretched too far still, and tears again";
+  }
 }
 
 void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response& response) {

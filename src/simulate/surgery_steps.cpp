@@ -22,6 +22,9 @@ void Runner::perform(const RemoveStep& step) {
 
 void Runner::perform(const UndoStep& step) {
   const SolveReport report = pipeline_.undo(step.count);
+  if (pipeline_.tissue().isOverstretched()) {
+    remark("what tore is stretched beyond its tear_stretch still: it tears again in the next step");
+  }
   followPushes();
   keep(report);
 }

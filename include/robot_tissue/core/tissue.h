@@ -273,7 +273,9 @@ class Tissue {
   int undoable() const;
   // Takes the last `count` of them back. Where the named loads are those of before them, no tool
   // touches and the shape was in balance, it is that one, bit for bit; else it is balanced under
-  // what stands now. Throws InputError for less than 1, or more than undoable().
+  // what stands now. What tore is whole again, also where it is stretched too far still
+  // (isOverstretched): it tears with the next call that solves, as a change of its own. Throws
+  // InputError for less than 1, or more than undoable().
   SolveReport undo(int count);
   // As cut, along a surface of triangles, such as a blade's edge sweeps; those without an area cut
   // nothing. All of a stroke is taken back as one cut.
@@ -286,8 +288,9 @@ class Tissue {
   // Severs the springs between these nodes and the others, torn in one change, and balances; false:
   // there are none. For what a grasper holds.
   bool tearOut(const std::vector<int>& nodes);
-  bool mayTear() const;     // `tear` may sever or drop something, now or in other shapes
-  int springsTorn() const;  // since rest, or the state that was loaded
+  bool mayTear() const;          // `tear` may sever or drop something, now or in other shapes
+  bool isOverstretched() const;  // `tear` would sever some now
+  int springsTorn() const;       // since rest, or the state that was loaded
   // Joins two points of the surface by a thread, then balances; in time it only joins them. A cut
   // leaves each end on its side; where the tissue of an end goes the thread goes. Throws
   // InputError: numbers out of range, no name or one that is taken, a point farther than a spacing

@@ -27,6 +27,7 @@ class Surgery {
   RemoveReport remove(const RemovedSpace& space);
   RemoveReport drill(const CoveredSpace& space, Stroke stroke);
   SolveReport tear();
+  bool isOverstretched() const;  // Tissue::isOverstretched
   bool tearOut(const std::vector<int>& nodes);
   bool mayTear() const { return !tear_strains_.empty() || data_.pieces.dropsFree(); }
   int springsTorn() const { return springs_torn_; }

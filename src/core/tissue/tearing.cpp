@@ -32,6 +32,11 @@ bool Surgery::tearOut(const std::vector<int>& nodes) {
   return true;
 }
 
+bool Surgery::isOverstretched() const {
+  if (tear_strains_.empty()) return false;
+  return !tearingNext(data_.body.lattice(), data_.body.state(), tear_strains_).empty();
+}
+
 // In time the shape gives way by and by: what goes next is seen after the next step.
 SolveReport Surgery::tear() {
   SolveOutcome& outcome = data_.outcome;

@@ -126,6 +126,7 @@ CutReport Tissue::cutAlong(const std::vector<CutTriangle>& swept, Stroke stroke)
 SolveReport Tissue::tear() { return parts_->surgery.tear(); }
 bool Tissue::tearOut(const std::vector<int>& nodes) { return parts_->surgery.tearOut(nodes); }
 bool Tissue::mayTear() const { return parts_->surgery.mayTear(); }
+bool Tissue::isOverstretched() const { return parts_->surgery.isOverstretched(); }
 int Tissue::springsTorn() const { return parts_->surgery.springsTorn(); }
 SutureResult Tissue::suture(const SutureConfig& config) { return parts_->suturing.suture(config); }
 std::vector<SutureReport> Tissue::sutures() const { return parts_->suturing.sutures(); }

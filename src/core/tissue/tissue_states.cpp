@@ -213,7 +213,7 @@ SolveReport TissueStates::undo(int count) {
   data_.threads.loosen(body.displacement());
   surgery_.changeTopology(body.freeNodes());
   if (data_.threads.anyWhole()) suturing_.drawThreadsIn();
-  return surgery_.tear();
+  return data_.outcome.report;
 }
 
 // What the method learned was of the other material.
