@@ -97,10 +97,12 @@ void Runner::performAll() {
       if (is_at_rest) layDown(scene_.steps[i]);
       const int torn = pipeline_.tissue().springsTorn();
       const std::size_t dropped = pipeline_.tissue().droppedPieces().size();
+      const std::set<std::string> loads = standingLoads();
       const bool was_impatient = pipeline_.tissue().patience().cutsOff();
       std::visit([this](const auto& step) { perform(step); }, scene_.steps[i]);
       remarkTorn(torn);
       remarkDropped(dropped);
+      noteLost(loads);
       if (!was_impatient) remarkImpatience();
       if (on_step_) on_step_(step_, pipeline_.tissue());
     } catch (const EntryError& error) {
@@ -128,7 +130,12 @@ void Runner::perform(const LoadStep& step) {
 
 void Runner::perform(const ReleaseStep& step) {
   SolveReport report;
-  if (!step.patches.empty()) report = pipeline_.release(step.patches);
+  const std::vector<std::string> patches = stillStanding(step.patches);
+  if (!patches.empty()) {
+    report = pipeline_.release(patches);
+  } else if (step.tools.empty()) {
+    report = pipeline_.tissue().lastReport();
+  }
   for (const std::string& name : step.tools) {
     const std::size_t tool = tools_.indexOf(name);
     if (!pushes_[tool] && !pipeline_.report().tools[tool].grasps) {

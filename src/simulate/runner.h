@@ -64,6 +64,9 @@ class Runner {
   void perform(const UndoStep& step);
   void keepPieces(int increment);
   void remarkDropped(std::size_t before);
+  std::set<std::string> standingLoads() const;
+  void noteLost(const std::set<std::string>& before);
+  std::vector<std::string> stillStanding(const std::vector<std::string>& names);
 
   // suture_steps.cpp
   void perform(const SutureStep& step);
@@ -108,6 +111,7 @@ class Runner {
   std::vector<std::optional<std::size_t>> unmet_;
   Updates updates_;
   std::set<std::string> broken_sutures_;  // that a remark was made of
+  std::set<std::string> lost_loads_;      // that went with their nodes
   double contact_ms_ = 0.0;               // of the tools' updates since the last row
   int springs_cut_ = 0;                   // by blades, since their move began
   double area_cut_ = 0.0;                 // likewise (m^2)

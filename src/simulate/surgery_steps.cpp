@@ -1,4 +1,7 @@
 // Runner: steps that part tissue, and that take that back.
+#include <algorithm>
+#include <iterator>
+
 #include "robot_tissue/scene/value_text.h"
 #include "runner.h"
 
@@ -42,6 +45,39 @@ void Runner::remarkDropped(std::size_t before) {
   for (std::size_t i = before; i < dropped.size(); ++i) {
     remark("piece " + std::to_string(dropped[i]) + " was dropped, nothing holds it");
   }
+}
+
+std::set<std::string> Runner::standingLoads() const {
+  std::set<std::string> names;
+  for (const LoadingPatch& load : pipeline_.tissue().patches()) {
+    if (names.size() < pipeline_.tissue().namedPatches()) names.insert(load.name);
+  }
+  return names;
+}
+
+// `before`: the loads that stood before the step. Nobody let go of those that are missing now.
+void Runner::noteLost(const std::set<std::string>& before) {
+  const Step& step = scene_.steps[at(step_)];
+  const std::set<std::string> now = standingLoads();
+  if (std::holds_alternative<ResetStep>(step) || std::holds_alternative<LoadStateStep>(step)) {
+    lost_loads_.clear();
+  } else if (!std::holds_alternative<ReleaseStep>(step)) {
+    std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
+                        std::inserter(lost_loads_, lost_loads_.end()));
+  }
+  for (const std::string& name : now) lost_loads_.erase(name);
+}
+
+std::vector<std::string> Runner::stillStanding(const std::vector<std::string>& names) {
+  std::vector<std::string> standing;
+  for (const std::string& name : names) {
+    if (lost_loads_.count(name) == 0) {
+      standing.push_back(name);
+    } else {
+      remark("load '" + name + "' is not there to be released: it went with all its nodes");
+    }
+  }
+  return standing;
 }
 
 }  // namespace robot_tissue

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -58,6 +59,47 @@ TEST(SurgerySteps, WhatIsTakenBackIsAsItWasBitForBit) {
   EXPECT_EQ(nodesCsv(back), nodesCsv(before));
   EXPECT_EQ(surfaceStl(back), surfaceStl(before));
   EXPECT_TRUE(back.allOk());
+}
+
+const std::string kRemoveLoad =
+    "  - remove: {sphere: {center: [0.03, 0.03, 0.05], radius: 0.03}}\n";
+const std::string kRelease = "  - release: {patches: [p]}\n";
+
+TEST(SurgerySteps, AReleaseOfALoadThatWentWithItsNodesIsRemarkedOn) {
+  const RunResult run_on = run(scene(kLoad + kRemoveLoad + kRelease + "  - settle: {}\n"));
+  EXPECT_EQ(run_on.increments.size(), 5U);
+  EXPECT_EQ(std::count(run_on.remarks.begin(), run_on.remarks.end(),
+                       "steps[2].release: load 'p' is not there to be released: it went with all "
+                       "its nodes"),
+            1);
+  // One of this name that came since is released.
+  const RunResult anew = run(scene(kLoad + kRemoveLoad + "  - undo: {}\n" + kLoad + kRelease));
+  EXPECT_TRUE(anew.increments.back().report.patches.empty());
+}
+
+TEST(SurgerySteps, AnUndoneTearUnderItsLoadIsRemarkedOn) {
+  const std::string tearing = R"(tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.06, 0.04, 0.02]}
+  spacing: 0.01
+  material: {young_modulus: 10000.0, poisson_ratio: 0.3, tear_stretch: 1.25}
+  fixed: [{min: [-1, -1, -1], max: [1.0e-6, 1, 1]}]
+steps:
+  - load: {increments: 10, patches: [{name: a, min: [0.06, 0, 0], max: [0.06, 0.04, 0.02], displacement: [0.03, 0, 0]}]}
+  - undo: {}
+  - settle: {}
+)";
+  const RunResult result = run(tearing);
+  const auto is_told = [](const std::string& remark) {
+    return remark.find("steps[1].undo: what tore is stretched") == 0;
+  };
+  EXPECT_EQ(std::count_if(result.remarks.begin(), result.remarks.end(), is_told), 1);
+  ASSERT_GE(result.pieces.size(), 3U);
+  const auto pieces_in = [&](int step) {
+    return std::count_if(result.pieces.begin(), result.pieces.end(),
+                         [&](const PieceRow& row) { return row.step == step; });
+  };
+  EXPECT_EQ(pieces_in(1), 1);
+  EXPECT_EQ(pieces_in(2), 2);
 }
 
 TEST(SurgerySteps, PiecesAddUpToTheBlock) {
