@@ -145,6 +145,17 @@ TEST(Thread, IsDroppedWhereItsTissueIsGone) {
   EXPECT_EQ(threads.all()[0].to.rest, Vec3(0.025, 0.01, 0.02));
 }
 
+// Nodes that it was on may be gone since.
+TEST(Thread, ThatIsBrokenIsLeftAloneByOtherShapes) {
+  SutureThread broken = threadOnNodes(0.005);
+  broken.broken = true;
+  Threads threads;
+  threads.add(broken);
+  threads.loosen(shaken(1));
+  threads.drawIn(0.5);
+  EXPECT_EQ(threads.all()[0].length, broken.length);
+}
+
 std::string bytesOf(const std::vector<SutureThread>& threads) {
   ByteWriter out;
   putSutures(threads, out);

@@ -84,6 +84,7 @@ Vec3 Threads::forceOn(int node, const std::vector<Vec3>& displacement) const {
 
 void Threads::loosen(const std::vector<Vec3>& displacement) {
   for (SutureThread& thread : threads_) {
+    if (thread.broken) continue;
     const double now =
         (placeOf(thread.to, displacement) - placeOf(thread.from, displacement)).norm();
     thread.length = std::max(thread.rest_length, now);
@@ -109,6 +110,7 @@ double Threads::wayLeft() const {
 void Threads::soften(const std::function<double(int node)>& stiffness,
                      const std::vector<Vec3>& displacement) {
   for (SutureThread& thread : threads_) {
+    if (thread.broken) continue;
     std::vector<int> nodes;
     addNodes(thread, nodes);
     double most = 0.0;
