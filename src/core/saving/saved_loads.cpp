@@ -1,5 +1,6 @@
 #include "saving/saved_loads.h"
 
+#include <algorithm>
 #include <set>
 
 #include "saving/checked_values.h"
@@ -109,6 +110,18 @@ std::vector<LoadingPatch> takeLoads(const Lattice& lattice, ByteReader& in) {
     }
   }
   return loads;
+}
+
+std::vector<LoadingPatch> takeDueLoads(const Lattice& lattice,
+                                       const std::vector<LoadingPatch>& loads, ByteReader& in) {
+  std::vector<LoadingPatch> due = takeLoads(lattice, in);
+  for (const LoadingPatch& target : due) {
+    const bool is_of_one = std::any_of(loads.begin(), loads.end(), [&](const LoadingPatch& load) {
+      return load.name == target.name && load.nodes == target.nodes && load.drive == target.drive;
+    });
+    if (!is_of_one) fail("what is on its way is none of its loads");
+  }
+  return due;
 }
 
 void putReport(const SolveReport& report, ByteWriter& out) {

@@ -14,6 +14,9 @@ namespace robot_tissue {
 
 void putLoads(const std::vector<LoadingPatch>& loads, ByteWriter& out);
 std::vector<LoadingPatch> takeLoads(const Lattice& lattice, ByteReader& in);
+// Where some of these loads go.
+std::vector<LoadingPatch> takeDueLoads(const Lattice& lattice,
+                                       const std::vector<LoadingPatch>& loads, ByteReader& in);
 
 void putReport(const SolveReport& report, ByteWriter& out);
 SolveReport takeReport(std::size_t loads, ByteReader& in);

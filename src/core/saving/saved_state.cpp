@@ -19,20 +19,22 @@ namespace {
 // As PNG's: a text editor, or a transfer that minds line ends, breaks it.
 const std::string kMagic = {'R', 'T', 'S', 'T', '\r', '\n', '\x1a', '\n'};
 // Newest that is read; the oldest that holds a state is the one that is written.
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr std::uint32_t kPlain = 1;
 constexpr std::uint32_t kWithExtras = 2;
 constexpr std::uint32_t kWithPieceNumbers = 3;
 constexpr std::uint32_t kWithPartings = 4;
 constexpr std::uint32_t kWithBites = 5;
+constexpr std::uint32_t kWithFronts = 6;
 // Bits of what later versions have more: the third from version 3 on, the fourth from 4 on, the
-// fifth from 5 on, the sixth from 6 on.
+// fifth from 5 on, the sixth from 6 on, the seventh from 7 on.
 constexpr std::uint8_t kHasRemovals = 1;
 constexpr std::uint8_t kHasSutures = 2;
 constexpr std::uint8_t kHasPieceNumbers = 4;
 constexpr std::uint8_t kHasPartings = 8;
 constexpr std::uint8_t kHasBites = 16;
 constexpr std::uint8_t kHasFronts = 32;
+constexpr std::uint8_t kHasDueLoads = 64;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
 // Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
@@ -120,13 +122,15 @@ std::uint8_t extrasOf(const SavedState& state) {
   if (!state.lattice.parted_at.empty()) extras |= kHasPartings;
   if (haveBites(state.sutures)) extras |= kHasBites;
   if (!state.lattice.ahead.empty()) extras |= kHasFronts;
+  if (!state.due.empty()) extras |= kHasDueLoads;
   return extras;
 }
 
 // The lowest version that holds these.
 std::uint32_t versionOf(std::uint8_t extras) {
   if (extras == 0) return kPlain;
-  if ((extras & kHasFronts) != 0) return kVersion;
+  if ((extras & kHasDueLoads) != 0) return kVersion;
+  if ((extras & kHasFronts) != 0) return kWithFronts;
   if ((extras & kHasBites) != 0) return kWithBites;
   if ((extras & kHasPartings) != 0) return kWithPartings;
   return (extras & kHasPieceNumbers) != 0 ? kWithPieceNumbers : kWithExtras;
@@ -135,8 +139,8 @@ std::uint32_t versionOf(std::uint8_t extras) {
 std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
   if (version == kPlain) return 0;
   const std::uint8_t extras = in.u8();
-  const unsigned all =
-      kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings | kHasBites | kHasFronts;
+  const unsigned all = kHasRemovals | kHasSutures | kHasPieceNumbers | kHasPartings | kHasBites |
+                       kHasFronts | kHasDueLoads;
   const bool has_lost_bites = (extras & kHasBites) != 0 && (extras & kHasSutures) == 0;
   if (extras > all || versionOf(extras) != version || has_lost_bites) {
     throw InputError("is damaged: it has nothing of its version, or more");
@@ -343,6 +347,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   if ((extras & kHasSutures) != 0) putSutures(state.sutures, body);
   if ((extras & kHasPieceNumbers) != 0) putPieces(state.pieces, body);
   if ((extras & kHasBites) != 0) putBites(state.sutures, body);
+  if ((extras & kHasDueLoads) != 0) putLoads(state.due, body);
   return headerFor(body.bytes(), versionOf(extras), fingerprint) + body.bytes();
 }
 
@@ -382,6 +387,9 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
                      ? takePieces(state.pieces, lattice.nodeCount(), in)
                      : PieceNumbers::counted(state.pieces);
   if ((extras & kHasBites) != 0) takeBites(saved.sutures, in);
+  if ((extras & kHasDueLoads) != 0) saved.due = takeDueLoads(lattice, saved.loads, in);
+  for (const LoadingPatch& load : saved.due) requireNotRemoved(state, load);
+  saved.in_balance = saved.in_balance && saved.due.empty();
   if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
   return saved;
 }

@@ -21,6 +21,7 @@ struct SavedState {
   LatticeState lattice;
   PieceNumbers::Names pieces;
   std::vector<LoadingPatch> loads;  // the named ones
+  std::vector<LoadingPatch> due;    // what those of them go to that are on their way
   std::vector<SutureThread> sutures;
   SolveReport report;       // status, residual, error estimate and answers of the loads
   bool in_balance = false;  // the shape is the one under these loads alone

@@ -98,10 +98,10 @@ void StandingLoads::remove(std::size_t number) {
   --named_;
 }
 
-void StandingLoads::take(std::vector<LoadingPatch> named_loads) {
+void StandingLoads::take(std::vector<LoadingPatch> named_loads, std::vector<LoadingPatch> due) {
   patches_ = std::move(named_loads);
   named_ = patches_.size();
-  due_.clear();
+  due_ = std::move(due);
   are_coming_back_ = false;
 }
 

@@ -40,7 +40,8 @@ class StandingLoads {
   std::size_t place(const LoadingPatch& patch);
   void putToolPatches(std::vector<LoadingPatch> of_tools);  // in the place of the earlier ones
   void remove(std::size_t number);                          // a named load, with what is due of it
-  void take(std::vector<LoadingPatch> named_loads);         // these alone stand
+  // These alone stand, and go to what is due.
+  void take(std::vector<LoadingPatch> named_loads, std::vector<LoadingPatch> due = {});
   void restore(const std::vector<LoadingPatch>& patches, std::size_t named);
   // Puts them before what stands.
   void putBack(const std::vector<LoadingPatch>& before, std::size_t named);
@@ -55,6 +56,7 @@ class StandingLoads {
   // What was due of that name before stays so: the patch was on its way there.
   void makeDue(const LoadingPatch& target);
   void dropDue(const std::string& name);
+  const std::vector<LoadingPatch>& due() const { return due_; }
   std::vector<LoadingPatch> takeDue() { return std::exchange(due_, {}); }
 
   // The shape is on its way from rest to these loads, which stood before: what it bears there it

@@ -67,6 +67,7 @@ SavedState TissueData::saved() const {
   saved.lattice = body.state();
   saved.pieces = pieces.numbers()->names();
   saved.loads = loads.namedLoads();
+  saved.due = loads.due();
   saved.sutures = threads.all();
   saved.report = outcome.report;
   saved.report.patches.resize(loads.named());  // without the tools

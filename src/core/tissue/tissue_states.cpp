@@ -129,7 +129,7 @@ void TissueStates::take(const SavedState& saved) {
   data_.outcome.is_late = false;
   surgery_.setSpringsTorn(0);
   body.change() = saved.lattice;
-  data_.loads.take(saved.loads);
+  data_.loads.take(saved.loads, saved.due);
   data_.history.clear();
   body.weigh();
   data_.threads.clear();
@@ -142,7 +142,9 @@ void TissueStates::take(const SavedState& saved) {
 }
 
 void TissueStates::takeOver(const TissueData& other) {
-  take(other.saved());
+  SavedState now = other.saved();
+  now.due.clear();
+  take(now);
   data_.outcome.report = SolveReport();
   data_.outcome.report.patches.resize(data_.loads.patches().size());
   data_.motion.wakeUnderBodyLoad();
@@ -154,7 +156,9 @@ SolveReport TissueStates::loadState(const SavedState& saved) {
   if (!saved.in_balance) {
     // Supports are met before anything moves, so that what lies on them sticks at first.
     solver_.renewContacts();
-    return solver_.solve(data_.body.freeNodes());
+    solver_.solve(data_.body.freeNodes());
+    if (data_.loads.isLoading()) outcome.worsen(SolveStatus::kLate);
+    return outcome.report;
   }
   outcome.report.inverted_cells = countInvertedCells(data_.body.lattice(), data_.body.state());
   outcome.report.volume_ratio = data_.body.volumeRatio();
