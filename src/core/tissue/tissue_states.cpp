@@ -198,7 +198,7 @@ SolveReport TissueStates::undo(int count) {
   // What is late of the change itself goes with it.
   if (data_.loads.isUntouched() && !data_.loads.isLoading() && same_loads) saved = entry.state;
   if (saved && saved->in_balance) {
-    History kept = data_.history;
+    History kept = std::exchange(data_.history, History());
     kept.dropFrom(target);
     const int torn = surgery_.springsTorn();
     const SolveReport report = loadState(*saved);
