@@ -105,6 +105,25 @@ double readWrenchRate(const Entry& entry) {
   const double rate = entry.number(ranges::wrenchRate());
   if (rate == 0.0 || rate >= ranges::kLeastWrenchRate) return rate;
   entry.fail("must be 0, for one an update, or " + numberText(ranges::kLeastWrenchRate) +
+// Of own_robot.launch, whose static transform does nothing for a tissue in another frame. Empty: it
+// publishes none. After the scene was read.
+void comparePlacedFrame(const Entry& entry, NodeParameters& parameters) {
+  if (!entry.given() || entry.isWord(parameters.scene.tissue.frame_id)) return;
+  const std::string frame = "'" + parameters.scene.tissue.frame_id + "'";
+  if (entry.isWord("")) {
+    return parameters.scene.remarks.push_back(
+        "`place` of own_robot.launch has no effect, as tissue_frame is its parent: the tissue "
+        "stands in the frame " +
+        frame + " itself (tissue.frame_id)");
+  }
+  const std::string placed = entry.word("the name of a frame");
+  parameters.scene.remarks.push_back(
+      "`place` of own_robot.launch has no effect: it places the frame '" + placed +
+      "', but the tissue stands in " + frame + "; set tissue.frame_id: " + placed +
+      " in the scene (or, where no robot has that frame, tissue_frame:=" +
+      parameters.scene.tissue.frame_id + ")");
+}
+
              " Hz at least");
 }
 
@@ -153,6 +172,7 @@ const KeyTable<NodeParameters> kOwnKeys = {
 };
 
 }  // namespace
+    {"placed_frame", comparePlacedFrame},
 
 double updateBudget(const NodeParameters& parameters) {
   const double budget_ms = parameters.scene.solver.max_ms;
