@@ -12,7 +12,7 @@ Pipeline::Bounded::Bounded(Pipeline& pipeline) : pipeline_(pipeline) {
   const std::optional<Deadline>& end = pipeline.end_;
   World& world = pipeline.world_;
   world.deadline = Deadline(pipeline.budget_s_ - 1e-3 * pipeline.state_.reporting_ms);
-  if (end && end->leftMs() < world.deadline.leftMs()) world.deadline = *end;
+  if (end && end->leftMs() <= world.deadline.leftMs()) world.deadline = *end;
   if (end || std::isfinite(pipeline.budget_s_)) world.tissue.setDeadline(world.deadline);
 }
 

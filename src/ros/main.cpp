@@ -1,6 +1,7 @@
 #include <ros/ros.h>
 
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <optional>
 
@@ -9,6 +10,7 @@
 
 int main(int argc, char** argv) {
   robot_tissue::keepFreeMemory();
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // lines of the log come at once, also to a file
   // The last handle to go closes the log, so one stays until the last line is said.
   std::optional<ros::NodeHandle> private_node;
   try {

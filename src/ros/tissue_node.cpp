@@ -3,6 +3,7 @@
 #include <ros/callback_queue.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/memory.h"
+#include "settling_notice.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -39,13 +41,13 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   pipeline_.setBudget(updateBudget(parameters_));
   pipeline_.setMostIterations(mostIterations(parameters_));
   pipeline_.leaveDepths();
+  pipeline_.setEnd(Deadline(std::numeric_limits<double>::infinity(), ros::isShuttingDown));
   robotIsKnown();
-  follower_.settleFromRest();
   services_ = std::make_unique<TissueServices>(
       private_node_, parameters_, pipeline_, publisher_, tool_poses_,
       TissueServices::Node{[this] { wake(); },
                            [this] { return last_look_up_.status == PoseLookUp::Status::kOk; },
-                           [this] { follow(); }, [this] { follower_.settleFromRest(); }});
+                           [this] { follow(); }, [this] { settleFromRest(); }});
   surgery_ = std::make_unique<SurgeryServices>(private_node_, parameters_.state_dir, pipeline_,
                                                publisher_, tool_poses_, [this] { wake(); });
   live_ = std::make_unique<LiveParameters>(
@@ -59,9 +61,29 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
   diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
   diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
   timer_ = private_node_.createTimer(period(), [this](const ros::TimerEvent&) { onTimer(); });
-  if (!ros::Time::isSimTime()) return;
-  steady_timer_ = private_node_.createSteadyTimer(
-      kClockPeriod, [this](const ros::SteadyTimerEvent&) { onSteadyTimer(); });
+  if (ros::Time::isSimTime()) {
+    steady_timer_ = private_node_.createSteadyTimer(
+        kClockPeriod, [this](const ros::SteadyTimerEvent&) { onSteadyTimer(); });
+  }
+  settleFromRest();  // the last, as it may take long: services are there, and answer after it
+}
+
+// What has to come to lie takes seconds; what does not, an update at most.
+void TissueNode::settleFromRest() {
+  if (!pipeline_.isLoose()) return follower_.settleFromRest();
+  const std::string settles = "the tissue settles on its supports; all else waits until it lies";
+  ROS_INFO_STREAM(settles);
+  const ros::SteadyTime start = ros::SteadyTime::now();
+  {
+    const SettlingNotice notice(publisher_, diagnostics_,
+                                publisher_.stateNow(pipeline_, {"SETTLING", settles}));
+    follower_.settleFromRest();
+  }
+  grace_end_ = ros::SteadyTime::now() + kGrace;
+  if (ros::isShuttingDown()) return;
+  ROS_INFO_STREAM("the tissue has settled, in "
+                  << (ros::SteadyTime::now() - start).toSec() << " s"
+                  << endOfAnswer(pipeline_.tissue().lastReport(), pipeline_));
 }
 
 // In the thread that receives transforms.

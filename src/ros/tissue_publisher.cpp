@@ -116,12 +116,17 @@ void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& st
   last_status_ = status;
   last_state_ = stamp;
   if (state_.getNumSubscribers() == 0) return;
-  TissueState message = stateMessage(pipeline, status);
+  TissueState message = stateNow(pipeline, status);
   message.header.stamp = stamp;
-  message.header.frame_id = frame_id_;
   message.publish_ms = publish_ms_;
   message.pose_age_ms = 1e3 * secondsBetween(stamp, ros::Time::now());
   state_.publish(message);
+}
+
+TissueState TissuePublisher::stateNow(const Pipeline& pipeline, const NodeStatus& status) const {
+  TissueState message = stateMessage(pipeline, status);
+  message.header.frame_id = frame_id_;
+  return message;
 }
 
 void TissuePublisher::publishMarkers(const Pipeline& pipeline, const ros::Time& stamp) {

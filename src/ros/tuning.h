@@ -17,6 +17,9 @@ constexpr int kMostIterations = 36;
 // s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
 // lost is told of later. Chosen.
 constexpr double kWatchPeriod = 0.1;
+// s: between two times that it is told that tissue still settles. More: who comes meanwhile waits
+// for longer. Chosen, as the state comes while nothing changes.
+constexpr double kSettlingPeriod = 1.0;
 // s: time that goes by for a moving tissue from one pose to the next, at most. More: after a
 // silence of the robot an update has to make up for more. Chosen.
 constexpr double kLongestGap = 0.1;

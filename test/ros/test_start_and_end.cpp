@@ -11,6 +11,9 @@
 namespace robot_tissue::test_start_and_end {
 namespace {
 
+// s, wall time; of a node that does not stop while it settles.
+constexpr double kLongDeadline = 90.0;
+
 class NodeProcess {
  public:
   NodeProcess() {
@@ -103,6 +106,41 @@ TEST_F(Start, BesideSeldomWrenchesTheEndComesAtOnce) {
   EXPECT_TRUE(WIFEXITED(node.status())) << "ended by a signal";
   EXPECT_LE(told, 1);
   ros::param::del("/tissue/wrench_rate");
+}
+
+// Tissue that takes long to come to lie, in the place of the other tests' scene.
+class Settling : public Start {
+ protected:
+  void SetUp() override {
+    XmlRpc::XmlRpcValue loose;
+    ASSERT_TRUE(ros::param::get("/tissue", scene_));
+    ASSERT_TRUE(ros::param::get("/loose", loose));
+    ros::param::set("/tissue", loose);
+  }
+  void TearDown() override { ros::param::set("/tissue", scene_); }
+
+  bool isTold() {
+    const std::string& of_solver = diagnostics_["tissue: solver"].message;
+    return state_ && state_->status == "SETTLING" && of_solver.find("settles") != std::string::npos;
+  }
+
+ private:
+  XmlRpc::XmlRpcValue scene_;
+};
+
+TEST_F(Settling, IsToldAndTheNodeCanBeStoppedMeanwhile) {
+  NodeProcess node;
+  ASSERT_TRUE(waitFor([this] { return isTold(); })) << node.read();
+  EXPECT_NE(state_->message.find("supports"), std::string::npos) << state_->message;
+  for (const char* service : {"/tissue/reset", "/tissue/apply_load", "/tissue/save_state"}) {
+    EXPECT_TRUE(ros::service::exists(service, false)) << service;
+  }
+  node.signal(SIGINT);
+  ASSERT_TRUE(waitFor([&] { return node.hasEnded(); }, kLongDeadline)) << node.read();
+  EXPECT_TRUE(WIFEXITED(node.status())) << "ended by a signal";
+  EXPECT_EQ(WEXITSTATUS(node.status()), 0);
+  EXPECT_NE(node.read().find("the tissue settles on its supports"), std::string::npos);
+  EXPECT_EQ(node.read().find("the tissue has settled"), std::string::npos) << node.read();
 }
 
 // A robot that never comes is warned about, once.

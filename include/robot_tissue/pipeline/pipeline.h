@@ -97,7 +97,8 @@ class Pipeline {
   // solves since the last reset, are cut off, and ways given up (Patience, StepReport::hopeless).
   // `times`: of the usual patience with a scene.
   void limitPatience(double times = 1.0);
-  // No call begins a solve after it; what a call leaves then it tells as late.
+  // No call begins a solve after it; what a call leaves then it tells as late. One without a time,
+  // that only a stop ends, changes nothing before.
   void setEnd(const Deadline& end);
 
   // As Tissue's, with the tools and supports where they are. Where no time passes, what nothing

@@ -39,6 +39,7 @@ class TissueNode {
  private:
   enum class Ticks { kAtRate, kSeldom };  // of the timer
 
+  void settleFromRest();
   void onStill(const ros::Time& stamp);
   void onTimer();
   void onSteadyTimer();

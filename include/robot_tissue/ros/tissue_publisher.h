@@ -6,6 +6,7 @@
 // are the forces in the markers, dimmed.
 #pragma once
 
+#include <robot_tissue/TissueState.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/time.h>
@@ -51,6 +52,11 @@ class TissuePublisher {
   enum class Wrenches { kNone, kOld };
   void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status,
                           Wrenches wrenches);
+
+  // Without stamp and times.
+  TissueState stateNow(const Pipeline& pipeline, const NodeStatus& status) const;
+  // Of what is done in place of updates; in any thread.
+  void tell(const TissueState& state) const { state_.publish(state); }
 
   // The next call sends markers and state, whatever their period.
   void shapeChanged() {
