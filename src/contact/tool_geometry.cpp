@@ -223,6 +223,17 @@ LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>
   return loaded;
 }
 
+std::optional<std::string> linkThatNeedsUrdf(const std::vector<ToolConfig>& configs) {
+  for (const ToolConfig& tool : configs) {
+    for (std::size_t link = 0; link < tool.links.size(); ++link) {
+      const ToolLink& config = tool.links[link];
+      const bool has_shapes = !config.shapes.empty() || isFrameOnly(tool, link);
+      if (!has_shapes && !config.link.empty()) return config.link;
+    }
+  }
+  return std::nullopt;
+}
+
 LoadedTools toolsOf(const std::vector<ToolConfig>& configs) {
   LoadedTools loaded;
   for (std::size_t i = 0; i < configs.size(); ++i) {

@@ -48,13 +48,10 @@ std::optional<std::string> urdfOf(const ReplayOptions& options, const InputBag& 
 LoadedTools toolsFor(const NodeParameters& parameters, const std::optional<std::string>& urdf) {
   const std::vector<ToolConfig>& configs = parameters.scene.tools;
   if (urdf) return loadTools(*urdf, configs);
-  for (const ToolConfig& tool : configs) {
-    for (const ToolLink& link : tool.links) {
-      if (link.link.empty() || !link.shapes.empty()) continue;
-      throw InputError("tools: link '" + onOneLine(link.link) +
-                       "' has no shapes and there is no URDF; allowed: --urdf FILE, or shapes in "
-                       "the scene");
-    }
+  if (const std::optional<std::string> link = linkThatNeedsUrdf(configs)) {
+    throw InputError("tools: link '" + onOneLine(*link) +
+                     "' has no shapes and there is no URDF; allowed: --urdf FILE, or shapes in "
+                     "the scene");
   }
   return toolsOf(configs);
 }

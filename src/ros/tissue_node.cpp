@@ -156,8 +156,10 @@ void TissueNode::onTimer() {
   giveBackMemory();
   timeWentBack();
   if (!robotIsKnown()) {
+    const std::string link = linkThatNeedsUrdf(parameters_.scene.tools).value_or("");
     report({"NO_ROBOT", "parameter '" + parameters_.robot_description_param +
-                            "' is not set: waiting for a URDF"});
+                            "' is not set: waiting for a URDF, as link '" + link +
+                            "' has no shapes in the scene"});
     return tick(pipeline_.isLate() ? Ticks::kAtRate : Ticks::kSeldom);
   }
   const PoseWatch::Seen seen = watch_.seen();
@@ -238,7 +240,8 @@ void TissueNode::follow() {
   if (isStill() && pipeline_.hasArrived()) watch_.standAt(pipeline_.stillPose());
 }
 
-// Loads the tools once the robot's description is there; without tools none is needed.
+// Loads the tools once the robot's description is there; where all shapes are the scene's own none
+// is needed.
 bool TissueNode::robotIsKnown() {
   if (robot_is_known_) return true;
   const auto& tools = parameters_.scene.tools;
@@ -247,8 +250,8 @@ bool TissueNode::robotIsKnown() {
     if (now < next_robot_look_up_) return false;
     next_robot_look_up_ = now + kRobotLookUpPeriod;
     const auto urdf = robotDescription(private_node_, parameters_.robot_description_param);
-    if (!urdf) return false;
-    const LoadedTools loaded = loadTools(*urdf, tools);
+    if (!urdf && linkThatNeedsUrdf(tools)) return false;
+    const LoadedTools loaded = urdf ? loadTools(*urdf, tools) : toolsOf(tools);
     for (const std::string& warning : loaded.warnings) ROS_WARN_STREAM(warning);
     pipeline_.setTools(loaded.tools);
     for (const std::string& warning : pipeline_.toolWarnings()) ROS_WARN_STREAM(warning);

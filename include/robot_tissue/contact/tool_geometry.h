@@ -1,6 +1,7 @@
 // The collision geometry of the tools, from the robot's URDF or from a scene's overlay.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ void requireUrdf(const std::string& urdf_xml);
 // Throws InputError: URDF that does not parse, a link or a padded collision that it does not have.
 // No tools: no URDF needed.
 LoadedTools loadTools(const std::string& urdf_xml, const std::vector<ToolConfig>& configs);
+
+// A link whose shapes only a URDF can tell; none: the overlays are enough.
+std::optional<std::string> linkThatNeedsUrdf(const std::vector<ToolConfig>& configs);
 
 // Without a URDF: the overlays alone.
 LoadedTools toolsOf(const std::vector<ToolConfig>& configs);
