@@ -3,6 +3,7 @@
 #include <XmlRpcValue.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
@@ -89,22 +90,21 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// By default in ROS's home.
+// Two nodes do not share one: names have no point, so each gives another folder.
+std::string defaultStateDir(const std::string& node_name) {
+  const std::string ros_home = variable("ROS_HOME");
+  std::string folder = node_name.substr(node_name.find_first_not_of('/'));
+  std::replace(folder.begin(), folder.end(), '/', '.');
+  return (ros_home.empty() ? variable("HOME") + "/.ros" : ros_home) + "/robot_tissue/" + folder;
+}
+
 std::string readStateDir(const Entry& entry) {
-  if (!entry.given()) {
-    const std::string ros_home = variable("ROS_HOME");
-    return (ros_home.empty() ? variable("HOME") + "/.ros" : ros_home) + "/robot_tissue";
-  }
   const std::string allowed = "the absolute path of a folder";
   const std::filesystem::path folder = entry.word(allowed);
   if (!folder.is_absolute()) entry.fail("must be " + allowed);
   return folder.string();
 }
 
-double readWrenchRate(const Entry& entry) {
-  const double rate = entry.number(ranges::wrenchRate());
-  if (rate == 0.0 || rate >= ranges::kLeastWrenchRate) return rate;
-  entry.fail("must be 0, for one an update, or " + numberText(ranges::kLeastWrenchRate) +
 // Of own_robot.launch, whose static transform does nothing for a tissue in another frame. Empty: it
 // publishes none. After the scene was read.
 void comparePlacedFrame(const Entry& entry, NodeParameters& parameters) {
@@ -124,6 +124,10 @@ void comparePlacedFrame(const Entry& entry, NodeParameters& parameters) {
       parameters.scene.tissue.frame_id + ")");
 }
 
+double readWrenchRate(const Entry& entry) {
+  const double rate = entry.number(ranges::wrenchRate());
+  if (rate == 0.0 || rate >= ranges::kLeastWrenchRate) return rate;
+  entry.fail("must be 0, for one an update, or " + numberText(ranges::kLeastWrenchRate) +
              " Hz at least");
 }
 
@@ -163,16 +167,18 @@ const KeyTable<NodeParameters> kOwnKeys = {
        if (!entry.given()) return;
        parameters.robot_description_param = entry.word("the name of a parameter that holds a URDF");
      }},
-    {"state_dir", [](const Entry& entry,
-                     NodeParameters& parameters) { parameters.state_dir = readStateDir(entry); }},
+    {"state_dir",
+     [](const Entry& entry, NodeParameters& parameters) {
+       if (entry.given()) parameters.state_dir = readStateDir(entry);
+     }},
     {"scene_file"},  // the scene is read against it
+    {"placed_frame", comparePlacedFrame},
     // Read by diagnostic_updater, which takes anything.
     {"diagnostic_period",
      [](const Entry& entry, NodeParameters&) { entry.numberOr(1.0, ranges::diagnosticPeriod()); }},
 };
 
 }  // namespace
-    {"placed_frame", comparePlacedFrame},
 
 double updateBudget(const NodeParameters& parameters) {
   const double budget_ms = parameters.scene.solver.max_ms;
@@ -205,7 +211,9 @@ NodeParameters readNodeParameters(const ros::NodeHandle& private_node) {
   source.name = private_node.getNamespace();
   source.user = SceneUser::kNode;
   source.folder = readSceneFolder(Entry(root["scene_file"], "scene_file", source.name));
-  return parseNodeParameters(root, source);
+  NodeParameters parameters = parseNodeParameters(root, source);
+  if (parameters.state_dir.empty()) parameters.state_dir = defaultStateDir(source.name);
+  return parameters;
 }
 
 }  // namespace robot_tissue

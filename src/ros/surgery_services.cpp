@@ -68,8 +68,9 @@ SurgeryServices::SurgeryServices(ros::NodeHandle& private_node, std::string stat
 
 void SurgeryServices::onSaveState(const File::Request& request, File::Response& response) {
   const std::string bytes = pipeline_.tissue().savedState();
-  writeStateFile(state_dir_, request.file, bytes);
-  response.message = "saved " + std::to_string(bytes.size()) + " bytes in " + state_dir_;
+  const bool replaced = writeStateFile(state_dir_, request.file, bytes);
+  response.message = "saved " + std::to_string(bytes.size()) + " bytes in " + state_dir_ + "/" +
+                     request.file + (replaced ? ", in the place of an earlier file" : "");
 }
 
 void SurgeryServices::onLoadState(const File::Request& request, File::Response& response) {

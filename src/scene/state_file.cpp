@@ -96,19 +96,20 @@ std::string stateFileFault(const std::string& name) {
          " letters, digits, '.', '_' and '-' that neither begins with '.' nor ends in .csv or .stl";
 }
 
-void writeStateFile(const std::string& folder, const std::string& name, const std::string& bytes) {
+bool writeStateFile(const std::string& folder, const std::string& name, const std::string& bytes) {
   requireStateFileName(name);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) refuse(name, "cannot make the folder " + folder + ", " + error.message());
-  if (fs::exists(fs::symlink_status(fs::path(folder) / name)) &&
-      !fs::is_regular_file(fs::symlink_status(fs::path(folder) / name))) {
+  const fs::file_status earlier = fs::symlink_status(fs::path(folder) / name);
+  if (fs::exists(earlier) && !fs::is_regular_file(earlier)) {
     refuse(name, "is there, and no regular file");
   }
   NewFile file(folder, name);
   file.write(bytes);
   file.moveTo(fs::path(folder) / name);
   keepFolder(folder);
+  return fs::exists(earlier);
 }
 
 std::string readStateFile(const std::string& folder, const std::string& name) {

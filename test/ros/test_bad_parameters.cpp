@@ -5,8 +5,11 @@
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <limits>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "robot_tissue/ros/node_parameters.h"
 
@@ -94,6 +97,40 @@ TEST(GoodParameter, NumbersThatRosparamMakesWordsOfAreTaken) {
   EXPECT_EQ(parameters.scene.tissue.shape.min().x(), -0.05);
   EXPECT_EQ(parameters.scene.tissue.shape.max().x(), 0.05);
   EXPECT_EQ(parameters.scene.tissue.material.young_modulus, 1e4);
+}
+
+// The good scene with one parameter more, as that node reads it.
+NodeParameters readAs(const std::string& node, const std::string& key, const std::string& value) {
+  XmlRpc::XmlRpcValue scene;
+  EXPECT_TRUE(ros::param::get("/good_scene", scene));
+  if (!key.empty()) scene[key] = value;
+  ros::param::set(node, scene);
+  return readNodeParameters(ros::NodeHandle(node));
+}
+
+TEST(GoodParameter, EachNodeKeepsStatesInAFolderOfItsOwn) {
+  std::set<std::string> folders;
+  for (const char* node : {"/left/organ", "/left_organ", "/organ", "/left/organ/organ"}) {
+    const std::filesystem::path folder = readAs(node, "", "").state_dir;
+    EXPECT_TRUE(folder.is_absolute());
+    EXPECT_EQ(folder.parent_path().filename(), "robot_tissue");
+    folders.insert(folder);
+  }
+  EXPECT_EQ(folders.size(), 4U);
+  EXPECT_EQ(readAs("/organ", "state_dir", "/tmp/kept here").state_dir, "/tmp/kept here");
+}
+
+TEST(GoodParameter, AFrameThatIsPlacedForNothingIsToldInALine) {
+  EXPECT_TRUE(readAs("/organ", "", "").scene.remarks.empty());
+  EXPECT_TRUE(readAs("/organ", "placed_frame", "tissue").scene.remarks.empty());
+  for (const char* frame : {"bed", ""}) {
+    const std::vector<std::string> remarks = readAs("/organ", "placed_frame", frame).scene.remarks;
+    ASSERT_EQ(remarks.size(), 1U) << frame;
+    for (const std::string& names : {std::string("`place`"), std::string("'tissue'"),
+                                     std::string("tissue.frame_id"), std::string(frame)}) {
+      EXPECT_NE(remarks[0].find(names), std::string::npos) << remarks[0];
+    }
+  }
 }
 
 }  // namespace

@@ -48,6 +48,10 @@ TEST_F(Surgery, ASavedCutComesBackAfterAReset) {
   const auto saved = ask("save_state", "cut.tissue");
   EXPECT_TRUE(saved.success) << saved.message;
   EXPECT_TRUE(fs::is_regular_file(fs::path(folder_) / "cut.tissue"));
+  EXPECT_NE(saved.message.find(folder_ + "/cut.tissue"), std::string::npos) << saved.message;
+  EXPECT_EQ(saved.message.find("in the place of"), std::string::npos) << saved.message;
+  const auto again = ask("save_state", "cut.tissue");
+  EXPECT_NE(again.message.find("in the place of"), std::string::npos) << again.message;
   ASSERT_TRUE(reset());
   ASSERT_TRUE(waitForMarkers([this] { return markers_["cut_faces"].points.empty(); }));
   const auto loaded = ask("load_state", "cut.tissue");

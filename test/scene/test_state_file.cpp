@@ -44,9 +44,9 @@ class StateFile : public ::testing::Test {
 TEST_F(StateFile, IsReadAsItWasWritten) {
   const std::string bytes("a\0b\r\n\xff", 6);
   const std::string made = (folder_ / "made/here").string();
-  writeStateFile(made, "a.tissue", bytes);
+  EXPECT_FALSE(writeStateFile(made, "a.tissue", bytes));
   EXPECT_EQ(readStateFile(made, "a.tissue"), bytes);
-  writeStateFile(made, "a.tissue", "new");
+  EXPECT_TRUE(writeStateFile(made, "a.tissue", "new"));
   EXPECT_EQ(readStateFile(made, "a.tissue"), "new");
   EXPECT_EQ(std::distance(fs::directory_iterator(made), fs::directory_iterator()), 1);
 }

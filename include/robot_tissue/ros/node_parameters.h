@@ -19,7 +19,7 @@ struct NodeParameters {
   double tf_timeout_s = 0.5;       // ~tf_timeout: an older pose is stale
   double force_scale = 0.02;       // ~force_scale: length of a force arrow (m/N)
   ColorBy color = ColorBy::kNone;  // ~color: what the surface's color tells
-  std::string state_dir;           // ~state_dir: where saved states are
+  std::string state_dir;           // ~state_dir: where saved states are; empty: not said
   std::string robot_description_param = "robot_description";  // ~robot_description_param
 };
 

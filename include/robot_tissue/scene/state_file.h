@@ -9,8 +9,9 @@ namespace robot_tissue {
 std::string stateFileFault(const std::string& name);
 
 // Makes the folder where it is missing. Who reads the file, or comes back after a loss of power,
-// finds the old content or the new. Throws InputError: "file = 'a b': must be ...", a full disk.
-void writeStateFile(const std::string& folder, const std::string& name, const std::string& bytes);
+// finds the old content or the new. True: it took the place of an earlier one. Throws InputError:
+// "file = 'a b': must be ...", a full disk.
+bool writeStateFile(const std::string& folder, const std::string& name, const std::string& bytes);
 
 // Throws InputError, e.g. where there is none.
 std::string readStateFile(const std::string& folder, const std::string& name);
