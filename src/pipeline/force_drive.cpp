@@ -14,6 +14,7 @@ void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   if (!same_way) drive.way = drive.came = 0.0;
   if (same_way && *force != *drive.force) drive.way = drive.came;
   drive.off = kInfinity;
+  drive.unanswered = false;
   drive.force = force;
 }
 
@@ -80,6 +81,7 @@ class ForceDrive::Search {
 
   // Where the tool is along its force (m), and what it met there (N).
   void note(double way, double met);
+  bool isAnswered() const { return met_ >= tuning::kAnswered * force_; }
   double off() const { return std::abs(met_ - force_); }  // N
   bool hasMet() const { return off() <= tuning::kForceMet * force_; }
   // Next correction (m).
@@ -141,6 +143,7 @@ bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
   const bool has_way_left = !search.hasMet() && !way.lost() && nearer &&
                             drive.way < (tuning::kFarthestPush - 1.0) * longest;
   drive.off = has_way_left ? search.off() : kInfinity;
+  drive.unanswered = had_time && !has_way_left && !way.lost() && !search.isAnswered();
   return has_way_left;
 }
 

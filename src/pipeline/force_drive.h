@@ -22,8 +22,10 @@ class ForceDrive {
   bool drives(std::size_t tool) const { return drives_[tool].force.has_value(); }
   bool drivesAny() const;
   bool isMet(std::size_t tool, const Vec3& met) const;  // by a force on the tissue (N)
-  Vec3 offset(std::size_t tool) const;                  // of where it is to go, from its pose (m)
-  Vec3 came(std::size_t tool) const;                    // of where it came on that way, likewise
+  // Less than the force met it where its way ended.
+  bool isUnanswered(std::size_t tool) const { return drives_[tool].unanswered; }
+  Vec3 offset(std::size_t tool) const;  // of where it is to go, from its pose (m)
+  Vec3 came(std::size_t tool) const;    // of where it came on that way, likewise
   // The pose with the tools where their forces move them.
   RobotPose driven(RobotPose pose, const ToolSet& tools) const;
   // Where the tools, told to be in the pose, came in fact.
@@ -54,6 +56,7 @@ class ForceDrive {
     double came = 0.0;          // of it (m)
     double off = kInfinity;     // from the force, where the calls that left a way ended (N)
     int waits = 0;              // in a row
+    bool unanswered = false;
   };
 
   class Search;

@@ -370,6 +370,7 @@ void Pipeline::describeTools() {
       ToolReport& report = world_.report.tools[tool];
       report = describeTool(world_, parts_->grasping, tool);
       report.offset = state_.drive.came(tool);
+      report.unanswered = state_.drive.isUnanswered(tool);
       parts_->blades.describe(tool, report);
       limitWrench(world_.tools[tool].max_force, report);
     }

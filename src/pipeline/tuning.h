@@ -282,6 +282,9 @@ constexpr double kLongestArc = 0.125;
 constexpr int kMostCorrections = 12;
 // Of the force (1): near enough. Chosen.
 constexpr double kForceMet = 0.005;
+// Of the force (1): with as much, the tissue answers with it. More: tools that are nearly there are
+// told of as unanswered. Chosen.
+constexpr double kAnswered = 0.95;
 // Load steps (1): the first motion, from which the stiffness is learned. Chosen.
 constexpr double kFirstCorrection = 0.1;
 // Of what the force was off where the last corrections ended (1): with more, these led nowhere, as

@@ -6,6 +6,7 @@
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/scene/memory.h"
+#include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -45,6 +46,19 @@ void say(const std::string& word, const std::string& message, NodeStatus& status
   status.message += (status.message.empty() ? "" : "; ") + message;
 }
 
+// Tools whose force (~apply_load) nothing answers, until they are released.
+void sayUnanswered(const Pipeline& pipeline, NodeStatus& status) {
+  const std::vector<ToolReport>& tools = pipeline.report().tools;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (!tools[tool].unanswered) continue;
+    say("UNCONVERGED",
+        "nothing answers with the force on " + namesOf({tool}, pipeline.tools()) +
+            " (apply_load): it stands " + numberText(tools[tool].offset.norm()) +
+            " m from its pose; push it towards the tissue, or release it",
+        status);
+  }
+}
+
 // The shape is that of the pose, and its wrenches are told: no fault.
 bool stillSettles(const Pipeline& pipeline) {
   return pipeline.report().late && pipeline.hasArrived();
@@ -58,6 +72,7 @@ NodeStatus statusOf(const Pipeline& pipeline, const std::vector<StepRemark>& rem
   for (const StepRemark& remark : remarks) {
     say(wordOf(remark.kind), remark.text, status);
   }
+  sayUnanswered(pipeline, status);
   const SolveReport& solve = pipeline.tissue().lastReport();
   if (stillSettles(pipeline)) {
     say("LATE", "contacts still settle (solver.max_iterations); the shape is in balance", status);

@@ -106,23 +106,26 @@ void TissueServices::pushTool(const ApplyLoad::Request& request, ApplyLoad::Resp
     response.message = "from the next good pose on";
     return;
   }
-  response.message = followPush(tool, force.value_or(Vec3::Zero()));
+  response.message = followPush(tool, force.has_value());
   response.force = toVector3(forceOnTissue(pipeline_, tool));
   response.displacement = toVector3(pipeline_.report().tools[tool].offset);
 }
 
 // Until the tool stands, or the time of an update is over. Returns what became of it.
-std::string TissueServices::followPush(std::size_t tool, const Vec3& force) {
+std::string TissueServices::followPush(std::size_t tool, bool is_pushed) {
   const ros::SteadyTime end = ros::SteadyTime::now() + ros::WallDuration(updateBudget(parameters_));
   do {
     node_.follow();
   } while (pipeline_.report().changed && ros::SteadyTime::now() < end);
   const ToolReport& report = pipeline_.report().tools[tool];
   if (pipeline_.report().changed) return "on its way";
-  if (force.isZero()) return "at its pose";
-  const bool met = forceOnTissue(pipeline_, tool).dot(force) >= tuning::kMet * force.squaredNorm();
-  if (report.saturated) return "pushed; the force told is limited by the tool's max_force";
-  return met ? "pushed" : "pushed; nothing answers with the force on the tool's way";
+  if (!is_pushed) return "at its pose";
+  if (report.unanswered) {
+    return "pushed; " + std::string(toString(SolveStatus::kUnconverged)) +
+           ", nothing answers with the force on the tool's way of " +
+           numberText(report.offset.norm()) + " m";
+  }
+  return report.saturated ? "pushed; the force told is limited by the tool's max_force" : "pushed";
 }
 
 }  // namespace robot_tissue

@@ -28,9 +28,6 @@ constexpr double kMostMissed = 0.1;
 // Increments of a load that a service asks for; what is left when the time of an update is over is
 // carried on in the next ones. More: longer loads are solved to their end. Chosen.
 constexpr int kMostIncrements = 300;
-// Of the force of ~apply_load on a tool (1): with as much, the tissue answers with it. More: tools
-// that are nearly there are told of as unanswered. Chosen.
-constexpr double kMet = 0.95;
 
 // Queues, in messages. More: nothing is lost where a reader is slow, and it reads what is older.
 // Messages in the queue of the transforms' subscriber: as many as tf2_ros takes.

@@ -179,6 +179,19 @@ TEST_F(Tools, ForceDrivesAToolUntilItIsMet) {
   EXPECT_EQ(follow().wrench.force.z, 0.0);
 }
 
+TEST_F(Tools, AForceThatNothingAnswersIsToldUntilItIsReleased) {
+  places_["probe"] = pressed(-0.002);
+  follow();
+  const auto pushed = push("probe", {vector(0.0, 0.0, 0.3)});
+  EXPECT_NE(pushed.message.find("UNCONVERGED"), std::string::npos) << pushed.message;
+  EXPECT_NE(pushed.message.find("nothing answers"), std::string::npos) << pushed.message;
+  ASSERT_TRUE(waitFor([this] { return state_->status == "UNCONVERGED"; })) << state_->status;
+  EXPECT_NE(state_->message.find("'probe'"), std::string::npos) << state_->message;
+  EXPECT_NE(state_->message.find("release"), std::string::npos) << state_->message;
+  EXPECT_TRUE(push("probe", {}).success);
+  EXPECT_TRUE(waitFor([this] { return state_->status == "OK"; })) << state_->message;
+}
+
 TEST_F(Tools, PushesThatAreNoneAreRefusedWithALine) {
   ApplyLoad::Request moved, turned;
   moved.name = turned.name = "probe";

@@ -31,6 +31,7 @@ struct ToolReport {
   std::optional<double> jaw_gap;  // of a grasper, where tissue is between its jaws or held (m)
   std::string holds_nothing;      // of a grasper whose jaws are closed, or press: why; else empty
   Vec3 offset = Vec3::Zero();     // of a tool that a force drives, from its pose, tissue frame (m)
+  bool unanswered = false;        // nothing met its force on all of its way
 };
 
 // Lists of tools are of their numbers, each once.

@@ -45,7 +45,7 @@ class TissueServices {
   bool onGrasp(Tool::Request& request, Tool::Response& response);
   bool onRelease(Tool::Request& request, Tool::Response& response);
   void pushTool(const ApplyLoad::Request& request, ApplyLoad::Response& response);
-  std::string followPush(std::size_t tool, const Vec3& force);
+  std::string followPush(std::size_t tool, bool is_pushed);
   bool isTool(const std::string& name) const;
   std::size_t toolIndex(const std::string& name) const;
   template <class Request, class Response>
