@@ -49,9 +49,11 @@ Findings checkSizes(const Scene& scene, const std::vector<ToolGeometry>& tools) 
 }  // namespace
 
 Findings checkTools(const Scene& scene, const std::string& urdf) {
+  Findings findings;
+  const char* remedy = "a link that the robot has";
   try {
     const LoadedTools loaded = urdf.empty() ? toolsOf(scene.tools) : loadTools(urdf, scene.tools);
-    Findings findings;
+    remedy = "mend the mesh, or its address and scale, or give the link `shapes` in the scene";
     // Without a URDF it is not known what is missing. They tell their remedies themselves.
     if (!urdf.empty()) {
       for (const std::string& warning : loaded.warnings) {
@@ -62,7 +64,8 @@ Findings checkTools(const Scene& scene, const std::string& urdf) {
     findings.insert(findings.end(), sizes.begin(), sizes.end());
     return findings;
   } catch (const InputError& error) {
-    return {{Finding::Level::kError, error.what(), "a link, or a mesh, that the robot has"}};
+    findings.push_back({Finding::Level::kError, error.what(), remedy});
+    return findings;
   }
 }
 

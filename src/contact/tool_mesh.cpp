@@ -25,7 +25,9 @@ TriangleMesh checkedMesh(const std::string& resource, const Vec3& scale, const s
                          std::vector<std::string>& warnings, bool& crosses_itself) {
   const std::string name = owner + ": mesh '" + resource + "' ";
   try {
-    TriangleMesh mesh = welded(loadMeshFile(resource, scale));
+    std::string remark;
+    TriangleMesh mesh = welded(loadMeshFile(resource, scale, &remark));
+    if (!remark.empty()) warnings.push_back(name + remark);
     const auto fault = meshFault(mesh);
     if (!fault) return facingOutward(std::move(mesh));
     if (fault->rfind("intersects itself", 0) != 0) throw InputError(*fault);

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -144,6 +145,29 @@ TriangleMesh readDae(const std::string& bytes) {
     throw InputError("is no XML whose root is COLLADA");
   }
   return DaeReader(*root).read(*root);
+}
+
+// The rest of the file is not parsed a second time for it.
+DaeAsset readDaeAsset(const std::string& bytes) {
+  DaeAsset asset;
+  const std::string end = "</asset>";
+  const std::size_t from = bytes.find("<asset");
+  const std::size_t to = bytes.find(end, from);
+  if (from == std::string::npos || to == std::string::npos) return asset;
+  tinyxml2::XMLDocument document;
+  if (document.Parse(bytes.data() + from, to + end.size() - from) != tinyxml2::XML_SUCCESS) {
+    return asset;
+  }
+  const XMLElement& root = *document.RootElement();
+  const XMLElement* unit = root.FirstChildElement("unit");
+  const double meters = unit != nullptr ? unit->DoubleAttribute("meter", 1.0) : 1.0;
+  if (std::isfinite(meters) && meters > 0.0) asset.unit = meters;
+  const XMLElement* up_axis = root.FirstChildElement("up_axis");
+  for (const char* axis : {"X_UP", "Y_UP"}) {
+    if (up_axis != nullptr && textOf(*up_axis).find(axis) != std::string::npos)
+      asset.up_axis = axis;
+  }
+  return asset;
 }
 
 }  // namespace robot_tissue

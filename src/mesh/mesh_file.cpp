@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <locale>
+#include <sstream>
 
 #include "mesh_formats.h"
 #include "robot_tissue/mesh/regular_file.h"
@@ -28,6 +30,27 @@ TriangleMesh (*meshReaderFor(const std::string& path))(const std::string& bytes)
   return ending == ".dae" ? readDae : nullptr;
 }
 
+int digitOf(char c) {  // hexadecimal; -1: none
+  const std::string digits = "0123456789abcdef";
+  const std::size_t place =
+      digits.find(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  return place == std::string::npos ? -1 : static_cast<int>(place);
+}
+
+// %XX as the byte that it stands for, but for the end of a text; a % before anything else stays.
+std::string decoded(const std::string& text) {
+  std::string bytes;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool may_stand = text[i] == '%' && i + 2 < text.size();
+    const int high = may_stand ? digitOf(text[i + 1]) : -1;
+    const int low = may_stand ? digitOf(text[i + 2]) : -1;
+    const bool stands = high >= 0 && low >= 0 && high + low > 0;
+    bytes += stands ? static_cast<char>(16 * high + low) : text[i];
+    if (stands) i += 2;
+  }
+  return bytes;
+}
+
 std::string packageFolder(const std::string& name) {
   rospack::Rospack packages;
   packages.setQuiet(true);
@@ -49,15 +72,29 @@ std::string pathInPackage(const std::string& place) {
 }
 
 std::string pathOf(const std::string& resource) {
-  if (startsWith(resource, kPackage)) return pathInPackage(resource.substr(kPackage.size()));
-  return resource.substr(kFile.size());
+  if (!startsWith(resource, kPackage)) return pathOfFileAddress(resource);
+  return pathInPackage(decoded(resource.substr(kPackage.size())));
 }
 
-TriangleMesh readByName(const std::string& path) {
+// A scale that is the unit heeds it.
+std::string remarkOn(const DaeAsset& asset, const Vec3& scale) {
+  const double off = (scale.cwiseAbs().array() - asset.unit).abs().maxCoeff();
+  if (off <= 1e-6 * asset.unit && asset.up_axis == "Z_UP") return "";
+  std::ostringstream remark;
+  remark.imbue(std::locale::classic());
+  remark << "names the unit " << asset.unit << " m and the up axis " << asset.up_axis
+         << ", which do not count: its coordinates times `scale` are meters, in axes as they are; "
+            "export it in meters and Z_UP, or give `scale` and a pose";
+  return remark.str();
+}
+
+TriangleMesh readByName(const std::string& path, const Vec3& scale, std::string* remark) {
   TriangleMesh (*const read)(const std::string&) = meshReaderFor(path);
   if (read == nullptr) throw InputError("its name ends neither in .stl nor .obj nor .dae");
-  const TriangleMesh mesh = read(readRegularFile(path, kLargestMeshFile));
+  const std::string bytes = readRegularFile(path, kLargestMeshFile);
+  TriangleMesh mesh = read(bytes);
   if (mesh.triangles.empty()) throw InputError("has no triangles");
+  if (remark != nullptr && read == readDae) *remark = remarkOn(readDaeAsset(bytes), scale);
   return mesh;
 }
 
@@ -65,13 +102,23 @@ TriangleMesh readByName(const std::string& path) {
 
 bool isMeshName(const std::string& path) { return meshReaderFor(path) != nullptr; }
 
-TriangleMesh loadMeshFile(const std::string& resource, const Vec3& scale) {
+std::string pathOfFileAddress(const std::string& address) {
+  return decoded(address.substr(kFile.size()));
+}
+
+std::string fileAddressOf(const std::string& path) {
+  std::string address = kFile;
+  for (const char c : path) address += c == '%' ? "%25" : std::string(1, c);
+  return address;
+}
+
+TriangleMesh loadMeshFile(const std::string& resource, const Vec3& scale, std::string* remark) {
   // Anything else would be looked for on the network.
   if (!startsWith(resource, kPackage) && !startsWith(resource, kFile + "/")) {
     throw InputError("is no package:// or file:// address");
   }
   try {
-    TriangleMesh mesh = readByName(pathOf(resource));
+    TriangleMesh mesh = readByName(pathOf(resource), scale, remark);
     for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
     return mesh;
   } catch (const InputError& error) {

@@ -22,6 +22,14 @@ TriangleMesh readObj(const std::string& bytes);
 // COLLADA: the geometries of its scene, placed by its nodes. Unit and up axis count for nothing.
 TriangleMesh readDae(const std::string& bytes);
 
+// What a DAE file says of itself and nobody heeds; where it says nothing, the default is as if it
+// were so.
+struct DaeAsset {
+  double unit = 1.0;  // m
+  std::string up_axis = "Z_UP";
+};
+DaeAsset readDaeAsset(const std::string& bytes);
+
 // Throws where so many triangles more are too many.
 void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh);
 

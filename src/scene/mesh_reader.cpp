@@ -42,7 +42,7 @@ std::string readResource(const Entry& entry, const std::string& scene_folder) {
   if (resource.find("://") != std::string::npos && !startsWith(resource, file)) {
     entry.fail("must be " + allowed);
   }
-  std::filesystem::path path = startsWith(resource, file) ? resource.substr(file.size()) : resource;
+  std::filesystem::path path = startsWith(resource, file) ? pathOfFileAddress(resource) : resource;
   if (path.is_relative()) {
     if (scene_folder.empty() || startsWith(resource, file)) {
       entry.fail("must be package://PACKAGE/PATH or file:///PATH, a relative path has no start");
@@ -56,7 +56,7 @@ std::string readResource(const Entry& entry, const std::string& scene_folder) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     entry.fail("is a folder, a pipe or a device, must be " + kMeshFileRule);
   }
-  return file + path.string();
+  return fileAddressOf(path.string());
 }
 
 Vec3 readScale(const Entry& entry) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "robot_tissue/mesh/mesh_file.h"
 #include "robot_tissue/scene/scene_parser.h"
 
 namespace robot_tissue {
@@ -16,7 +17,7 @@ void addMesh(const std::string& resource, const fs::path& folder, std::vector<st
   const bool has_scheme = resource.find("://") != std::string::npos;
   const bool is_file = resource.compare(0, scheme.size(), scheme) == 0;
   if (resource.empty() || (has_scheme && !is_file)) return;
-  files.push_back((folder / (is_file ? resource.substr(scheme.size()) : resource)).string());
+  files.push_back((folder / (is_file ? pathOfFileAddress(resource) : resource)).string());
 }
 
 void addShape(const YAML::Node& shape, const fs::path& folder, std::vector<std::string>& files) {

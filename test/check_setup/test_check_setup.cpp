@@ -8,6 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "../core/mesh_fixtures.h"
+#include "../scene/mesh_files.h"
 #include "check_setup.h"
 #include "trial_press.h"
 
@@ -138,6 +140,22 @@ TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {
   EXPECT_TRUE(says("a mesh in millimeters has scale 0.001")) << out_;
   EXPECT_EQ(check(scene, "<robot name='r'><link name='base'/></robot>"), kCannotRun);
   EXPECT_TRUE(says("error: ") && says("'tip'")) << out_;
+  EXPECT_TRUE(says("remedy: a link that the robot has")) << out_;
+}
+
+TEST_F(CheckSetup, MeshesOfTheRobotHaveRemediesOfTheirOwn) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
+  const auto mesh = [this](const std::string& name) {
+    return urdfOf("<mesh filename='file://" + (folder_ / name).string() + "'/>");
+  };
+  EXPECT_EQ(check(scene, mesh("none.obj")), kCannotRun);
+  EXPECT_TRUE(says("remedy: mend the mesh") && says("`shapes`")) << out_;
+  const TriangleMesh box = boxMesh(Vec3(0.0, 0.0, 0.0), Vec3(0.01, 0.01, 0.01));
+  write("tip.dae", daeText(box, "Z_UP", 1.0));
+  EXPECT_EQ(check(scene, mesh("tip.dae")), kFine) << out_;
+  write("tip.dae", daeText(box, "Y_UP", 0.001));
+  EXPECT_EQ(check(scene, mesh("tip.dae")), kHasWarnings);
+  EXPECT_TRUE(says("unit 0.001 m and the up axis Y_UP")) << out_;
 }
 
 TEST_F(CheckSetup, ToolWithoutALinkAndTissueThatNothingHoldsAreTold) {

@@ -133,6 +133,39 @@ TEST(MeshFiles, NamesOfOtherFormatsAreRefusedUnread) {
   EXPECT_EQ(load("box.STL").triangles.size(), 12U);
 }
 
+TEST(MeshFiles, AnAddressSpellsBytesAndAPathDoesNot) {
+  fs::create_directories(path("my tools"));
+  writeFile("my tools/box 1.stl", stlText(box()));
+  EXPECT_EQ(refusal("file://" + path("my%20tools/box%201.stl")), "");
+  EXPECT_EQ(refusal("file://" + path("my tools/box 1.stl")), "");
+  writeFile("100% %20.stl", stlText(box()));
+  const std::string address = fileAddressOf(path("100% %20.stl"));
+  EXPECT_EQ(refusal(address), "");
+  EXPECT_EQ(pathOfFileAddress(address), path("100% %20.stl"));
+  EXPECT_NE(refusal("file://" + path("box%00.stl")), "");
+  EXPECT_NE(refusal("package://robot_tissue/%2e%2e/%2e%2e/box.stl").find("leaves the package"),
+            std::string::npos);
+}
+
+TEST(MeshFiles, ADaeFileInOtherUnitsOrAxesIsRemarkedOn) {
+  const auto remark = [](const std::string& up_axis, double unit, double scale) {
+    writeFile("asset.dae", daeText(box(), up_axis, unit));
+    std::string told;
+    loadMeshFile("file://" + path("asset.dae"), Vec3::Constant(scale), &told);
+    return told;
+  };
+  EXPECT_EQ(remark("Z_UP", 1.0, 1.0), "");
+  EXPECT_EQ(remark("Z_UP", 0.001, 0.001), "");
+  for (const std::string& text :
+       {remark("Z_UP", 0.001, 1.0), remark("Y_UP", 1.0, 1.0), remark("Y_UP", 0.001, 0.001)}) {
+    EXPECT_NE(text.find("the unit "), std::string::npos) << text;
+    EXPECT_NE(text.find("_UP"), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+  EXPECT_NE(remark("Y_UP", 0.0254, 1.0).find("unit 0.0254 m and the up axis Y_UP"),
+            std::string::npos);
+}
+
 TEST(MeshFiles, OnlyRegularFilesAndLinksToThemAreRead) {
   for (const char* name : {"pipe.stl", "zero.stl", "linked.stl", "away.stl"})
     fs::remove(path(name));
