@@ -1,23 +1,12 @@
 #include "robot_tissue/contact/contact_finder.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 
-#include "broad_phase.h"
-#include "collision_shape.h"
-#include "flat_face.h"
-#include "link_contacts.h"
+#include "contact_search.h"
 #include "link_penetration.h"
-#include "placed_link.h"
-#include "shape_face.h"
-#include "shape_gap.h"
 #include "surface_traversal.h"
-#include "surface_tree.h"
-#include "touching_link.h"
-#include "tuning.h"
 
 namespace robot_tissue {
 namespace {
@@ -29,95 +18,14 @@ void requireVertices(const TissueSurface& surface, const std::vector<Vec3>& vert
                    std::to_string(surface.rest.size()) + " vertices");
 }
 
+}  // namespace
+
 void requireLinks(const RobotPose& pose, std::size_t links) {
   if (pose.links.size() == links) return;
   throw InputError("robot pose: has " + std::to_string(pose.links.size()) +
                    " links; allowed is one for each of the " + std::to_string(links) +
                    " links of the scene's tools");
 }
-
-// Of triangles beside a mesh: where they are deepest.
-enum class Places { kFollowed, kAnew };
-
-// What the last find() met, so that neither it nor penetrations() look for the same again.
-struct Found {
-  std::uint64_t move = 0;  // SurfaceTree::moves() then
-  RobotPose pose;
-  double margin = 0.0;
-  ContactSet contacts;
-};
-
-}  // namespace
-
-struct ContactFinder::Kept {
-  Found found;
-  std::vector<std::vector<KeptFacePairs>> face_pairs;  // per link
-  std::vector<std::vector<KnownMinima>> known_minima;  // likewise
-  std::uint64_t known_minima_of = 0;
-  bool is_found_of_tree = false;
-};
-
-struct ContactFinder::Impl {
-  std::vector<TouchingLink> links;
-  std::vector<std::string> warnings;
-  BroadPhase broad_phase;
-
-  std::vector<PlacedLink> placedAt(const RobotPose& pose) const;
-  // Of one link, some of whose shapes are near the surface.
-  void addContacts(const PlacedLink& here, std::size_t link,
-                   const std::vector<std::size_t>& near_shapes, const TissueSurface& surface,
-                   const std::vector<Vec3>& vertices, double margin, Places places,
-                   ContactSet& contacts);
-  double penetration(const PlacedLink& here, std::size_t link, const Pose& tissue_T_link,
-                     const TissueSurface& surface, const std::vector<Vec3>& vertices,
-                     const Bulge& bulge);
-  // Box around the surface. Without a tree, which is made once a link comes near, from all
-  // vertices.
-  Box boundsOf(const TissueSurface& surface, const std::vector<Vec3>& vertices) {
-    return surface_tree.exists() ? surface_tree.of(surface, vertices).bounds()
-                                 : robot_tissue::boundsOf(vertices);
-  }
-
-  // The last find() was of that link there, and of the surface that the tree is of.
-  bool knows(std::size_t link, const Pose& tissue_T_link) const {
-    return link < found.pose.links.size() && found.move == surface_tree.moves() &&
-           found.pose.links[link].matrix() == tissue_T_link.matrix();
-  }
-
-  // Likewise of all links, but for a way that each may have gone since (m).
-  bool knowsPlaces(const RobotPose& pose, double margin, double way) const {
-    if (!surface_tree.exists() || found.margin != margin || found.move != surface_tree.moves() ||
-        found.pose.links.size() != links.size()) {
-      return false;
-    }
-    for (std::size_t link = 0; link < links.size(); ++link) {
-      if (!(links[link].longestWay(found.pose.links[link], pose.links[link]) <= way)) return false;
-    }
-    return true;
-  }
-
-  void forgetMinima() {
-    known_minima_of = surface_tree.trees();
-    for (TouchingLink& link : links) {
-      for (KnownMinima& minima : link.known_minima) minima.forget();
-    }
-  }
-
-  bool knowsAll(const RobotPose& pose, double margin) const {
-    if (!surface_tree.exists() || found.margin != margin) return false;
-    for (std::size_t link = 0; link < links.size(); ++link) {
-      if (!knows(link, pose.links[link])) return false;
-    }
-    return true;
-  }
-
-  // Kept from call to call, to spare allocations and to answer the same question once.
-  LinkContacts link_contacts;
-  SurfaceTree surface_tree;
-  bool follows_places = false;
-  std::uint64_t known_minima_of = 0;  // SurfaceTree::trees()
-  Found found;
-};
 
 ContactFinder::~ContactFinder() = default;
 ContactFinder::ContactFinder(ContactFinder&&) noexcept = default;
@@ -131,14 +39,6 @@ ContactFinder::ContactFinder(const std::vector<ToolGeometry>& tools)
       impl_->broad_phase.addLink(impl_->links.back().shapes);
     }
   }
-}
-
-std::size_t ContactFinder::linkCount() const { return impl_->links.size(); }
-
-void ContactFinder::useShapes(std::size_t link, std::size_t count) {
-  if (impl_->links[link].shapesInUse() == count) return;
-  impl_->links[link].useShapes(count);
-  impl_->found = {};
 }
 
 void ContactFinder::forget() {
@@ -196,44 +96,6 @@ ContactSet ContactFinder::findAgain(const RobotPose& pose, const TissueSurface& 
   }
   return again;
 }
-
-double ContactFinder::reach(std::size_t link) const { return impl_->links[link].reach(); }
-
-std::vector<Vec3> ContactFinder::surfacePoints(std::size_t link) const {
-  return impl_->links[link].surfacePoints();
-}
-
-std::vector<Vec3> ContactFinder::innerPoints(std::size_t link) const {
-  return impl_->links[link].innerPoints();
-}
-
-double ContactFinder::thickness(std::size_t link) const { return impl_->links[link].thickness(); }
-
-double ContactFinder::thickness(const Contact& contact) const {
-  const TouchingLink& link = impl_->links[at(contact.link)];
-  return contact.shape < 0 ? link.thickness() : link.shapes[at(contact.shape)].thickness();
-}
-
-double ContactFinder::thicknessIn(const Box& box, std::size_t link,
-                                  const Pose& tissue_T_link) const {
-  return impl_->links[link].thicknessIn(box, tissue_T_link);
-}
-
-std::vector<double> ContactFinder::thicknesses(std::size_t link) const {
-  std::vector<double> all;
-  for (const CollisionShape& shape : impl_->links[link].shapes) all.push_back(shape.thickness());
-  return all;
-}
-
-std::vector<Ball> ContactFinder::balls(std::size_t link) const {
-  return impl_->links[link].balls();
-}
-
-Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {
-  return boundsOf(impl_->links[link].placedAt(tissue_T_link));
-}
-
-const std::vector<std::string>& ContactFinder::warnings() const { return impl_->warnings; }
 
 std::vector<PlacedLink> ContactFinder::Impl::placedAt(const RobotPose& pose) const {
   std::vector<PlacedLink> here;
@@ -329,30 +191,6 @@ double ContactFinder::Impl::penetration(const PlacedLink& here, std::size_t link
   return deepest;
 }
 
-std::optional<WayOut> ContactFinder::wayOut(std::size_t link, const Pose& tissue_T_link,
-                                            const Vec3& point, double reach) const {
-  return impl_->links[link].wayOutAt(tissue_T_link, point, reach);
-}
-
-// Sphere tracing (Hart 1996): at a depth d every way out to `clear` off the link is at least d +
-// clear long, so the probe goes as far at once; a least step ends ways that graze the link.
-std::optional<WayOut> ContactFinder::wayOutAlong(std::size_t link, const Pose& tissue_T_link,
-                                                 const Vec3& point, const Vec3& direction,
-                                                 double clear, double reach,
-                                                 double farthest) const {
-  double gone = 0.0;
-  while (gone <= farthest) {
-    const Vec3 probe = point + gone * direction;
-    const auto out = wayOut(link, tissue_T_link, probe, std::max(reach, 2.0 * clear));
-    if (!out) return std::nullopt;
-    if (out->depth_m <= -0.9 * clear) {
-      return WayOut{out->depth_m + gone * out->normal.dot(direction), out->normal};
-    }
-    gone += std::max(out->depth_m + clear, tuning::kLeastStep * clear);
-  }
-  return std::nullopt;
-}
-
 std::vector<double> ContactFinder::penetrations(const std::vector<std::size_t>& links,
                                                 const RobotPose& pose, const TissueSurface& surface,
                                                 const std::vector<Vec3>& vertices,
@@ -375,44 +213,6 @@ bool ContactFinder::isInside(const Vec3& point, const TissueSurface& surface,
   requireVertices(surface, vertices);
   return impl_->boundsOf(surface, vertices).contains(point) &&
          impl_->surface_tree.of(surface, vertices).isInside(point);
-}
-
-bool ContactFinder::hasFlatFaces(std::size_t link) const {
-  const TouchingLink& of = impl_->links[link];
-  const auto end = of.shapes.begin() + static_cast<std::ptrdiff_t>(of.shapesInUse());
-  return std::any_of(of.shapes.begin(), end,
-                     [](const CollisionShape& shape) { return robot_tissue::hasFlatFaces(shape); });
-}
-
-std::optional<FlatFace> ContactFinder::flatFace(std::size_t link, const Pose& tissue_T_link,
-                                                const Vec3& facing, const Vec3& point,
-                                                double reach) const {
-  return flatFaceOf(impl_->links[link].placedAt(tissue_T_link), facing, point, reach);
-}
-
-bool ContactFinder::hasMesh(std::size_t link) const {
-  const std::vector<CollisionShape>& shapes = impl_->links[link].shapes;
-  return std::any_of(shapes.begin(), shapes.end(),
-                     [](const CollisionShape& shape) { return shape.isMesh(); });
-}
-
-double ContactFinder::gap(std::size_t link, std::size_t other, const RobotPose& pose,
-                          double reach) const {
-  requireLinks(pose, impl_->links.size());
-  const TouchingLink& a = impl_->links[link];
-  const TouchingLink& b = impl_->links[other];
-  const PlacedLink a_here = a.placedAt(pose.links[link]);
-  const PlacedLink b_here = b.placedAt(pose.links[other]);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a_here.size(); ++i) {
-    for (std::size_t j = 0; j < b_here.size(); ++j) {
-      const double gap =
-          gapBetween({&a_here[i], &a.gap_shapes[i], &a.surface_points[i]},
-                     {&b_here[j], &b.gap_shapes[j], &b.surface_points[j]}, std::min(least, reach));
-      least = std::min(least, gap);
-    }
-  }
-  return least;
 }
 
 }  // namespace robot_tissue
