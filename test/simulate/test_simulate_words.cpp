@@ -91,7 +91,7 @@ tools: [{name: plate, patch: rigid, shapes: [{type: box, size: [0.015, 0.015, 0.
 steps:
   - move: {tool: plate, from: {xyz: [0.02, 0.02, 0.05]}, to: {xyz: [0.02, 0.02, 0.024]}})");
   write("held.yaml", scene);
-  expectRefused("held.yaml --out out", "shares nodes");
+  expectRefused("held.yaml --out out", "shares nodes with what tool 'plate' holds");
 }
 
 TEST_F(Simulate, RefusesNewtonOnTheSixSpringLattice) {

@@ -28,6 +28,10 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     for (const int node : patch.nodes) {
       const LoadingPatch*& owner = owners[node];
       if (owner != nullptr && (owner->tool || owner->name != patch.name)) {
+        if (owner->tool) {
+          refusePatch(patch.name, "it shares nodes with what tool '" + owner->name + "' holds",
+                      "a box beside that, or a load after the tool has let go");
+        }
         refusePatch(patch.name, "it shares nodes with patch '" + owner->name + "'",
                     "patches without a common node");
       }
