@@ -1,6 +1,9 @@
 // How many iterations a load step may make, so that an update is bounded alike on every machine.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 namespace robot_tissue {
 
 // The longer a load step takes, the less it is content with: a shape in balance is shown before its
@@ -20,7 +23,9 @@ class LoadStepBound {
     LoadStepBound& bound_;
   };
 
-  void note(int iterations) { made_ += iterations; }
+  void note(int iterations) {
+    if (most_ > 0) made_ += std::min(iterations, std::numeric_limits<int>::max() - made_);
+  }
   int left() const;  // for the next solve, which makes one at least
   bool isSpent() const { return most_ > 0 && made_ >= most_; }
   // Spacings (1): how deep tools may stand in a shape in balance whose contacts are not settled;

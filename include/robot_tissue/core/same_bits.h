@@ -10,7 +10,8 @@
 namespace robot_tissue {
 
 inline bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
 
 inline bool areSame(const Pose& a, const Pose& b) {
