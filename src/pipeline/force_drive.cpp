@@ -6,6 +6,14 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+// Of forces along the push (N).
+bool isNear(double met, double wanted) {
+  return std::abs(met - wanted) <= tuning::kForceMet * wanted;
+}
+
+}  // namespace
 
 void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   Drive& drive = drives_[tool];
@@ -31,8 +39,7 @@ bool ForceDrive::drivesAny() const {
 
 bool ForceDrive::isMet(std::size_t tool, const Vec3& met) const {
   const Vec3& force = *drives_[tool].force;
-  const double wanted = force.norm();
-  return std::abs(met.dot(force) / wanted - wanted) <= tuning::kForceMet * wanted;
+  return isNear(met.dot(force.normalized()), force.norm());
 }
 
 Vec3 ForceDrive::offset(std::size_t tool) const {
@@ -83,7 +90,7 @@ class ForceDrive::Search {
   void note(double way, double met);
   bool isAnswered() const { return met_ >= tuning::kAnswered * force_; }
   double off() const { return std::abs(met_ - force_); }  // N
-  bool hasMet() const { return off() <= tuning::kForceMet * force_; }
+  bool hasMet() const { return isNear(met_, force_); }
   // Next correction (m).
   double next() const;
   bool turnedBack() const { return turned_back_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "simd/field_kernel.h"
@@ -164,6 +165,11 @@ template <typename Real>
 double CompositeShape<Real>::displacementNorm() const {
   return std::sqrt(finest().squaredLength(finest().displacement) +
                    levels_->uncovered().squaredDisplacement());
+}
+
+template <typename Real>
+double CompositeShape<Real>::displacementRounding() const {
+  return std::numeric_limits<Real>::epsilon() * displacementNorm();
 }
 
 template <typename Real>

@@ -68,6 +68,7 @@ class CompositeShape {
   // Lengths, in which a node counts by the tissue that it carries (LightNode).
   double distanceFrom(const Vector& places) const;
   double displacementNorm() const;
+  double displacementRounding() const;  // its last digit
   // Of the motion that the coarse levels, and each node alone, say is left: (|s|^2 + |d|^2)^1/2.
   double correctionNorm() const;
   double longestSmoothMotion() const;  // of a node along an axis

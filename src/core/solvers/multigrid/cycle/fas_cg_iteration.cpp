@@ -1,7 +1,6 @@
 #include "solvers/multigrid/cycle/fas_cg_iteration.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "solvers/multigrid/cycle/trial_at_rest.h"
 #include "solvers/multigrid/cycle/tuning.h"
@@ -120,8 +119,8 @@ bool FasCgIteration<Real>::wentTooFar() const {
 // single precision further cycles are in vain.
 template <typename Real>
 bool FasCgIteration<Real>::isRounded(const SolveContext& solve) const {
-  const double digit = std::numeric_limits<Real>::epsilon() * shape_.displacementNorm();
-  return solve.in_time && estimator_.left().now <= tuning::kRoundedDigits * digit;
+  return solve.in_time &&
+         estimator_.left().now <= tuning::kRoundedDigits * shape_.displacementRounding();
 }
 
 // What went beyond its limit is cut back: the rest of the solve would be in vain.

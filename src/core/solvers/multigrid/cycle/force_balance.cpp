@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "simd/field_kernel.h"
 #include "solvers/multigrid/cycle/tuning.h"
@@ -75,8 +74,7 @@ template <typename Real>
 bool ForceBalance<Real>::isRounding(const SolveContext& solve) const {
   const double motion = std::sqrt(shape_.finest().squaredLocalMotion());
   const double still = tolerance_ * tuning::kStill * std::sqrt(solve.hold.freeNodes() + 1.0);
-  const double digit = std::numeric_limits<Real>::epsilon() * shape_.displacementNorm();
-  return motion <= std::max(still, tuning::kRoundedDigits * digit);
+  return motion <= std::max(still, tuning::kRoundedDigits * shape_.displacementRounding());
 }
 
 template <typename Real>
