@@ -1,11 +1,44 @@
 #include "known_touches.h"
 
-#include <optional>
+#include <limits>
 #include <utility>
 
 #include "tuning.h"
 
 namespace robot_tissue {
+
+// The nearest to a point of those that are still where they were taken; of as near ones the oldest.
+class KnownTouches::NearestPushing {
+ public:
+  using Scalar = double;
+
+  NearestPushing(const std::vector<Touch>& touches, const Vec3& point)
+      : touches_(touches), point_(point) {}
+
+  std::size_t touch() const { return touch_; }
+  double minimumOnObject(const Pushing& pushing) {
+    if (touches_[pushing.touch].tool_point != pushing.tool_point) return off_;
+    look(pushing.touch);
+    return off_;
+  }
+  // A little less, so that one that is as near as the nearest is looked at.
+  double minimumOnVolume(const Box& box) const {
+    using Limits = std::numeric_limits<double>;
+    return box.exteriorDistance(point_) * (1.0 - 8.0 * Limits::epsilon()) - Limits::min();
+  }
+  void look(std::size_t touch) {
+    const double off = (touches_[touch].tool_point - point_).norm();
+    if (off > off_ || (off == off_ && touch > touch_)) return;
+    off_ = off;
+    touch_ = touch;
+  }
+
+ private:
+  const std::vector<Touch>& touches_;
+  const Vec3 point_;
+  double off_ = std::numeric_limits<double>::infinity();  // m
+  std::size_t touch_ = kNone;
+};
 
 std::uint64_t KnownTouches::placeOf(int link, int vertex, int triangle) {
   const int place = vertex >= 0 ? vertex : -1 - triangle;
@@ -62,7 +95,7 @@ KnownTouches::Touch* KnownTouches::find(const Contact& contact, const TissueSurf
 }
 
 void KnownTouches::treePushing() {
-  std::map<int, std::vector<PointTree::Entry>> of_links;
+  std::map<int, std::vector<Pushing>> of_links;
   pushing_ = 0;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     if (touches_[i].spring.multiplier <= 0.0) continue;
@@ -70,7 +103,7 @@ void KnownTouches::treePushing() {
     ++pushing_;
   }
   trees_.clear();
-  for (auto& [link, entries] : of_links) trees_.emplace(link, PointTree(std::move(entries)));
+  for (const auto& [link, pushing] : of_links) trees_[link].init(pushing.begin(), pushing.end());
   strays_.clear();
   has_trees_ = true;
 }
@@ -84,18 +117,14 @@ void KnownTouches::moved(const Touch& touch) {
 
 Vec3 KnownTouches::frictionRatioNear(int link, const Vec3& point) {
   if (!has_trees_) treePushing();
-  const auto is_still_there = [&](const PointTree::Entry& entry) {
-    return touches_[entry.id].tool_point == entry.point;
-  };
+  NearestPushing nearest(touches_, point);
   const auto tree = trees_.find(link);
-  std::optional<PointTree::Nearest> nearest;
-  if (tree != trees_.end()) nearest = tree->second.nearest(point, is_still_there);
+  if (tree != trees_.end()) Eigen::BVMinimize(tree->second, nearest);
   for (const std::size_t stray : strays_) {
-    if (touches_[stray].contact.link != link) continue;
-    const PointTree::Nearest here{(touches_[stray].tool_point - point).norm(), stray};
-    if (!nearest || here.isBefore(*nearest)) nearest = here;
+    if (touches_[stray].contact.link == link) nearest.look(stray);
   }
-  return nearest ? touches_[nearest->id].friction_ratio : Vec3::Zero();
+  const std::size_t touch = nearest.touch();
+  return touch == kNone ? Vec3(Vec3::Zero()) : touches_[touch].friction_ratio;
 }
 
 }  // namespace robot_tissue

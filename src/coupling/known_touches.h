@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <map>
 #include <unordered_map>
+#include <unsupported/Eigen/BVH>
 #include <vector>
 
-#include "point_tree.h"
 #include "robot_tissue/core/contact_set.h"
 #include "robot_tissue/core/surface.h"
 #include "robot_tissue/coupling/sliding_contacts.h"
@@ -36,6 +36,13 @@ class KnownTouches {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+  struct Pushing {
+    Vec3 tool_point;  // m, as it was taken
+    std::size_t touch;
+    friend Box bounding_box(const Pushing& pushing) { return Box(pushing.tool_point); }
+  };
+  class NearestPushing;
+
   static std::uint64_t placeOf(int link, int vertex, int triangle);
   std::size_t newestAt(std::uint64_t place);
   void treePushing();
@@ -44,9 +51,9 @@ class KnownTouches {
   std::unordered_map<std::uint64_t, std::size_t> newest_;  // touch at a link's place
   std::vector<std::size_t> before_;                        // per touch: the next older one there
   bool has_trees_ = false;
-  std::size_t pushing_ = 0;          // touches in `trees_`
-  std::map<int, PointTree> trees_;   // per link: where those that push were
-  std::vector<std::size_t> strays_;  // touches that have moved since
+  std::size_t pushing_ = 0;                                // touches in `trees_`
+  std::map<int, Eigen::KdBVH<double, 3, Pushing>> trees_;  // per link: where those that push were
+  std::vector<std::size_t> strays_;                        // touches that have moved since
 };
 
 }  // namespace robot_tissue

@@ -6,7 +6,6 @@
 
 #include "core/tissue_fixtures.h"
 #include "known_touches.h"
-#include "point_tree.h"
 
 namespace robot_tissue::test_known_touches {
 namespace {
@@ -16,42 +15,6 @@ constexpr double kSamePoint = 0.25;  // barycentric
 constexpr int kLinks = 3;
 
 using Touch = SlidingContacts::ContactConstraint;
-
-TEST(PointTree, FindsTheNearestOfThoseThatCountAndOfAsNearOnesTheFirst) {
-  std::mt19937 random(1);
-  std::uniform_int_distribution<int> place(0, 6);  // on a grid: many are as near
-  const auto any = [&] { return Vec3(place(random), place(random), 0.5 * place(random)); };
-  std::vector<PointTree::Entry> entries;
-  for (std::size_t i = 0; i < 300; ++i) entries.push_back({any(), i});
-  const auto counts = [](const PointTree::Entry& entry) { return entry.id % 3 != 0; };
-  const PointTree tree(entries);
-  for (int query = 0; query < 300; ++query) {
-    const Vec3 point = any();
-    std::optional<PointTree::Nearest> nearest;
-    for (const PointTree::Entry& entry : entries) {
-      const PointTree::Nearest here{(entry.point - point).norm(), entry.id};
-      if (counts(entry) && (!nearest || here.isBefore(*nearest))) nearest = here;
-    }
-    const auto found = tree.nearest(point, counts);
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->id, nearest->id);
-    EXPECT_EQ(found->off, nearest->off);
-  }
-  EXPECT_FALSE(PointTree().nearest(Vec3::Zero(), counts));
-  EXPECT_FALSE(tree.nearest(Vec3::Zero(), [](const PointTree::Entry&) { return false; }));
-}
-
-TEST(PointTree, LooksAtFewOfManyPoints) {
-  std::vector<PointTree::Entry> entries;
-  for (int i = 0; i < 160; ++i) {
-    for (int j = 0; j < 160; ++j) entries.push_back({Vec3(i, j, 0.0), entries.size()});
-  }
-  const PointTree tree(entries);
-  int looks = 0;
-  const auto count = [&](const PointTree::Entry&) { return ++looks > 0; };
-  for (int i = 0; i < 160; ++i) tree.nearest(Vec3(i + 0.3, 159.0 - i, 0.2), count);
-  EXPECT_LT(looks, 160 * 40);
-}
 
 class TouchesOfABlock : public ::testing::Test {
  protected:
