@@ -48,7 +48,8 @@ const Ball* SlidingContacts::ballUnder(const Touches& touches, const Pose& tissu
 
 // By what the link's multipliers are. Heights of planes are above where the ball is lowest, as seen
 // along the way it presses; the curved surface is off what nodes carry by a bulge.
-Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const {
+Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
+                                    const Tissue& tissue) const {
   Touches pushing;
   Vec3 axis = Vec3::Zero();
   BallPress press;
@@ -58,11 +59,11 @@ Recess SlidingContacts::recessAsked(int link, const RobotPose& pose, const Tissu
     press.force += touch.spring.multiplier;
     axis += touch.spring.multiplier * touch.spring.normal;
   }
-  const Ball* const ball = ballUnder(pushing, pose.links[at(link)], tissue);
+  const Ball* const ball = ballUnder(pushing, tissue_T_link, tissue);
   if (ball == nullptr) return {};
   axis.normalize();
   press.radius = ball->radius;
-  const Vec3 lowest = pose.links[at(link)] * ball->center + ball->radius * axis;
+  const Vec3 lowest = tissue_T_link * ball->center + ball->radius * axis;
   std::map<int, double> shares;
   for (const ContactConstraint* touch : pushing) {
     const double share = touch->spring.multiplier / press.force;
@@ -80,7 +81,7 @@ void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
   if (tissue.hasTime() || tissue.lastReport().status != SolveStatus::kOk) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
     if (forms_[at(link)].balls.empty()) continue;
-    const Recess asked = recessAsked(link, pose, tissue);
+    const Recess asked = recessAsked(link, pose.links[at(link)], tissue);
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
     if (way * recess.last_way < 0.0) recess.gain *= tuning::kLessToAndFro;
@@ -89,23 +90,26 @@ void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
   }
 }
 
-// Of balls that have only just met the tissue, by how deep they are in it: there is no force yet.
+// Of balls that have only just met the tissue, by how deep they are in it: there is no force yet,
+// or it is not known how that grows.
 void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (tissue.hasTime()) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
     if (forms_[at(link)].balls.empty()) continue;
     const ContactConstraint* deepest = nullptr;
+    BallPress press;
     bool pushes = false;
     for (const ContactConstraint& touch : touches_) {
       if (touch.contact.link != link) continue;
       pushes = pushes || touch.spring.multiplier > 0.0;
-      if (deepest == nullptr || touch.contact.depth_m > deepest->contact.depth_m) deepest = &touch;
+      const double depth = touch.recess - gapOf(touch.spring, tissue.state().displacement);
+      if (deepest != nullptr && depth <= press.depth) continue;
+      deepest = &touch;
+      press.depth = depth;
     }
-    if (pushes || deepest == nullptr) continue;
+    if (deepest == nullptr || (pushes && !recesses_[at(link)].is_new)) continue;
     const Ball* const ball = ballUnder({deepest}, pose.links[at(link)], tissue);
-    BallPress press;
     press.radius = ball == nullptr ? 0.0 : ball->radius;
-    press.depth = deepest->contact.depth_m;
     press.shares = deepest->spring.carriers;
     const auto guess = ball == nullptr ? std::nullopt : tissue.recessUnder(press);
     setRecess(link, guess.value_or(Recess()).depth);

@@ -12,9 +12,13 @@ void PressGrowth::note(const std::vector<Pose>& links, std::vector<Press> presse
   presses_before_ = std::exchange(presses_, std::move(presses));
 }
 
+bool PressGrowth::isKnown(std::size_t link) const {
+  return link < links_before_.size() && link < links_.size() && presses_before_[link].force > 0.0 &&
+         presses_[link].force > 0.0;
+}
+
 double PressGrowth::shareOfLastWay(std::size_t link, const Pose& pose) const {
-  if (link >= links_before_.size() || link >= links_.size()) return 0.0;
-  if (presses_before_[link].force <= 0.0 || presses_[link].force <= 0.0) return 0.0;
+  if (!isKnown(link)) return 0.0;
   const Vec3& place = presses_[link].place;
   const Vec3 on_link = links_[link].inverse() * place;
   const Vec3 last_way = place - links_before_[link] * on_link;

@@ -38,13 +38,10 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     commit(pose, tissue);
   }
   is_settled_ = false;
-  for (LinkRecess& recess : recesses_) recess = {recess.depth, 0.0, 1.0};
+  growAlongWay(pose, tissue);
   for (ContactConstraint& touch : touches_) {
     const std::size_t link = at(touch.contact.link);
     const Pose moved = pose.links[link] * since_links_[link].inverse();
-    const double times = growth_.times(link, pose.links[link]);
-    touch.spring.multiplier *= times;
-    touch.spring.friction_bound *= times;
     touch.spring.normal = moved.linear() * touch.spring.normal;
     const double drift = touch.drift.foresee(growth_.shareOfLastWay(link, pose.links[link]));
     touch.tool_point = moved * touch.tool_point + drift * touch.spring.normal;
@@ -52,6 +49,31 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     rideEdge(moved, touch);
     putPlane(touch);
     anchor(pose, touch);
+  }
+}
+
+// Forces, and the recesses that hang on them, as they grew or fell along the last way.
+void SlidingContacts::growAlongWay(const RobotPose& pose, const Tissue& tissue) {
+  const auto asked = [&](std::size_t link) {
+    const bool stays = growth_.times(link, pose.links[link]) == 1.0;
+    if (stays || tissue.hasTime() || forms_[link].balls.empty()) return 0.0;
+    return recessAsked(static_cast<int>(link), since_links_[link], tissue).depth;
+  };
+  std::vector<double> depths;  // of recesses, less what the forces of before ask for
+  for (std::size_t link = 0; link < recesses_.size(); ++link) {
+    depths.push_back(recesses_[link].depth - asked(link));
+  }
+  for (ContactConstraint& touch : touches_) {
+    const std::size_t link = at(touch.contact.link);
+    const double times = growth_.times(link, pose.links[link]);
+    touch.spring.multiplier *= times;
+    touch.spring.friction_bound *= times;
+  }
+  for (std::size_t link = 0; link < recesses_.size(); ++link) {
+    const bool moves = !pose.links[link].isApprox(since_links_[link], 0.0);
+    recesses_[link] = LinkRecess();
+    recesses_[link].is_new = moves && !growth_.isKnown(link);
+    setRecess(static_cast<int>(link), depths[link] + asked(link));
   }
 }
 
@@ -89,8 +111,8 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
 }
 
 // A link that has only just met the tissue has no multipliers, so no bound of friction is known.
-// Its touches stick in the first solve (a bound that is never reached): with none the tissue would
-// slide off before it is held.
+// What is in it sticks in the first solve (a bound that is never reached): with none the tissue
+// would slide off before it is held. What is near it only does not: it would be drawn along.
 void SlidingContacts::stickFirst(const Tissue& tissue) {
   std::set<int> pushing;
   for (const ContactConstraint& touch : touches_) {
@@ -101,6 +123,7 @@ void SlidingContacts::stickFirst(const Tissue& tissue) {
         pushing.count(touch.contact.link) != 0)
       continue;
     ContactSpring& spring = touch.spring;
+    if (gapOf(spring, tissue.state().displacement) > 0.0) continue;
     const double stiffness = frictionStiffness(touch.firm_stiffness);
     spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
     spring.friction_bound = tuning::kMostForce * stiffness * tissue.lattice().spacing();

@@ -154,5 +154,47 @@ TEST(LightTouch, IsFeltAlikeWhereverTheBallCameFrom) {
   }
 }
 
+class FirstTouch : public testing::Test {
+ protected:
+  struct Felt {
+    double force = 0.0;  // N
+    int iterations = 0;
+  };
+
+  // A ball of a spacing's size comes down between nodes.
+  static std::vector<Felt> stepsDown(double friction) {
+    constexpr double kSize = 0.01, kHeight = 0.08;  // m
+    TissueConfig tissue = block("elastic", kSize);
+    tissue.shape.max() = Vec3(0.12, 0.08, kHeight);
+    tissue.material.poisson_ratio = kPoisson;
+    ToolShape ball;
+    ball.radius = kSize;
+    Pipeline pipeline(tissue, SolverConfig(), {withFriction(friction, toolOf(ball))});
+    std::vector<Felt> felt;
+    for (const double depth : {-0.0002, -0.00007, 0.00006, 0.00019, 0.00032}) {
+      pipeline.step(at({Vec3(0.063, 0.028, kHeight + kSize - depth)}));
+      felt.push_back({pipeline.report().tools.front().force_on_tool.z(),
+                      pipeline.tissue().lastReport().iterations});
+    }
+    return felt;
+  }
+};
+
+// What is near the ball stuck to it, too, and was drawn along: a first touch without a force.
+TEST_F(FirstTouch, DrawsAlongNothingThatIsOnlyNear) {
+  const std::vector<Felt> rough = stepsDown(0.3), smooth = stepsDown(0.0);
+  for (std::size_t step = 2; step < rough.size(); ++step) {
+    EXPECT_GT(smooth[step].force, 0.0005);
+    EXPECT_NEAR(rough[step].force, smooth[step].force, 0.12 * smooth[step].force) << step;
+  }
+}
+
+// 39 iterations in the second, while its recess was that of the first.
+TEST_F(FirstTouch, TakesFewIterationsAlsoInTheLoadStepAfterIt) {
+  for (const double friction : {0.0, 0.3}) {
+    for (const Felt& felt : stepsDown(friction)) EXPECT_LE(felt.iterations, 25) << friction;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_narrow_contacts

@@ -22,6 +22,8 @@ class PressGrowth {
 
   // At the end of a load step; one press a link.
   void note(const std::vector<Pose>& links, std::vector<Press> presses);
+  // Whether it pressed at the ends of both of the last two load steps.
+  bool isKnown(std::size_t link) const;
   // What the link presses with, once it has gone to that pose, over what it pressed with at the end
   // of the last load step.
   double times(std::size_t link, const Pose& pose) const;

@@ -164,11 +164,13 @@ class SlidingContacts {
     double depth = 0.0;     // m
     double last_way = 0.0;  // m: of the last round
     double gain = 1.0;      // of the steps that are asked for
+    bool is_new = false;    // how the link's force grows along its way is not known
   };
 
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void takeStiffness(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   void stickFirst(const Tissue& tissue);
+  void growAlongWay(const RobotPose& pose, const Tissue& tissue);
   double thicknessAt(const Contact& contact) const;
   double fineness(const Contact& contact, double spacing) const;
   void add(const Contact& contact, KnownTouches& known, const RobotPose& pose, const Tissue& tissue,
@@ -196,7 +198,7 @@ class SlidingContacts {
   void guessRecesses(const RobotPose& pose, const Tissue& tissue);
   void setRecess(int link, double depth);
   void renewRecesses(const RobotPose& pose, const Tissue& tissue);
-  Recess recessAsked(int link, const RobotPose& pose, const Tissue& tissue) const;
+  Recess recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue) const;
   using Touches = std::vector<const ContactConstraint*>;
   const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
                         const Tissue& tissue) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "surface/hinges.h"
@@ -237,17 +236,23 @@ Box deform(const TissueSurface& surface, const std::vector<Vec3>& displacement,
 }
 
 std::vector<NodeWeight> carriersAt(const TissueSurface& surface, const SurfacePoint& point) {
-  std::map<int, double> weights;
+  std::vector<NodeWeight> carriers;
+  const auto isBefore = [](const NodeWeight& carrier, int node) { return carrier.node < node; };
   for (int corner = 0; corner < 3; ++corner) {
+    const double share = point.barycentric[corner];
+    if (share == 0.0) continue;
     const int vertex = surface.triangles[at(point.triangle)][at(corner)];
-    for (const NodeWeight& carrier : surface.carriers[at(vertex)]) {
-      weights[carrier.node] += point.barycentric[corner] * carrier.weight;
+    for (const auto& [node, weight] : surface.carriers[at(vertex)]) {
+      const auto place = std::lower_bound(carriers.begin(), carriers.end(), node, isBefore);
+      if (place != carriers.end() && place->node == node) {
+        place->weight += share * weight;
+      } else {
+        carriers.insert(place, {node, share * weight});
+      }
     }
   }
-  std::vector<NodeWeight> carriers;
-  for (const auto& [node, weight] : weights) {
-    if (weight != 0.0) carriers.push_back({node, weight});
-  }
+  const auto isNone = [](const NodeWeight& carrier) { return carrier.weight == 0.0; };
+  carriers.erase(std::remove_if(carriers.begin(), carriers.end(), isNone), carriers.end());
   return carriers;
 }
 
