@@ -63,7 +63,10 @@ bool TouchFinder::wanders(const RobotPose& pose, const Contact& contact) const {
 // point of that.
 std::optional<Contact> TouchFinder::goAlong(const RobotPose& pose, const ContactSet& found,
                                             const SlidingContacts::ContactConstraint& touch) const {
-  if (touch.spring.multiplier <= 0.0) return std::nullopt;
+  const bool pushes =
+      touch.spring.multiplier > 0.0 ||
+      normalForceOf(touch.spring, world_.tissue.state().displacement) > 0.0;  // a new one
+  if (!pushes) return std::nullopt;
   const double near = tuning::kFoundNear * world_.tissue.lattice().spacing();
   const auto is_found = [&](const Contact& contact) {
     if (!contact.wanders || contact.link != touch.contact.link) return false;
