@@ -39,7 +39,9 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   }
   is_settled_ = false;
   growAlongWay(pose, tissue);
+  plane_shares_.clear();
   for (ContactConstraint& touch : touches_) {
+    touch.went.reset();
     const std::size_t link = at(touch.contact.link);
     const Pose moved = pose.links[link] * since_links_[link].inverse();
     touch.spring.normal = moved.linear() * touch.spring.normal;
@@ -140,11 +142,18 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   is_settled_ = whole && updateMultipliers(tissue);
   if (whole) renewRecesses(pose, tissue);
   if (!whole) pressHarder(tissue);
+  std::vector<std::optional<double>> ways(tracked.size());
   for (std::size_t i = 0; i < tracked.size(); ++i) {
-    if (touches_[i].contact.wanders) continue;
-    if (wavers && touches_[i].found && tracked[i]) continue;
-    if (!track(tracked[i], pose, tissue, touches_[i])) is_settled_ = false;
+    ContactConstraint& touch = touches_[i];
+    if (touch.contact.wanders) continue;
+    if (wavers && touch.found && tracked[i]) continue;
+    const double gap_before = gapOf(touch.spring, tissue.state().displacement);
+    if (!track(tracked[i], pose, tissue, touch)) is_settled_ = false;
+    if (whole && touch.found && touch.vertex < 0 && touch.contact.rim.edges.empty()) {
+      ways[i] = gap_before - gapOf(touch.spring, tissue.state().displacement);
+    }
   }
+  calmPlanes(ways, pose);
   KnownTouches known(touches_);
   for (const Contact& contact : found.contacts) {
     if (!friction_[at(contact.tool)] || contact.wanders) continue;
@@ -178,6 +187,37 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   anchor(pose, touch);
   touch.drift.meet(gap_before - gapOf(spring, tissue.state().displacement));
   return isAtRest(touch, tissue);
+}
+
+// Between vertices planes are off the surface by its bulge, which the next shape has otherwise:
+// near incompressible tissue goes to and fro with it. Where the ways of a link's planes turn back,
+// they go by less, the same share of them all: so that nothing would be left if that went on
+// (Aitken's relaxation, Irons and Tuck 1969). `ways`: that each went along its normal (m).
+void SlidingContacts::calmPlanes(const std::vector<std::optional<double>>& ways,
+                                 const RobotPose& pose) {
+  std::vector<double> along(pose.links.size(), 0.0), squared(pose.links.size(), 0.0);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const std::optional<double>& before = touches_[i].went;
+    if (!ways[i] || !before) continue;
+    const double change = *ways[i] - *before;
+    along[at(touches_[i].contact.link)] -= change * *before;
+    squared[at(touches_[i].contact.link)] += change * change;
+  }
+  plane_shares_.resize(pose.links.size(), 1.0);
+  for (std::size_t link = 0; link < pose.links.size(); ++link) {
+    if (squared[link] <= 0.0) continue;
+    const double share = plane_shares_[link] * along[link] / squared[link];
+    plane_shares_[link] = std::clamp(share, tuning::kLeastPlaneShare, 1.0);
+  }
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    ContactConstraint& touch = touches_[i];
+    touch.went = ways[i];
+    const double share = plane_shares_[at(touch.contact.link)];
+    if (!ways[i] || share == 1.0) continue;
+    touch.tool_point -= (1.0 - share) * *ways[i] * touch.spring.normal;
+    putPlane(touch);
+    anchor(pose, touch);
+  }
 }
 
 // Vertices are not off their surface, rims have a law of their own, touches that wander are

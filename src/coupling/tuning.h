@@ -58,6 +58,9 @@ constexpr double kDriftLearned = 0.5;
 // Of the spacing (1): drift is foreseen of links so thick. Less: a needle takes 3 cycles in the
 // median of its updates for 2, and 1.04 times as many in all.
 constexpr double kThickForDrift = 0.5;
+// Share (1) of their ways that planes which go to and fro go at least. Less: slower where they do
+// not any more. Chosen.
+constexpr double kLeastPlaneShare = 0.3;
 // Updates in a row on the way to balance, after which planes no longer turn: some turn to and fro
 // for ever. Chosen.
 constexpr int kMostTurningRounds = 12;

@@ -71,6 +71,7 @@ class SlidingContacts {
     Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
     Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
     PlaneDrift drift;                    // of its plane
+    std::optional<double> went;          // m: its plane, in the last round of the load step
     double stiffening = 1.0;             // of the tissue, in the time step under way
     double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
     double recess = 0.0;                 // m: of its link
@@ -170,6 +171,7 @@ class SlidingContacts {
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void takeStiffness(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   void stickFirst(const Tissue& tissue);
+  void calmPlanes(const std::vector<std::optional<double>>& ways, const RobotPose& pose);
   void growAlongWay(const RobotPose& pose, const Tissue& tissue);
   double thicknessAt(const Contact& contact) const;
   double fineness(const Contact& contact, double spacing) const;
@@ -211,6 +213,7 @@ class SlidingContacts {
   std::vector<std::optional<double>> friction_;
   std::vector<LinkForm> forms_;
   std::vector<Pressed> pressed_;      // per tool
+  std::vector<double> plane_shares_;  // per link: of the ways of its planes, that they go (1)
   std::vector<LinkRecess> recesses_;  // per link
   PressGrowth growth_;
   SurfaceCrowding crowding_;
