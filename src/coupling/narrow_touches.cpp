@@ -74,11 +74,15 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
   return tissue.recessUnder(press).value_or(Recess());
 }
 
-// After a solve: by less once it goes to and fro, as touches come and go with it. A solve that was
-// cut short tells no forces to go by. Not in time, where forces swing,
-// and a recess that follows them would drive them.
+// A solve that was cut short tells no forces to go by. Nor in time, where forces swing, and a
+// recess that follows them would drive them.
+bool SlidingContacts::tellsRecesses(const Tissue& tissue) {
+  return !tissue.hasTime() && tissue.lastReport().status == SolveStatus::kOk;
+}
+
+// After a solve: by less once it goes to and fro, as touches come and go with it.
 void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
-  if (tissue.hasTime() || tissue.lastReport().status != SolveStatus::kOk) return;
+  if (!tellsRecesses(tissue)) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
     if (forms_[at(link)].balls.empty()) continue;
     const Recess asked = recessAsked(link, pose.links[at(link)], tissue);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "known_touches.h"
@@ -41,7 +40,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   growAlongWay(pose, tissue);
   plane_shares_.clear();
   for (ContactConstraint& touch : touches_) {
-    touch.went.reset();
+    touch.way.reset();
     const std::size_t link = at(touch.contact.link);
     const Pose moved = pose.links[link] * since_links_[link].inverse();
     touch.spring.normal = moved.linear() * touch.spring.normal;
@@ -51,31 +50,6 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     rideEdge(moved, touch);
     putPlane(touch);
     anchor(pose, touch);
-  }
-}
-
-// Forces, and the recesses that hang on them, as they grew or fell along the last way.
-void SlidingContacts::growAlongWay(const RobotPose& pose, const Tissue& tissue) {
-  const auto asked = [&](std::size_t link) {
-    const bool stays = growth_.times(link, pose.links[link]) == 1.0;
-    if (stays || tissue.hasTime() || forms_[link].balls.empty()) return 0.0;
-    return recessAsked(static_cast<int>(link), since_links_[link], tissue).depth;
-  };
-  std::vector<double> depths;  // of recesses, less what the forces of before ask for
-  for (std::size_t link = 0; link < recesses_.size(); ++link) {
-    depths.push_back(recesses_[link].depth - asked(link));
-  }
-  for (ContactConstraint& touch : touches_) {
-    const std::size_t link = at(touch.contact.link);
-    const double times = growth_.times(link, pose.links[link]);
-    touch.spring.multiplier *= times;
-    touch.spring.friction_bound *= times;
-  }
-  for (std::size_t link = 0; link < recesses_.size(); ++link) {
-    const bool moves = !pose.links[link].isApprox(since_links_[link], 0.0);
-    recesses_[link] = LinkRecess();
-    recesses_[link].is_new = moves && !growth_.isKnown(link);
-    setRecess(static_cast<int>(link), depths[link] + asked(link));
   }
 }
 
@@ -112,26 +86,6 @@ void SlidingContacts::meet(const ContactSet& contacts, const RobotPose& pose, co
   stickFirst(tissue);
 }
 
-// A link that has only just met the tissue has no multipliers, so no bound of friction is known.
-// What is in it sticks in the first solve (a bound that is never reached): with none the tissue
-// would slide off before it is held. What is near it only does not: it would be drawn along.
-void SlidingContacts::stickFirst(const Tissue& tissue) {
-  std::set<int> pushing;
-  for (const ContactConstraint& touch : touches_) {
-    if (touch.spring.multiplier > 0.0) pushing.insert(touch.contact.link);
-  }
-  for (ContactConstraint& touch : touches_) {
-    if (friction_[at(touch.contact.tool)].value_or(0.0) <= 0.0 ||
-        pushing.count(touch.contact.link) != 0)
-      continue;
-    ContactSpring& spring = touch.spring;
-    if (gapOf(spring, tissue.state().displacement) > 0.0) continue;
-    const double stiffness = frictionStiffness(touch.firm_stiffness);
-    spring.friction_stiffness = softened(stiffness, touch.compliance.friction);
-    spring.friction_bound = tuning::kMostForce * stiffness * tissue.lattice().spacing();
-  }
-}
-
 bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, const RobotPose& pose,
                              const Tissue& tissue, const Held& held, ContactUpdate::Shape shape) {
   const bool whole = shape == ContactUpdate::Shape::kSolved;
@@ -142,24 +96,24 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   is_settled_ = whole && updateMultipliers(tissue);
   if (whole) renewRecesses(pose, tissue);
   if (!whole) pressHarder(tissue);
-  std::vector<std::optional<double>> ways(tracked.size());
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     ContactConstraint& touch = touches_[i];
+    touch.last_way = std::exchange(touch.way, std::nullopt);
     if (touch.contact.wanders) continue;
     if (wavers && touch.found && tracked[i]) continue;
     const double gap_before = gapOf(touch.spring, tissue.state().displacement);
     if (!track(tracked[i], pose, tissue, touch)) is_settled_ = false;
     if (whole && touch.found && touch.vertex < 0 && touch.contact.rim.edges.empty()) {
-      ways[i] = gap_before - gapOf(touch.spring, tissue.state().displacement);
+      touch.way = gap_before - gapOf(touch.spring, tissue.state().displacement);
     }
   }
-  calmPlanes(ways, pose);
   KnownTouches known(touches_);
   for (const Contact& contact : found.contacts) {
     if (!friction_[at(contact.tool)] || contact.wanders) continue;
     if (!take(contact, known, pose, tissue, held)) is_settled_ = false;
   }
   if (!wander(found, tracked, pose, tissue, held)) is_settled_ = false;
+  if (!is_settled_) calmPlanes(pose);
   forgetLost(held);
   return is_settled_;
 }
@@ -187,37 +141,6 @@ bool SlidingContacts::track(const std::optional<Contact>& contact, const RobotPo
   anchor(pose, touch);
   touch.drift.meet(gap_before - gapOf(spring, tissue.state().displacement));
   return isAtRest(touch, tissue);
-}
-
-// Between vertices planes are off the surface by its bulge, which the next shape has otherwise:
-// near incompressible tissue goes to and fro with it. Where the ways of a link's planes turn back,
-// they go by less, the same share of them all: so that nothing would be left if that went on
-// (Aitken's relaxation, Irons and Tuck 1969). `ways`: that each went along its normal (m).
-void SlidingContacts::calmPlanes(const std::vector<std::optional<double>>& ways,
-                                 const RobotPose& pose) {
-  std::vector<double> along(pose.links.size(), 0.0), squared(pose.links.size(), 0.0);
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const std::optional<double>& before = touches_[i].went;
-    if (!ways[i] || !before) continue;
-    const double change = *ways[i] - *before;
-    along[at(touches_[i].contact.link)] -= change * *before;
-    squared[at(touches_[i].contact.link)] += change * change;
-  }
-  plane_shares_.resize(pose.links.size(), 1.0);
-  for (std::size_t link = 0; link < pose.links.size(); ++link) {
-    if (squared[link] <= 0.0) continue;
-    const double share = plane_shares_[link] * along[link] / squared[link];
-    plane_shares_[link] = std::clamp(share, tuning::kLeastPlaneShare, 1.0);
-  }
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    ContactConstraint& touch = touches_[i];
-    touch.went = ways[i];
-    const double share = plane_shares_[at(touch.contact.link)];
-    if (!ways[i] || share == 1.0) continue;
-    touch.tool_point -= (1.0 - share) * *ways[i] * touch.spring.normal;
-    putPlane(touch);
-    anchor(pose, touch);
-  }
 }
 
 // Vertices are not off their surface, rims have a law of their own, touches that wander are
@@ -345,6 +268,7 @@ void SlidingContacts::takeStiffness(const Tissue& tissue, const Held& held,
 void SlidingContacts::put(const Contact& contact, const RobotPose& pose, const Tissue& tissue,
                           const Held& held, ContactConstraint& touch) {
   touch.found = true;
+  touch.way.reset();
   touch.recess = recessOf(contact.link);
   putContact(contact, tissue.surface(), touch);
   touch.stiffening = carry(touch.contact, tissue, held, touch.spring);

@@ -24,6 +24,10 @@ constexpr double kFrictionStiffness = 2.0;
 // Less: sharper sticking, harder solves. Chosen.
 constexpr double kElasticSlip = 0.02;
 constexpr double kMostElasticSlip = 0.1;
+// Of the spacing (1): what is so near a link that has only just come sticks to it in the first
+// solve. More: it is drawn along (0.02: first touches of balls without a force); less: what lands on
+// an edge slides off it.
+constexpr double kMayStickFirst = 0.01;
 // Of a node's stiffness times the spacing (1): no tissue pushes so hard; beyond, the shape is
 // refused. Chosen.
 constexpr double kMostForce = 45.0;

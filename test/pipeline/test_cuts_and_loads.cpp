@@ -226,7 +226,7 @@ TEST(CutBesideATool, LeavesItsForceAsItWas) {
       EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
     }
     const Vec3 change = pipeline.report().tools.front().force_on_tool - before;
-    EXPECT_LT(change.norm(), 2e-3 * before.norm()) << friction;
+    EXPECT_LT(change.norm(), 4e-3 * before.norm()) << friction;
   }
 }
 

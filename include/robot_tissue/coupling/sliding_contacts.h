@@ -67,15 +67,15 @@ class SlidingContacts {
     double firm_stiffness = 0.0;       // k, without its compliance (N/m)
     double crowding = 1.0;             // touches that share that of one alone
     TouchCompliance compliance;
-    Vec3 tool_point = Vec3::Zero();      // of the tool's surface (m)
-    Vec3 friction_ratio = Vec3::Zero();  // drag over normal force at the last commit, link's frame
-    Vec3 since_normal = Vec3::Zero();    // the plane's normal then, in the link's frame
-    PlaneDrift drift;                    // of its plane
-    std::optional<double> went;          // m: its plane, in the last round of the load step
-    double stiffening = 1.0;             // of the tissue, in the time step under way
-    double entry = 0.0;                  // m: in time, how deep it may be yet, as it was found so
-    double recess = 0.0;                 // m: of its link
-    bool found = false;                  // in the last update
+    Vec3 tool_point = Vec3::Zero();       // of the tool's surface (m)
+    Vec3 friction_ratio = Vec3::Zero();   // drag over normal force at the last commit, link's frame
+    Vec3 since_normal = Vec3::Zero();     // the plane's normal then, in the link's frame
+    PlaneDrift drift;                     // of its plane
+    std::optional<double> way, last_way;  // m: its plane's, in this and the last round
+    double stiffening = 1.0;              // of the tissue, in the time step under way
+    double entry = 0.0;                   // m: in time, how deep it may be yet, as it was found so
+    double recess = 0.0;                  // m: of its link
+    bool found = false;                   // in the last update
     std::optional<Vec3> left;  // where in its triangle it went from in this load step, by weights
   };
 
@@ -171,7 +171,7 @@ class SlidingContacts {
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
   void takeStiffness(const Tissue& tissue, const Held& held, ContactConstraint& touch);
   void stickFirst(const Tissue& tissue);
-  void calmPlanes(const std::vector<std::optional<double>>& ways, const RobotPose& pose);
+  void calmPlanes(const RobotPose& pose);
   void growAlongWay(const RobotPose& pose, const Tissue& tissue);
   double thicknessAt(const Contact& contact) const;
   double fineness(const Contact& contact, double spacing) const;
@@ -199,6 +199,7 @@ class SlidingContacts {
   void pressHarder(const Tissue& tissue);
   void guessRecesses(const RobotPose& pose, const Tissue& tissue);
   void setRecess(int link, double depth);
+  static bool tellsRecesses(const Tissue& tissue);
   void renewRecesses(const RobotPose& pose, const Tissue& tissue);
   Recess recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue) const;
   using Touches = std::vector<const ContactConstraint*>;
