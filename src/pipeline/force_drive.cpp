@@ -22,7 +22,8 @@ void ForceDrive::push(std::size_t tool, const std::optional<Vec3>& force) {
   if (!same_way) drive.way = drive.came = 0.0;
   if (same_way && *force != *drive.force) drive.way = drive.came;
   drive.off = kInfinity;
-  drive.unanswered = false;
+  drive.unanswered = drive.was_met = false;
+  drive.pushed_off = 0;
   drive.force = force;
 }
 
@@ -40,6 +41,13 @@ bool ForceDrive::drivesAny() const {
 bool ForceDrive::isMet(std::size_t tool, const Vec3& met) const {
   const Vec3& force = *drives_[tool].force;
   return isNear(met.dot(force.normalized()), force.norm());
+}
+
+bool ForceDrive::isPushedOff(std::size_t tool, const Vec3& met) {
+  Drive& drive = drives_[tool];
+  const bool is_off = drive.was_met && !isMet(tool, met);
+  drive.pushed_off = is_off ? drive.pushed_off + 1 : 0;
+  return is_off && drive.pushed_off <= tuning::kMostPushedOff;
 }
 
 Vec3 ForceDrive::offset(std::size_t tool) const {
@@ -150,6 +158,7 @@ bool ForceDrive::meetForce(std::size_t tool, const Way& way) {
   const bool has_way_left = !search.hasMet() && !way.lost() && nearer &&
                             drive.way < (tuning::kFarthestPush - 1.0) * longest;
   drive.off = has_way_left ? search.off() : kInfinity;
+  drive.was_met = search.hasMet();
   drive.unanswered = had_time && !has_way_left && !way.lost() && !search.isAnswered();
   return has_way_left;
 }

@@ -22,6 +22,9 @@ class ForceDrive {
   bool drives(std::size_t tool) const { return drives_[tool].force.has_value(); }
   bool drivesAny() const;
   bool isMet(std::size_t tool, const Vec3& met) const;  // by a force on the tissue (N)
+  // Whether the force was met, and is not any more, as tools that were moved after it changed the
+  // shape; not for ever. `met`: on the tissue (N), now.
+  bool isPushedOff(std::size_t tool, const Vec3& met);
   // Less than the force met it where its way ended.
   bool isUnanswered(std::size_t tool) const { return drives_[tool].unanswered; }
   Vec3 offset(std::size_t tool) const;  // of where it is to go, from its pose (m)
@@ -56,6 +59,8 @@ class ForceDrive {
     double came = 0.0;          // of it (m)
     double off = kInfinity;     // from the force, where the calls that left a way ended (N)
     int waits = 0;              // in a row
+    bool was_met = false;       // where the last call ended
+    int pushed_off = 0;         // calls in a row after which it was
     bool unanswered = false;
   };
 

@@ -81,6 +81,11 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
                [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
     goes_on = goes_on || on;
   }
+  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (!state_.drive.drives(tool)) continue;
+    const bool is_off = state_.drive.isPushedOff(tool, answerOf(world_, tool).force);
+    goes_on = goes_on || is_off;
+  }
   return goes_on;
 }
 

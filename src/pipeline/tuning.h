@@ -280,6 +280,9 @@ constexpr double kLongestArc = 0.125;
 // Tools that a force drives.
 // Corrections in one update. More: the force is met sooner, by longer updates. Chosen.
 constexpr int kMostCorrections = 12;
+// Calls in a row after which a tool whose force was met is pushed off by other tools, and goes on
+// (1). Down: tools that press beside each other end off their forces. Chosen.
+constexpr int kMostPushedOff = 20;
 // Of the force (1): near enough. Chosen.
 constexpr double kForceMet = 0.005;
 // Of the force (1): with as much, the tissue answers with it. More: tools that are nearly there are

@@ -88,6 +88,21 @@ TEST_P(BeginAnew, AfterAResetOfCutTissue) {
   EXPECT_EQ(pressAndDrag(*pipeline), pressAndDrag(*once));
 }
 
+// What the first cut after it changes little, the solver knew before.
+TEST_P(BeginAnew, AfterAResetWithTheSameCutsAgain) {
+  const auto pipeline = fresh(), once = fresh();
+  const auto way = [](Pipeline& of) {
+    pressAndDrag(of);
+    of.cut({Vec3(0.0025, -1.0, 0.0375), Vec3(0.0025, 0.0075, 0.0375), Vec3(0.0025, 0.0075, 1.0),
+            Vec3(0.0025, -1.0, 1.0)});
+    return pressAndDrag(of);
+  };
+  way(*pipeline);
+  pipeline->undo(1);
+  pipeline->reset();
+  EXPECT_EQ(way(*pipeline), way(*once));
+}
+
 TEST_P(BeginAnew, InALoadedState) {
   const auto pipeline = fresh(), once = fresh();
   cut(*once);

@@ -1,6 +1,7 @@
-#include <gtest/gtest.h>
+#include <array>
 
 #include "force_drive.h"
+#include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_force_drive {
 namespace {
@@ -102,6 +103,28 @@ TEST(ForceDrive, ToolThatNoShapeFollowsStaysWhereItCame) {
   HaltedTool tool(0.3 * kLoadStep);
   tool.drive().stay();
   EXPECT_NEAR(tool.drive().offset(0).z(), 0.3 * kLoadStep, 1e-15);
+}
+
+// What the second pushes changes the shape under the first, whose force was met.
+TEST(PushedPair, BothMeetTheirForcesInAnyOrder) {
+  const std::array<double, 2> forces = {0.3, 0.5};  // N
+  for (const std::size_t first : {0u, 1u}) {
+    TissueConfig tissue = block("elastic", 0.01);
+    ToolShape ball;
+    ball.radius = 0.012;
+    Pipeline pipeline(tissue, SolverConfig(), {toolOf(ball, "p"), toolOf(ball, "q")});
+    const double z = kTop + ball.radius;
+    const RobotPose pose = at({Vec3(kMiddle - 0.01, kMiddle, z), Vec3(kMiddle + 0.01, kMiddle, z)});
+    pipeline.step(pose);
+    for (const std::size_t tool : {first, 1 - first}) {
+      pipeline.push(tool, Vec3(0.0, 0.0, -forces[tool]));
+      for (int update = 0; update < 30; ++update) pipeline.step(pose);
+    }
+    for (const std::size_t tool : {0u, 1u}) {
+      const double met = pipeline.report().tools[tool].force_on_tool.z();
+      EXPECT_NEAR(met, forces[tool], 0.01 * forces[tool]) << first << ", " << tool;
+    }
+  }
 }
 
 }  // namespace

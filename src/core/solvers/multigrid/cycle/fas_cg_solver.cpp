@@ -33,7 +33,8 @@ FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model
 template <typename Real>
 void FasCgSolver<Real>::forget() {
   iteration_.forget();
-  measured_.reset();
+  // As where it starts: the levels are of the cells that they were measured with, or none are made.
+  if (measured_ != cells_) forgetLevels();
   is_measure_due_ = false;
   part_.forget();
   warm_start_.forget();

@@ -64,9 +64,19 @@ bool ForceBalance<Real>::isCalm(const SolveContext& solve) const {
   for (const GroupVector& load : shape_.finest().constrained.right_hand_side) {
     most = std::max(most, sizeOf(load));
   }
-  const double greatest = shape_.greatestForce();
-  if (isLoaded(solve)) return greatest <= tuning::kMostUnbalanced * most;
-  return greatest <= tuning::kMostUnloaded * most || isRounding(solve);
+  const double share = isLoaded(solve) ? tuning::kMostUnbalanced : tuning::kMostUnloaded;
+  if (shape_.greatestForce() <= share * most) return true;
+  return !isPushed(solve) && isRounding(solve);
+}
+
+// By a force, not by places that are given: these may be where the tissue is at rest.
+template <typename Real>
+bool ForceBalance<Real>::isPushed(const SolveContext& solve) const {
+  const std::vector<GroupVector>& loads = shape_.finest().constrained.right_hand_side;
+  return solve.in_time || shape_.finest().membrane() != nullptr || greatestGiven() > 0.0 ||
+         !shape_.finest().constrained.contactForce().isZero(0.0) ||
+         std::any_of(loads.begin(), loads.end(),
+                     [](const GroupVector& load) { return !load.isZero(0.0); });
 }
 
 // Of displacements, as of a free piece that went far; or of rest.

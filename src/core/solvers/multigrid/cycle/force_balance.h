@@ -33,6 +33,7 @@ class ForceBalance {
 
  private:
   bool isLoaded(const SolveContext& solve) const;
+  bool isPushed(const SolveContext& solve) const;
   double greatestGiven() const;
   double greatestActing() const;
   bool isCalm(const SolveContext& solve) const;
