@@ -94,23 +94,27 @@ KnownTouches::Touch* KnownTouches::find(const Contact& contact, const TissueSurf
   return nearest;
 }
 
+// Few are looked at one by one.
 void KnownTouches::treePushing() {
   std::map<int, std::vector<Pushing>> of_links;
-  pushing_ = 0;
+  strays_.clear();
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].spring.multiplier <= 0.0) continue;
-    of_links[touches_[i].contact.link].push_back({touches_[i].tool_point, i});
-    ++pushing_;
+    if (touches_[i].spring.multiplier > 0.0) strays_.push_back(i);
   }
+  pushing_ = strays_.size();
   trees_.clear();
+  has_trees_ = true;
+  if (pushing_ <= tuning::kFewTouches) return;
+  for (const std::size_t i : strays_) {
+    of_links[touches_[i].contact.link].push_back({touches_[i].tool_point, i});
+  }
   for (const auto& [link, pushing] : of_links) trees_[link].init(pushing.begin(), pushing.end());
   strays_.clear();
-  has_trees_ = true;
 }
 
 // Looking at strays one by one costs no more than trees anew as long as they are few.
 void KnownTouches::moved(const Touch& touch) {
-  if (!has_trees_ || touch.spring.multiplier <= 0.0) return;
+  if (!has_trees_ || trees_.empty() || touch.spring.multiplier <= 0.0) return;
   strays_.push_back(static_cast<std::size_t>(&touch - touches_.data()));
   if (strays_.size() * strays_.size() > pushing_) has_trees_ = false;
 }

@@ -4,6 +4,8 @@
 // contact study (doc/contact.md) passed; no other value was measured against it.
 #pragma once
 
+#include <cstddef>
+
 namespace robot_tissue::tuning {
 
 // Springs in contact.
@@ -25,8 +27,8 @@ constexpr double kFrictionStiffness = 2.0;
 constexpr double kElasticSlip = 0.02;
 constexpr double kMostElasticSlip = 0.1;
 // Of the spacing (1): what is so near a link that has only just come sticks to it in the first
-// solve. More: it is drawn along (0.02: first touches of balls without a force); less: what lands on
-// an edge slides off it.
+// solve. More: it is drawn along (0.02: first touches of balls without a force); less: what lands
+// on an edge slides off it.
 constexpr double kMayStickFirst = 0.01;
 // Of a node's stiffness times the spacing (1): no tissue pushes so hard; beyond, the shape is
 // refused. Chosen.
@@ -81,6 +83,8 @@ constexpr double kSameSideOfTool = 0.3;
 constexpr double kFarOff = 0.3;
 // Barycentric (1): points of a triangle that are nearer than this are one touch. Chosen.
 constexpr double kSamePoint = 0.25;
+// Touches that push (1), up to which the nearest is looked for among them all. Speed alone.
+constexpr std::size_t kFewTouches = 32;
 // Of the spacing (1): farther on the tool, two touches that wander are not the same. Chosen.
 constexpr double kFarthestWander = 0.5;
 // Of the spacing (1): a point that is so much deeper than the touch takes its place. Less: places
