@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "lattice/changed_cells.h"
 #include "solvers/multigrid/cycle/patch_answers.h"
@@ -33,8 +34,7 @@ FasCgSolver<Real>::FasCgSolver(const Lattice& lattice, const ElasticModel& model
 template <typename Real>
 void FasCgSolver<Real>::forget() {
   iteration_.forget();
-  // As where it starts: the levels are of the cells that they were measured with, or none are made.
-  if (measured_ != cells_) forgetLevels();
+  begins_anew_ = true;
   is_measure_due_ = false;
   part_.forget();
   warm_start_.forget();
@@ -65,6 +65,9 @@ void FasCgSolver<Real>::expect(const LatticeState& state) {
 // one.
 template <typename Real>
 void FasCgSolver<Real>::findLevels(const LatticeState& state, const Budget& budget) {
+  // As where it starts: the levels are measured with these very cells.
+  const bool is_measured = cells_ == measured_ && measured_ == state.cells;
+  if (std::exchange(begins_anew_, false) && !is_measured) forgetLevels();
   const bool are_others = cells_ != state.cells;
   if (are_others) {
     is_measure_due_ =

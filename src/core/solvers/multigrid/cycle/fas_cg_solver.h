@@ -59,6 +59,7 @@ class FasCgSolver : public MultigridSolver {
   std::shared_ptr<const CellSet> cells_;     // that the levels were made of
   std::shared_ptr<const CellSet> measured_;  // that the stiffness and error factor are of
   bool is_measure_due_ = false;              // too many cells are others since
+  bool begins_anew_ = false;                 // nothing was solved for since forget()
   double measuring_ms_ = 0.0;                // what it takes
   CompositeShape<Real> shape_;
   OpenPart part_;
