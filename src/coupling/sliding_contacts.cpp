@@ -49,17 +49,30 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     touch.spring.turned_from = moved * touch.spring.turned_from;
     rideEdge(moved, touch);
     putPlane(touch);
+    touch.stuck = touch.spring.multiplier > 0.0
+                      ? 1.0
+                      : shareOfTouch(-gapOf(touch.spring, *since_displacement_), moved, touch);
     anchor(pose, touch);
   }
 }
 
-// Friction's anchor: where the point was at the last commit, moved with the link since. Its
-// friction force there is the ratio of friction to normal force at the commit times the present
+// Of the link's way in the load step, the share (1) on which it touches the point, that is so deep
+// in it at its end (m).
+double SlidingContacts::shareOfTouch(double depth, const Pose& moved,
+                                     const ContactConstraint& touch) {
+  const Vec3 way = touch.tool_point - moved.inverse() * touch.tool_point;
+  const double comes = way.dot(touch.spring.normal);
+  return comes > 0.0 ? std::clamp(depth / comes, 0.0, 1.0) : 1.0;
+}
+
+// Friction's anchor: where the point was at the last commit, moved with the link since it touches.
+// Its friction force there is the ratio of friction to normal force at the commit times the present
 // multiplier: where normal force goes from one touch to its neighbors, friction goes with it.
 void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) const {
   const Pose& link = pose.links[at(touch.contact.link)];
   const Pose moved = link * since_links_[at(touch.contact.link)].inverse();
-  touch.spring.anchor = moved * pointOf(touch.spring, *since_displacement_);
+  const Vec3 since = pointOf(touch.spring, *since_displacement_);
+  touch.spring.anchor = since + touch.stuck * (moved * since - since);
   touch.spring.plane_way = touch.tool_point - moved.inverse() * touch.tool_point;
   const Vec3 drag = touch.spring.multiplier * (link.linear() * touch.friction_ratio);
   touch.spring.friction_force = drag - touch.spring.normal.dot(drag) * touch.spring.normal;
@@ -254,7 +267,12 @@ void SlidingContacts::add(const Contact& contact, KnownTouches& known, const Rob
   // Each is a kilobyte: room for twice as many would be more than is used.
   if (touches_.size() == touches_.capacity()) touches_.reserve(9 * touches_.size() / 8 + 8);
   touches_.push_back(touch);
-  put(contact, pose, tissue, held, touches_.back());
+  ContactConstraint& added = touches_.back();
+  put(contact, pose, tissue, held, added);
+  const std::size_t link = at(contact.link);
+  const Pose moved = pose.links[link] * since_links_[link].inverse();
+  added.stuck = shareOfTouch(contact.depth_m - recessOf(contact.link), moved, added);
+  anchor(pose, added);
 }
 
 // Of its spring as it was carried.

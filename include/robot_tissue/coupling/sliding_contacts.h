@@ -75,7 +75,8 @@ class SlidingContacts {
     double stiffening = 1.0;              // of the tissue, in the time step under way
     double entry = 0.0;                   // m: in time, how deep it may be yet, as it was found so
     double recess = 0.0;                  // m: of its link
-    bool found = false;                   // in the last update
+    double stuck = 1.0;        // share of its link's way in the load step on which it touches (1)
+    bool found = false;        // in the last update
     std::optional<Vec3> left;  // where in its triangle it went from in this load step, by weights
   };
 
@@ -209,6 +210,7 @@ class SlidingContacts {
   void forgetRecesses();
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
+  static double shareOfTouch(double depth, const Pose& moved, const ContactConstraint& touch);
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
 
   std::vector<std::optional<double>> friction_;
