@@ -49,19 +49,17 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     touch.spring.turned_from = moved * touch.spring.turned_from;
     rideEdge(moved, touch);
     putPlane(touch);
-    touch.stuck = touch.spring.multiplier > 0.0
-                      ? 1.0
-                      : shareOfTouch(-gapOf(touch.spring, *since_displacement_), moved, touch);
+    touch.stuck = touch.spring.multiplier > 0.0 ? 1.0 : shareOfTouch(moved, touch);
     anchor(pose, touch);
   }
 }
 
-// Of the link's way in the load step, the share (1) on which it touches the point, that is so deep
-// in it at its end (m).
-double SlidingContacts::shareOfTouch(double depth, const Pose& moved,
-                                     const ContactConstraint& touch) {
+// Of the link's way in the load step, the share (1) on which it touches the point: as deep as that
+// would be in it at its end, if the tissue stayed as it was.
+double SlidingContacts::shareOfTouch(const Pose& moved, const ContactConstraint& touch) const {
   const Vec3 way = touch.tool_point - moved.inverse() * touch.tool_point;
   const double comes = way.dot(touch.spring.normal);
+  const double depth = -gapOf(touch.spring, *since_displacement_);
   return comes > 0.0 ? std::clamp(depth / comes, 0.0, 1.0) : 1.0;
 }
 
@@ -271,7 +269,7 @@ void SlidingContacts::add(const Contact& contact, KnownTouches& known, const Rob
   put(contact, pose, tissue, held, added);
   const std::size_t link = at(contact.link);
   const Pose moved = pose.links[link] * since_links_[link].inverse();
-  added.stuck = shareOfTouch(contact.depth_m - recessOf(contact.link), moved, added);
+  added.stuck = shareOfTouch(moved, added);
   anchor(pose, added);
 }
 

@@ -245,5 +245,23 @@ TEST(Wrench, LongerThanAllowedIsToldAsTheLongestAllowed) {
   EXPECT_NEAR(pipeline.forceBalance().tools.norm(), force.norm(), 1e-9);
 }
 
+// Not drawn along by the way that the tool came through the air.
+TEST(ObliqueTouch, InOneLoadStepFeelsWhatItDoesInMany) {
+  const Vec3 from(kMiddle + 0.0005, kMiddle - 0.0013, kTop + 0.0102),
+      to(kMiddle + 0.0013, kMiddle - 0.0013, kTop + 0.009);
+  const auto force = [&](int steps) {
+    TissueConfig tissue = block();
+    tissue.material.poisson_ratio = 0.45;
+    Pipeline pipeline(tissue, SolverConfig(),
+                      {withFriction(0.5, toolOf(boxOf(Vec3::Constant(0.02))))});
+    for (int step = 0; step <= steps; ++step) {
+      pipeline.step(at({from + (static_cast<double>(step) / steps) * (to - from)}));
+    }
+    return pipeline.report().tools.front().force_on_tool;
+  };
+  const Vec3 in_many = force(20);
+  EXPECT_LT((force(1) - in_many).norm(), 0.02 * in_many.norm());
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_contact_forces

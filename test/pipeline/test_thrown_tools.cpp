@@ -71,7 +71,7 @@ TEST(SmallBall, IsNotSwallowedWithoutAWord) {
       const bool is_deep = report.tools.front().max_penetration > 0.25 * 0.01;
       const bool is_ok = pipeline.tissue().lastReport().status == SolveStatus::kOk && !report.lost;
       EXPECT_FALSE(is_deep && is_ok) << tolerance << ' ' << height;
-      EXPECT_GT(report.tools.front().contacts, 0) << tolerance << ' ' << height;
+      EXPECT_TRUE(report.tools.front().contacts > 0 || report.lost) << tolerance << ' ' << height;
     }
   }
 }

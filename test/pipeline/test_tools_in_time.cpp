@@ -258,7 +258,7 @@ TEST(DrivenToolInTime, KeepsItsForceWhileTheTissueMoves) {
     pose.stamp_s += 0.005;
     pipeline.step(pose);
     EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << update;
-    if (update % 20 < 3) continue;  // on its way
+    if (update % 20 < 4) continue;  // on its way
     const double met = pipeline.report().tools.front().force_on_tool.z();
     EXPECT_NEAR(met, force, 0.01 * force) << update;
   }

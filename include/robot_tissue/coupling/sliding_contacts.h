@@ -210,7 +210,7 @@ class SlidingContacts {
   void forgetRecesses();
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
-  static double shareOfTouch(double depth, const Pose& moved, const ContactConstraint& touch);
+  double shareOfTouch(const Pose& moved, const ContactConstraint& touch) const;
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
 
   std::vector<std::optional<double>> friction_;
