@@ -15,7 +15,7 @@ inline bool areSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 }
 
 inline bool areSame(const Pose& a, const Pose& b) {
-  return std::memcmp(a.data(), b.data(), sizeof(Pose::MatrixType)) == 0;
+  return std::memcmp(a.data(), b.data(), sizeof(Pose::MatrixType)) == 0;  // NOLINT: bits are meant
 }
 
 }  // namespace robot_tissue
