@@ -285,7 +285,7 @@ Vec3 ElasticCell::roughSlope(std::size_t node) const {
 }
 
 void ElasticCell::damp(const Moduli& viscous, const ElasticCell& from) {
-  Damping& damping = damping_.emplace();
+  Damping& damping = damping_.emplace(Damping());  // Clang knows of no default one here
   damping.shear = viscous.shear;
   damping.lame = viscous.bulk - 2.0 / 3.0 * viscous.shear;
   const Eigen::Matrix3d inverse = viscosity::inverseOf(from.mean_.gradient);
