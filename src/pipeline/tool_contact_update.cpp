@@ -14,7 +14,8 @@
 namespace robot_tissue {
 namespace {
 
-// Whether the shape is one that touches push into place, of tools or supports.
+// Whether the shape is one that touches push into place, of tools or supports. Of the surface that
+// they were found on: on another one they may be on nodes that are gone.
 bool pushesStill(const Tissue& tissue) {
   const auto pushes = [&](const ContactSpring& spring) {
     return !forceOf(spring, tissue.state().displacement).isZero(0.0);
@@ -191,7 +192,8 @@ bool ToolContactUpdate::renew(std::vector<LoadingPatch>& of_tools, Shape shape, 
   }
   if (round == Round::kLast) return true;
   of_tools = patchesOfTools(world_);
-  return !of_tools.empty() || pushesStill(world_.tissue);
+  if (!of_tools.empty() || touches != Touches::kOfThisSurface) return true;
+  return pushesStill(world_.tissue);
 }
 
 double ToolContactUpdate::deepestShown() {
