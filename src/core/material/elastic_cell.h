@@ -68,9 +68,9 @@ class ElasticCell {
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostReached, kMostReached>;
 
   struct Damping {
-    double shear = 0.0, lame = 0.0;  // mu, lambda (Pa)
-    Reached weight;                  // F_0^-T w of each node (1/m)
-    Eigen::Matrix3d stress;          // 2 mu D + lambda tr D (Pa)
+    double shear = 0.0, lame = 0.0;                    // mu, lambda (Pa)
+    Reached weight;                                    // F_0^-T w of each node (1/m)
+    Eigen::Matrix3d stress = Eigen::Matrix3d::Zero();  // 2 mu D + lambda tr D (Pa)
     Reached rough;        // of what bends and twists, half the derivative of its part of I1 (1/m)
     double energy = 0.0;  // density (Pa)
   };
