@@ -13,7 +13,8 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr int kMostNodes = 100000;  // with those that are placed more than once
+constexpr int kMostNodes = 100000;         // with those that are placed more than once
+constexpr std::size_t kDeepestNode = 500;  // in one another; each takes some of the stack
 
 template <std::size_t count>
 std::array<double, count> realsIn(const XMLElement& element) {
@@ -88,6 +89,9 @@ class DaeReader {
       throw InputError("has more than " + std::to_string(kMostNodes) + " nodes");
     }
     if (!open_.insert(&node).second) throw InputError("has a <node> within itself");
+    if (open_.size() > kDeepestNode) {
+      throw InputError("has more than " + std::to_string(kDeepestNode) + " nodes in one another");
+    }
     std::optional<Eigen::Affine3d> frame = outer;  // nothing: by a transform that is not read
     for (const XMLElement* child = node.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {

@@ -280,6 +280,28 @@ TEST(MeshFiles, DeepDaeIsRefused) {
   expectRefused("deep.dae", "is no XML");
 }
 
+// Each node places the next one: flat in the file, deep where they stand.
+std::string chainOfNodes(int length) {
+  std::string text = kPlacedDae;
+  const std::string library = "<library_nodes>";
+  std::string nodes;
+  for (int i = 0; i < length; ++i) {
+    const std::string next = i + 1 < length ? "n" + std::to_string(i + 1) : "twice";
+    nodes +=
+        "<node id=\"n" + std::to_string(i) + "\"><instance_node url=\"#" + next + "\"/></node>";
+  }
+  text.insert(text.find(library) + library.size(), nodes);
+  const std::string link = "<instance_node url=\"#twice\"/></node>\n</node>";
+  return text.replace(text.find(link), link.size(), "<instance_node url=\"#n0\"/></node></node>");
+}
+
+TEST(MeshFiles, DaeWhoseNodesPlaceOneAnotherInAChainIsReadUpToADepth) {
+  writeFile("chain.dae", chainOfNodes(400));
+  EXPECT_EQ(load("chain.dae").triangles.size(), 6U);
+  writeFile("chain.dae", chainOfNodes(30000));
+  expectRefused("chain.dae", "has more than 500 nodes in one another");
+}
+
 // Nodes that place nodes that place nodes: 2^30 geometries in a few lines.
 TEST(MeshFiles, DaeThatPlacesTooMuchIsRefused) {
   std::string nodes;
