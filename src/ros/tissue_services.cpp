@@ -8,18 +8,17 @@
 #include "robot_tissue/ros/node_status.h"
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
+#include "robot_tissue/scene/ranges.h"
 #include "tuning.h"
 
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kMostCorners = 1000;
-
 // Its corners, in its own frame.
 std::vector<Vec3> cornersOf(const Cut::Request& request) {
-  if (request.corners.size() > kMostCorners) {
+  if (request.corners.size() > ranges::kMostCutCorners) {
     throw InputError("corners: " + std::to_string(request.corners.size()) +
-                     " given; allowed: at most " + std::to_string(kMostCorners));
+                     " given; allowed: at most " + std::to_string(ranges::kMostCutCorners));
   }
   std::vector<Vec3> corners;
   for (const auto& corner : request.corners) {

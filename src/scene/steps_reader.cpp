@@ -8,7 +8,10 @@
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kMostCorners = 1000;
+struct Standing {
+  std::vector<StandingPatch> patches;
+  bool are_known = true;  // else more may stand, from a state of an earlier run
+};
 
 // What the steps are checked against: the scene's tools, and the patches and tools that the steps
 // before have put in place.
@@ -19,11 +22,9 @@ struct Program {
   LengthRanges lengths;
   Grid grid;
   std::vector<NodeRange> fixed;
-  std::vector<StandingPatch> patches;
+  Standing standing;
   std::set<std::string> placed_tools;
-  std::map<std::string, std::vector<StandingPatch>> saved;  // what stands in saved states
-  bool patches_are_known =
-      true;  // else a state of an earlier run was loaded, with what stood in it
+  std::map<std::string, Standing> saved;  // what stands in saved states
 };
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
@@ -60,14 +61,14 @@ struct CutReading {
 const KeyTable<CutReading> kCutKeys = {
     {"corners",
      [](const Entry& entry, CutReading& reading) {
-       for (const Entry& corner : entry.list(3, "corners", kMostCorners)) {
+       for (const Entry& corner : entry.list(3, "corners", ranges::kMostCutCorners)) {
          reading.step.corners.push_back(corner.vec3(reading.program.lengths.place));
        }
        checkPolygon(entry, reading.step.corners, reading.program.tissue.spacing);
      }},
 };
 
-CutStep readCut(const Entry& entry, const Program& program) {
+Step followCut(const Entry& entry, Program& program) {
   CutReading reading{program, {}};
   readKeys(MapReader(entry, namesOf(kCutKeys)), kCutKeys, reading);
   return reading.step;
@@ -75,10 +76,10 @@ CutStep readCut(const Entry& entry, const Program& program) {
 
 std::string readReleasedPatch(const Entry& entry, Program& program) {
   const std::string name = entry.word("the name of a standing patch");
-  std::vector<StandingPatch>& standing = program.patches;
+  std::vector<StandingPatch>& standing = program.standing.patches;
   const auto patch = std::find_if(standing.begin(), standing.end(),
                                   [&name](const auto& other) { return other.name == name; });
-  if (patch == standing.end() && !program.patches_are_known) return name;
+  if (patch == standing.end() && !program.standing.are_known) return name;
   if (patch == standing.end()) {
     std::vector<std::string> names;
     for (const StandingPatch& other : standing) names.push_back(other.name);
@@ -115,7 +116,7 @@ void readReleasedTools(const Entry& entry, ReleaseReading& reading) {
 const KeyTable<ReleaseReading> kReleaseKeys = {{"patches", readReleasedPatches},
                                                {"tools", readReleasedTools}};
 
-ReleaseStep readRelease(const Entry& entry, Program& program) {
+Step followRelease(const Entry& entry, Program& program) {
   const MapReader map(entry, namesOf(kReleaseKeys));
   if (!map["patches"].given() && !map["tools"].given()) {
     entry.fail("must have patches, tools or both");
@@ -125,86 +126,83 @@ ReleaseStep readRelease(const Entry& entry, Program& program) {
   return reading.step;
 }
 
-Step readReset(const Entry& entry, Program& program) {
+Step followReset(const Entry& entry, Program& program) {
   const MapReader without_keys(entry, {});
-  program.patches.clear();
-  program.patches_are_known = true;
+  program.standing = Standing();
   program.placed_tools.clear();
   return ResetStep();
 }
 
 Step followSave(const Entry& entry, Program& program) {
   SaveStep step = readSave(entry);
-  program.saved[step.file] = program.patches;
+  program.saved[step.file] = program.standing;
   return step;
 }
 
 Step followLoadState(const Entry& entry, Program& program) {
   LoadStateStep step = readLoadState(entry);
   const auto saved = program.saved.find(step.file);
-  program.patches_are_known = saved != program.saved.end();
-  program.patches = program.patches_are_known ? saved->second : std::vector<StandingPatch>();
+  program.standing = saved != program.saved.end() ? saved->second : Standing{{}, false};
   return step;
 }
 
+Step followSettle(const Entry& entry, Program&) {
+  const MapReader without_keys(entry, {});
+  return SettleStep();
+}
+
+Step followLoad(const Entry& entry, Program& program) {
+  return readLoad(entry, program.grid, program.fixed, program.solver, program.lengths.displacement,
+                  program.standing.patches);
+}
+
+Step followMove(const Entry& entry, Program& program) {
+  MoveStep step = readMove(entry, program.tools, program.lengths, program.placed_tools);
+  if (step.duration) requireTime(entry.child(entry.node()["duration"], "duration"), program);
+  return step;
+}
+
+Step followWait(const Entry& entry, Program& program) {
+  requireTime(entry, program);
+  return readWait(entry);
+}
+
+Step followPush(const Entry& entry, Program& program) {
+  return readPush(entry, program.tools, program.placed_tools);
+}
+
+Step followGrasp(const Entry& entry, Program& program) {
+  return readGraspStep(entry, program.tools, program.placed_tools);
+}
+
+Step followSuture(const Entry& entry, Program& program) {
+  return readSuture(entry, program.tissue.model, program.lengths);
+}
+
+Step followRemove(const Entry& entry, Program& program) {
+  return readRemove(entry, program.lengths);
+}
+
+Step followUndo(const Entry& entry, Program&) { return readUndo(entry); }
+
 struct StepKind {
   std::string name;
-  Step (*read)(const Entry&, Program&);
+  Step (*follow)(const Entry&, Program&);
 };
 
-const std::vector<StepKind>& stepKinds() {
-  static const std::vector<StepKind> kinds = {
-      {"settle",
-       [](const Entry& entry, Program&) -> Step {
-         MapReader(entry, {});
-         return SettleStep();
-       }},
-      {"load",
-       [](const Entry& entry, Program& program) -> Step {
-         return readLoad(entry, program.grid, program.fixed, program.solver,
-                         program.lengths.displacement, program.patches);
-       }},
-      {"cut", [](const Entry& entry, Program& program) -> Step { return readCut(entry, program); }},
-      {"move",
-       [](const Entry& entry, Program& program) -> Step {
-         MoveStep step = readMove(entry, program.tools, program.lengths, program.placed_tools);
-         if (step.duration) requireTime(entry, program);
-         return step;
-       }},
-      {"wait",
-       [](const Entry& entry, Program& program) -> Step {
-         requireTime(entry, program);
-         return readWait(entry);
-       }},
-      {"push",
-       [](const Entry& entry, Program& program) -> Step {
-         return readPush(entry, program.tools, program.placed_tools);
-       }},
-      {"grasp",
-       [](const Entry& entry, Program& program) -> Step {
-         return readGraspStep(entry, program.tools, program.placed_tools);
-       }},
-      {"suture",
-       [](const Entry& entry, Program& program) -> Step {
-         return readSuture(entry, program.tissue.model, program.lengths);
-       }},
-      {"release",
-       [](const Entry& entry, Program& program) -> Step { return readRelease(entry, program); }},
-      {"reset", readReset},
-      {"remove",
-       [](const Entry& entry, Program& program) -> Step {
-         return readRemove(entry, program.lengths);
-       }},
-      {"undo", [](const Entry& entry, Program&) -> Step { return readUndo(entry); }},
-      {"save", followSave},
-      {"load_state", followLoadState},
-  };
-  return kinds;
-}
+const std::vector<StepKind> kStepKinds = {
+    {"settle", followSettle},   {"load", followLoad},
+    {"cut", followCut},         {"move", followMove},
+    {"wait", followWait},       {"push", followPush},
+    {"grasp", followGrasp},     {"suture", followSuture},
+    {"release", followRelease}, {"reset", followReset},
+    {"remove", followRemove},   {"undo", followUndo},
+    {"save", followSave},       {"load_state", followLoadState},
+};
 
 std::vector<std::string> stepNames() {
   std::vector<std::string> names;
-  for (const StepKind& kind : stepKinds()) names.push_back(kind.name);
+  for (const StepKind& kind : kStepKinds) names.push_back(kind.name);
   return names;
 }
 
@@ -216,17 +214,17 @@ Step readStep(const Entry& entry, Program& program) {
   const YAML::Node key = entry.node().begin()->first;
   const std::string name = key.IsScalar() ? key.Scalar() : "";
   const MapReader map(entry, names);
-  const auto kind = std::find_if(stepKinds().begin(), stepKinds().end(),
+  const auto kind = std::find_if(kStepKinds.begin(), kStepKinds.end(),
                                  [&name](const StepKind& each) { return each.name == name; });
-  return kind->read(map[name], program);
+  return kind->follow(map[name], program);
 }
 
 }  // namespace
 
 std::vector<Step> readSteps(const Entry& entry, const TissueConfig& tissue,
                             const SolverConfig& solver, const std::vector<ToolConfig>& tools) {
-  Program program{tissue, solver, tools, lengthsOf(tissue), filledGrid(tissue).grid, {}, {},
-                  {},     {},     true};
+  Program program{tissue, solver, tools, lengthsOf(tissue), filledGrid(tissue).grid, {},
+                  {},     {},     {}};
   for (const Box& box : tissue.fixed) program.fixed.push_back(program.grid.nodesIn(box));
   std::vector<Step> steps;
   for (const Entry& step_entry : entry.list(0, "steps", kMostSteps)) {

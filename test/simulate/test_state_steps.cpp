@@ -186,6 +186,15 @@ TEST_F(StateFiles, ALaterRunGoesOnFromAFileInItsFolder) {
   EXPECT_EQ(text("out/a.tissue"), saved);
 }
 
+// It is not known before the run what stands in it.
+TEST_F(StateFiles, ALoadOfAnEarlierRunIsReleasedAlsoWhereItWasSavedAgain) {
+  ASSERT_EQ(runInto("out", scene(kLoad + kSave)), 0) << err_.str();
+  const std::string again = "  - save: {file: b.tissue}\n  - load_state: {file: b.tissue}\n";
+  EXPECT_EQ(runInto("out", scene(kBack + again + kRelease)), 0) << err_.str();
+  // A state that this run saved first is known.
+  EXPECT_EQ(runInto("out", scene(again + kRelease)), 2);
+}
+
 TEST_F(StateFiles, ASutureWithoutANameIsNoneOfAnEarlierRuns) {
   const std::string suture = "  - suture: {from: [0.045, 0.05, 0.05], to: [0.065, 0.05, 0.05]}\n";
   ASSERT_EQ(runInto("out", scene(suture + kSave)), 0) << err_.str();

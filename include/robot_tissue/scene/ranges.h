@@ -35,6 +35,8 @@ inline Range sutureStrength() { return {0.0, kStrongestSuture, "N"}; }  // 0: ne
 inline Range dampingTime() { return {0.0, 1e3, "s"}; }
 inline Range duration() { return {1e-6, 3600.0, "s"}; }  // of a step
 
+constexpr std::size_t kMostCutCorners = 1000;  // of a polygon that cuts
+
 inline Range resistance() { return {0.0, 1e9, "J/m^2"}; }
 inline Range tearStretch() { return {0.0, 1e3, ""}; }  // 0: never
 
