@@ -101,7 +101,8 @@ bool writeStateFile(const std::string& folder, const std::string& name, const st
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) refuse(name, "cannot make the folder " + folder + ", " + error.message());
-  const fs::file_status earlier = fs::symlink_status(fs::path(folder) / name);
+  const fs::file_status earlier = fs::symlink_status(fs::path(folder) / name, error);
+  if (earlier.type() == fs::file_type::none) refuse(name, error.message());
   if (fs::exists(earlier) && !fs::is_regular_file(earlier)) {
     refuse(name, "is there, and no regular file");
   }

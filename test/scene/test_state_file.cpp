@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <climits>
 #include <filesystem>
 #include <fstream>
 
@@ -72,6 +73,15 @@ TEST_F(StateFile, OnlyPlainNamesAreTaken) {
     }
   }
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+// The path as a whole: the system says what is wrong with it.
+TEST_F(StateFile, APathThatTheSystemDoesNotTakeIsRefusedInALine) {
+  fs::path deep = folder_;
+  while (deep.string().size() + 201 < PATH_MAX - 10) deep /= std::string(200, 'd');
+  deep /= std::string(PATH_MAX - 10 - deep.string().size(), 'd');
+  EXPECT_EQ(refusalOf([&] { writeStateFile(deep.string(), std::string(50, 'a'), "x"); }),
+            "file = '" + std::string(50, 'a') + "': File name too long");
 }
 
 TEST_F(StateFile, WhatIsMissingOrNoFileIsRefused) {
