@@ -102,8 +102,7 @@ void SurgeryServices::onUndo(const std_srvs::Trigger::Request&,
   if (pipeline_.tissue().undoable() == 0) {
     throw InputError(
         "nothing to take back; allowed: after a cut, a removal, a tear or a suture since the "
-        "start, "
-        "a reset or a loaded state");
+        "start, a reset or a loaded state");
   }
   const SolveReport report = pipeline_.undo(1);
   publisher_.shapeChanged();

@@ -24,19 +24,15 @@ std::vector<MaterialPreset> table() {
   return {
       {"liver", materialOf(2200.0, 1079.0, 0.0),
        "shear modulus 2.2 +- 0.3 kPa, human in vivo, waves of 60 Hz, strain below 0.1 % (Yin et "
-       "al. "
-       "2007); stiffening of a known size not found for this law: do not trust it beyond some 10 % "
-       "of strain"},
+       "al. 2007); stiffening of a known size not found for this law: do not trust it beyond some "
+       "10 % of strain"},
       {"kidney", materialOf(4900.0, 1066.0, 0.0),
        "shear modulus 4.9 +- 0.5 kPa, human in vivo, waves of 45 Hz, strain below 0.1 % (Rouviere "
-       "et "
-       "al. 2011; 9.4 kPa at 76 Hz); stiffening of a known size not found for this law: do not "
-       "trust "
-       "it beyond some 10 % of strain"},
+       "et al. 2011; 9.4 kPa at 76 Hz); stiffening of a known size not found for this law: do not "
+       "trust it beyond some 10 % of strain"},
       {"muscle", materialOf(1000.0, 1090.0, 1.0),
        "passive, gluteal: shear modulus 1.0 kPa, human in vivo, waves of 50 Hz, and its growth "
-       "with "
-       "compression to some 30 % (J. Mech. Behav. Biomed. Mater. 2023, strain-dependent shear "
+       "with compression to some 30 % (J. Mech. Behav. Biomed. Mater. 2023, strain-dependent shear "
        "properties of adipose tissue in vivo); fibers are not modeled"},
       {"fat", materialOf(752.0, 911.0, 3.0),
        "gluteal: shear modulus 0.75 kPa, human in vivo, waves of 50 Hz, and its growth with "
@@ -44,14 +40,11 @@ std::vector<MaterialPreset> table() {
        "0.31 kPa (Sims et al. 2010)"},
       {"brain", materialOf(670.0, 1046.0, 15.0),
        "shear modulus 0.67 kPa and stiffening from Ogden's exponent -19, human in vivo, shift "
-       "under "
-       "gravity (Bennion et al. 2022); porcine 0.9 +- 0.3 kPa in torsion (Balbi et al. 2019); "
-       "shear "
-       "and stretch together do not follow this law well (Mihai et al. 2015)"},
+       "under gravity (Bennion et al. 2022); porcine 0.9 +- 0.3 kPa in torsion (Balbi et al. "
+       "2019); shear and stretch together do not follow this law well (Mihai et al. 2015)"},
       {"silicone", materialOf(39400.0, 1070.0, 0.0),
        "Ecoflex 00-30: 69 kPa at 100 % of strain (data sheet of Smooth-On), as a neo-Hookean bar "
-       "in "
-       "tension; it stiffens beyond some 200 %"},
+       "in tension; it stiffens beyond some 200 %"},
   };
 }
 

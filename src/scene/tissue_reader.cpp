@@ -228,8 +228,7 @@ void readGravity(const Entry& entry, TissueReading& reading) {
   if (tissue.gravity != Vec3::Zero() && falls) {
     entry.fail(
         "must be zero unless tissue.fixed holds nodes, supports bear it or tissue.time lets it "
-        "fall, "
-        "the tissue would fall");
+        "fall, the tissue would fall");
   }
 }
 
