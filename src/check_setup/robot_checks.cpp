@@ -18,41 +18,39 @@ double extentOf(const TissueConfig& tissue) {
   return box.sizes().maxCoeff();
 }
 
-Findings checkSizes(const Scene& scene, const std::vector<ToolGeometry>& tools) {
+// Throws InputError where a mesh cannot be used.
+Findings checkSizes(const Scene& scene, const ToolGeometry& tool) {
   Findings findings;
-  const ContactFinder finder(tools);
+  const ContactFinder finder({tool});
   for (const std::string& warning : finder.warnings()) {
     findings.push_back({Finding::Level::kWarning, warning, "mend the mesh, or give shapes"});
   }
-  std::size_t number = 0;
-  for (const ToolGeometry& tool : tools) {
-    for (const LinkGeometry& link : tool.links) {
-      const std::size_t here = number++;
-      if (link.shapes.empty()) continue;
-      const std::string name = "tools: link '" + link.link + "' of '" + tool.name + "'";
-      const double extent = finder.bounds(here, Pose::Identity()).sizes().maxCoeff();
-      const std::string remark = remarkOnSize(tool.name, link.link, extent, extentOf(scene.tissue));
-      if (!remark.empty()) {
-        findings.push_back({Finding::Level::kWarning, "tools: " + remark,
-                            "scale of its mesh, in the URDF or in shapes, or a smaller shape"});
-      } else if (finder.thickness(here) < kThinnestTool * scene.tissue.spacing) {
-        findings.push_back({Finding::Level::kWarning,
-                            name + " is " + numberText(1e3 * finder.thickness(here)) +
-                                " mm thin: its load steps are short and updates slow",
-                            "padding, or a smaller tissue.spacing"});
-      }
+  for (std::size_t number = 0; number < tool.links.size(); ++number) {
+    const LinkGeometry& link = tool.links[number];
+    if (link.shapes.empty()) continue;
+    const std::string name = "tools: link '" + link.link + "' of '" + tool.name + "'";
+    const double extent = finder.bounds(number, Pose::Identity()).sizes().maxCoeff();
+    const std::string remark = remarkOnSize(tool.name, link.link, extent, extentOf(scene.tissue));
+    if (!remark.empty()) {
+      findings.push_back({Finding::Level::kWarning, "tools: " + remark,
+                          "scale of its mesh, in the URDF or in shapes, or a smaller shape"});
+    } else if (finder.thickness(number) < kThinnestTool * scene.tissue.spacing) {
+      findings.push_back({Finding::Level::kWarning,
+                          name + " is " + numberText(1e3 * finder.thickness(number)) +
+                              " mm thin: its load steps are short and updates slow",
+                          "padding, or a smaller tissue.spacing"});
     }
   }
   return findings;
 }
 
-}  // namespace
-
-Findings checkTools(const Scene& scene, const std::string& urdf) {
+// A tool that names no link is none of the robot's: only the runner has it.
+Findings checkTool(const Scene& scene, const ToolConfig& tool, const std::string& urdf) {
   Findings findings;
   const char* remedy = "a link that the robot has";
   try {
-    const LoadedTools loaded = urdf.empty() ? toolsOf(scene.tools) : loadTools(urdf, scene.tools);
+    const bool is_of_robot = namesLink(tool) && !urdf.empty();
+    const LoadedTools loaded = is_of_robot ? loadTools(urdf, {tool}) : toolsOf({tool});
     remedy = "mend the mesh, or its address and scale, or give the link `shapes` in the scene";
     // Without a URDF it is not known what is missing. They tell their remedies themselves.
     if (!urdf.empty()) {
@@ -60,13 +58,28 @@ Findings checkTools(const Scene& scene, const std::string& urdf) {
         findings.push_back({Finding::Level::kWarning, warning, ""});
       }
     }
-    const Findings sizes = checkSizes(scene, loaded.tools);
+    const Findings sizes = checkSizes(scene, loaded.tools.front());
     findings.insert(findings.end(), sizes.begin(), sizes.end());
-    return findings;
   } catch (const InputError& error) {
     findings.push_back({Finding::Level::kError, error.what(), remedy});
-    return findings;
   }
+  return findings;
+}
+
+}  // namespace
+
+bool namesLink(const ToolConfig& tool) {
+  return std::any_of(tool.links.begin(), tool.links.end(),
+                     [](const ToolLink& link) { return !link.link.empty(); });
+}
+
+Findings checkTools(const Scene& scene, const std::string& urdf) {
+  Findings findings;
+  for (const ToolConfig& tool : scene.tools) {
+    const Findings of_tool = checkTool(scene, tool, urdf);
+    findings.insert(findings.end(), of_tool.begin(), of_tool.end());
+  }
+  return findings;
 }
 
 std::vector<std::string> framesOf(const Scene& scene) {

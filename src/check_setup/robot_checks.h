@@ -9,7 +9,11 @@
 
 namespace robot_tissue {
 
-// Links, their geometry and its size beside the tissue's. No URDF: the overlays alone.
+// Whether a tool is one of the robot's; only the runner has others.
+bool namesLink(const ToolConfig& tool);
+
+// Of each tool: links, their geometry and its size beside the tissue's. No URDF: the overlays
+// alone.
 Findings checkTools(const Scene& scene, const std::string& urdf);
 
 // Frames that the node looks for, each once.

@@ -1,8 +1,8 @@
 #include "scene_checks.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "robot_checks.h"
 #include "robot_tissue/mesh/mesh_file.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/readers.h"
@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLargestOrgan = 10.0;    // m: whatever is larger was drawn in another unit. Chosen
 constexpr double kSmallestOrgan = 0.002;  // m. Chosen
+
 // What scales the shape to a size of organs.
 std::string scaleFor(double extent) {
   if (extent > kLargestOrgan) return extent > 1e3 * kLargestOrgan ? "1.0e-6" : "0.001";
@@ -41,12 +42,14 @@ Vec3 extentOf(const YAML::Node& shape, const std::string& folder) {
 }  // namespace
 
 Findings checkUnits(const YAML::Node& scene, const std::string& folder) {
-  double extent = 0.0;
+  Vec3 extents = Vec3::Zero();
   try {
-    extent = extentOf(scene["tissue"]["shape"], folder).maxCoeff();
+    extents = extentOf(scene["tissue"]["shape"], folder);
   } catch (const std::exception&) {
     return {};  // the scene's own checks say what is wrong with it
   }
+  if (!(extents.minCoeff() > 0.0)) return {};  // likewise
+  const double extent = extents.maxCoeff();
   if (extent >= kSmallestOrgan && extent <= kLargestOrgan) return {};
   const bool is_large = extent > kLargestOrgan;
   const std::string text = "tissue.shape: " + numberText(extent) + " m across, which looks like " +
@@ -68,13 +71,12 @@ Findings checkWalls(const TissueConfig& tissue) {
 
 Findings checkForNode(const Scene& scene) {
   Findings findings;
-  const auto names_link = [](const ToolLink& link) { return !link.link.empty(); };
   // Of scissors without jaws the runner reads the tool's own link three times.
   const auto has_no_jaws = [](const ToolConfig& tool) {
     return tool.role.shears && tool.links.back().path == tool.links.front().path;
   };
   for (const ToolConfig& tool : scene.tools) {
-    if (std::any_of(tool.links.begin(), tool.links.end(), names_link)) {
+    if (namesLink(tool)) {
       if (!has_no_jaws(tool)) continue;
       findings.push_back({Finding::Level::kError,
                           "tools: '" + tool.name + "' has no jaws: only simulate runs it",

@@ -46,8 +46,7 @@ class CheckSetup : public ::testing::Test {
     return (folder_ / name).string();
   }
 
-  // A box of these measures as a mesh.
-  // A box, turned about y.
+  // A box of these measures as a mesh, turned about y.
   void writeMesh(const std::string& name, double x, double y, double z, double angle = 0.0) const {
     std::ostringstream text;
     for (const int corner : {0, 1, 2, 3, 4, 5, 6, 7}) {
@@ -226,6 +225,28 @@ TEST_F(CheckSetup, BadInputIsOneLineAndExitCodeTwo) {
   EXPECT_EQ(checkSetup({"a.yaml", "b.yaml"}, nobody, out, err), kCannotRun);
   EXPECT_EQ(checkSetup({"a.yaml", "--urdf"}, nobody, out, err), kCannotRun);
   EXPECT_EQ(checkSetup({"--help"}, nobody, out, err), kFine);
+}
+
+TEST_F(CheckSetup, NothingIsSaidOfTheUnitsOfABoxThatIsRefused) {
+  EXPECT_EQ(
+      check(kHead + "{type: box, min: [0.1, 0.1, 0.1], max: [0, 0, 0]}\n  spacing: 0.01" + kRest),
+      kCannotRun);
+  EXPECT_EQ(out_, "");
+  EXPECT_NE(err_.find("max[0] = 0: must be > min[0] = 0.1"), std::string::npos) << err_;
+}
+
+TEST_F(CheckSetup, EachToolIsCheckedByItself) {
+  const std::string scene =
+      kHead + kBlock + "\n  spacing: 0.01" + kRest +
+      "tools: [{name: a, link: none}, {name: b, link: neither}, {link: tip},\n"
+      "        {name: c, shapes: [{type: sphere, radius: 0.01}]}]\n";
+  EXPECT_EQ(check(scene, urdfOf("<box size='8 8 8'/>")), kCannotRun) << err_;
+  EXPECT_TRUE(says("error: tools[0].link: 'none' of tool 'a'")) << out_;
+  EXPECT_TRUE(says("error: tools[1].link: 'neither' of tool 'b'")) << out_;
+  EXPECT_TRUE(says("a mesh in millimeters has scale 0.001")) << out_;
+  // It needs no link of the robot, and is not missed there.
+  EXPECT_TRUE(says("warning: tools: 'c' names no link: only simulate runs it")) << out_;
+  EXPECT_FALSE(says("of tool 'c' is no link")) << out_;
 }
 
 // Also where no tool is of one of its links.
