@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 #include "tuning.h"
 
@@ -23,7 +24,8 @@ void WrenchPrediction::learn(const Pose& pose, const ToolWrench& solved) {
   wrench_ = wrench;
   if (wrench_.isZero(0.0)) return forget();
   const double length = step.norm();
-  if (touches_ && length > 0.0 && length < tuning::kFarthestLearned) learnStep(step, change);
+  const bool is_of_way = std::exchange(is_of_way_, true) && touches_;
+  if (is_of_way && length > 0.0 && length < tuning::kFarthestLearned) learnStep(step, change);
   touches_ = true;
 }
 
@@ -35,8 +37,10 @@ void WrenchPrediction::learnFrom(const Pose& reached, const ToolReport& report) 
   learn(pose, {whole * report.force_on_tool, whole * report.torque_on_tool});
 }
 
+// Where a wrench falls, as of tissue that slips, it is no more exact for being small: else the fall
+// would be taken for a stiffness.
 void WrenchPrediction::learnStep(const Vec6& step, const Vec6& change) {
-  const double force = wrench_.norm();
+  const double force = std::max(wrench_.norm(), change.norm());
   const double wander = force / tuning::kWayOfStiffness;
   covariance_.diagonal().array() += wander * wander * step.norm() / tuning::kWayOfStiffness;
   const double noise = tuning::kWrenchError * force;

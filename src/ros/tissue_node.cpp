@@ -107,6 +107,7 @@ void TissueNode::retune(const NodeParameters& wanted) {
   const bool other_friction = frictionOf(wanted) != frictionOf(parameters_);
   parameters_ = wanted;
   watch_.standAt(std::nullopt);  // there may be something to do at the next pose
+  publisher_.tissueIsToChange();
   watch_.setRate(parameters_.rate_hz);
   timer_.setPeriod(period());
   pipeline_.setBudget(updateBudget(parameters_));
@@ -120,6 +121,7 @@ void TissueNode::retune(const NodeParameters& wanted) {
 // is still, and that pose is as new as the still ones answered so far, so that no stamp goes back.
 void TissueNode::wake() {
   watch_.standAt(std::nullopt);
+  publisher_.tissueIsToChange();
   const ros::Time still = watch_.newestStill();
   if (still > last_look_up_.stamp) standUntil(still);
 }

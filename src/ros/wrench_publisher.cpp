@@ -53,6 +53,7 @@ void WrenchPublisher::publish(const Pipeline& pipeline, const ros::Time& stamp) 
     told.message.wrench = wrenchOn(report);
     if (!pipeline.pose()) continue;
     told.prediction.learnFrom(pipeline.pose()->links[told.first_link], report);
+    if (pipeline.tissue().isLoading()) told.prediction.skipNextChange();  // a load is on its way
   }
   silent_ = false;
   has_told_ = true;
@@ -81,6 +82,11 @@ void WrenchPublisher::forget() {
   silent_ = true;
   has_told_ = false;
   for (Told& told : tools_) told.prediction.forget();
+}
+
+void WrenchPublisher::tissueIsToChange() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (Told& told : tools_) told.prediction.skipNextChange();
 }
 
 // With the mutex locked.

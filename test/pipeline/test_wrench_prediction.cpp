@@ -134,6 +134,54 @@ TEST(WrenchPrediction, WhatTouchesNothingFeelsNothingAndNoneIsPulled) {
   EXPECT_TRUE(prediction.at(at_depth(kTouch + 1e-4)).force.isZero());
 }
 
+// A force that grows by 193 N/m as the tool goes in, up to 0.88 N.
+class PressedOn {
+ public:
+  explicit PressedOn(WrenchPrediction& prediction) : prediction_(prediction) {
+    for (int step = 0; step < 100; ++step) press(3e-5, force_ + 0.0058);
+  }
+  void press(double step, double force) {
+    depth_ += step;
+    force_ = force;
+    prediction_.learn(poseAt(Vec3(0.0, 0.0, -depth_)), {Vec3(0.0, 0.0, force), Vec3::Zero()});
+  }
+  double deeper(double way) const {
+    return prediction_.at(poseAt(Vec3(0.0, 0.0, -depth_ - way))).force.z();
+  }
+  double force() const { return force_; }
+
+ private:
+  WrenchPrediction& prediction_;
+  double depth_ = 0.0, force_ = 0.3;
+};
+
+// As where tissue slips or is cut: that is no stiffness.
+TEST(WrenchPrediction, AForceThatFallsWithinASmallStepIsNotForetoldAsGreat) {
+  for (const double step : {1e-6, 1e-5, 5e-5}) {
+    for (const double after : {0.02, 0.04, 0.2}) {
+      WrenchPrediction prediction(kArm);
+      PressedOn pressed(prediction);
+      const double before = pressed.force();
+      pressed.press(step, after);
+      for (const double way : {-5e-4, 5e-4}) EXPECT_LT(pressed.deeper(way), 0.5 * before);
+      pressed.press(1e-5, 1.01 * after);
+      for (const double way : {-1e-4, 1e-4}) EXPECT_LT(pressed.deeper(way), 0.5 * before);
+    }
+  }
+}
+
+TEST(WrenchPrediction, WhatSomethingElseThanItsWayChangesTeachesNothing) {
+  WrenchPrediction prediction(kArm);
+  PressedOn pressed(prediction);
+  const double way = 2e-4, rise = pressed.deeper(way) - pressed.force();
+  ASSERT_GT(rise, 0.2 * 193.0 * way);
+  prediction.skipNextChange();
+  pressed.press(3e-5, 0.4);
+  EXPECT_NEAR(pressed.deeper(way) - pressed.force(), rise, 1e-12);
+  pressed.press(3e-5, 0.45);  // from here on it learns again
+  EXPECT_GT(pressed.deeper(way) - pressed.force(), rise);
+}
+
 // At its own pose, from which a force has driven it: the way of the push is no motion.
 TEST(WrenchPrediction, OfADrivenToolIsTheSolvedWrenchWhereTheToolStands) {
   const RobotPose stands = at({above(-0.002)});

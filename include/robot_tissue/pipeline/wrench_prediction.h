@@ -9,8 +9,9 @@
 //   P += q^2 |s| I,   g = P s / (s^T P s + 2 e^2),   K += r g^T,   P -= g (P s)^T
 //
 // e is how exact a solved wrench is, q how much the stiffness changes on its way: both in shares of
-// the wrench. So a step far longer than the noise counts as it is, and what wanders with the
-// touches is smoothed. Along ways that the tool has not gone K is none.
+// the wrench, or of its change where that is greater. So a step far longer than the noise counts as
+// it is, and what wanders with the touches is smoothed. Along ways that the tool has not gone K is
+// none.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,6 +40,9 @@ class WrenchPrediction {
   void learnFrom(const Pose& reached, const ToolReport& report);
   // The tissue is another one, or the tool came from elsewhere.
   void forget();
+  // Something else than the tool's way changes the wrench, as a cut: the next change of it teaches
+  // nothing.
+  void skipNextChange() { is_of_way_ = false; }
 
   // At a pose near the last one solved for; farther off, as at the farthest place on the way there
   // that still counts. A tool that touched nothing feels nothing, and none is pulled.
@@ -55,6 +59,7 @@ class WrenchPrediction {
 
   double arm_, max_force_;
   bool touches_ = false;
+  bool is_of_way_ = true;  // the next change of the wrench
   Pose pose_ = Pose::Identity();
   Vec6 wrench_ = Vec6::Zero();
   Mat6 stiffness_ = Mat6::Zero();   // K (N/m)

@@ -33,6 +33,9 @@ class TissuePublisher {
   // Two wrench topics a tool.
   void setTools(const std::vector<ToolGeometry>& tools) { wrenches_.setTools(tools); }
 
+  // By something else than the tools, as a service's request.
+  void tissueIsToChange() { wrenches_.tissueIsToChange(); }
+
   // Takes the markers' rate and the scale of forces; all is published anew.
   void retune(const NodeParameters& parameters);
 

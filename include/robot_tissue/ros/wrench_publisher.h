@@ -43,6 +43,8 @@ class WrenchPublisher {
   void fallSilent();
   // Forgets the wrenches told so far, as time went back: they are not told again.
   void forget();
+  // By something else than the tools: the next wrench tells nothing of how it follows them.
+  void tissueIsToChange();
   bool isListenedTo() const;
 
  private:
