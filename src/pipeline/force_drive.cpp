@@ -65,7 +65,7 @@ RobotPose ForceDrive::driven(RobotPose pose, const ToolSet& tools) const {
     if (!drives(tool)) continue;
     const Vec3 way = offset(tool);
     for (std::size_t link = tools.firstLink(tool); link < tools.endLink(tool); ++link) {
-      pose.links[link].translation() += way;
+      if (!ToolSet::isAway(pose.links[link])) pose.links[link].translation() += way;
     }
   }
   return pose;

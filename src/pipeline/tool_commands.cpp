@@ -49,14 +49,16 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
 
 // True: a driven tool has a way left to go. Without time a correction goes on from where the last
 // one led. In time that would leave the tissue where it is: the update is made again, to another
-// end, unless it changed the tissue itself.
+// end, unless it changed the tissue itself. A tool that stands nowhere goes nowhere.
 bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
   bool goes_on = false;
   const bool in_time = world_.tissue.isInTime();
   const bool may_repeat = before != nullptr && before->shape.cells == world_.tissue.state().cells;
   const StepReport& report = world_.report;
+  const RobotPose told = world_.tools.complete(pose);
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (!state_.drive.drives(tool)) continue;
+    const std::size_t link = world_.tools.firstLink(tool);
+    if (!state_.drive.drives(tool) || ToolSet::isAway(told.links[link])) continue;
     if (in_time && !may_repeat) {
       goes_on = goes_on || !state_.drive.isMet(tool, answerOf(world_, tool).force);
       continue;
@@ -71,11 +73,9 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
         parts_->load_step.goBackTo(*before);
         world_.last_pose = before->pose;
       }
-      world_.last_pose =
-          parts_->motion.walk(state_.drive.driven(world_.tools.complete(pose), world_.tools));
+      world_.last_pose = parts_->motion.walk(state_.drive.driven(told, world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();
     };
-    const std::size_t link = world_.tools.firstLink(tool);
     const bool on = state_.drive.meetForce(
         tool, {parts_->ways.stepOf(link, world_.pose.links[link]),
                [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});

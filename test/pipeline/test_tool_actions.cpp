@@ -53,6 +53,26 @@ TEST(DrivenTool, StaysWhereItIsWhileTimePasses) {
   }
 }
 
+// As where time goes back; then it comes in anew, and goes on.
+TEST(DrivenTool, IsNowhereWhereItsPoseIsWhereverItsForcePoints) {
+  for (const double aside : {-0.02, 0.0, 0.02}) {
+    Pipeline pipeline(block(), {}, {probe()});
+    pipeline.step(pressed(-0.001));
+    pipeline.push(0, Vec3(aside, aside, -0.2));
+    const auto follow = [&](const RobotPose& pose) {
+      for (int i = 0; i < 20 && pipeline.step(pose).changed; ++i) {
+      }
+      return pipeline.report().tools.front();
+    };
+    EXPECT_GT(follow(pressed(-0.001)).contacts, 0) << aside;
+    EXPECT_EQ(follow(RobotPose()).contacts, 0) << aside;
+    EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0) << aside;
+    EXPECT_TRUE(pipeline.pose()->links.front().isApprox(Pipeline::away(), 0.0)) << aside;
+    EXPECT_FALSE(pipeline.report().changed || pipeline.report().too_fast) << aside;
+    EXPECT_NEAR(follow(pressed(-0.001)).force_on_tool.norm(), 0.2, 0.02) << aside;
+  }
+}
+
 TEST(DrivenTool, ThatFindsNothingStops) {
   Pipeline pipeline(block(), {}, {probe()});
   pipeline.step(pressed(-0.01));
