@@ -1,8 +1,9 @@
 #include "robot_tissue/pipeline/step_remarks.h"
 
 namespace robot_tissue {
-
 namespace {
+
+using Kind = StepRemark::Kind;
 
 std::string listOf(const std::vector<std::string>& names) {
   std::string list;
@@ -12,34 +13,6 @@ std::string listOf(const std::vector<std::string>& names) {
   }
   return list;
 }
-
-}  // namespace
-
-std::string namesOf(const std::vector<std::size_t>& numbers,
-                    const std::vector<ToolGeometry>& tools) {
-  if (numbers.empty()) return "a tool";
-  std::vector<std::string> names;
-  for (const std::size_t number : numbers) names.push_back(tools[number].name);
-  return listOf(names);
-}
-
-std::string remarkOnLaw(const Tissue& tissue) {
-  if (tissue.cellsBeyondLaw() == 0) return "";
-  return "cells are strained so far that law fung would overflow: there it goes on as a polynomial "
-         "(doc/model.md); give less stiffening or strain";
-}
-
-std::string remarkOnAdrift(const Tissue& tissue) {
-  const std::vector<std::string> names = tissue.adriftLoads();
-  if (names.empty()) return "";
-  return "the force of load " + listOf(names) +
-         " moves tissue that nothing holds: it stays where it is; release the load, or hold the "
-         "tissue";
-}
-
-namespace {
-
-using Kind = StepRemark::Kind;
 
 void addOfJaws(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
   const StepReport& report = pipeline.report();
@@ -97,20 +70,53 @@ void addOfTools(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
   }
 }
 
+// Those behind; where all are at their poses, as on tissue that a load moved, those that touch it.
+std::vector<std::size_t> unfollowed(const StepReport& report) {
+  if (!report.behind.empty()) return report.behind;
+  std::vector<std::size_t> touching;
+  for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {
+    if (report.tools[tool].contacts > 0) touching.push_back(tool);
+  }
+  return touching;
+}
+
 void addOfFollowing(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
   const StepReport& report = pipeline.report();
-  const std::string behind = namesOf(report.behind, pipeline.tools());
+  const std::vector<ToolGeometry>& tools = pipeline.tools();
   if (report.too_fast && (report.jumped.empty() || !report.behind.empty())) {
     remarks.push_back(
-        {Kind::kTooFast, behind + " moved further than could be followed in time: catching up"});
+        {Kind::kTooFast, namesOf(report.behind, tools) +
+                             " moved further than could be followed in time: catching up"});
   }
   if (report.lost) {
-    remarks.push_back({Kind::kLost, "no shape follows " + behind +
+    remarks.push_back({Kind::kLost, "no shape follows " + namesOf(unfollowed(report), tools) +
                                         ", as between tools that meet: the last good one stays"});
   }
 }
 
 }  // namespace
+
+std::string namesOf(const std::vector<std::size_t>& numbers,
+                    const std::vector<ToolGeometry>& tools) {
+  if (numbers.empty()) return "a tool";
+  std::vector<std::string> names;
+  for (const std::size_t number : numbers) names.push_back(tools[number].name);
+  return listOf(names);
+}
+
+std::string remarkOnLaw(const Tissue& tissue) {
+  if (tissue.cellsBeyondLaw() == 0) return "";
+  return "cells are strained so far that law fung would overflow: there it goes on as a polynomial "
+         "(doc/model.md); give less stiffening or strain";
+}
+
+std::string remarkOnAdrift(const Tissue& tissue) {
+  const std::vector<std::string> names = tissue.adriftLoads();
+  if (names.empty()) return "";
+  return "the force of load " + listOf(names) +
+         " moves tissue that nothing holds: it stays where it is; release the load, or hold the "
+         "tissue";
+}
 
 std::vector<StepRemark> remarksOn(const Pipeline& pipeline) {
   std::vector<StepRemark> remarks;

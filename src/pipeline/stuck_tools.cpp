@@ -22,6 +22,7 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
     if (world_.tissue.patience().cutsOff()) return;  // all would meet the jam anew
     startAnew(pose, Entry::kLetGo);
   }
+  world_.report.lost = false;  // unless the others are still
   world_.last_pose = walk(pose);
 }
 

@@ -236,6 +236,24 @@ TEST(ToolSteps, JawsThatMeetAreNamedOnceAStep) {
   EXPECT_EQ(overlaps(closed_to("0.0")), 1);
 }
 
+// Where jaws that no shape followed have let go and come to their place, one does.
+TEST(ToolSteps, ToolsThatNoShapeFollowsAreNamedForAsLongAsThatIsSo) {
+  const std::string jaw = "{shapes: [{type: box, size: [0.02, 0.002, 0.02]}]}";
+  const auto jaws = [](const char* height, const char* opening) {
+    return std::string("{xyz: [0.05, 0.05, ") + height + "], opening: " + opening + "}";
+  };
+  const RunResult result = run(
+      block() + "tools: [{name: forceps, role: grasper, jaws: [" + jaw + ", " + jaw +
+      "], grasp: {close_gap: 0.02, max_force: 0.8}}]\nsteps:\n  - move: {tool: forceps, from: " +
+      jaws("0.07", "0.03") + ", to: " + jaws("0.052", "0.03") +
+      ", increments: 1}\n  - move: {tool: forceps, to: " + jaws("0.052", "0.012") +
+      ", increments: 1}\n  - move: {tool: forceps, to: " + jaws("0.07", "0.012") +
+      ", increments: 9}\n");
+  EXPECT_TRUE(hasRemark(result, "steps[1].move", "no shape follows 'forceps'"));
+  EXPECT_FALSE(hasRemark(result, "", "no shape follows a tool"));
+  EXPECT_EQ(result.increments.back().report.status, SolveStatus::kOk);
+}
+
 TEST(ToolSteps, ToolsThatNoStepPlacesPlayNoPart) {
   const RunResult result = run(block() + "tools: [{link: tool_tip}]\nsteps:\n  - settle: {}\n");
   EXPECT_TRUE(result.tools.empty());
