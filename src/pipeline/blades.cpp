@@ -102,6 +102,7 @@ void Blades::moveTo(const Pose& pose, BladeState& state) const {
   const Vec3 way = pose * state.point - state.stands() * state.point;
   const double length = way.norm();
   state.path.push_back(pose);
+  if (state.phase != EdgePhase::kInside) keepShort(state.path);
   if (!(length > 0.0)) return;
   state.direction = way / length;
   const double paid = tuning::kStrideRounding * world_.tissue.lattice().spacing();

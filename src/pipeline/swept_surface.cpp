@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robot_tissue/pipeline/between.h"
 #include "tuning.h"
@@ -24,6 +25,14 @@ void addSwept(const std::vector<Vec3>& edge, const std::vector<Pose>& path,
       }
     }
   }
+}
+
+void keepShort(std::vector<Pose>& path) {
+  if (path.size() <= tuning::kMostOfDent) return;
+  std::vector<Pose> fewer;
+  for (std::size_t i = 0; i + 1 < path.size(); i += 2) fewer.push_back(path[i]);
+  fewer.push_back(path.back());
+  path = std::move(fewer);
 }
 
 void noteCut(World& world, const CutReport& cut) {

@@ -13,6 +13,9 @@ namespace robot_tissue {
 void addSwept(const std::vector<Vec3>& edge, const std::vector<Pose>& path,
               std::vector<CutTriangle>& swept);
 
+// Halves a path that is longer than kMostOfDent poses: its first and its last one stay.
+void keepShort(std::vector<Pose>& path);
+
 // Contacts begin anew, and the report counts it.
 void noteCut(World& world, const CutReport& cut);
 

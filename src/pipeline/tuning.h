@@ -259,6 +259,10 @@ constexpr double kEdgeRadius = 0.125;
 // Of the spacing (1): the deepest dent before an edge of its own that it has force for goes in; the
 // line that it presses would turn cells over. More: deeper, slower dents. Chosen.
 constexpr double kDeepestDent = 1.0;
+// Poses on the way of an edge since it touched, all of which it cuts along when it goes in; of
+// more, as of one that trembles for hours, every other one goes. More: what bent ways swept is cut
+// nearer to them. Chosen: a dent is some ten looks deep.
+constexpr std::size_t kMostOfDent = 256;
 // Of the spacing (1): how far a lip of a wound may be from where the blade cut, as springs part in
 // their middles.
 constexpr double kPlaceOfLip = 0.5;

@@ -5,6 +5,7 @@
 
 #include "material/elastic_model.h"
 #include "pipeline_fixtures.h"
+#include "swept_surface.h"
 
 namespace robot_tissue::test_blade_dents {
 namespace {
@@ -138,6 +139,21 @@ TEST(BladeDents, SameSpringsInOneTenAndAHundredUpdates) {
 }
 
 // Straight down it pushes neither lip; then aside the one ahead, and the other stays.
+// For hours, as it may tremble there: from where it touched to where it is.
+TEST(BladeDents, TheWayOfAnEdgeThatDentsStaysShort) {
+  std::vector<Pose> path;
+  std::size_t longest = 0;
+  for (int i = 0; i < 100000; ++i) {
+    path.push_back(Pose(Eigen::Translation3d(1e-8 * i, 0.0, i % 2 == 0 ? 1e-5 : -1e-5)));
+    keepShort(path);
+    longest = std::max(longest, path.size());
+    ASSERT_EQ(path.front().translation().x(), 0.0);
+    ASSERT_EQ(path.back().translation().x(), 1e-8 * i);
+  }
+  EXPECT_LT(longest, 1000U);
+  EXPECT_GT(longest, 50U) << "bends of a dent are followed";
+}
+
 TEST(BladeDents, SidesPushTheLipsOfTheWound) {
   Pipeline pipeline(block(), methodOf("elastic"), {flatKnife()});
   lead(pipeline, over(0.002), over(-0.015), 34);
