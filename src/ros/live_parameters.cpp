@@ -17,25 +17,10 @@ namespace {
 
 using Found = std::optional<double>;
 
-void requireContrasts(double young_modulus, const TissueConfig& tissue) {
-  const std::string value = "young_modulus = " + numberText(young_modulus);
-  for (const Region& region : tissue.regions) {
-    const double contrast = region.material.young_modulus / young_modulus;
-    if (!region.own_modulus || std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast)
-      continue;
-    throw InputError(value + ": must be within a factor of " + numberText(ranges::kMostContrast) +
-                     " of region '" + shortText(region.name) + "', " +
-                     numberText(region.material.young_modulus) + " Pa");
-  }
-  for (const MembraneConfig& membrane : tissue.membranes) {
-    const double most =
-        ranges::mostMembraneModulus(young_modulus, tissue.spacing, membrane.thickness);
-    if (membrane.young_modulus <= most) continue;
-    throw InputError(value + ": must be at least " +
-                     numberText(young_modulus * membrane.young_modulus / most) +
-                     " Pa beside membrane '" + shortText(membrane.name) + "' of " +
-                     numberText(membrane.young_modulus) + " Pa");
-  }
+// By its name, or by its place in the list where it has none.
+std::string called(const std::string& kind, const std::string& name, std::size_t place) {
+  return name.empty() ? "tissue." + kind + "s[" + std::to_string(place) + "]"
+                      : kind + " '" + shortText(name) + "'";
 }
 
 // Regions that have a modulus of their own keep it.
@@ -105,49 +90,59 @@ struct Live {
   void (*keep)(const NodeParameters&, ros::NodeHandle&) = nullptr;
 };
 
+Found modulusOf(const NodeParameters& parameters) {
+  const Material& material = parameters.scene.tissue.material;
+  return material.spring_stiffness ? Found() : Found(material.young_modulus);
+}
+
+Found toleranceOf(const NodeParameters& parameters) {
+  const SolverConfig& solver = parameters.scene.solver;
+  return traitsOf(solver.method).uses_tolerance ? Found(solver.tolerance) : Found();
+}
+
+void setTolerance(double tolerance, NodeParameters& parameters) {
+  parameters.scene.solver.tolerance = tolerance;
+}
+
+Found budgetOf(const NodeParameters& parameters) { return parameters.scene.solver.max_ms; }
+
+void setBudget(double max_ms, NodeParameters& parameters) {
+  parameters.scene.solver.max_ms = max_ms;
+}
+
+Found coloringOf(const NodeParameters& parameters) { return static_cast<double>(parameters.color); }
+
+void setColoring(double number, NodeParameters& parameters) {
+  parameters.color = static_cast<ColorBy>(static_cast<int>(number));
+}
+
+template <double NodeParameters::*number>
+Found get(const NodeParameters& parameters) {
+  return parameters.*number;
+}
+
+template <double NodeParameters::*number>
+void set(double value, NodeParameters& parameters) {
+  parameters.*number = value;
+}
+
 const std::vector<Live>& table() {
   static const std::vector<Live> all = {
       {"young_modulus", "Pa; regions with a modulus of their own keep it", ranges::youngModulus(),
-       [](const NodeParameters& parameters) {
-         const Material& material = parameters.scene.tissue.material;
-         return material.spring_stiffness ? Found() : Found(material.young_modulus);
-       },
-       setModulus, nullptr, nullptr, keepModulus},
+       modulusOf, setModulus, nullptr, nullptr, keepModulus},
       {"tolerance", "relative error of displacements that is allowed", ranges::tolerance(),
-       [](const NodeParameters& parameters) {
-         const SolverConfig& solver = parameters.scene.solver;
-         return traitsOf(solver.method).uses_tolerance ? Found(solver.tolerance) : Found();
-       },
-       [](double value, NodeParameters& parameters) { parameters.scene.solver.tolerance = value; },
-       "solver/tolerance"},
-      {"max_ms", "ms; time of an update; 0: 100 ms", ranges::budget(),
-       [](const NodeParameters& parameters) { return Found(parameters.scene.solver.max_ms); },
-       [](double value, NodeParameters& parameters) { parameters.scene.solver.max_ms = value; },
+       toleranceOf, setTolerance, "solver/tolerance"},
+      {"max_ms", "ms; time of an update; 0: 100 ms", ranges::budget(), budgetOf, setBudget,
        "solver/max_ms"},
       {"friction", "Coulomb's, of all tools", ranges::friction(), frictionOf, setFriction, nullptr,
        nullptr, keepFriction},
-      {"rate", "Hz; updates at most", ranges::rate(),
-       [](const NodeParameters& parameters) { return Found(parameters.rate_hz); },
-       [](double value, NodeParameters& parameters) { parameters.rate_hz = value; }, "rate"},
+      {"rate", "Hz; updates at most", ranges::rate(), get<&NodeParameters::rate_hz>,
+       set<&NodeParameters::rate_hz>, "rate"},
       {"marker_rate", "Hz; markers, surface and nodes at most", ranges::rate(),
-       [](const NodeParameters& parameters) { return Found(parameters.marker_rate_hz); },
-       [](double value, NodeParameters& parameters) { parameters.marker_rate_hz = value; },
-       "marker_rate"},
+       get<&NodeParameters::marker_rate_hz>, set<&NodeParameters::marker_rate_hz>, "marker_rate"},
       {"force_scale", "m/N; length of the force arrows", ranges::forceScale(),
-       [](const NodeParameters& parameters) { return Found(parameters.force_scale); },
-       [](double value, NodeParameters& parameters) { parameters.force_scale = value; },
-       "force_scale"},
-      {"color",
-       "what the surface's color tells",
-       {},
-       [](const NodeParameters& parameters) {
-         return Found(static_cast<double>(parameters.color));
-       },
-       [](double value, NodeParameters& parameters) {
-         parameters.color = static_cast<ColorBy>(static_cast<int>(value));
-       },
-       "color",
-       colorNames},
+       get<&NodeParameters::force_scale>, set<&NodeParameters::force_scale>, "force_scale"},
+      {"color", "what the surface's color tells", {}, coloringOf, setColoring, "color", colorNames},
   };
   return all;
 }
@@ -166,6 +161,29 @@ std::vector<ReconfigureServer::Parameter> presentOf(const NodeParameters& parame
 }
 
 }  // namespace
+
+void requireContrasts(double young_modulus, const TissueConfig& tissue) {
+  const std::string value = "young_modulus = " + numberText(young_modulus);
+  for (std::size_t place = 0; place < tissue.regions.size(); ++place) {
+    const Region& region = tissue.regions[place];
+    const double contrast = region.material.young_modulus / young_modulus;
+    if (!region.own_modulus || std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast)
+      continue;
+    throw InputError(value + ": must be within a factor of " + numberText(ranges::kMostContrast) +
+                     " of " + called("region", region.name, place) + ", " +
+                     numberText(region.material.young_modulus) + " Pa");
+  }
+  for (std::size_t place = 0; place < tissue.membranes.size(); ++place) {
+    const MembraneConfig& membrane = tissue.membranes[place];
+    const double most =
+        ranges::mostMembraneModulus(young_modulus, tissue.spacing, membrane.thickness);
+    if (membrane.young_modulus <= most) continue;
+    throw InputError(value + ": must be at least " +
+                     numberText(young_modulus * membrane.young_modulus / most) + " Pa beside " +
+                     called("membrane", membrane.name, place) + " of " +
+                     numberText(membrane.young_modulus) + " Pa");
+  }
+}
 
 std::optional<double> frictionOf(const NodeParameters& parameters) {
   const auto& tools = parameters.scene.tools;

@@ -83,5 +83,30 @@ TEST_F(LiveScene, AModulusTooSoftForAMembraneIsRefused) {
   EXPECT_EQ(readNodeParameters(node_).scene.tissue.material.young_modulus, 25.0);
 }
 
+TEST(LiveModulus, RegionsAndMembranesWithoutANameAreToldByTheirPlace) {
+  TissueConfig tissue;
+  tissue.spacing = 0.01;
+  tissue.regions.resize(2);
+  for (Region& region : tissue.regions) region.own_modulus = true;
+  tissue.regions[0].name = "stone";
+  tissue.regions[0].material.young_modulus = 1e5;
+  tissue.regions[1].material.young_modulus = 1e3;
+  tissue.membranes.resize(1);
+  tissue.membranes[0].thickness = 1e-3;
+  tissue.membranes[0].young_modulus = 1e8;
+  const auto refusal = [&](double young_modulus) -> std::string {
+    try {
+      requireContrasts(young_modulus, tissue);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(1e4), "");
+  EXPECT_NE(refusal(1e-2).find("of region 'stone', 100000 Pa"), std::string::npos);
+  EXPECT_NE(refusal(1e10).find("of tissue.regions[1], 1000 Pa"), std::string::npos);
+  EXPECT_NE(refusal(0.5).find("beside tissue.membranes[0] of 100000000 Pa"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_live_parameters

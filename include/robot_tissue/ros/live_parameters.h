@@ -15,6 +15,9 @@ namespace robot_tissue {
 // Of the first tool that has friction; empty: none has.
 std::optional<double> frictionOf(const NodeParameters& parameters);
 
+// Throws InputError where a region or membrane is too stiff, or too soft, beside this modulus.
+void requireContrasts(double young_modulus, const TissueConfig& tissue);
+
 class LiveParameters {
  public:
   // Makes the node what the parameters say.
