@@ -34,12 +34,14 @@ void drawArrows(const Drawn& drawn, const Marker& blank, MarkerArray& array, con
 
 // An arrow along the force that is seen from outside the tools: on its own line, from where that
 // leaves them, or, as along the shaft of an instrument, beside them.
-ForceArrow arrowAlong(const Pipeline& pipeline, const Vec3& place, const Vec3& force,
-                      double force_scale) {
+ForceArrow arrowAlong(const Pipeline& pipeline, const RobotPose& pose, const Vec3& place,
+                      const Vec3& force, double force_scale) {
   const Vec3 direction = force.normalized();
   const double farthest = tuning::kFarthestArrow * diagonalOf(pipeline.tissue());
   const double gap = tuning::kShaftDiameter * pipeline.tissue().lattice().spacing();
-  const auto exitAlong = [&](const Vec3& way) { return pipeline.exitOf(place, way, farthest); };
+  const auto exitAlong = [&](const Vec3& way) {
+    return pipeline.exitOf(pose, place, way, farthest);
+  };
   const double ahead = exitAlong(direction);
   Vec3 start = place + ahead * direction, away = direction;
   const Vec3 aside = direction.unitOrthogonal(), other = direction.cross(aside);
@@ -72,7 +74,7 @@ ForceArrows forceArrows(const Pipeline& pipeline, const ReachedTools& tools, dou
   for (std::size_t tool = 0; tool < count; ++tool) {
     const ReachedTools::Force& on_tool = tools.forces[tool];
     if (on_tool.force.norm() <= tuning::kSmallestForce) continue;
-    arrows[tool] = arrowAlong(pipeline, on_tool.place, on_tool.force, force_scale);
+    arrows[tool] = arrowAlong(pipeline, tools.pose, on_tool.place, on_tool.force, force_scale);
   }
   return arrows;
 }

@@ -45,6 +45,7 @@ ReachedTools reachedTools(const Pipeline& pipeline, const ros::Time& stamp) {
   ReachedTools reached;
   if (!pipeline.pose()) return reached;
   reached.stamp = stamp;
+  reached.pose = *pipeline.pose();
   for (std::size_t tool = 0; tool < pipeline.tools().size(); ++tool) {
     reached.forces.push_back(forceOn(pipeline, tool));
   }

@@ -75,7 +75,9 @@ TEST_F(ForceMarkers, AreOfThePoseReachedAndDimmedOnceTheToolIsElsewhere) {
   const double told = std::stod(pressed.text);
   ASSERT_GT(std::abs(on_the_way - told), 0.02) << "the force on the way would do as well";
   EXPECT_EQ(drawn(pipeline, "force_labels", 1.01).text, pressed.text);
-  EXPECT_EQ(drawn(pipeline, "contact_forces", 1.01).header.stamp, ros::Time(1.0));
+  const Marker late = drawn(pipeline, "contact_forces", 1.01);
+  EXPECT_EQ(late.header.stamp, ros::Time(1.0));
+  EXPECT_EQ(late.points, arrow.points) << "from where the tool was then";
 
   EXPECT_TRUE(builder_.fallBehind(pipeline));
   EXPECT_FALSE(builder_.fallBehind(pipeline)) << "no news";

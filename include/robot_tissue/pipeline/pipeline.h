@@ -152,9 +152,10 @@ class Pipeline {
   void findDepths() const;
   // Where the tool pushes or holds the tissue, in the shape as it is now.
   std::vector<ToolTouch> touchesOf(std::size_t tool) const;
-  // How far along a unit direction a line from the point leaves the tools' shapes for good (m, at
-  // most `farthest`): from there it is seen from outside.
-  double exitOf(const Vec3& point, const Vec3& direction, double farthest) const;
+  // How far along a unit direction a line from the point leaves the shapes of the tools in this
+  // pose for good (m, at most `farthest`): from there it is seen from outside.
+  double exitOf(const RobotPose& pose, const Vec3& point, const Vec3& direction,
+                double farthest) const;
 
  private:
   struct Parts;  // the classes behind it, see doc/architecture.md

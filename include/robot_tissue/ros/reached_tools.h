@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/pipeline/pipeline.h"
 
 namespace robot_tissue {
@@ -22,6 +23,7 @@ struct ReachedTools {
   };
 
   ros::Time stamp;            // of that pose
+  RobotPose pose;             // where the links were
   std::vector<Force> forces;  // a tool each; empty before the first pose
   std::vector<Vec3> edges;    // of tools that cut: two ends a piece (m, tissue frame)
 };
