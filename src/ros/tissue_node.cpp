@@ -167,6 +167,7 @@ void TissueNode::onTimer() {
   const PoseWatch::Seen seen = watch_.seen();
   if (seen.still > last_look_up_.stamp) tellStill(seen.still);
   if (seen.any) return tick(Ticks::kSeldom);
+  watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
   PoseLookUp look_up = tool_poses_.lookUp(ros::Time::now());
   const bool goes_on =
       look_up.status == PoseLookUp::Status::kOk && last_look_up_.status == PoseLookUp::Status::kOk;
@@ -174,7 +175,6 @@ void TissueNode::onTimer() {
     if (pipeline_.isLate()) update(PoseLookUp(last_look_up_));  // what is left of the last update
     return;
   }
-  watch_.standAt(std::nullopt);  // so that no later stamp is told before this one
   update(std::move(look_up));
   const bool is_good = last_look_up_.status == PoseLookUp::Status::kOk;
   const bool has_time = !is_good || (isStill() && !publisher_.tellsWrenches());
