@@ -49,6 +49,7 @@ void Pipeline::setTools(const std::vector<ToolGeometry>& tools) {
 }
 
 Pose Pipeline::away() { return ToolSet::away(); }
+bool Pipeline::isAway(const Pose& pose) { return ToolSet::isAway(pose); }
 
 const std::vector<std::string>& Pipeline::toolWarnings() const { return world_.warnings; }
 

@@ -38,10 +38,15 @@ bool ToolMotion::letPass(RobotPose& start, const RobotPose& pose) const {
   return all_pass;
 }
 
+// Where the tissue has followed the tools to.
+const RobotPose& ToolMotion::reached() const {
+  return world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose;
+}
+
 // Load steps up to the pose, shorter ones where no shape follows. Returns how far it came, at all
 // or in time. Tools that pass the tissue by take none.
 RobotPose ToolMotion::walk(const RobotPose& pose) {
-  RobotPose start = world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose;
+  RobotPose start = reached();
   world_.asked = pose;
   const bool goes_back = turnsBack(start, pose);
   behind_.last_goal = pose;
@@ -226,10 +231,8 @@ void ToolMotion::passTo(const RobotPose& pose) {
 
 // Takes up the shape at the checkpoint nearest to the pose, and drops the later ones.
 void ToolMotion::goBackTo(RobotPose& pose) {
-  const RobotPose& from =
-      world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose;
   std::size_t nearest = behind_.checkpoints.size() - 1;
-  double shortest = ways_.stepsBetween(from, pose);
+  double shortest = ways_.stepsBetween(reached(), pose);
   for (std::size_t earlier = nearest; world_.tools.anyRigid() && earlier-- > 0;) {
     const double way = ways_.stepsBetween(behind_.checkpoints[earlier].pose, pose);
     if (way < shortest) {
@@ -243,8 +246,7 @@ void ToolMotion::goBackTo(RobotPose& pose) {
         behind_.checkpoints.end());
     load_step_.goBackTo(behind_.checkpoints.back());
   }
-  const auto far = ways_.farFrom(
-      world_.tools.anyRigid() ? behind_.checkpoints.back().pose : *world_.last_pose, pose);
+  const auto far = ways_.farFrom(reached(), pose);
   if (!far.empty()) {
     world_.report.too_fast = true;
     world_.report.jumped = far;

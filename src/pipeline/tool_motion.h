@@ -75,6 +75,7 @@ class ToolMotion {
   };
   class Walk;
 
+  const RobotPose& reached() const;
   bool leadsNowhere(const RobotPose& from, const RobotPose& to) const;
   bool turnsBack(const RobotPose& start, const RobotPose& pose) const;
   void forgetUnfinished();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "tuning.h"
-
 namespace robot_tissue {
 namespace {
 
@@ -44,7 +42,7 @@ std::vector<ToolGeometry> ToolSet::withSupports() const {
 
 Pose ToolSet::away() {
   Pose away = Pose::Identity();
-  away.translation().setConstant(tuning::kFarAway);
+  away.translation().setConstant(kFarAway);
   return away;
 }
 
@@ -52,7 +50,7 @@ bool ToolSet::isRigid(int tool) const {
   return at(tool) < size() && tools_[at(tool)].patch == ToolConfig::Patch::kRigid;
 }
 
-bool ToolSet::isAway(const Pose& pose) { return pose.translation().x() >= tuning::kFarAway; }
+bool ToolSet::isAway(const Pose& pose) { return pose.translation().x() >= kFarAway; }
 
 // With the supports, which stand at the origin of the tissue's frame.
 RobotPose ToolSet::complete(const RobotPose& pose) const {

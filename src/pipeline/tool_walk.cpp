@@ -179,7 +179,7 @@ ToolMotion::WalkEnd ToolMotion::Walk::stopBefore(const Stride& stride) {
   return WalkEnd::kDeadEnd;
 }
 
-// Load steps up to the pose, shorter ones where no shape follows. Returns how far it came.
+// The walk itself. Returns how far it came.
 RobotPose ToolMotion::walkFrom(const RobotPose& start, const RobotPose& pose) {
   Walk walk(*this, start, pose);
   const WalkEnd end = walk.go();

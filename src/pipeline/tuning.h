@@ -305,9 +305,6 @@ constexpr double kFarthestPush = 200.0;
 // lost updates of three tools at random in 1,000, 130, 139, 157, 185 are left with 1, 2, 3, 4.
 constexpr int kMostLostInARow = 3;
 
-// m: where a link is that stands nowhere; beyond every legal place of a scene.
-constexpr double kFarAway = 1e6;
-
 // Wrenches between solves (WrenchPrediction).
 // m: arm of a turn, at least, for tools that are all at their origin. Chosen.
 constexpr double kLeastArm = 1e-3;

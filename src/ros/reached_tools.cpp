@@ -6,7 +6,7 @@ namespace robot_tissue {
 namespace {
 
 void addLine(const std::vector<Vec3>& edge, const Pose& tissue_T_link, std::vector<Vec3>& ends) {
-  if (tissue_T_link.translation() == Pipeline::away().translation()) return;
+  if (Pipeline::isAway(tissue_T_link)) return;
   for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
     ends.push_back(tissue_T_link * edge[i]);
     ends.push_back(tissue_T_link * edge[i + 1]);

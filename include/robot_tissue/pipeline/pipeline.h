@@ -43,6 +43,7 @@ class Pipeline {
 
   // Where a tool is that stands nowhere; coming from there it comes in from outside the tissue.
   static Pose away();
+  static bool isAway(const Pose& pose);
 
   // Puts other tools in the place of the present ones; what these held is let go.
   void setTools(const std::vector<ToolGeometry>& tools);

@@ -4,12 +4,13 @@
 
 #include <string>
 
+#include "robot_tissue/core/robot_pose.h"
 #include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
 
-constexpr double kFarthestPoint = 1e6;  // m: beyond, a tool stands nowhere
-constexpr double kGreatestForce = 1e6;  // N
+constexpr double kFarthestPoint = kFarAway;  // m
+constexpr double kGreatestForce = 1e6;       // N
 
 // No component beyond `most`, in this unit.
 void requireWithin(const Vec3& vector, double most, const std::string& unit,
