@@ -6,8 +6,7 @@
 #include <ostream>
 
 #include "robot_checks.h"
-#include "robot_tissue/contact/tool_geometry.h"
-#include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/scene_parser.h"
 #include "robot_tissue/scene/value_text.h"
@@ -17,8 +16,7 @@
 namespace robot_tissue {
 namespace {
 
-constexpr std::size_t kLargestUrdf = 100000000;  // bytes
-constexpr double kMostSeconds = 60.0;            // of the trial press
+constexpr double kMostSeconds = 60.0;  // of the trial press
 
 const char* const kUsage =
     "usage: check_setup SCENE.yaml [--urdf FILE]\n"
@@ -77,14 +75,7 @@ class Teller {
 Robot robotOf(const Arguments& arguments, const NodeParameters& parameters,
               const LookAtRobot& look) {
   if (!arguments.urdf) return look(parameters);
-  try {
-    const std::string urdf = readRegularFile(*arguments.urdf, kLargestUrdf);
-    requireUrdf(urdf);
-    return {urdf, {}};
-  } catch (const InputError& error) {
-    throw InputError("--urdf = " + onOneLine(*arguments.urdf) + ": " + error.what() +
-                     ", must be a URDF file that can be read");
-  }
+  return {urdfOfFile(*arguments.urdf), {}};
 }
 
 void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) {

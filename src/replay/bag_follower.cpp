@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "robot_tissue/ros/periods.h"
 #include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/ros/shape_messages.h"
 #include "robot_tissue/ros/tissue_messages.h"
@@ -13,8 +14,6 @@ namespace robot_tissue {
 namespace {
 
 const std::string kTopics = "/robot_tissue/";
-const ros::Duration kWatchPeriod(0.1);  // of looks for a pose where none comes, as the node's
-constexpr double kFaultPeriod = 1.0;    // s, of the state while a fault lasts, as the node's
 // s of the bag without a message: after that nothing new is to be seen until the next one. More: a
 // gap, as from zero to the wall's clock, takes longer and has more states. Chosen.
 constexpr double kLongestWatch = 600.0;
@@ -50,9 +49,10 @@ void BagFollower::take(const tf2_msgs::TFMessage& message, TransformIntake::Kind
 
 // Where no pose comes the node's timer looks for what is wrong, or at links that are all static.
 void BagFollower::watchUntil(const ros::Time& now) {
-  if (next_watch_.isZero()) next_watch_ = now + kWatchPeriod;
+  const ros::Duration period(kWatchPeriod);
+  if (next_watch_.isZero()) next_watch_ = now + period;
   const ros::Time start = next_watch_;
-  for (; next_watch_ < now; next_watch_ += kWatchPeriod) {
+  for (; next_watch_ < now; next_watch_ += period) {
     before_look_();
     if (secondsBetween(start, next_watch_) > kLongestWatch) {
       next_watch_ = now;
@@ -150,7 +150,7 @@ void BagFollower::tellState(const ros::Time& stamp, double age_s) {
 // The last good shape stays.
 void BagFollower::tellFault(const NodeStatus& status, const ros::Time& now) {
   const bool is_news = status.status != status_.status || last_fault_.isZero() ||
-                       secondsBetween(last_fault_, now) >= kFaultPeriod;
+                       secondsBetween(last_fault_, now) >= kStatePeriod;
   status_ = status;
   if (!is_news) return;
   last_fault_ = now;

@@ -9,15 +9,13 @@
 #include "input_bag.h"
 #include "replay_options.h"
 #include "robot_tissue/contact/tool_geometry.h"
-#include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/scene/entry.h"
 #include "robot_tissue/scene/scene_files.h"
 #include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
-
-constexpr std::size_t kLargestUrdf = 100000000;  // bytes
 
 NodeParameters parametersOf(const ReplayOptions& options) {
   const YAML::Node root = loadSceneText(options.scene);
@@ -36,13 +34,7 @@ NodeParameters parametersOf(const ReplayOptions& options) {
 }
 
 std::optional<std::string> urdfOf(const ReplayOptions& options, const InputBag& in) {
-  if (!options.urdf) return in.robotDescription();
-  try {
-    return readRegularFile(*options.urdf, kLargestUrdf);
-  } catch (const InputError& error) {
-    throw InputError("--urdf = " + onOneLine(*options.urdf) + ": " + error.what() +
-                     "; allowed: a URDF file that can be read");
-  }
+  return options.urdf ? urdfOfFile(*options.urdf) : in.robotDescription();
 }
 
 LoadedTools toolsFor(const NodeParameters& parameters, const std::optional<std::string>& urdf) {

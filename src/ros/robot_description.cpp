@@ -2,9 +2,17 @@
 
 #include <XmlRpcValue.h>
 
+#include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/core/types.h"
+#include "robot_tissue/mesh/regular_file.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
+namespace {
+
+constexpr std::size_t kLargestUrdf = 100000000;  // bytes
+
+}  // namespace
 
 std::optional<std::string> robotDescription(const ros::NodeHandle& private_node,
                                             const std::string& parameter) {
@@ -14,6 +22,17 @@ std::optional<std::string> robotDescription(const ros::NodeHandle& private_node,
   if (value.getType() == XmlRpc::XmlRpcValue::TypeString) return std::string(value);
   throw InputError("parameter '" + path +
                    "' (~robot_description_param) is no text; allowed: a URDF");
+}
+
+std::string urdfOfFile(const std::string& path) {
+  try {
+    std::string urdf = readRegularFile(path, kLargestUrdf);
+    requireUrdf(urdf);
+    return urdf;
+  } catch (const InputError& error) {
+    throw InputError("--urdf = " + onOneLine(path) + ": " + error.what() +
+                     "; allowed: a URDF file that can be read");
+  }
 }
 
 }  // namespace robot_tissue

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robot_tissue/contact/tool_geometry.h"
+#include "robot_tissue/ros/periods.h"
 #include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/scene/memory.h"
@@ -98,8 +99,7 @@ void TissueNode::tick(Ticks ticks) {
 // Of the timer.
 ros::Duration TissueNode::period() const {
   const double at_rate = 1.0 / parameters_.rate_hz;
-  return ros::Duration(ticks_ == Ticks::kSeldom ? tuning::kWatchPeriod
-                                                : std::min(at_rate, tuning::kWatchPeriod));
+  return ros::Duration(ticks_ == Ticks::kSeldom ? kWatchPeriod : std::min(at_rate, kWatchPeriod));
 }
 
 // Becomes what the parameters say, as far as LiveParameters changes them.

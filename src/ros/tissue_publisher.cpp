@@ -2,16 +2,12 @@
 
 #include <chrono>
 
+#include "robot_tissue/ros/periods.h"
 #include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/ros/tissue_messages.h"
 #include "tuning.h"
 
 namespace robot_tissue {
-namespace {
-
-constexpr double kStatePeriod = 1.0;  // s, of the state while nothing changes
-
-}  // namespace
 
 TissuePublisher::TissuePublisher(ros::NodeHandle& private_node, const NodeParameters& parameters,
                                  const ToolPoses& poses)

@@ -24,6 +24,12 @@ Pose rigidPose(const geometry_msgs::TransformStamped& transform) {
   return pose;
 }
 
+std::string staleText(const std::string& link, double age_s, double timeout_s) {
+  return "the pose of link '" + link + "' is " + numberText(std::abs(age_s)) + " s " +
+         (age_s > 0.0 ? "old" : "in the future") + "; allowed: " + numberText(timeout_s) +
+         " (~tf_timeout)";
+}
+
 }  // namespace
 
 std::vector<std::string> linkFrames(const ToolGeometry& tool) {
@@ -66,9 +72,7 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
     found.age_s = secondsBetween(found.stamp, now);
     if (std::abs(found.age_s) > timeout_s_) {
       found.status = PoseLookUp::Status::kStale;
-      found.message = "the pose of link '" + oldest + "' is " + numberText(std::abs(found.age_s)) +
-                      " s " + (found.age_s > 0.0 ? "old" : "in the future") +
-                      "; allowed: " + numberText(timeout_s_) + " (~tf_timeout)";
+      found.message = staleText(oldest, found.age_s, timeout_s_);
       return found;
     }
     for (std::size_t link = 0; link < links_.size(); ++link) {

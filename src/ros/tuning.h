@@ -14,9 +14,6 @@ constexpr double kLongestUpdate = 0.1;
 // Iterations of `layered` in a load step, where the scene says nothing (doc/contact_measured.md has
 // others). More: longer updates where tissue slips; less: more of them are LATE.
 constexpr int kMostIterations = 36;
-// s: of the timer while nothing waits for it. More: a scene that stands costs less; a robot that is
-// lost is told of later. Chosen.
-constexpr double kWatchPeriod = 0.1;
 // s: between two times that it is told that tissue still settles. More: who comes meanwhile waits
 // for longer. Chosen, as the state comes while nothing changes.
 constexpr double kSettlingPeriod = 1.0;
