@@ -318,6 +318,10 @@ constexpr double kFarthestLearned = 5e-3;
 // m: the farthest that is predicted. More: bolder where a solve takes long; the error grows with
 // the square. Chosen: twice what is asked for.
 constexpr double kFarthestPredicted = 1e-3;
+// s: the longest that is predicted. More: a control loop goes on for longer by what may no longer
+// be so; less: a solve that takes its time interrupts the prediction. Chosen: two updates of 0.1 s,
+// as a solve begins while the one before is told.
+constexpr double kLongestPredicted = 0.2;
 
 // Of the spacing (1): least stride along a line that leaves a tool. More: coarser.
 constexpr double kExitStride = 0.1;

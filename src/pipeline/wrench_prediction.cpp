@@ -62,6 +62,11 @@ ToolWrench WrenchPrediction::at(const Pose& pose) const {
   return {predicted.head<3>(), arm_ * predicted.tail<3>()};
 }
 
+bool WrenchPrediction::foretells(const Pose& pose, double age_s) const {
+  const bool is_near = wayFrom(pose_, pose).norm() <= tuning::kFarthestPredicted;
+  return is_near && age_s <= tuning::kLongestPredicted;
+}
+
 WrenchPrediction::Vec6 WrenchPrediction::wayFrom(const Pose& from, const Pose& to) const {
   const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
   Vec6 way;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "robot_tissue/ros/conversions.h"
+#include "robot_tissue/ros/seconds_between.h"
 #include "robot_tissue/ros/tissue_messages.h"
 #include "robot_tissue/ros/tool_poses.h"
 #include "tuning.h"
@@ -34,7 +35,8 @@ void WrenchPublisher::setTools(const std::vector<ToolGeometry>& tools) {
               advertise(tool.name + "/predicted_cf"),
               {},
               link,
-              WrenchPrediction(tuning::kArmOfTurn, tool.max_force)};
+              WrenchPrediction(tuning::kArmOfTurn, tool.max_force),
+              {}};
     told.message.header.frame_id = linkFrames(tool).front();
     tools_.push_back(told);
     link += tool.links.size();
@@ -81,7 +83,10 @@ void WrenchPublisher::forget() {
   const std::lock_guard<std::mutex> lock(mutex_);
   silent_ = true;
   has_told_ = false;
-  for (Told& told : tools_) told.prediction.forget();
+  for (Told& told : tools_) {
+    told.prediction.forget();
+    told.predicted_until = ros::Time();
+  }
 }
 
 void WrenchPublisher::tissueIsToChange() {
@@ -109,14 +114,26 @@ void WrenchPublisher::sendPredicted() {
     if (!newest) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     if (silent_) return;
-    const ToolWrench wrench = told.prediction.at(newest->tissue_T_frame);
-    const Eigen::Matrix3d tool_R_tissue = newest->tissue_T_frame.linear().transpose();
-    geometry_msgs::WrenchStamped message = told.message;
-    message.header.stamp = newest->stamp;
+    sendPredicted(told, *newest);
+  }
+}
+
+// With the mutex locked.
+void WrenchPublisher::sendPredicted(Told& told, const ToolPoses::Newest& newest) {
+  geometry_msgs::WrenchStamped message = told.message;
+  const double age_s = secondsBetween(told.message.header.stamp, newest.stamp);
+  if (told.prediction.foretells(newest.tissue_T_frame, age_s)) {
+    const ToolWrench wrench = told.prediction.at(newest.tissue_T_frame);
+    const Eigen::Matrix3d tool_R_tissue = newest.tissue_T_frame.linear().transpose();
+    message.header.stamp = newest.stamp;
     message.wrench.force = toVector3(tool_R_tissue * wrench.force);
     message.wrench.torque = toVector3(tool_R_tissue * wrench.torque);
-    told.predicted.publish(message);
+    if (message.header.stamp < told.predicted_until) return;
+  } else if (message.header.stamp <= told.predicted_until) {
+    return;
   }
+  told.predicted_until = message.header.stamp;
+  told.predicted.publish(message);
 }
 
 // Late by more than a period it makes up for none.

@@ -236,5 +236,18 @@ TEST(WrenchPrediction, FarOffItStaysWhereItStillCounts) {
   EXPECT_LT(far, 1.5);
 }
 
+TEST(WrenchPrediction, ForetellsNoPoseFarOffAndNoneLongAfter) {
+  WrenchPrediction prediction(kArm);
+  const Pose solved = poseAt(Vec3(0.1, 0.0, 0.0));
+  prediction.learn(solved, {});  // also where nothing touches yet
+  EXPECT_TRUE(prediction.foretells(solved, 0.0));
+  EXPECT_TRUE(prediction.foretells(poseAt(Vec3(0.1, 0.0, 9e-4)), 0.1));
+  EXPECT_FALSE(prediction.foretells(poseAt(Vec3(0.1, 0.0, 2e-3)), 0.0));
+  EXPECT_FALSE(prediction.foretells(solved, 1.0));
+  Pose turned = solved;
+  turned.rotate(Eigen::AngleAxisd(0.5, Vec3::UnitX()));
+  EXPECT_FALSE(prediction.foretells(turned, 0.0));
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_wrench_prediction

@@ -1,5 +1,7 @@
 // A tool that races in and out of the tissue, faster than the node can follow: what is told of a
 // pose is of that pose.
+#include <set>
+
 #include "node_fixture.h"
 
 namespace robot_tissue::test_stamps {
@@ -16,6 +18,19 @@ class Stamps : public NodeTest {
         [this](const geometry_msgs::WrenchStampedConstPtr& wrench) {
           const auto& force = wrench->wrench.force;
           isTold(wrench->header.stamp, std::hypot(force.x, force.y, force.z), wrenches_);
+          solved_.insert(wrench->header.stamp);
+        }));
+    subscribers_.push_back(node_.subscribe<geometry_msgs::WrenchStamped>(
+        "/tissue/probe/predicted_cf", 5000,
+        [this](const geometry_msgs::WrenchStampedConstPtr& wrench) {
+          const auto& force = wrench->wrench.force;
+          const ros::Time stamp = wrench->header.stamp;
+          isTold(stamp, std::hypot(force.x, force.y, force.z), predictions_);
+          const ros::Time before = predicted_.empty() ? ros::Time() : *predicted_.rbegin();
+          EXPECT_GE(stamp, before) << "went back";
+          const bool is_deep = depths_[stamp] == kDeep;
+          EXPECT_LT(force.z, is_deep ? -0.1 : 1e-6) << "N, " << depths_[stamp] << " m deep";
+          predicted_.insert(stamp);
         }));
     subscribers_.push_back(node_.subscribe<ContactArray>(
         "/tissue/contacts", 5000, [this](const ContactArrayConstPtr& array) {
@@ -74,7 +89,8 @@ class Stamps : public NodeTest {
 
   std::map<ros::Time, double> depths_;  // of the probe (m), by stamps of the poses sent
   ros::Time last_told_;
-  int wrenches_ = 0, arrays_ = 0, labels_ = 0;
+  std::set<ros::Time> solved_, predicted_;  // stamps
+  int wrenches_ = 0, predictions_ = 0, arrays_ = 0, labels_ = 0;
 };
 
 TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
@@ -91,7 +107,14 @@ TEST_F(Stamps, AreOfThePosesThatTheTissueReached) {
   ASSERT_TRUE(falls_behind(-kClear));
   ASSERT_TRUE(arrives(-kClear));
   EXPECT_EQ(wrench_->wrench.force.z, 0.0);
+  ASSERT_TRUE(sendUntil([this] { return last_told_ <= *solved_.rbegin(); }));
+  for (const ros::Time& stamp : predicted_) {
+    const auto later = solved_.upper_bound(stamp);
+    ASSERT_NE(later, solved_.begin());
+    EXPECT_LT((stamp - *std::prev(later)).toSec(), 0.25) << "s after the last pose solved for";
+  }
   EXPECT_GT(wrenches_, 2);
+  EXPECT_GT(predictions_, 2);
   EXPECT_GT(arrays_, 0);
   EXPECT_GT(labels_, 0);
 }

@@ -47,6 +47,9 @@ class WrenchPrediction {
   // At a pose near the last one solved for; farther off, as at the farthest place on the way there
   // that still counts. A tool that touched nothing feels nothing, and none is pulled.
   ToolWrench at(const Pose& pose) const;
+  // Whether a solve so long ago (s) still foretells that pose. Later, or farther off, the tissue
+  // may have been touched, or left, since.
+  bool foretells(const Pose& pose, double age_s) const;
 
  private:
   using Vec6 = Eigen::Matrix<double, 6, 1>;

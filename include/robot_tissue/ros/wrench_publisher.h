@@ -3,7 +3,10 @@
 // With a rate of its own a thread sends the last wrench solved again and again, so that the rate
 // stays while a solve takes long; the stamp is that of the pose that was solved. Beside it, on a
 // topic of its own, what the contact's stiffness makes of it at the tool's newest pose
-// (WrenchPrediction), with that pose's stamp. While nobody listens it sleeps.
+// (WrenchPrediction), with that pose's stamp. Where the tissue is too far behind for that, that
+// topic has what was solved, once and with its own stamp, and is silent in between: a control loop
+// is told by its last stamp, and by the silence, that it has no force of now. While nobody listens
+// it sleeps.
 #pragma once
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -54,11 +57,13 @@ class WrenchPublisher {
     geometry_msgs::WrenchStamped message;
     std::size_t first_link = 0;
     WrenchPrediction prediction;
+    ros::Time predicted_until;  // the newest stamp told of `predicted`: none goes back
   };
 
   void repeat();
   void send();
   void sendPredicted();
+  static void sendPredicted(Told& told, const ToolPoses::Newest& newest);
   void stop();
 
   ros::NodeHandle private_node_;
