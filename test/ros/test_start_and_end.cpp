@@ -16,7 +16,8 @@ constexpr double kLongDeadline = 90.0;
 
 class NodeProcess {
  public:
-  NodeProcess() {
+  // Of this test's master, or of another one.
+  explicit NodeProcess(const std::string& master = "") {
     int ends[2];
     if (pipe(ends) != 0) return;
     pid_ = fork();
@@ -24,6 +25,7 @@ class NodeProcess {
       dup2(ends[1], STDOUT_FILENO);
       dup2(ends[1], STDERR_FILENO);
       close(ends[0]);
+      if (!master.empty()) setenv("ROS_MASTER_URI", master.c_str(), 1);
       execl(NODE_PATH, NODE_PATH, "__name:=tissue", static_cast<char*>(nullptr));
       _exit(127);
     }
@@ -85,9 +87,11 @@ TEST_P(StartAndEnd, AreQuietAndInOrder) {
   EXPECT_EQ(node.read().find("ERROR"), std::string::npos) << node.read();
 }
 
-INSTANTIATE_TEST_SUITE_P(Node, StartAndEnd, ::testing::Values(SIGINT, SIGTERM),
+INSTANTIATE_TEST_SUITE_P(Node, StartAndEnd, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const ::testing::TestParamInfo<int>& signal) {
-                           return std::string(signal.param == SIGINT ? "SigInt" : "SigTerm");
+                           return std::string(signal.param == SIGINT    ? "SigInt"
+                                              : signal.param == SIGTERM ? "SigTerm"
+                                                                        : "SigHup");
                          });
 
 // Less than one wrench in the time that this waits for the end.
@@ -141,6 +145,15 @@ TEST_F(Settling, IsToldAndTheNodeCanBeStoppedMeanwhile) {
   EXPECT_EQ(WEXITSTATUS(node.status()), 0);
   EXPECT_NE(node.read().find("the tissue settles on its supports"), std::string::npos);
   EXPECT_EQ(node.read().find("the tissue has settled"), std::string::npos) << node.read();
+}
+
+TEST_F(Start, WithoutAMasterTheEndIsInOrderToo) {
+  NodeProcess node("http://localhost:1");  // nobody's port
+  ASSERT_TRUE(waitFor([&] { return node.read().find("master") != std::string::npos; }));
+  node.signal(SIGINT);
+  ASSERT_TRUE(waitFor([&] { return node.hasEnded(); })) << node.read();
+  EXPECT_TRUE(WIFEXITED(node.status())) << "ended by a signal";
+  EXPECT_EQ(WEXITSTATUS(node.status()), 0) << node.read();
 }
 
 // A robot that never comes is warned about, once.
