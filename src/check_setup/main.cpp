@@ -54,6 +54,7 @@ robot_tissue::Robot describedRobot(const robot_tissue::NodeParameters& parameter
       robot_tissue::requireUrdf(*urdf);
       return {urdf, {}};
     }
+    if (!robot_tissue::linkThatNeedsUrdf(parameters.scene.tools)) return {};  // as for the node
     return {{}, {{Finding::Level::kWarning, "parameter '" + parameter + "' is not set", remedy}}};
   } catch (const robot_tissue::InputError& error) {
     return {{}, {{Finding::Level::kError, error.what(), remedy}}};
