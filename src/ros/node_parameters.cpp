@@ -1,6 +1,7 @@
 #include "robot_tissue/ros/node_parameters.h"
 
 #include <XmlRpcValue.h>
+#include <ros/names.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -124,6 +125,20 @@ void comparePlacedFrame(const Entry& entry, NodeParameters& parameters) {
       parameters.scene.tissue.frame_id + ")");
 }
 
+// Under what is none, the node would wait for ever.
+std::string readParameterName(const Entry& entry) {
+  const std::string allowed =
+      "the name of a parameter that holds a URDF: letters, digits, _ and single /, no private one";
+  const std::string name = entry.word(allowed);
+  std::string error;
+  const bool is_truth = !isText(entry.node()) && (name == "true" || name == "false");
+  const bool has_gap = name.find("//") != std::string::npos || name.back() == '/';
+  if (is_truth || has_gap || name.front() == '~' || !ros::names::validate(name, error)) {
+    entry.fail("must be " + allowed);
+  }
+  return name;
+}
+
 double readWrenchRate(const Entry& entry) {
   const double rate = entry.number(ranges::wrenchRate());
   if (rate == 0.0 || rate >= ranges::kLeastWrenchRate) return rate;
@@ -165,7 +180,7 @@ const KeyTable<NodeParameters> kOwnKeys = {
     {"robot_description_param",
      [](const Entry& entry, NodeParameters& parameters) {
        if (!entry.given()) return;
-       parameters.robot_description_param = entry.word("the name of a parameter that holds a URDF");
+       parameters.robot_description_param = readParameterName(entry);
      }},
     {"state_dir",
      [](const Entry& entry, NodeParameters& parameters) {

@@ -256,6 +256,17 @@ TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
   const std::vector<std::string> texts = {"", "no XML", "<robot name='r'>"};
   for (const std::string& text : texts) {
     const std::vector<std::string> arguments = {scene, "--urdf", write("robot.urdf", text)};
+TEST_F(CheckSetup, ANameThatNoParameterHasIsRefused) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
+  for (const char* name : {"a b", "a//b", "\u00e9", "-7.5", "7", "true", "~x", "a/"}) {
+    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kCannotRun) << name;
+    EXPECT_NE(err_.find(std::string("robot_description_param = ")), std::string::npos) << err_;
+  }
+  for (const char* name : {"arm", "/left/robot_description", "left/arm", "'true'"}) {
+    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kFine) << err_;
+  }
+}
+
     std::ostringstream out, err;
     EXPECT_EQ(checkSetup(arguments, nobody, out, err), kCannotRun) << text;
     EXPECT_NE(err.str().find("robot.urdf"), std::string::npos) << err.str();
