@@ -61,6 +61,8 @@ Findings checkTool(const Scene& scene, const ToolConfig& tool, const std::string
     const Findings sizes = checkSizes(scene, loaded.tools.front());
     findings.insert(findings.end(), sizes.begin(), sizes.end());
   } catch (const InputError& error) {
+    const bool is_of_urdf = std::string(error.what()).rfind("robot_description:", 0) == 0;
+    if (is_of_urdf) remedy = "mend the URDF, or give the link `shapes` in the scene";
     findings.push_back({Finding::Level::kError, error.what(), remedy});
   }
   return findings;

@@ -30,7 +30,12 @@ ParsedUrdf parseUrdf(const std::string& urdf_xml) {
   } catch (const std::exception& error) {
     throw InputError(std::string("robot_description: is no valid URDF (") + error.what() + ")");
   }
-  if (!model) throw InputError("robot_description: is no valid URDF" + console.reason());
+  if (!model) {
+    const bool is_xacro = urdf_xml.find("xacro:") != std::string::npos;
+    throw InputError(
+        "robot_description: is no valid URDF" + console.reason() +
+        (is_xacro ? ": it is xacro, of which `xacro FILE > robot.urdf` makes a URDF" : ""));
+  }
   return {model, console.errors()};
 }
 

