@@ -6,6 +6,8 @@
 #include <ostream>
 
 #include "robot_checks.h"
+#include "robot_tissue/contact/contact_finder.h"
+#include "robot_tissue/contact/tool_geometry.h"
 #include "robot_tissue/ros/robot_description.h"
 #include "robot_tissue/scene/command_line.h"
 #include "robot_tissue/scene/scene_parser.h"
@@ -21,8 +23,8 @@ constexpr double kMostSeconds = 60.0;  // of the trial press
 const char* const kUsage =
     "usage: check_setup SCENE.yaml [--urdf FILE]\n"
     "Looks at the scene, at the robot of FILE or of the running master (the parameter that\n"
-    "robot_description_param of the scene names, /tf), and presses a sphere 1 mm in. A line each,\n"
-    "with its remedy.\n"
+    "robot_description_param of the scene names, /tf), and presses each tool, or else a sphere,\n"
+    "1 mm in. A line each, with its remedy.\n"
     "Exit code 0: fine; 1: warnings; 2: it cannot run, or wrong arguments.\n";
 
 struct Arguments {
@@ -78,6 +80,18 @@ Robot robotOf(const Arguments& arguments, const NodeParameters& parameters,
   return {urdfOfFile(*arguments.urdf), {}};
 }
 
+// Those that can be told of a robot whose faults were told before.
+std::vector<ToolGeometry> knownTools(const Scene& scene, const std::optional<std::string>& urdf) {
+  try {
+    std::vector<ToolGeometry> tools =
+        (urdf ? loadTools(*urdf, scene.tools) : toolsOf(scene.tools)).tools;
+    const ContactFinder all_can_be_loaded(tools);
+    return tools;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) {
   const YAML::Node text = loadSceneText(arguments.scene);
   SceneSource source;  // of the runner: it may be a scene for that
@@ -91,7 +105,7 @@ void check(const Arguments& arguments, const LookAtRobot& look, Teller& teller) 
   const Robot robot = robotOf(arguments, parameters, look);
   teller.tell(robot.findings);
   teller.tell(checkTools(scene, robot.urdf.value_or("")));
-  teller.tell(checkPress(scene, kMostSeconds));
+  teller.tell(checkPress(scene, knownTools(scene, robot.urdf), kMostSeconds));
 }
 
 }  // namespace

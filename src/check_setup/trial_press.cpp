@@ -1,9 +1,13 @@
 #include "trial_press.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "robot_tissue/contact/contact_finder.h"
 #include "robot_tissue/core/body_load.h"
 #include "robot_tissue/core/deadline.h"
 #include "robot_tissue/pipeline/pipeline.h"
@@ -13,10 +17,17 @@
 namespace robot_tissue {
 namespace {
 
-constexpr double kDepth = 0.001;         // m
-constexpr int kUpdates = 4;              // that the way in is told in
-constexpr double kRadiusSpacings = 2.0;  // of the sphere: it touches some nodes. Chosen
-constexpr double kSlowUpdate = 100.0;    // ms: the node leaves what takes longer to later updates
+constexpr double kDepth = 0.001;          // m
+constexpr int kUpdates = 4;               // that the way in is told in
+constexpr double kRadiusSpacings = 2.0;   // of the sphere: it touches some nodes. Chosen
+constexpr double kSameHeight = 1e-3;      // of a link's extent (1): points of its flat end. Chosen
+constexpr double kLongestUpdate = 100.0;  // ms: the node leaves what takes longer to later updates
+
+std::string roundedText(double value) {
+  if (value == 0.0) return "0";
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return numberText(std::round(value / unit) * unit);
+}
 
 struct Place {
   Vec3 top = Vec3::Zero();      // of the surface (m)
@@ -53,74 +64,163 @@ Place placeOn(const Tissue& tissue) {
   return place;
 }
 
-ToolGeometry sphereOf(double radius, const Scene& scene) {
-  ToolShape sphere;
-  sphere.radius = radius;
+// What is pressed: one link, touching as its tool does.
+struct Body {
+  std::string name;  // of the messages
   ToolGeometry tool;
-  tool.name = "press";
-  tool.links.push_back({"press", {sphere}});
-  if (scene.tissue.model == "six_spring") tool.patch = ToolConfig::Patch::kRigid;
-  return tool;
+  Vec3 forwards = Vec3::UnitZ();  // unit, link's frame: goes in this way
+  Vec3 tip = Vec3::Zero();        // of the link that way (m), link's frame
+};
+
+// Its tip and which way it points: from the link's origin to the middle of its shapes.
+void findTip(std::vector<Vec3> points, const std::vector<Ball>& balls, Body& body) {
+  Box box;
+  for (const Vec3& point : points) box.extend(point);
+  const double same = kSameHeight * box.diagonal().norm();
+  if (box.center().norm() > same) body.forwards = box.center().normalized();
+  for (const Ball& ball : balls) points.push_back(ball.center + ball.radius * body.forwards);
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Vec3& point : points) farthest = std::max(farthest, point.dot(body.forwards));
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const Vec3& point : points) {
+    if (point.dot(body.forwards) < farthest - same) continue;
+    sum += point;
+    ++count;
+  }
+  body.tip = sum / count;
 }
 
-RobotPose poseAt(const Place& place, double radius, double depth) {
+std::optional<Body> bodyOf(const ToolGeometry& tool) {
+  for (const LinkGeometry& link : tool.links) {
+    if (link.shapes.empty()) continue;
+    Body body;
+    body.name = "tool '" + tool.name + "'";
+    if (!link.link.empty()) body.name += ", its link '" + link.link + "' with the far end first,";
+    body.tool.name = tool.name;
+    body.tool.patch = tool.patch;
+    body.tool.friction = tool.friction;
+    body.tool.links = {link};
+    const ContactFinder finder({body.tool});
+    const std::vector<Vec3> points = finder.surfacePoints(0);
+    if (points.empty()) continue;
+    findTip(points, finder.balls(0), body);
+    return body;
+  }
+  return std::nullopt;
+}
+
+Body sphereOf(const Scene& scene) {
+  ToolShape sphere;
+  sphere.radius = kRadiusSpacings * scene.tissue.spacing;
+  Body body;
+  body.name = "a sphere of " + roundedText(1e3 * sphere.radius) + " mm radius";
+  body.tool.name = "press";
+  body.tool.links = {{"press", {sphere}}};
+  body.tip = sphere.radius * body.forwards;
+  if (scene.tissue.model == "six_spring") body.tool.patch = ToolConfig::Patch::kRigid;
+  return body;
+}
+
+std::vector<Body> bodiesOf(const Scene& scene, const std::vector<ToolGeometry>& tools) {
+  std::vector<Body> bodies;
+  for (const ToolGeometry& tool : tools) {
+    if (std::optional<Body> body = bodyOf(tool)) bodies.push_back(std::move(*body));
+  }
+  if (bodies.empty()) bodies.push_back(sphereOf(scene));
+  return bodies;
+}
+
+RobotPose poseAt(const Place& place, const Body& body, double depth) {
   Pose pose = Pose::Identity();
-  pose.translation() = place.top + (depth - radius) * place.inwards;
+  pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(body.forwards, place.inwards).toRotationMatrix();
+  pose.translation() = place.top + depth * place.inwards - pose.linear() * body.tip;
   RobotPose robot;
   robot.links = {pose};
   return robot;
 }
 
-}  // namespace
+// Of this thread, which shares what there is to solve: what else runs on the machine does not
+// count.
+double processorMs() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
 
-TrialPress pressOnce(const Scene& scene, double most_seconds) {
+TrialPress press(Pipeline& pipeline, const Place& place, const Body& body,
+                 const Deadline& deadline) {
   TrialPress press;
-  const double before = residentMemory();
-  press.radius_m = kRadiusSpacings * scene.tissue.spacing;
-  Pipeline pipeline(scene.tissue, scene.solver, {sphereOf(press.radius_m, scene)}, scene.supports);
-  const Deadline deadline(most_seconds);
-  pipeline.setEnd(deadline);
-  if (hasBodyLoad(scene.tissue) || !scene.supports.empty()) pipeline.settle();
+  press.what = body.name;
   press.nodes = pipeline.tissue().lattice().nodeCount();
-  const Place place = placeOn(pipeline.tissue());
-  pipeline.step(poseAt(place, press.radius_m, -0.1 * kDepth));
+  pipeline.setTools({body.tool});
+  pipeline.step(poseAt(place, body, -0.1 * kDepth));
   for (int update = 1; update <= kUpdates; ++update) {
-    const double start_ms = deadline.leftMs();
-    const StepReport& report =
-        pipeline.step(poseAt(place, press.radius_m, kDepth * update / kUpdates));
-    press.update_ms += (start_ms - deadline.leftMs()) / kUpdates;
+    const double start_ms = processorMs();
+    const StepReport& report = pipeline.step(poseAt(place, body, kDepth * update / kUpdates));
+    press.update_ms += (processorMs() - start_ms) / kUpdates;
     press.ended = press.ended && !report.late && !deadline.isOver();
     press.converged = press.converged && pipeline.tissue().lastReport().status == SolveStatus::kOk;
   }
-  press.force_n = -pipeline.report().tools[0].force_on_tool.dot(place.inwards);
-  press.memory_mb = std::max(0.0, 1e-6 * (residentMemory() - before));
+  const Eigen::Matrix3d turn = pipeline.pose()->links[0].linear();
+  press.force_n = -(turn * pipeline.report().tools[0].force_on_tool).dot(place.inwards);
+  pipeline.step(poseAt(place, body, -0.1 * kDepth));  // out of the next one's way
   return press;
 }
 
-Findings checkPress(const Scene& scene, double most_seconds) {
-  const TrialPress press = pressOnce(scene, most_seconds);
-  const auto rounded = [](double value) {
-    if (value == 0.0) return std::string("0");
-    const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
-    return numberText(std::round(value / unit) * unit);
-  };
-  const std::string what = "a sphere of " + rounded(1e3 * press.radius_m) +
-                           " mm radius pressed 1 mm into " + std::to_string(press.nodes) + " nodes";
-  if (!press.ended) {
-    return {{Finding::Level::kWarning,
-             "solver.method: " + what + " is not done in " + rounded(most_seconds) + " s",
-             "a larger tissue.spacing, or method layered"}};
+Finding noteOf(const TrialPress& press) {
+  return {Finding::Level::kNote,
+          press.what + " pressed 1 mm into " + std::to_string(press.nodes) + " nodes takes " +
+              roundedText(press.update_ms) + " ms of the processor an update, " +
+              roundedText(press.memory_mb) + " MB and " + roundedText(press.force_n) + " N",
+          ""};
+}
+
+}  // namespace
+
+std::vector<TrialPress> pressEach(const Scene& scene, const std::vector<ToolGeometry>& tools,
+                                  double most_seconds) {
+  const double before = residentMemory();
+  SolverConfig solver = scene.solver;
+  solver.max_ms = 0.0;  // so that an update is timed to its end
+  Pipeline pipeline(scene.tissue, solver, {}, scene.supports);
+  const Deadline deadline(most_seconds);
+  pipeline.setEnd(deadline);
+  if (hasBodyLoad(scene.tissue) || !scene.supports.empty()) pipeline.settle();
+  const Place place = placeOn(pipeline.tissue());
+  std::vector<TrialPress> presses;
+  for (const Body& body : bodiesOf(scene, tools)) {
+    presses.push_back(press(pipeline, place, body, deadline));
+    presses.back().memory_mb = std::max(0.0, 1e-6 * (residentMemory() - before));
+    if (!presses.back().ended) break;
   }
-  Findings findings = {{Finding::Level::kNote,
-                        what + " takes " + rounded(press.update_ms) + " ms an update, " +
-                            rounded(press.memory_mb) + " MB and " + rounded(press.force_n) + " N",
-                        ""}};
-  if (!press.converged) {
+  return presses;
+}
+
+Findings checkPress(const Scene& scene, const std::vector<ToolGeometry>& tools,
+                    double most_seconds) {
+  Findings findings;
+  double slowest_ms = 0.0;
+  for (const TrialPress& press : pressEach(scene, tools, most_seconds)) {
+    if (!press.ended) {
+      findings.push_back({Finding::Level::kWarning,
+                          "solver.method: " + press.what + " pressed 1 mm into " +
+                              std::to_string(press.nodes) + " nodes is not done in " +
+                              roundedText(most_seconds) + " s",
+                          "a larger tissue.spacing, or method layered"});
+      return findings;
+    }
+    findings.push_back(noteOf(press));
+    slowest_ms = std::max(slowest_ms, press.update_ms);
+    if (press.converged) continue;
     findings.push_back({Finding::Level::kWarning, "solver: that press did not come to balance",
                         "more of the tissue fixed, or a larger solver.tolerance"});
-  } else if (press.update_ms > kSlowUpdate) {
+  }
+  const double longest_ms = scene.solver.max_ms > 0.0 ? scene.solver.max_ms : kLongestUpdate;
+  if (slowest_ms > longest_ms) {
     findings.push_back({Finding::Level::kWarning,
-                        "tissue.spacing: an update longer than " + rounded(kSlowUpdate) +
+                        "tissue.spacing: an update longer than " + roundedText(longest_ms) +
                             " ms is carried on in later ones, and the shape lags (LATE)",
                         "a larger tissue.spacing, solver.tolerance or solver.threads"});
   }

@@ -81,9 +81,27 @@ class CheckSetup : public ::testing::Test {
 
 TEST_F(CheckSetup, GoodSceneIsFineAndTellsWhatAPressTakes) {
   EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool), kFine) << out_ << err_;
-  EXPECT_EQ(out_.find("note: a sphere of 20 mm radius pressed 1 mm into 726 nodes takes "), 0U)
+  EXPECT_EQ(out_.find("note: tool 'tip', its link 'tip' with the far end first, pressed 1 mm into "
+                      "726 nodes takes "),
+            0U)
       << out_;
   EXPECT_EQ(std::count(out_.begin(), out_.end(), '\n'), 1);
+  EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest), kFine) << out_ << err_;
+  EXPECT_EQ(out_.find("note: a sphere of 20 mm radius pressed 1 mm into 726 nodes takes "), 0U)
+      << out_;
+}
+
+TEST_F(CheckSetup, EachToolWithShapesIsPressedAlsoThoseOfTheRobot) {
+  writeMesh("tip.obj", 0.02, 0.02, 0.05);
+  const std::string robot =
+      urdfOf("<mesh filename='file://" + (folder_ / "tip.obj").string() + "'/>");
+  const std::string scene =
+      kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools:\n  - {name: hand, link: tip}\n" +
+      "  - {name: ball, link: base, shapes: [{type: sphere, radius: 0.01, xyz: [0, 0, 0.1]}]}\n";
+  EXPECT_EQ(check(scene, robot), kFine) << out_ << err_;
+  EXPECT_TRUE(says("tool 'hand', its link 'tip'") && says("tool 'ball', its link 'base'")) << out_;
+  EXPECT_FALSE(says("a sphere")) << out_;
+  EXPECT_FALSE(says(" 0 N") || says(" -")) << out_;
 }
 
 TEST_F(CheckSetup, MeshOfAThousandMetersLooksLikeMillimeters) {
@@ -142,6 +160,14 @@ TEST_F(CheckSetup, ToolsAreLookedForInTheRobot) {
   EXPECT_TRUE(says("remedy: a link that the robot has")) << out_;
 }
 
+TEST_F(CheckSetup, ALinkThatCannotBeReadIsMendedInTheUrdf) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
+  EXPECT_EQ(check(scene, urdfOf("<box size='nan 1 1'/>")), kCannotRun);
+  EXPECT_TRUE(says("error: robot_description: link 'tip'") && says("remedy: mend the URDF"))
+      << out_;
+  EXPECT_FALSE(says("a link that the robot has")) << out_;
+}
+
 TEST_F(CheckSetup, MeshesOfTheRobotHaveRemediesOfTheirOwn) {
   const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
   const auto mesh = [this](const std::string& name) {
@@ -160,14 +186,6 @@ TEST_F(CheckSetup, MeshesOfTheRobotHaveRemediesOfTheirOwn) {
 TEST_F(CheckSetup, ToolWithoutALinkAndTissueThatNothingHoldsAreTold) {
   const std::string floating =
       kHead + kBlock + "\n  spacing: 0.01\n  material: {young_modulus: 10000.0}\n";
-TEST_F(CheckSetup, ALinkThatCannotBeReadIsMendedInTheUrdf) {
-  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + "tools: [{link: tip}]\n";
-  EXPECT_EQ(check(scene, urdfOf("<box size='nan 1 1'/>")), kCannotRun);
-  EXPECT_TRUE(says("error: robot_description: link 'tip'") && says("remedy: mend the URDF"))
-      << out_;
-  EXPECT_FALSE(says("a link that the robot has")) << out_;
-}
-
   EXPECT_EQ(check(floating), kHasWarnings);
   EXPECT_TRUE(says("nothing holds the tissue")) << out_;
   EXPECT_EQ(check(kHead + kBlock + "\n  spacing: 0.01" + kRest +
@@ -216,6 +234,17 @@ TEST_F(CheckSetup, TheRobotsDescriptionIsLookedForWhereTheSceneSays) {
   EXPECT_EQ(asked, "arm") << err.str();
 }
 
+TEST_F(CheckSetup, ANameThatNoParameterHasIsRefused) {
+  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
+  for (const char* name : {"a b", "a//b", "\u00e9", "-7.5", "7", "true", "~x", "a/"}) {
+    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kCannotRun) << name;
+    EXPECT_NE(err_.find(std::string("robot_description_param = ")), std::string::npos) << err_;
+  }
+  for (const char* name : {"arm", "/left/robot_description", "left/arm", "'true'"}) {
+    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kFine) << err_;
+  }
+}
+
 TEST_F(CheckSetup, TheNodesOwnKeysAreTakenAndChecked) {
   const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
   EXPECT_EQ(check(scene + "rate: 50\nwrench_rate: 200\ncolor: strain\n"), kFine) << out_ << err_;
@@ -257,17 +286,6 @@ TEST_F(CheckSetup, EachToolIsCheckedByItself) {
   EXPECT_FALSE(says("of tool 'c' is no link")) << out_;
 }
 
-TEST_F(CheckSetup, ANameThatNoParameterHasIsRefused) {
-  const std::string scene = kHead + kBlock + "\n  spacing: 0.01" + kRest + kTool;
-  for (const char* name : {"a b", "a//b", "\u00e9", "-7.5", "7", "true", "~x", "a/"}) {
-    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kCannotRun) << name;
-    EXPECT_NE(err_.find(std::string("robot_description_param = ")), std::string::npos) << err_;
-  }
-  for (const char* name : {"arm", "/left/robot_description", "left/arm", "'true'"}) {
-    EXPECT_EQ(check(scene + "robot_description_param: " + name + "\n"), kFine) << err_;
-  }
-}
-
 // Also where no tool is of one of its links.
 TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
   const std::string scene = write("scene.yaml", kHead + kBlock + "\n  spacing: 0.01" + kRest);
@@ -280,21 +298,26 @@ TEST_F(CheckSetup, UrdfThatIsNoneIsRefusedByName) {
     std::ostringstream out, err;
     EXPECT_EQ(checkSetup(arguments, nobody, out, err), kCannotRun) << text;
     const std::string told = err.str();
+    EXPECT_NE(told.find(" = " + arguments.back()), std::string::npos) << told;
+    EXPECT_EQ(told.find("`xacro FILE > robot.urdf`") != std::string::npos, text == xacro) << told;
     EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 1) << told;
   }
+}
+
+Scene blockScene(double young_modulus) {
+  Scene scene;
+  scene.tissue.shape = {Vec3::Zero(), Vec3(0.1, 0.1, 0.05)};
+  scene.tissue.spacing = 0.005;
+  scene.tissue.material.young_modulus = young_modulus;
+  scene.tissue.fixed = {{Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)}};
+  return scene;
 }
 
 // Of a stiffer tissue in proportion, and the way in is what it says: Hertz is a lower bound of a
 // bonded layer of five centimeters.
 TEST(TrialPress, ForceGoesWithTheStiffness) {
-  Scene scene;
-  scene.tissue.shape = {Vec3::Zero(), Vec3(0.1, 0.1, 0.05)};
-  scene.tissue.spacing = 0.005;
-  scene.tissue.material.young_modulus = 1e4;
-  scene.tissue.fixed = {{Vec3(-1.0, -1.0, -1e-6), Vec3(1.0, 1.0, 1e-6)}};
-  const TrialPress soft = pressOnce(scene, 60.0);
-  scene.tissue.material.young_modulus = 3e4;
-  const TrialPress stiff = pressOnce(scene, 60.0);
+  const TrialPress soft = pressEach(blockScene(1e4), {}, 60.0).at(0);
+  const TrialPress stiff = pressEach(blockScene(3e4), {}, 60.0).at(0);
   EXPECT_TRUE(soft.ended && soft.converged);
   EXPECT_EQ(soft.nodes, 21 * 21 * 11);
   EXPECT_GT(soft.update_ms, 0.0);
@@ -303,6 +326,34 @@ TEST(TrialPress, ForceGoesWithTheStiffness) {
       4.0 / 3.0 * 1e4 / (1.0 - 0.45 * 0.45) * std::sqrt(0.01) * std::pow(1e-3, 1.5);
   EXPECT_GT(soft.force_n, 0.5 * hertz);
   EXPECT_LT(soft.force_n, 2.0 * hertz);
+}
+
+// The node would carry such an update on in the next ones.
+TEST(TrialPress, AnUpdateIsTimedToItsEndWhateverTimeTheSceneGives) {
+  Scene scene = blockScene(1e4);
+  scene.solver.max_ms = 1e-3;
+  EXPECT_TRUE(pressEach(scene, {}, 60.0).at(0).ended);
+  const Findings findings = checkPress(scene, {}, 60.0);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_NE(findings[1].text.find("an update longer than 0.001 ms"), std::string::npos)
+      << findings[1].text;
+}
+
+// The ball of the sphere that is pressed where no tool has shapes, at the end of a long link.
+TEST(TrialPress, AToolIsPressedByItsFarEnd) {
+  ToolShape ball;
+  ball.radius = 0.01;
+  ball.pose.translation() = Vec3(0.0, 0.1, 0.0);
+  ToolGeometry tool;
+  tool.name = "probe";
+  tool.links = {{"frame", {}}, {"tip", {ball}}};
+  const TrialPress sphere = pressEach(blockScene(1e4), {}, 60.0).at(0);
+  const std::vector<TrialPress> tools = pressEach(blockScene(1e4), {tool, tool}, 60.0);
+  ASSERT_EQ(tools.size(), 2U);
+  for (const TrialPress& press : tools) {
+    EXPECT_NEAR(press.force_n, sphere.force_n, 0.05 * sphere.force_n);
+    EXPECT_NE(press.what.find("'probe', its link 'tip'"), std::string::npos) << press.what;
+  }
 }
 
 }  // namespace
