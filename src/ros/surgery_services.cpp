@@ -1,5 +1,6 @@
 #include "robot_tissue/ros/surgery_services.h"
 
+#include <array>
 #include <utility>
 
 #include "robot_tissue/pipeline/suture_names.h"
@@ -26,6 +27,28 @@ RemovedSpace spaceOf(const Remove::Request& request, const Pose& tissue_T_frame)
     throw InputError("min, max, radius: a box and a sphere given; allowed: one of them");
   }
   return Sphere{tissue_T_frame * center, request.radius};
+}
+
+// Of one that speaks of a scene, where the ends of a suture are `from` and `to`.
+std::string inWordsOfRequest(std::string message) {
+  const std::array<std::pair<std::string, std::string>, 3> words = {
+      {{": from = ", ": start = "},
+       {": to = ", ": end = "},
+       {": from and to ", ": start and end "}}};
+  for (const auto& [of_scene, of_request] : words) {
+    const std::size_t place = message.find(of_scene);
+    if (place != std::string::npos) message.replace(place, of_scene.size(), of_request);
+  }
+  return message;
+}
+
+// Throws InputError in the words of the request.
+SutureResult sutured(Pipeline& pipeline, const SutureConfig& suture) {
+  try {
+    return pipeline.suture(suture);
+  } catch (const InputError& error) {
+    throw InputError(inWordsOfRequest(error.what()));
+  }
 }
 
 }  // namespace
@@ -128,7 +151,7 @@ void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response&
   if (request.stiffness != 0.0) suture.stiffness = request.stiffness;
   suture.break_force = request.break_force;
   suture.bite = request.bite;
-  const SutureResult result = pipeline_.suture(suture);
+  const SutureResult result = sutured(pipeline_, suture);
   publisher_.shapeChanged();
   response.name = suture.name;
   response.tension = result.suture.tension;

@@ -171,6 +171,8 @@ TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
     ASSERT_TRUE(ros::service::call("/tissue/suture", bad));
     EXPECT_FALSE(bad.response.success);
     EXPECT_NE(bad.response.message.find("allowed"), std::string::npos) << bad.response.message;
+    EXPECT_NE(bad.response.message.find("start"), std::string::npos) << bad.response.message;
+    EXPECT_EQ(bad.response.message.find("from ="), std::string::npos) << bad.response.message;
   }
   for (const auto& set : std::vector<void (*)(Suture::Request&)>{
            [](Suture::Request& request) { request.rest_length = 1e15; },
