@@ -40,6 +40,18 @@ class Refusal : public ::testing::Test {
   Tissue tissue_;
 };
 
+// In meters, too, beside the size of the tissue; by a force there is no such way.
+TEST_F(Refusal, OfALoadOfMoreIncrementsThanMayBe) {
+  const auto load = [&](const PatchConfig& patch) {
+    tissue_.load(
+        loadOf({patch}), [](int, int, const SolveReport&) {}, 3);
+  };
+  const Vec3 far(0.0, 0.0, -1.0);
+  expectRefused([&] { load(displacedPatch("far", kElsewhere, far)); },
+                "m at once (the tissue is 0.1 x 0.06 x 0.04 m)");
+  expectRefused([&] { load(forcedPatch("far", kElsewhere, 1e3 * far)); }, "a smaller load");
+}
+
 TEST_F(Refusal, OfAPatchWithoutANode) {
   const Box outside{Vec3::Constant(1.0), Vec3::Constant(2.0)};
   expectLoadRefused({displacedPatch("void", outside, kDown)}, "void");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <unordered_map>
 #include <utility>
 
@@ -17,6 +18,15 @@ namespace {
 [[noreturn]] void refusePatch(const std::string& patch, const std::string& problem,
                               const std::string& allowed) {
   throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
+}
+
+// How far patches may be moved at once, beside how large the tissue is at rest.
+std::string wayText(double way, const Box& tissue) {
+  std::ostringstream text;
+  text.precision(3);
+  text << way << " m at once (the tissue is " << tissue.sizes().x() << " x " << tissue.sizes().y()
+       << " x " << tissue.sizes().z() << " m)";
+  return text.str();
 }
 
 // A node obeys one patch. A load that a removal took nodes from has them again where they are there
@@ -128,9 +138,12 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
     const bool was_as_solved = data_.outcome.is_as_solved;
     data_.restore(before);
     data_.outcome.is_as_solved = was_as_solved;
+    const bool by_force = std::any_of(targets.begin(), targets.end(), byForce);
+    const std::string most = "at most " + std::to_string(most_increments) + ", so ";
+    const double way = most_increments * data_.methods.now().patchStep();
     refusePatch(targets.front().name,
                 "the load needs " + std::to_string(increments) + " increments",
-                "at most " + std::to_string(most_increments) + ", so a smaller load");
+                most + (by_force ? "a smaller load" : wayText(way, data_.body.lattice().bounds())));
   }
   data_.history.noteOtherLoads();
   for (LoadRamp& ramp : ramps) {
