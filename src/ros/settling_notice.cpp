@@ -27,7 +27,6 @@ void SettlingNotice::tellOn() {
   const std::chrono::duration<double> period(tuning::kSettlingPeriod);
   std::unique_lock<std::mutex> lock(mutex_);
   while (!is_over_) {
-    state_.header.stamp = ros::Time::now();
     publisher_.tell(state_);
     diagnostics_.broadcast(diagnostic_msgs::DiagnosticStatus::OK, state_.message);
     end_.wait_for(lock, period, [this] { return is_over_; });

@@ -15,7 +15,7 @@ namespace robot_tissue {
 
 class SettlingNotice {
  public:
-  // `state`: what is told, with another stamp each time. What is handed in must outlive this.
+  // `state`: what is told. What is handed in must outlive this.
   SettlingNotice(const TissuePublisher& publisher, diagnostic_updater::Updater& diagnostics,
                  TissueState state);
   ~SettlingNotice();

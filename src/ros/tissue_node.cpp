@@ -289,5 +289,6 @@ void TissueNode::report(const NodeStatus& status, TissuePublisher::Wrenches wren
   }
   publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_, wrenches);
 }
+  publisher_.stoodUntil(watch_.newestStill());
 
 }  // namespace robot_tissue

@@ -55,6 +55,7 @@ void TissuePublisher::publish(const Pipeline& pipeline, const ros::Time& stamp,
 void TissuePublisher::publishSeldom(const Pipeline& pipeline, const ros::Time& stamp,
                                     const NodeStatus& status) {
   followTools(pipeline, stamp);
+  pose_stamp_ = stamp;
   publishContacts(pipeline, stamp);
   publishMarkers(pipeline, stamp);
   shape_.publish(pipeline.tissue(), stamp);
@@ -81,6 +82,7 @@ void TissuePublisher::timeWentBack() {
   wrenches_.forget();
   marker_builder_.forgetTools();
   last_contacts_ = ros::Time();
+  pose_stamp_ = ros::Time();
   shapeChanged();
 }
 
@@ -99,29 +101,32 @@ void TissuePublisher::publishWithoutPose(const Pipeline& pipeline, const ros::Ti
                                          const NodeStatus& status, Wrenches wrenches) {
   wrenches == Wrenches::kOld ? wrenches_.publishOld() : wrenches_.fallSilent();
   if (marker_builder_.fallBehind(pipeline)) toolsChanged();
-  publishMarkers(pipeline, now);
-  shape_.publish(pipeline.tissue(), now);
+  publishMarkers(pipeline, now);  // of now, as rviz has no frame of long ago
+  shape_.publish(pipeline.tissue(), pose_stamp_);
   publishState(pipeline, now, status);
 }
 
-void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& stamp,
+// `time`: of the pose that is followed, else now; it says when the next one is due.
+void TissuePublisher::publishState(const Pipeline& pipeline, const ros::Time& time,
                                    const NodeStatus& status) {
   const bool news = status.status != last_status_.status || last_state_.isZero() ||
-                    secondsBetween(last_state_, stamp) >= kStatePeriod || stamp < last_state_;
+                    secondsBetween(last_state_, time) >= kStatePeriod || time < last_state_;
   if (!news) return;
   last_status_ = status;
-  last_state_ = stamp;
+  last_state_ = time;
   if (state_.getNumSubscribers() == 0) return;
   TissueState message = stateNow(pipeline, status);
-  message.header.stamp = stamp;
   message.publish_ms = publish_ms_;
-  message.pose_age_ms = 1e3 * secondsBetween(stamp, ros::Time::now());
+  if (!pose_stamp_.isZero()) {
+    message.pose_age_ms = 1e3 * secondsBetween(pose_stamp_, ros::Time::now());
+  }
   state_.publish(message);
 }
 
 TissueState TissuePublisher::stateNow(const Pipeline& pipeline, const NodeStatus& status) const {
   TissueState message = stateMessage(pipeline, status);
   message.header.frame_id = frame_id_;
+  message.header.stamp = pose_stamp_;
   return message;
 }
 

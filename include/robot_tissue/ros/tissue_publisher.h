@@ -11,6 +11,7 @@
 #include <ros/publisher.h>
 #include <ros/time.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ class TissuePublisher {
   // publishSeldom.
   void publishStill(const ros::Time& stamp) { wrenches_.publishAgain(stamp); }
   void publishSeldom(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  // That was still so at this pose, told as still or not yet.
+  void stoodUntil(const ros::Time& stamp) { pose_stamp_ = std::max(pose_stamp_, stamp); }
   // Forgets the stamps told so far, as time went back, and publishes the shape anew.
   void timeWentBack();
   // Nothing but what goes out once a second and at every pose is to be published.
@@ -56,7 +59,7 @@ class TissuePublisher {
   void publishWithoutPose(const Pipeline& pipeline, const ros::Time& now, const NodeStatus& status,
                           Wrenches wrenches);
 
-  // Without stamp and times.
+  // Without times.
   TissueState stateNow(const Pipeline& pipeline, const NodeStatus& status) const;
   // Of what is done in place of updates; in any thread.
   void tell(const TissueState& state) const { state_.publish(state); }
@@ -77,7 +80,7 @@ class TissuePublisher {
   bool areMarkersWanted() const;
   void publishMarkers(const Pipeline& pipeline, const ros::Time& stamp);
   void publishContacts(const Pipeline& pipeline, const ros::Time& stamp);
-  void publishState(const Pipeline& pipeline, const ros::Time& stamp, const NodeStatus& status);
+  void publishState(const Pipeline& pipeline, const ros::Time& time, const NodeStatus& status);
 
   ros::NodeHandle private_node_;
   std::string frame_id_;
@@ -88,6 +91,7 @@ class TissuePublisher {
   bool contacts_due_ = true;
   ros::Time last_contacts_;
   bool latched_markers_are_out_ = false;
+  ros::Time pose_stamp_;  // of the last good pose; zero before there was one
   NodeStatus last_status_;
   ros::Time last_state_;
   double publish_ms_ = 0.0;
