@@ -204,6 +204,8 @@ void TissueNode::update(PoseLookUp look_up) {
   if (timeWentBack()) return;  // the pose may be one of before
   last_look_up_ = std::move(look_up);
   if (last_look_up_.status != PoseLookUp::Status::kOk) {
+    const std::string refused = watch_.refusedTransform();
+    if (!refused.empty()) last_look_up_.message += "; " + refused;
     return report(statusWithoutPose(last_look_up_));
   }
   try {
@@ -287,8 +289,8 @@ void TissueNode::report(const NodeStatus& status, TissuePublisher::Wrenches wren
     pipeline_.carryOn();
     publisher_.shapeChanged();
   }
+  publisher_.stoodUntil(watch_.newestStill());
   publisher_.publishWithoutPose(pipeline_, ros::Time::now(), status_, wrenches);
 }
-  publisher_.stoodUntil(watch_.newestStill());
 
 }  // namespace robot_tissue

@@ -4,6 +4,7 @@
 #include <tf2/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "robot_tissue/ros/seconds_between.h"
@@ -18,6 +19,16 @@ const ros::WallDuration kWarnPeriod(10.0);
 // those that a simulator sends with its next tick. Chosen.
 constexpr double kOnItsWay = 1.0;
 constexpr double kAheadOfClock = 0.5;
+constexpr double kQuaternionSlack = 1e-2;  // of its square (1): tf2's
+
+// Why the buffer takes no such transform, whenever it comes; empty: it does.
+std::string whyNone(const geometry_msgs::TransformStamped& transform) {
+  const auto& move = transform.transform.translation;
+  const auto& turn = transform.transform.rotation;
+  const double square = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w;
+  if (!std::isfinite(move.x + move.y + move.z + square)) return "numbers in it are not finite";
+  return std::abs(square - 1.0) > kQuaternionSlack ? "its quaternion is not of length 1" : "";
+}
 
 }  // namespace
 
@@ -33,10 +44,29 @@ void TransformIntake::take(const tf2_msgs::TFMessage& message, Kind kind) {
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
     if (kind == Kind::kMoving && !hasPlace(transform)) continue;
     try {
-      buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
+      put(transform, kind);
     } catch (const tf2::TransformException& error) {
       ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << onOneLine(error.what()));
     }
+  }
+}
+
+std::string TransformIntake::refused() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return refused_;
+}
+
+// The buffer says itself, in the log, why it does not take one. It takes none twice, too.
+void TransformIntake::put(const geometry_msgs::TransformStamped& transform, Kind kind) {
+  buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
+  const std::string& frame = transform.child_frame_id;
+  const std::string why = whyNone(transform);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!why.empty()) {
+    refused_frame_ = frame;
+    refused_ = "the transform of '" + shortText(frame) + "' is left out, as " + why;
+  } else if (refused_frame_ == frame) {
+    refused_.clear();
   }
 }
 

@@ -115,5 +115,26 @@ TEST(TransformIntake, WhatIsAheadOfATimeThatWentBackIsLeftOut) {
   EXPECT_EQ(take(102.0, 0.5, 103.0), 0.5) << "nothing of before comes so late";
 }
 
+TEST(TransformIntake, WhatIsNoTransformIsToldUntilAGoodOneComes) {
+  tf2::BufferCore buffer;
+  ros::Time::init();
+  ros::Time::setNow(ros::Time(100.0));
+  TransformIntake intake(buffer, [] { return false; });
+  const auto refused = [&](const std::string& frame, double x, double w) {
+    tf2_msgs::TFMessage message;
+    message.transforms.push_back(cameraAt(x, 100.0));
+    message.transforms.back().child_frame_id = frame;
+    message.transforms.back().transform.rotation.w = w;
+    intake.take(message, TransformIntake::Kind::kMoving);
+    return intake.refused();
+  };
+  EXPECT_EQ(refused("camera", 0.1, 1.0), "");
+  EXPECT_EQ(refused("camera", std::nan(""), 1.0),
+            "the transform of 'camera' is left out, as numbers in it are not finite");
+  EXPECT_NE(refused("tool", 0.1, 1.0), "") << "of another frame";
+  EXPECT_EQ(refused("camera", 0.1, 1.0), "");
+  EXPECT_NE(refused("camera", 0.1, 0.0).find("quaternion"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_request_frames

@@ -1,6 +1,7 @@
 // Several tools: friction, wrenches at their own rate, tools that a force drives, links that vanish
 // and jump, and what the state says of it all.
 #include <Eigen/Core>
+#include <limits>
 
 #include "node_fixture.h"
 
@@ -258,23 +259,33 @@ TEST_F(Tools, LinkThatVanishesIsNamedAndTheShapeStays) {
   vanished_ = "tine";  // the fork's other link goes on
   ASSERT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
   EXPECT_NE(state_->message.find("'tine'"), std::string::npos) << state_->message;
-  const Points shape = markers_["surface"].points;
   const ros::Time last_good = state_->header.stamp;
   EXPECT_LT(last_good, ros::Time::now() - ros::Duration(0.4)) << "of a pose that is stale";
+  const Points shape = markers_["surface"].points;
   EXPECT_FALSE(markers_["loading_patches"].points.empty());
   const ros::Time last = fork_->header.stamp;
   places_["probe"] = pressed(0.004, kRadius, -0.02);
   ASSERT_FALSE(waitFor([&] { return fork_->header.stamp > last; }, 0.5)) << "a wrench of no pose";
   EXPECT_TRUE(markers_["surface"].points == shape);
-  vanished_.clear();
   ros::Time newest = last_good;
   const ros::Subscriber listener =
       node_.subscribe<TissueState>("/tissue/state", 100, [&](const TissueStateConstPtr& state) {
         EXPECT_GE(state->header.stamp, newest) << "went back";
         newest = state->header.stamp;
       });
+  vanished_.clear();
   ASSERT_TRUE(waitFor([this] { return state_->status == "OK"; }));
   EXPECT_GT(follow().wrench.force.z, 0.1);
+}
+
+TEST_F(Tools, TransformThatIsNoneIsToldWhereItsPoseGrowsOld) {
+  places_["probe"].x() = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(waitFor([this] { return state_->status == "STALE"; }));
+  EXPECT_NE(state_->message.find("transform of 'probe' is left out"), std::string::npos)
+      << state_->message;
+  EXPECT_NE(state_->message.find("not finite"), std::string::npos) << state_->message;
+  places_["probe"] = kParked;
+  ASSERT_TRUE(waitFor([this] { return state_->status == "OK"; }));
 }
 
 // It may be a wrong pose: the shape stays until it has lasted.

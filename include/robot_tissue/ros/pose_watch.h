@@ -57,6 +57,8 @@ class PoseWatch {
   bool takeTurn();
   // How often time has gone back so far, as where a bag plays again. What was received before goes.
   int timeJumps();
+  // A transform of a frame that was left out, as it is none: which and why; else empty.
+  std::string refusedTransform() const { return feed_->refused(); }
   // From here on these poses are answered as still ones; none: none is.
   void standAt(std::optional<StillPose> still);
 

@@ -7,6 +7,7 @@
 #include <tf2/buffer_core.h>
 
 #include <functional>
+#include <string>
 
 #include "robot_tissue/ros/transform_intake.h"
 
@@ -17,6 +18,8 @@ class TransformFeed {
   // time_went_back: as TransformIntake's.
   TransformFeed(tf2::BufferCore& buffer, ros::CallbackQueueInterface& queue,
                 std::function<bool()> time_went_back);
+  // As TransformIntake's.
+  std::string refused() const { return intake_.refused(); }
 
  private:
   TransformIntake intake_;

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -23,6 +24,9 @@ class TransformIntake {
 
   // Of /tf or /tf_static, at ros::Time::now().
   void take(const tf2_msgs::TFMessage& message, Kind kind);
+  // The last transform that is none, until its frame has a good one: which and why, one line; else
+  // empty. In any thread.
+  std::string refused() const;
 
  private:
   struct Ahead {
@@ -31,6 +35,7 @@ class TransformIntake {
     ros::SteadyTime seen;
   };
 
+  void put(const geometry_msgs::TransformStamped& transform, Kind kind);
   bool hasPlace(const geometry_msgs::TransformStamped& transform);
   bool isOfBefore(const ros::Time& now, const ros::Time& stamp) const;
   void warnOfAhead();
@@ -41,6 +46,8 @@ class TransformIntake {
   std::optional<ros::Time> went_back_to_;    // the last time that time did
   std::optional<Ahead> ahead_;               // left out and not warned about yet
   ros::SteadyTime warned_;
+  mutable std::mutex mutex_;  // of the members below
+  std::string refused_frame_, refused_;
 };
 
 }  // namespace robot_tissue
