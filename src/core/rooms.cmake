@@ -66,7 +66,8 @@ set_source_files_properties(src/core/solvers/multigrid/level/constrained_balance
   PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 robot_tissue_room(solvers/multigrid/level
   USES base simd lattice membrane material loads
-  FILES cell_barrier.h cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h cell_strain.h
+  FILES cell_barrier.h cell_block.h cell_kernel.cpp cell_kernel.h cell_operator.cpp cell_operator.h
+    cell_relief.cpp cell_relief.h cell_strain.h
   filled_block.h
     conjugate_gradients.h constrained_balance.cpp constrained_nodes.cpp constrained_nodes.h grid_level.cpp grid_level.h lattice_coarsening.cpp lattice_coarsening.h
     group_inverse.cpp group_inverse.h level_cell.cpp level_cell.h

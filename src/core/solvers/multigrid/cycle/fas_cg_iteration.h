@@ -42,7 +42,10 @@ class FasCgIteration {
     cycle_.noteOpened();
     estimator_.noteOpened();
   }
-  void forget() { estimator_.factor.forget(); }
+  void forget() {
+    estimator_.factor.forget();
+    is_bent_ = false;
+  }
 
   SolveStatus run(SolveContext& solve);
   double error() const { return estimator_.error(); }  // of the shape that the last run left
@@ -50,6 +53,7 @@ class FasCgIteration {
 
  private:
   SolveStatus check(const SolveContext& solve);
+  bool isBent(const SolveContext& solve) const;
   bool areMembranesStiff(const SolveContext& solve) const;
   bool isBalanced(const SolveContext& solve) const;
   bool isEasy(const SolveContext& solve) const;
@@ -69,6 +73,7 @@ class FasCgIteration {
   FasCgCycle<Real> cycle_;
   ErrorEstimator<Real> estimator_;
   SolveProgress<Real> progress_;
+  bool is_bent_ = false;  // coarse cells need relief
 };
 
 extern template class FasCgIteration<float>;

@@ -59,6 +59,10 @@ constexpr int kLongSolve = 30;
 // Ways that are kept. 2, 4, 8, 16 from the first cycle on: sliver_pulled 639, 502, 821, 632 cycles,
 // one alone 1,663; ratio_10000 4,050, 1,866, 350, 141. Up: fewer cycles; two fields each.
 constexpr std::size_t kMostWays = 16;
+// Cycles of a solve without contacts after which, where they are slow, coarse cells have relief
+// (model.md). 1, 5, 12: bars that sag far take 54, 56 and 66 cycles (mean of nine). Up: those take
+// more; down: solves that need none pay for it, and end in other bits.
+constexpr int kCyclesBeforeRelief = 12;
 // Share of a cycle's own slope that is left, at least, once it is conjugate to a way: below, this
 // one and older ones do not fit any more. 0.1: sliver_pulled took up to 1,973 cycles, mesh_ball_20
 // up to 338. Up: ways are forgotten sooner.

@@ -11,6 +11,7 @@ FasRestriction<Real>::FasRestriction(CompositeGrid<Real>& grid,
 
 template <typename Real>
 void FasRestriction<Real>::reset() {
+  has_relief_ = false;
   to_.assign(grid_.levelCount() - 1, {});
   for (std::size_t coarse = 1; coarse < grid_.levelCount(); ++coarse) {
     for (auto& values : to_[coarse - 1].residual) {
@@ -40,7 +41,18 @@ void FasRestriction<Real>::restrictTo(std::size_t index) {
     vector.template head<3>() /= kTwice * kTwice;
     vector.template tail<3>() /= kTwice * kTwice * kTwice;
   }
+  if (has_relief_) coarse.relieve(fine);
   coarse.setFasRightHandSide(to.residual, to.residual_of_groups);
+}
+
+template <typename Real>
+void FasRestriction<Real>::relieve(bool with_relief) {
+  if (has_relief_ == with_relief) return;
+  has_relief_ = with_relief;
+  if (with_relief) return;
+  for (std::size_t coarse = 1; coarse < grid_.levelCount(); ++coarse) {
+    grid_.level(coarse).endRelief();
+  }
 }
 
 // As stiff as the fine level's are now (E0 h: half the number), and without a force at the start.

@@ -25,6 +25,9 @@ class FasRestriction {
   void reset();
   // From the next finer level; its forces must be those of its displacement.
   void restrictTo(std::size_t coarse);
+  // The coarse levels' cells have relief from now on (cell_relief.h), or none, as from the first.
+  // Only where all is open.
+  void relieve(bool with_relief);
   // Displacement that a coarse level was given last.
   const Field<Real>& start(std::size_t coarse) const { return to_[coarse - 1].start; }
 
@@ -40,6 +43,7 @@ class FasRestriction {
   CompositeGrid<Real>& grid_;
   const LevelConstraints<Real>& constraints_;
   std::vector<ToLevel> to_;  // per coarse level
+  bool has_relief_ = false;
 };
 
 extern template class FasRestriction<float>;

@@ -49,6 +49,9 @@ class GridHierarchy {
   void forgetMembranes() { grid_.forgetMembranes(); }
   void coupleMembranes(bool together) { grid_.coupleMembranes(together); }
 
+  // As FasRestriction.
+  void relieve(bool with_relief) { restriction_.relieve(with_relief); }
+
   LevelConstraints<Real>& constraints() { return constraints_; }
   NodeDisplacements<Real>& displacements() { return displacements_; }
   const NodeDisplacements<Real>& displacements() const { return displacements_; }

@@ -32,7 +32,10 @@ struct Block {
   bool has_viscosity = false;
   L viscous_shear, viscous_lame;  // mu and lambda of the strain that the step adds
   L rest_slopes[3][3];            // of F where the rate is taken from
-  L parts{};                      // bulk where the volumes of a cell's parts are held
+  // Of a coarse cell that has relief (cell_relief.h): it is added to m_1, m_2, m_4. Else not set.
+  bool has_relief = false;
+  L relief[3][3];
+  L parts{};  // bulk where the volumes of a cell's parts are held
   bool has_parts = false;
   // From corners to modes, M_s = sum over k of (-1)^(bits in k and s) x_k, by sums and differences
   // along one axis after another (Walsh-Hadamard). Twice gives eight times what was: it also goes
@@ -59,6 +62,7 @@ struct Block {
     for (int axis = 0; axis < 3; ++axis) {
 #pragma GCC unroll 7
       for (int s = 1; s < kCorners; ++s) mode[s][axis] *= Real(0.25);
+      if (has_relief) addRelief(axis);
       const L bent = mode[3][axis] * mode[3][axis] + mode[5][axis] * mode[5][axis] +
                      mode[6][axis] * mode[6][axis];
       const L twisted = mode[7][axis] * mode[7][axis];
@@ -68,6 +72,11 @@ struct Block {
       invariant += strained + (bent + bent + twisted) * Real(1.0 / 3.0);
     }
     measureMeans();
+  }
+
+  ROBOT_TISSUE_INLINE void addRelief(int axis) {
+#pragma GCC unroll 3
+    for (int a0 = 0; a0 < 3; ++a0) mode[1 << a0][axis] += relief[a0][axis];
   }
 
   // Of the mean deformation gradient.

@@ -65,6 +65,12 @@ ROBOT_TISSUE_INLINE void addBlock(const CellGrid<typename V::Real>& grid, const 
     }
     block.divideModuli(grid.elastic, grid.viscous);
   }
+  block.has_relief = grid.hasRelief();
+  if (block.has_relief) {
+    for (std::size_t i = 0; i < kNine; ++i) {
+      block.relief[i / 3][i % 3] = load<V>(grid.relief[i] + first);
+    }
+  }
   block.template solve<kWithStiffness, kStiffens>();
   typename V::Lanes stiffness[kCorners / 2][kSymmetric];
   if constexpr (kWithStiffness) block.findStiffness(stiffness);
@@ -121,6 +127,17 @@ ROBOT_TISSUE_INLINE void takeViscosity(const CellGrid<typename V::Real>& grid, c
   block.divideModuli(grid.elastic, grid.viscous);
 }
 
+// Likewise.
+template <typename V, typename Cells>
+ROBOT_TISSUE_INLINE void takeRelief(const Cells* cells, int count, Block<V>& block) {
+  block.has_relief = true;
+  for (std::size_t i = 0; i < kNine; ++i) {
+    typename V::Lanes& here = block.relief[i / 3][i % 3];
+    here = typename V::Lanes{};
+    for (int cell = 0; cell < count; ++cell) here[cell] = cells[cell].relief[i];
+  }
+}
+
 template <typename V>
 ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
                                        const LooseCell<typename V::Real>* cells, int count) {
@@ -141,6 +158,7 @@ ROBOT_TISSUE_INLINE void addLooseBlock(const CellGrid<typename V::Real>& grid,
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
   if (grid.has_viscosity) takeViscosity<V>(grid, cells, count, block);
+  if (grid.hasRelief()) takeRelief<V>(cells, count, block);
   if (grid.stiffening == nullptr) {
     block.template solve<true, false>();
   } else {
@@ -225,6 +243,7 @@ ROBOT_TISSUE_INLINE void addFilledBlock(const CellGrid<typename V::Real>& grid,
   block.has_parts = grid.loose_stand;
   block.parts = block.bulk;
   if (grid.has_viscosity) takeViscosity<V>(grid, cells, count, block);
+  if (grid.hasRelief()) takeRelief<V>(cells, count, block);
   L stiffness[kMostReached][kSymmetric];
   L(*const asked)[kSymmetric] = grid.findsStiffness() ? stiffness : nullptr;
   if (grid.stiffening == nullptr) {

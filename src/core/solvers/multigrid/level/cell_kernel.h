@@ -51,6 +51,9 @@ struct CellGrid {
   bool has_viscosity;
   Real elastic, viscous;
   std::array<const Real*, kNine> inverse;
+  // Per cell, what is added to m_1, m_2, m_4 (cell_relief.h); null: nothing, for loose cells, too.
+  std::array<const Real*, kNine> relief;
+  bool hasRelief() const { return relief[0] != nullptr; }
   // Where a plane of cells adds its forces, from node `origin` on: those on the cells' lower four
   // corners, and those on the upper ones, which are in the next plane of nodes.
   int origin;
@@ -73,6 +76,7 @@ struct LooseCell {
   Real bulk = 0;
   Real stiffening = 0;
   std::array<Real, kNine> inverse{};  // CellGrid::inverse
+  std::array<Real, kNine> relief{};   // CellGrid::relief
 };
 
 // Adds the forces of the cells to `lower`.

@@ -186,16 +186,21 @@ void CellOperator<Real>::setViscosity(double share, const Field<Real>& rate_from
   if (!(share > 0.0)) return;
   for (int cell = 0; cell < grid_.beside; ++cell) {
     if (!(shear_[at(cell)] > Real(0))) continue;
-    std::array<int, kCorners> nodes;
-    for (int corner = 0; corner < kCorners; ++corner) {
-      nodes[at(corner)] =
-          cell + (corner & 1) + (corner >> 1 & 1) * grid_.row + (corner >> 2 & 1) * grid_.plane;
-    }
-    const std::array<Real, kNine> inverse = inverseOf(meanStrain(rate_from, nodes));
+    const std::array<Real, kNine> inverse = inverseOf(meanStrain(rate_from, nodesOf(cell)));
     for (std::size_t i = 0; i < kNine; ++i) inverse_[i][at(cell)] = inverse[i];
   }
   for (LooseCell<Real>& cell : loose_) cell.inverse = inverseOf(meanStrain(rate_from, cell.nodes));
   for (FilledCell<Real>& cell : filled_) cell.inverse = inverseOf(meanStrain(rate_from, cell));
+}
+
+template <typename Real>
+std::array<int, kCorners> CellOperator<Real>::nodesOf(int cell) const {
+  std::array<int, kCorners> nodes;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    nodes[at(corner)] =
+        cell + (corner & 1) + (corner >> 1 & 1) * grid_.row + (corner >> 2 & 1) * grid_.plane;
+  }
+  return nodes;
 }
 
 template <typename Real>
@@ -236,6 +241,10 @@ void CellOperator<Real>::findForcesOfCovered(const Loads& loads) {
 // computed by both.
 template <typename Real>
 void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks& blocks) {
+  for (std::size_t axis = 0; hasRelief() && axis < 3; ++axis) {
+    subtract(loads.displacement[axis].data(), relieved_at_[axis].data(), Real(1),
+             motion_[axis].data(), count_);
+  }
   if (!isShared()) {
     findPlanes(loads, what, blocks, 0, grid_.size[2], sums_.front());
   } else {
@@ -249,8 +258,9 @@ void CellOperator<Real>::findForces(const Loads& loads, Find what, const Blocks&
 template <typename Real>
 CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   CellGrid<Real> cells{};
+  const Field<Real>& displacement = hasRelief() ? motion_ : loads.displacement;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    cells.displacement[axis] = loads.displacement[axis].data();
+    cells.displacement[axis] = displacement[axis].data();
   }
   cells.shear = shear_.data();
   cells.bulk = bulk_.data();
@@ -263,6 +273,7 @@ CellGrid<Real> CellOperator<Real>::gridOf(const Loads& loads) const {
   cells.elastic = elastic_;
   cells.viscous = viscous_;
   for (std::size_t i = 0; i < kNine; ++i) cells.inverse[i] = inverse_[i].data();
+  for (std::size_t i = 0; hasRelief() && i < kNine; ++i) cells.relief[i] = relief_[i].data();
   return cells;
 }
 

@@ -14,6 +14,7 @@
 #include "simd/numbers.h"
 #include "simd/workers.h"
 #include "solvers/multigrid/level/cell_kernel.h"
+#include "solvers/multigrid/level/cell_relief.h"
 #include "solvers/multigrid/level/lattice_coarsening.h"
 #include "solvers/multigrid/level/tuning.h"
 
@@ -79,6 +80,11 @@ class CellOperator {
   void takeFree(const Loads& loads) const;
   // Of covered cells alone, and of the right-hand side.
   void findForcesOfCovered(const Loads& loads);
+  // Relief (cell_relief.h): what the cells are stretched by, for a coarser level; and from now on,
+  // at this displacement, they are stretched as the finer level's.
+  void addStretches(const Field<Real>& displacement, StretchMeans& means) const;
+  void relieve(const Field<Real>& displacement, const StretchMeans& of_finer);
+  void endRelief();
   // In these threads from now on, with the same results.
   void share(Workers& workers);
   // In a time step with damping, such a share of the moduli (0 to below 1) is of the strain that is
@@ -114,11 +120,15 @@ class CellOperator {
   void place(const std::vector<LevelCell>& cells);
   void placeSums(std::vector<int> sum_of);
   void findBlocks();
+  bool hasRelief() const { return !relief_.front().empty(); }
+  std::array<int, kCorners> nodesOf(int cell) const;  // of one of the grid
   void makeSums(int threads);
   void findForces(const Loads& loads, Find what, const Blocks& blocks);
   void findPlanes(const Loads& loads, Find what, const Blocks& blocks, int first, int end,
                   Sums& sums);
   std::array<Real, kNine> inverseOf(const Eigen::Matrix3d& strain) const;
+  std::array<Real, kNine> reliefOf(const Eigen::Matrix3d& strain, int lowest,
+                                   const StretchMeans& of_finer) const;
   CellGrid<Real> gridOf(const Loads& loads) const;
   void addPlane(const Loads& loads, Find what, const std::vector<CellBlock>& blocks, int plane,
                 Sums& sums) const;
@@ -132,6 +142,9 @@ class CellOperator {
   Numbers<Real> stiffening_;                  // empty: 0 in all
   Real elastic_ = 1, viscous_ = 0;            // shares of the moduli
   std::array<Numbers<Real>, kNine> inverse_;  // CellGrid::inverse; empty: all is elastic
+  std::array<Numbers<Real>, kNine> relief_;   // CellGrid::relief; empty: none
+  Field<Real> relieved_at_;                   // displacement where relief was found
+  Field<Real> motion_;                        // since then
   std::vector<LooseCell<Real>> loose_;
   std::vector<FilledCell<Real>> filled_;
   std::vector<int> loose_nodes_;  // of loose cells and filled ones

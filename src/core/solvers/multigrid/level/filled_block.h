@@ -34,9 +34,11 @@ struct FilledBlock : Block<V> {
   using Block<V>::a;
   using Block<V>::cofactor;
   using Block<V>::has_parts;
+  using Block<V>::has_relief;
   using Block<V>::has_viscosity;
   using Block<V>::invariant;
   using Block<V>::pressure;
+  using Block<V>::relief;
   using Block<V>::shear;
   using Block<V>::slight;
   using Block<V>::of_strain;
@@ -187,7 +189,8 @@ struct FilledBlock : Block<V> {
     for (int axis = 0; axis < 3; ++axis) {
       L strained{}, bent{};
       for (int a0 = 0; a0 < 3; ++a0) {
-        strained += mode[1 << a0][axis] * mode[1 << a0][axis];
+        const L along = has_relief ? mode[1 << a0][axis] + relief[a0][axis] : mode[1 << a0][axis];
+        strained += along * along;
         bent += mode[pairMode(a0)][axis] * mode[pairMode(a0)][axis];
       }
       slight += strained + Real(6.0) * bent + Real(9.0) * mode[7][axis] * mode[7][axis];
@@ -195,6 +198,7 @@ struct FilledBlock : Block<V> {
     shiftModes<1>(fill);
     reachOut(fill);
     for (int axis = 0; axis < 3; ++axis) {
+      if (has_relief) this->addRelief(axis);
       for (int a0 = 0; a0 < 3; ++a0) {
         invariant += mode[1 << a0][axis] * mode[1 << a0][axis];
       }

@@ -172,6 +172,13 @@ void GridLevel<Real>::hideInterface() {
 }
 
 template <typename Real>
+void GridLevel<Real>::relieve(const GridLevel& finer) {
+  StretchMeans means(finer.grid());
+  finer.cells_.addStretches(finer.displacement, means);
+  cells_.relieve(displacement, means);
+}
+
+template <typename Real>
 void GridLevel<Real>::findForces(Find what) {
   cells_.findForces({displacement, right_hand_side, free_, force, inverse_}, what);
   if (membrane_) membrane_->addForces(displacement, cells_.whole);

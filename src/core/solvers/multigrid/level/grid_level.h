@@ -86,6 +86,10 @@ class GridLevel {
   // What damps strain, as forces of the cells on all nodes at these displacements.
   Field<Real> viscousForces(const Field<Real>& at_displacement);
 
+  // As CellOperator: the cells are stretched as the finer level's, where the displacement is now.
+  void relieve(const GridLevel& finer);
+  void endRelief() { cells_.endRelief(); }
+
   // Unbalanced forces at `displacement`, and the stiffness D that the smoother's steps go by.
   void findForces(Find what = Find::kForcesAndStiffness);
   // The same, where cells are as findForces() last found them: only what holds the nodes changed.

@@ -45,6 +45,17 @@ constexpr double kNoTurn = 1e-5;
 constexpr double kTogetherShare = 0.01;
 constexpr int kMostTogether = 12;
 
+// --- Relief (cell_relief.h)
+
+// Volume ratio below which a coarse cell has none: which way it is turned is hardly told (chosen).
+// Up: cells that are squeezed flat are as they were before.
+constexpr double kFlattestRelieved = 0.05;
+// Steps of Newton's method for a cell's rotation, at most, and the square of the change after which
+// it ends (chosen: cells stretched by half take five). Up: dearer; down: rougher, which shows in
+// cycles alone.
+constexpr int kStepsOfRotation = 8;
+constexpr double kSameRotation = 1e-8;
+
 // --- Threads
 
 // Nodes of a level: with fewer, threads that find their forces wait more than they work (3,000: a
