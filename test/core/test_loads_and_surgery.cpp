@@ -94,6 +94,32 @@ TEST(LoadsAndRemovals, ALoadHasItsNodesAgainByItsBoxAfterAnUndo) {
   EXPECT_EQ(tissue.state().displacement[at(middle)], Vec3(0.0, 0.0, -0.004));
 }
 
+// As if nothing had been removed: the patch is one hard piece again, and turns about its middle.
+TEST(LoadsAndRemovals, ALoadThatTurnsIsWholeAgainByItsBoxAfterAnUndo) {
+  const TissueConfig config = block(8, 6, 4, 0.3);
+  SolverConfig exact;
+  exact.method = "newton";
+  PatchConfig a = forcedPatch("a", nodeBox(config, {2, 1, 4}, {6, 5, 4}), Vec3(0.0, 0.6, 0.6));
+  a.turns = true;
+  const LoadStep beside =
+      loadOf({displacedPatch("b", nodeBox(config, {0, 0, 4}, {0, 1, 4}), Vec3(0.0, 0.0, -0.001))});
+  Tissue whole(config, exact), tissue(config, exact);
+  whole.load(loadOf({a}));
+  whole.load(beside);
+  tissue.load(loadOf({a}));
+  tissue.remove(PlacedBox{Box(Vec3(0.045, -1.0, 0.015), Vec3(1.0, 1.0, 1.0))});
+  ASSERT_LT(nodesOfPatch(tissue, "a").size(), nodesOfPatch(whole, "a").size());
+  tissue.load(beside);
+  tissue.undo(1);
+  tissue.load(loadOf({a}));
+  EXPECT_EQ(nodesOfPatch(tissue, "a"), nodesOfPatch(whole, "a"));
+  EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk);
+  for (int node = 0; node < tissue.lattice().nodeCount(); ++node) {
+    const Vec3 off = tissue.state().displacement[at(node)] - whole.state().displacement[at(node)];
+    ASSERT_LT(off.norm(), 1e-6) << node;
+  }
+}
+
 TEST(SuturesThatTear, TearInTheirOwnStep) {
   TissueConfig config = block(20, 10, 6, 0.45, 0.005);
   config.material.tear_stretch = 1.3;

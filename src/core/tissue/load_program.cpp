@@ -59,8 +59,8 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
     if (replaced == patches.end()) {
       claim(patch);
     } else if (!has_all_of(patch.nodes)) {
-      refusePatch(patch.name, "a patch of this name stands on other nodes",
-                  "the same box, or a release");
+      refusePatch(patch.name, "a patch of this name stands on nodes outside of its box",
+                  "a box that holds these, too, or a release");
     }
   }
   std::set<std::string> names;
@@ -146,17 +146,54 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
                 most + (by_force ? "a smaller load" : wayText(way, data_.body.lattice().bounds())));
   }
   data_.history.noteOtherLoads();
-  for (LoadRamp& ramp : ramps) {
-    data_.loads.dropDue(ramp.target.name);
-    ramp.patch = data_.loads.place(ramp.start);
-  }
-  leaveRimsToOwners(data_.loads.patches());
+  for (const LoadRamp& ramp : ramps) data_.loads.dropDue(ramp.target.name);
+  placeStarts(ramps);
   // A support that it rests on holds it from the first on.
   if (data_.loads.isUntouched()) solver_.renewContacts();
   if (step.increments) {
     stepping_.stepLoads(ramps, increments, on_increment);
   } else {
     stepping_.stepLoadsByItself(ramps, on_increment);
+  }
+}
+
+void LoadProgram::placeStarts(std::vector<LoadRamp>& ramps) {
+  for (LoadRamp& ramp : ramps) {
+    const LoadingPatch* standing = data_.loads.find(ramp.target.name);
+    if (standing != nullptr && byForce(ramp.target) && standing->nodes != ramp.target.nodes) {
+      layNewNodes(*standing, ramp.start);
+    }
+    ramp.patch = data_.loads.place(ramp.start);
+  }
+  leaveRimsToOwners(data_.loads.patches());
+}
+
+// Nodes that the patch did not hold so far, as a removal took them and they are there again, go
+// where its other nodes have them: it is one hard piece.
+void LoadProgram::layNewNodes(const LoadingPatch& standing, LoadingPatch& start) const {
+  const Lattice& lattice = data_.body.lattice();
+  const Eigen::Matrix3d& rotation = standing.place.rotation;
+  LatticeState& state = data_.body.change();
+  const std::vector<Vec3> own = ownDisplacement(standing, state.displacement);
+  Vec3 shift = Vec3::Zero();
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vec3 rest = lattice.restPosition(standing.nodes[i]);
+    shift += (rest + own[i] - rotation * rest) / static_cast<double>(own.size());
+  }
+  const auto laid = [&](int node) -> Vec3 {
+    const Vec3 rest = lattice.restPosition(node);
+    return rotation * rest + shift - rest;
+  };
+  const auto has = [](const auto& nodes, int node) {
+    return std::binary_search(nodes.begin(), nodes.end(), node);
+  };
+  for (const int node : start.nodes) {
+    if (!has(standing.nodes, node)) state.displacement[at(node)] = laid(node);
+  }
+  std::vector<int> rim_before;
+  for (const RimSpring& spring : standing.rim) rim_before.push_back(spring.node);
+  for (RimSpring& spring : start.rim) {
+    if (!has(rim_before, spring.node)) spring.anchor = laid(spring.node);
   }
 }
 
@@ -169,8 +206,7 @@ void LoadProgram::loadOn(const Tissue::OnIncrement& on_increment) {
     if (standing != nullptr) ramps.push_back(makeRamp(target, standing));
   }
   if (ramps.empty()) return;
-  for (LoadRamp& ramp : ramps) ramp.patch = data_.loads.place(ramp.start);
-  leaveRimsToOwners(data_.loads.patches());
+  placeStarts(ramps);
   endComingBack(stepping_.stepLoadsByItself(ramps, on_increment));
 }
 
@@ -336,7 +372,7 @@ LoadRamp LoadProgram::makeRamp(const LoadingPatch& target, const LoadingPatch* s
         if (earlier.node == spring.node) spring.anchor = earlier.anchor;
       }
     }
-    if (standing->drive == target.drive) ramp.start.place = standing->place;
+    if (standing->drive == target.drive) ramp.start.place = placeAbout(target.center, *standing);
   }
   if (byForce(target)) {
     ramp.start.force = patchForce(ramp.start);

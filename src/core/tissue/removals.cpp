@@ -55,12 +55,11 @@ RemoveReport Surgery::takeAway(const std::vector<std::uint8_t>& within, Stroke s
   return report;
 }
 
-// The force acts in the middle of the nodes that are left, which stand where they did: for all x,
-// c' + d' + R (x - c') = c + d + R (x - c).
+// The force acts in the middle of the nodes that are left, which stand where they did.
 void Surgery::centerAnew(LoadingPatch& patch) const {
   if (!byForce(patch) || patch.nodes.empty()) return;
-  const Vec3 center = restCenter(data_.body.lattice(), patch.nodes), moved = center - patch.center;
-  patch.place.displacement += patch.place.rotation * moved - moved;
+  const Vec3 center = restCenter(data_.body.lattice(), patch.nodes);
+  patch.place = placeAbout(center, patch);
   patch.center = center;
 }
 

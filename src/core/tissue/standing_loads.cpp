@@ -49,6 +49,15 @@ Vec3 restCenter(const Lattice& lattice, const std::vector<int>& nodes) {
   return center;
 }
 
+// For all x, c' + d' + R (x - c') = c + d + R (x - c).
+PatchPlace placeAbout(const Vec3& center, const LoadingPatch& patch) {
+  if (center == patch.center) return patch.place;
+  PatchPlace place = patch.place;
+  const Vec3 moved = center - patch.center;
+  place.displacement += place.rotation * moved - moved;
+  return place;
+}
+
 std::vector<LoadingPatch> StandingLoads::namedLoads() const {
   return {patches_.begin(), patches_.begin() + offset(named_)};
 }

@@ -20,6 +20,8 @@ namespace robot_tissue {
 // Or at one place: nothing keeps a patch of these nodes from turning.
 bool areOnALine(const Lattice& lattice, const std::vector<int>& nodes);
 Vec3 restCenter(const Lattice& lattice, const std::vector<int>& nodes);  // their mean (m)
+// Where the patch by force stands, told of another center at rest (m).
+PatchPlace placeAbout(const Vec3& center, const LoadingPatch& patch);
 
 class StandingLoads {
  public:
