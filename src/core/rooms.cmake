@@ -55,7 +55,7 @@ robot_tissue_room(loads
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base config lattice cutting loads
-  FILES bytes.h checked_values.cpp checked_values.h saved_loads.cpp saved_loads.h saved_pieces.cpp
+  FILES bytes.h checked_values.cpp checked_values.h saved_lattice.cpp saved_lattice.h saved_loads.cpp saved_loads.h saved_pieces.cpp
     saved_pieces.h saved_state.cpp saved_state.h saved_sutures.cpp saved_sutures.h)
 robot_tissue_room(solvers
   USES base lattice loads

@@ -314,5 +314,22 @@ TEST(SavedState, OfALoadOnItsWayGoesOnToItsEnd) {
   }
 }
 
+// 2 km below where it was made.
+TEST(SavedState, OfTissueThatFellFarComesBack) {
+  TissueConfig config = blockOf(2, 2, 2, kSpacing);
+  config.model = "elastic";
+  config.gravity = Vec3(0.0, 0.0, -9.81);
+  config.time = TimeConfig{0.01};
+  Tissue tissue(config, solverFor("elastic")), other(config, solverFor("elastic"));
+  tissue.wait(20.0);
+  const std::string bytes = tissue.savedState();
+  ASSERT_LT(tissue.state().displacement.front().z(), -1900.0);
+  loadInto(other, bytes);
+  for (std::size_t node = 0; node < other.state().displacement.size(); ++node) {
+    const Vec3 off = other.state().displacement[node] - tissue.state().displacement[node];
+    EXPECT_LT(off.norm(), 1e-3) << node;
+  }
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_saved_state

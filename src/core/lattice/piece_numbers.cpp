@@ -10,15 +10,12 @@
 namespace robot_tissue {
 namespace {
 
-// Shares of cells are summed in millionths, so that parts of one size are equal.
-constexpr double kShareSteps = 1e6;
-
-// Of the cells that each part has (1 / kShareSteps of an eighth).
+// Of the cells that each part has (millionths of an eighth).
 std::vector<std::int64_t> sizesOf(const Lattice& lattice, const LatticeState& state,
                                   const std::vector<int>& part_of_node) {
   std::vector<std::int64_t> sizes(at(state.pieces), 0);
   for (const Cell& cell : lattice.cells()) {
-    const std::int64_t eighth = std::llround(kShareSteps * cell.share());
+    const std::int64_t eighth = millionthsOf(cell);
     for (int corner = 0; corner < kCorners; ++corner) {
       if (isTaken(state, cell.place, corner)) continue;
       sizes[at(part_of_node[at(cell.nodes[at(corner)])])] += eighth;
@@ -28,6 +25,8 @@ std::vector<std::int64_t> sizesOf(const Lattice& lattice, const LatticeState& st
 }
 
 }  // namespace
+
+std::int64_t millionthsOf(const Cell& cell) { return std::llround(1e6 * cell.share()); }
 
 bool PieceNumbers::Names::areCounted() const {
   for (std::size_t part = 0; part < of_parts.size(); ++part) {

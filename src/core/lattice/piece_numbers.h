@@ -1,12 +1,16 @@
 // What the parts of a lattice are called, through all cuts and removals (own).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/lattice_state.h"
 
 namespace robot_tissue {
+
+// The cell's share (Cell::share), so that parts of one size are equal.
+std::int64_t millionthsOf(const Cell& cell);
 
 // A part that comes apart leaves its number to the largest of what it leaves, by volume at rest, of
 // equal ones to that with the lowest node; the others get the next numbers, in the order of their

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "saving/checked_values.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -17,7 +19,7 @@ std::vector<int> takeAll(std::vector<char>& is_given, ByteReader& in) {
   for (int& number : numbers) {
     const std::uint32_t taken = in.u32();
     if (taken >= is_given.size() || is_given[taken] != 0) {
-      throw InputError("is damaged: a piece's number is given twice, or was never given");
+      failAsDamaged("a piece's number is given twice, or was never given");
     }
     is_given[taken] = 1;
     number = static_cast<int>(taken);
@@ -37,16 +39,16 @@ void putPieces(const PieceNumbers::Names& names, ByteWriter& out) {
 // than nodes.
 PieceNumbers::Names takePieces(int pieces, int node_count, ByteReader& in) {
   const std::uint32_t next = in.u32();
-  if (next > at(node_count)) throw InputError("is damaged: it has more pieces than nodes");
+  if (next > at(node_count)) failAsDamaged("it has more pieces than nodes");
   PieceNumbers::Names names;
   names.next = static_cast<int>(next);
   std::vector<char> is_given(next, 0);
   names.of_parts = takeAll(is_given, in);
   if (names.of_parts.size() != at(pieces)) {
-    throw InputError("is damaged: its pieces do not fit its severed springs");
+    failAsDamaged("its pieces do not fit its severed springs");
   }
   names.dropped = takeAll(is_given, in);
-  if (names.areCounted()) throw InputError("is damaged: its pieces need no numbers");
+  if (names.areCounted()) failAsDamaged("its pieces need no numbers");
   return names;
 }
 

@@ -1,14 +1,11 @@
 #include "saving/saved_state.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "cutting/cut.h"
-#include "cutting/cut_front.h"
-#include "cutting/removal.h"
 #include "cutting/split_cells.h"
 #include "lattice/connectivity.h"
 #include "saving/bytes.h"
+#include "saving/saved_lattice.h"
 #include "saving/saved_loads.h"
 #include "saving/saved_pieces.h"
 #include "saving/saved_sutures.h"
@@ -37,10 +34,6 @@ constexpr std::uint8_t kHasFronts = 32;
 constexpr std::uint8_t kHasDueLoads = 64;
 constexpr std::size_t kHeaderBytes = 56;
 constexpr std::size_t kBodyHashAt = 24;
-// Of the tissue's size (1): a node farther off than that is no shape of it. More: numbers that no
-// method gets on from. Chosen.
-constexpr double kFarthest = 1e4;
-constexpr double kShareSteps = 1e6;  // shares of cells are compared to a millionth
 
 std::string headerFor(const std::string& body, std::uint32_t version,
                       const StateFingerprint& fingerprint) {
@@ -76,12 +69,12 @@ Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
   const std::uint64_t size = header.u64(), body_hash = header.u64();
   const std::uint64_t lattice = header.u64(), scene = header.u64();
   if (version == 0 || header.u64() != hashOf(bytes.substr(0, kHeaderBytes - 8))) {
-    throw InputError("is damaged: the header does not fit its checksum");
+    failAsDamaged("the header does not fit its checksum");
   }
   const std::string_view body = bytes.substr(kHeaderBytes);
   if (body.size() < size) throw InputError("ends too early");
   if (body.size() > size || hashOf(body) != body_hash) {
-    throw InputError("is damaged: the content does not fit its checksum");
+    failAsDamaged("the content does not fit its checksum");
   }
   if (lattice != fingerprint.lattice) {
     throw InputError(
@@ -89,29 +82,6 @@ Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
         "and fixed nodes");
   }
   return {body, version, scene == fingerprint.scene};
-}
-
-void putBits(const std::vector<std::uint8_t>& flags, ByteWriter& out) {
-  for (std::size_t first = 0; first < flags.size(); first += 8) {
-    unsigned bits = 0;
-    for (std::size_t i = first; i < std::min(first + 8, flags.size()); ++i) {
-      if (flags[i] != 0) bits |= 1U << (i - first);
-    }
-    out.u8(static_cast<std::uint8_t>(bits));
-  }
-}
-
-std::vector<std::uint8_t> takeBits(std::size_t count, ByteReader& in) {
-  std::vector<std::uint8_t> flags(count, 0);
-  for (std::size_t first = 0; first < count; first += 8) {
-    const unsigned bits = in.u8();
-    for (std::size_t i = 0; i < 8; ++i) {
-      if ((bits >> i & 1U) == 0) continue;
-      if (first + i >= count) throw InputError("is damaged: a flag of nothing is set");
-      flags[first + i] = 1;
-    }
-  }
-  return flags;
 }
 
 std::uint8_t extrasOf(const SavedState& state) {
@@ -143,77 +113,9 @@ std::uint8_t takeExtras(std::uint32_t version, ByteReader& in) {
                        kHasFronts | kHasDueLoads;
   const bool has_lost_bites = (extras & kHasBites) != 0 && (extras & kHasSutures) == 0;
   if (extras > all || versionOf(extras) != version || has_lost_bites) {
-    throw InputError("is damaged: it has nothing of its version, or more");
+    failAsDamaged("it has nothing of its version, or more");
   }
   return extras;
-}
-
-// Of severed springs, in ascending order.
-void putPartings(const LatticeState& state, ByteWriter& out) {
-  for (std::size_t spring = 0; spring < state.severed.size(); ++spring) {
-    if (state.severed[spring] != 0) out.f64(state.parted_at[spring]);
-  }
-}
-
-void takePartings(LatticeState& state, ByteReader& in) {
-  state.parted_at.assign(state.severed.size(), 0.5);
-  for (std::size_t spring = 0; spring < state.severed.size(); ++spring) {
-    if (state.severed[spring] == 0) continue;
-    const double along = in.f64();
-    if (along != 0.0 && !(along >= kEnd && along <= 1.0 - kEnd)) {
-      throw InputError("is damaged: a spring is parted beyond its ends");
-    }
-    state.parted_at[spring] = along;
-  }
-}
-
-void putFronts(const LatticeState& state, ByteWriter& out) {
-  out.count(state.ahead.size());
-  for (const SpringAhead& each : state.ahead) {
-    out.index(each.spring);
-    out.f64(each.along);
-    out.f64(each.distance);
-  }
-}
-
-void takeFronts(const Lattice& lattice, LatticeState& state, ByteReader& in) {
-  const int springs = static_cast<int>(state.severed.size());
-  state.ahead.resize(in.count(sizeof(std::uint32_t) + 2 * sizeof(double)));
-  for (SpringAhead& each : state.ahead) {
-    each.spring = takeNode(springs, in);
-    each.along = in.f64();
-    each.distance = in.f64();
-    const bool is_place = each.along >= kEnd && each.along <= 1.0 - kEnd;
-    if (!is_place || !(each.distance >= 0.0 && each.distance <= kFarthest)) {
-      throw InputError("is damaged: the front of a cut is nowhere");
-    }
-  }
-  const auto not_before = [](const SpringAhead& one, const SpringAhead& other) {
-    return one.spring >= other.spring;
-  };
-  const bool ascends =
-      std::adjacent_find(state.ahead.begin(), state.ahead.end(), not_before) == state.ahead.end();
-  if (!ascends || stillAhead(lattice, state).size() != state.ahead.size()) {
-    throw InputError("is damaged: the front of a cut does not fit its severed springs");
-  }
-}
-
-void putRemovals(const LatticeState& state, ByteWriter& out) {
-  for (const std::uint8_t bits : state.taken) out.u8(bits);
-}
-
-void takeRemovals(const Lattice& lattice, LatticeState& state, ByteReader& in) {
-  state.taken.resize(lattice.cells().size());
-  for (std::uint8_t& bits : state.taken) bits = in.u8();
-  const auto is_there = [](unsigned bits) { return bits < 0xff; };
-  if (std::none_of(state.taken.begin(), state.taken.end(), is_there)) {
-    throw InputError("is damaged: nothing is left of the tissue");
-  }
-  const std::vector<std::uint8_t> severed = state.severed;
-  noteTaken(lattice, state);
-  if (state.severed != severed || !isOfWholeParts(lattice, state)) {
-    throw InputError("is damaged: what was removed does not fit its severed springs");
-  }
 }
 
 void requireNotRemoved(const LatticeState& state, const LoadingPatch& load) {
@@ -221,94 +123,7 @@ void requireNotRemoved(const LatticeState& state, const LoadingPatch& load) {
   const auto springs_gone = [&](const RimSpring& spring) { return is_gone(spring.node); };
   if (std::any_of(load.nodes.begin(), load.nodes.end(), is_gone) ||
       std::any_of(load.rim.begin(), load.rim.end(), springs_gone)) {
-    throw InputError("is damaged: a load is on a removed node");
-  }
-}
-
-// Ghosts hang on the severed springs and on what was removed, but for their numbers: those hang on
-// the order of the cuts. Cells and ghosts as one cut would have left them.
-CellSet cellsOfOneCut(const Lattice& lattice, const LatticeState& state, SplitCells split) {
-  LatticeState whole = lattice.restState();
-  whole.severed = state.severed;
-  whole.springs_cut = state.springs_cut;
-  whole.parted_at = state.parted_at;
-  whole.ahead = state.ahead;
-  whole.taken = state.taken;
-  return *cellsLeft(lattice, whole, split);
-}
-
-// Per ghost of `from`, its number in `to`, which has the same cells.
-std::vector<int> renumbering(const CellSet& from, const CellSet& to) {
-  std::vector<int> number(from.ghosts().size(), -1);
-  for (std::size_t cell = 0; cell < from.all().size(); ++cell) {
-    for (std::size_t corner = 0; corner < kCorners; ++corner) {
-      const int ghost = from.all()[cell].nodes[corner];
-      if (!from.isGhost(ghost)) continue;
-      number[at(ghost - from.latticeNodeCount())] =
-          to.all()[cell].nodes[corner] - to.latticeNodeCount();
-    }
-  }
-  return number;
-}
-
-std::shared_ptr<const CellSet> renumbered(const CellSet& cells, const std::vector<int>& number,
-                                          std::vector<Ghost> ghosts) {
-  const int nodes = cells.latticeNodeCount();
-  std::vector<Cell> all = cells.all();
-  for (Cell& cell : all) {
-    for (int& node : cell.nodes) {
-      if (node >= nodes) node = nodes + number[at(node - nodes)];
-    }
-  }
-  for (std::size_t ghost = 0; ghost < number.size(); ++ghost) {
-    ghosts[at(number[ghost])].fixed = cells.ghosts()[ghost].fixed;
-  }
-  return std::make_shared<const CellSet>(std::move(all), nodes, std::move(ghosts));
-}
-
-void putGhosts(const Lattice& lattice, SplitCells split, const LatticeState& state,
-               ByteWriter& out) {
-  out.count(state.cells->ghosts().size());
-  for (const Ghost& ghost : state.cells->ghosts()) out.index(ghost.original);
-  if (state.cells->ghosts().empty()) return;
-  for (const int number : renumbering(cellsOfOneCut(lattice, state, split), *state.cells)) {
-    out.index(number);
-  }
-}
-
-std::shared_ptr<const CellSet> takeCells(const Lattice& lattice, SplitCells split,
-                                         const LatticeState& state, ByteReader& in) {
-  std::vector<Ghost> ghosts(in.count(sizeof(std::uint32_t)));
-  for (Ghost& ghost : ghosts) ghost.original = takeNode(lattice.nodeCount(), in);
-  if (isAsMade(state) && ghosts.empty()) return lattice.restState().cells;
-  const CellSet cells = cellsOfOneCut(lattice, state, split);
-  std::vector<int> number;
-  std::vector<char> taken(ghosts.size(), 0);
-  for (const Ghost& ghost : cells.ghosts()) {
-    number.push_back(takeNode(static_cast<int>(ghosts.size()), in));
-    char& is_taken = taken[at(number.back())];
-    if (is_taken != 0 || ghosts[at(number.back())].original != ghost.original) {
-      throw InputError("is damaged: its nodes do not fit its severed springs");
-    }
-    is_taken = 1;
-  }
-  return renumbered(cells, number, std::move(ghosts));
-}
-
-void takeDisplacement(const Lattice& lattice, LatticeState& state, ByteReader& in) {
-  const double most = kFarthest * lattice.bounds().diagonal().norm();
-  state.displacement.resize(at(state.cells->nodeCount()));
-  for (int node = 0; node < state.cells->nodeCount(); ++node) {
-    const Vec3 displacement = in.vec3();
-    if (!displacement.allFinite() || displacement.cwiseAbs().maxCoeff() > most) {
-      throw InputError("is damaged: a displacement is beyond all bounds");
-    }
-    const bool is_ghost = state.cells->isGhost(node);
-    const bool stands = isFixed(lattice, *state.cells, node) || (!is_ghost && isGone(state, node));
-    if (stands && !displacement.isZero(0.0)) {
-      throw InputError("is damaged: a fixed or removed node is displaced");
-    }
-    state.displacement[at(node)] = displacement;
+    failAsDamaged("a load is on a removed node");
   }
 }
 
@@ -322,7 +137,7 @@ std::uint64_t fingerprintOf(const Lattice& lattice, SplitCells split) {
   for (const int points : lattice.size()) out.index(points);
   for (const Cell& cell : lattice.cells()) {
     for (const int index : lattice.gridIndex(cell.nodes.front())) out.index(index);
-    out.u32(static_cast<std::uint32_t>(std::lround(kShareSteps * cell.share())));
+    out.u32(static_cast<std::uint32_t>(millionthsOf(cell)));
   }
   for (int node = 0; node < lattice.nodeCount(); ++node) out.u8(lattice.isFixed(node) ? 1 : 0);
   return hashOf(out.bytes());
@@ -333,7 +148,7 @@ std::string encodeState(const Lattice& lattice, SplitCells split, const SavedSta
   ByteWriter body;
   body.index(lattice.nodeCount());
   body.count(state.lattice.severed.size());
-  putBits(state.lattice.severed, body);
+  putSevered(state.lattice, body);
   const std::uint8_t extras = extrasOf(state);
   if (extras != 0) body.u8(extras);
   if ((extras & kHasPartings) != 0) putPartings(state.lattice, body);
@@ -359,10 +174,9 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   LatticeState& state = saved.lattice;
   const std::size_t springs = lattice.springs().size();
   if (in.u32() != at(lattice.nodeCount()) || in.u32() != springs) {
-    throw InputError("is damaged: it has other numbers of nodes and springs than its lattice");
+    failAsDamaged("it has other numbers of nodes and springs than its lattice");
   }
-  state.severed = takeBits(springs, in);
-  state.springs_cut = static_cast<int>(std::count(state.severed.begin(), state.severed.end(), 1));
+  takeSevered(springs, state, in);
   const std::uint8_t extras = takeExtras(opened.version, in);
   if ((extras & kHasPartings) != 0) takePartings(state, in);
   if ((extras & kHasRemovals) != 0) takeRemovals(lattice, state, in);
@@ -390,7 +204,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   if ((extras & kHasDueLoads) != 0) saved.due = takeDueLoads(lattice, saved.loads, in);
   for (const LoadingPatch& load : saved.due) requireNotRemoved(state, load);
   saved.in_balance = saved.in_balance && saved.due.empty();
-  if (!in.isAtEnd()) throw InputError("is damaged: something follows its end");
+  if (!in.isAtEnd()) failAsDamaged("something follows its end");
   return saved;
 }
 
