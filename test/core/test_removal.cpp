@@ -6,6 +6,9 @@
 #include <memory>
 
 #include "block_fixtures.h"
+#include "cutting/cut.h"
+#include "cutting/removal.h"
+#include "cutting/split_cells.h"
 #include "mesh_fixtures.h"
 #include "tissue_fixtures.h"
 
@@ -154,6 +157,36 @@ TEST(Removal, TakesWhatIsInTheSpaceAsTheShapeIsNow) {
   // The top layer's cells have moved by nearly two spacings.
   const RemoveReport report = tissue.remove(boxOfCells(config, {8.1, 0, 4}, {20, 6, 5}));
   EXPECT_NEAR(report.volume, 2 * 6 * std::pow(kSpacing, 3), 1e-12);
+}
+
+// The two sides of a cut stand apart.
+TEST(Removal, WhatComesBackGoesWhereItsSideOfACutWent) {
+  TissueConfig config = blockOf(8, 6, 5, kSpacing);
+  config.model = "elastic";
+  const Lattice lattice(config);
+  const double blade_at = 0.043, apart = 0.002;
+  LatticeState whole = lattice.restState();
+  sever(lattice,
+        springsAcross(lattice, whole,
+                      {{blade_at, -1, -1}, {blade_at, 1, -1}, {blade_at, 1, 1}, {blade_at, -1, 1}}),
+        whole, SplitCells::kParted);
+  LatticeState state = whole;
+  const RemovedSpace ball = Sphere{Vec3(0.04, 0.03, 0.05), 0.022};
+  removeCells(lattice, cellsWithin(lattice, state, ball), SplitCells::kParted, state);
+  // Ghosts are of the other side than their originals.
+  const auto wayOf = [&](const CellSet& cells, int node) {
+    const bool is_low = lattice.restPosition(cells.original(node)).x() < blade_at;
+    return is_low != cells.isGhost(node) ? -apart : apart;
+  };
+  for (int node = 0; node < state.cells->nodeCount(); ++node) {
+    state.displacement[at(node)] = Vec3(wayOf(*state.cells, node), 0.0, 0.0);
+  }
+  restRemoved(state);
+  whole.displacement = carriedOver(*state.cells, state.displacement, *whole.cells);
+  moveWithNeighbors(lattice, state, whole);
+  for (int node = 0; node < whole.cells->nodeCount(); ++node) {
+    EXPECT_NEAR(whole.displacement[at(node)].x(), wayOf(*whole.cells, node), 1e-12) << node;
+  }
 }
 
 TEST(Removal, LoadsLoseTheNodesThatGo) {

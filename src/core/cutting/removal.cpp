@@ -15,6 +15,10 @@ namespace {
 constexpr unsigned kWholeCell = 0xff;
 // Of the spacing: places that are the same but for the last digits.
 constexpr double kRounding = 1e-9;
+// Of means of neighbors, over what is there again. More: what is many cells wide bends less, and
+// takes longer; less: it has kinks, from which strongly stretched `fung` tissue finds no balance.
+// Chosen: what is n cells wide needs about n^2.
+constexpr int kSweeps = 100;
 
 void requireSpace(const RemovedSpace& space) {
   if (const PlacedBox* placed = std::get_if<PlacedBox>(&space)) {
@@ -133,6 +137,45 @@ void weighNodes(const Lattice& lattice, LatticeState& state) {
   state.left = std::move(there);
 }
 
+// Per node and ghost of `state`: it was there before, stands, or is not there.
+std::vector<char> areKnown(const Lattice& lattice, const LatticeState& before,
+                           const LatticeState& state) {
+  std::vector<char> is_known(state.displacement.size(), 0);
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    is_known[at(node)] = lattice.isFixed(node) || !isGone(before, node) || isGone(state, node);
+  }
+  for (std::size_t ghost = 0; ghost < state.cells->ghosts().size(); ++ghost) {
+    if (state.cells->ghosts()[ghost].fixed) is_known[at(lattice.nodeCount()) + ghost] = 1;
+  }
+  for (const Cell& cell : state.cells->all()) {
+    if (before.cells->owner(cell.place, cell.lowestOwn()) == nullptr) continue;
+    for (const int node : cell.nodes) {
+      if (state.cells->isGhost(node)) is_known[at(node)] = 1;
+    }
+  }
+  return is_known;
+}
+
+struct Beside {
+  int from = 0, to = 0;  // nodes at an edge of a cell
+};
+
+// To nodes that are not known, from those that are there.
+std::vector<Beside> besideUnknown(const std::vector<char>& is_known, const LatticeState& state) {
+  std::vector<Beside> edges;
+  for (const Cell& cell : state.cells->all()) {
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int to = cell.nodes[at(corner)];
+      if (is_known[at(to)] != 0) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int from = cell.nodes[at(corner ^ 1 << axis)];
+        if (state.cells->isGhost(from) || !isGone(state, from)) edges.push_back({from, to});
+      }
+    }
+  }
+  return edges;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> cellsWithin(const Lattice& lattice, const LatticeState& state,
@@ -183,37 +226,20 @@ void restRemoved(LatticeState& state) {
 }
 
 void moveWithNeighbors(const Lattice& lattice, const LatticeState& before, LatticeState& state) {
-  const std::size_t nodes = at(lattice.nodeCount());
-  std::vector<char> is_known(nodes, 1);
-  for (std::size_t node = 0; node < nodes; ++node) {
-    const int number = static_cast<int>(node);
-    is_known[node] = lattice.isFixed(number) || !isGone(before, number) || isGone(state, number);
-  }
-  for (bool any = true; any;) {
-    std::vector<int> beside(nodes, 0);
-    std::vector<Vec3> sum(nodes, Vec3::Zero());
-    any = false;
-    const auto add = [&](int from, int to) {
-      if (is_known[at(from)] == 0 || is_known[at(to)] != 0 || isGone(state, from)) return;
-      sum[at(to)] += state.displacement[at(from)];
-      ++beside[at(to)];
-      any = true;
-    };
-    for (const Spring spring : lattice.springs()) {
-      add(spring.a, spring.b);
-      add(spring.b, spring.a);
+  std::vector<char> is_known = areKnown(lattice, before, state);
+  const std::vector<Beside> edges = besideUnknown(is_known, state);
+  for (int sweep = 0; sweep < kSweeps && !edges.empty(); ++sweep) {
+    std::vector<int> beside(is_known.size(), 0);
+    std::vector<Vec3> sum(is_known.size(), Vec3::Zero());
+    for (const Beside& edge : edges) {
+      if (is_known[at(edge.from)] == 0) continue;
+      sum[at(edge.to)] += state.displacement[at(edge.from)];
+      ++beside[at(edge.to)];
     }
-    for (std::size_t node = 0; node < nodes; ++node) {
+    for (std::size_t node = 0; node < is_known.size(); ++node) {
       if (beside[node] == 0) continue;
       state.displacement[node] = sum[node] / beside[node];
       is_known[node] = 1;
-    }
-  }
-  for (const Cell& part : state.cells->all()) {
-    if (!part.isPart() || before.cells->owner(part.place, part.lowestOwn()) != nullptr) continue;
-    for (const int node : part.nodes) {
-      if (!state.cells->isGhost(node)) continue;
-      state.displacement[at(node)] = state.displacement[at(state.cells->original(node))];
     }
   }
 }

@@ -24,8 +24,9 @@ void removeCells(const Lattice& lattice, const std::vector<std::uint8_t>& cells,
 // Nodes around which nothing is left have no displacement.
 void restRemoved(LatticeState& state);
 
-// Of nodes that were gone in `before` and are there again in `state`: they are moved as far as
-// those beside them are, layer after layer, so that what comes back is where its surroundings went.
+// Of nodes and ghosts that were gone in `before` and are there again in `state`: they are moved as
+// those beside them in their cells are, so that what comes back is where its surroundings went, on
+// each side of a cut where that side went.
 void moveWithNeighbors(const Lattice& lattice, const LatticeState& before, LatticeState& state);
 
 // Sets what hangs on `taken` alone: which springs are severed with it, and `left`.
