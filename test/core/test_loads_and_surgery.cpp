@@ -1,6 +1,8 @@
 // Loads that nothing answers, or that surgery took nodes from; sutures that tear what they draw.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tissue_fixtures.h"
 
 namespace robot_tissue::test_loads_and_surgery {
@@ -118,6 +120,34 @@ TEST(LoadsAndRemovals, ALoadThatTurnsIsWholeAgainByItsBoxAfterAnUndo) {
     const Vec3 off = tissue.state().displacement[at(node)] - whole.state().displacement[at(node)];
     ASSERT_LT(off.norm(), 1e-6) << node;
   }
+}
+
+// Of a millionth of a millisecond: a cycle a solve. The patch is of the shape in balance all the
+// same, not of the one that it was put on.
+TEST(LoadsOnLateShapes, OfAForceAreOfTheShapeInBalance) {
+  const TissueConfig config = block(8, 6, 4, 0.3);
+  SolverConfig hurried, slow;
+  hurried.max_ms = 1e-6;
+  hurried.tolerance = slow.tolerance = 1e-4;
+  Tissue late(config, hurried), tissue(config, slow);
+  PatchConfig b = forcedPatch("b", nodeBox(config, {5, 2, 4}, {7, 5, 4}), Vec3(0.0, 0.1, 0.1));
+  b.turns = true;
+  const PatchConfig a =
+      displacedPatch("a", nodeBox(config, {2, 2, 4}, {4, 5, 4}), Vec3(0.0, 0.0, 0.012));
+  for (Tissue* each : {&late, &tissue}) {
+    each->load(loadOf({a}, 1));
+    EXPECT_EQ(each->isLate(), each == &late);
+    each->load(loadOf({b}));
+  }
+  for (int settles = 0; settles < 500 && late.isLate(); ++settles) late.settle();
+  ASSERT_FALSE(late.isLate());
+  double off = 0.0, all = 0.0;
+  for (std::size_t node = 0; node < tissue.state().displacement.size(); ++node) {
+    const Vec3& moved = tissue.state().displacement[node];
+    off += (late.state().displacement[node] - moved).squaredNorm();
+    all += moved.squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(off / all), 1e-4);
 }
 
 TEST(SuturesThatTear, TearInTheirOwnStep) {

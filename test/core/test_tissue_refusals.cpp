@@ -52,6 +52,8 @@ TEST_F(Refusal, OfALoadOfMoreIncrementsThanMayBe) {
   expectRefused([&] { load(forcedPatch("far", kElsewhere, 1e3 * far)); }, "a smaller load");
 }
 
+TEST_F(Refusal, OfALoadWithoutAPatch) { expectLoadRefused({}, "patch"); }
+
 TEST_F(Refusal, OfAPatchWithoutANode) {
   const Box outside{Vec3::Constant(1.0), Vec3::Constant(2.0)};
   expectLoadRefused({displacedPatch("void", outside, kDown)}, "void");

@@ -7,18 +7,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "base/text_of.h"
-#include "loads/patch_rim.h"
-#include "material/tissue_model.h"
+#include "tissue/refused_patch.h"
 #include "tissue/solve_total.h"
 
 namespace robot_tissue {
 namespace {
-
-[[noreturn]] void refusePatch(const std::string& patch, const std::string& problem,
-                              const std::string& allowed) {
-  throw InputError("patch '" + patch + "': " + problem + "; allowed: " + allowed);
-}
 
 // How far patches may be moved at once, beside how large the tissue is at rest.
 std::string wayText(double way, const Box& tissue) {
@@ -72,67 +65,17 @@ void requireOwnNodes(const std::vector<LoadingPatch>& patches,
   }
 }
 
-// The center of a patch that turns is that of its nodes at rest.
-void driveByForce(const PatchConfig& config, const Lattice& lattice, bool may_turn,
-                  LoadingPatch& patch) {
-  patch.drive = LoadingPatch::Drive::kForce;
-  patch.force = *config.force;
-  if (config.turns && !may_turn) {
-    refusePatch(config.name, "turns: this method moves patches without turning them",
-                "turns false, or another method");
-  }
-  if (config.turns && areOnALine(lattice, patch.nodes)) {
-    refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
-                "turns false, or a box of nodes on more than one line");
-  }
-  patch.turns = config.turns;
-  patch.center = restCenter(lattice, patch.nodes);
-}
-
-void driveByDisplacement(const PatchConfig& config, LoadingPatch& patch) {
-  Vec3 displacement = Vec3::Zero();
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::optional<double>& component = (*config.displacement)[axis];
-    patch.free_axis[axis] = !component;
-    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
-  }
-  patch.displacement.assign(patch.nodes.size(), displacement);
-  for (RimSpring& spring : patch.rim) {
-    spring.anchor = displacement;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
-    }
-  }
-}
-
-// Where a patch's rim reaches nodes of another one, these are the other's alone.
-void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
-  std::unordered_map<int, const LoadingPatch*> owners;
-  for (const LoadingPatch& patch : patches) {
-    for (const int node : patch.nodes) owners[node] = &patch;
-  }
-  for (LoadingPatch& patch : patches) {
-    const auto foreign = [&](const RimSpring& spring) {
-      const auto owner = owners.find(spring.node);
-      return owner != owners.end() && owner->second != &patch;
-    };
-    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
-  }
-}
-
 }  // namespace
 
 void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_increment,
                        int most_increments) {
+  if (step.patches.empty()) throw InputError("a load without a patch; allowed: one patch or more");
   std::vector<LoadingPatch> targets;
   for (const PatchConfig& config : step.patches) targets.push_back(makePatch(config));
   requireOwnNodes(targets, data_.loads.patches());
   const Tissue::Shape before = data_.shape();
   const TissueMotion::Standstill stands(data_.motion);
-  std::vector<LoadRamp> ramps;
-  for (const LoadingPatch& target : targets) {
-    ramps.push_back(makeRamp(target, data_.loads.find(target.name)));
-  }
+  std::vector<LoadRamp> ramps = rampsTo(targets);
   const int increments = step.increments.value_or(wholeParts(stepping_.foreseenSteps(ramps)));
   if (increments > most_increments) {
     const bool was_as_solved = data_.outcome.is_as_solved;
@@ -146,6 +89,7 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
                 most + (by_force ? "a smaller load" : wayText(way, data_.body.lattice().bounds())));
   }
   data_.history.noteOtherLoads();
+  if (comesToBalanceBefore(targets)) ramps = rampsTo(targets);
   for (const LoadRamp& ramp : ramps) data_.loads.dropDue(ramp.target.name);
   placeStarts(ramps);
   // A support that it rests on holds it from the first on.
@@ -154,46 +98,6 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
     stepping_.stepLoads(ramps, increments, on_increment);
   } else {
     stepping_.stepLoadsByItself(ramps, on_increment);
-  }
-}
-
-void LoadProgram::placeStarts(std::vector<LoadRamp>& ramps) {
-  for (LoadRamp& ramp : ramps) {
-    const LoadingPatch* standing = data_.loads.find(ramp.target.name);
-    if (standing != nullptr && byForce(ramp.target) && standing->nodes != ramp.target.nodes) {
-      layNewNodes(*standing, ramp.start);
-    }
-    ramp.patch = data_.loads.place(ramp.start);
-  }
-  leaveRimsToOwners(data_.loads.patches());
-}
-
-// Nodes that the patch did not hold so far, as a removal took them and they are there again, go
-// where its other nodes have them: it is one hard piece.
-void LoadProgram::layNewNodes(const LoadingPatch& standing, LoadingPatch& start) const {
-  const Lattice& lattice = data_.body.lattice();
-  const Eigen::Matrix3d& rotation = standing.place.rotation;
-  LatticeState& state = data_.body.change();
-  const std::vector<Vec3> own = ownDisplacement(standing, state.displacement);
-  Vec3 shift = Vec3::Zero();
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vec3 rest = lattice.restPosition(standing.nodes[i]);
-    shift += (rest + own[i] - rotation * rest) / static_cast<double>(own.size());
-  }
-  const auto laid = [&](int node) -> Vec3 {
-    const Vec3 rest = lattice.restPosition(node);
-    return rotation * rest + shift - rest;
-  };
-  const auto has = [](const auto& nodes, int node) {
-    return std::binary_search(nodes.begin(), nodes.end(), node);
-  };
-  for (const int node : start.nodes) {
-    if (!has(standing.nodes, node)) state.displacement[at(node)] = laid(node);
-  }
-  std::vector<int> rim_before;
-  for (const RimSpring& spring : standing.rim) rim_before.push_back(spring.node);
-  for (RimSpring& spring : start.rim) {
-    if (!has(rim_before, spring.node)) spring.anchor = laid(spring.node);
   }
 }
 
@@ -329,67 +233,6 @@ SolveReport LoadProgram::settleFromRest() {
     report = solver_.solve(data_.body.freeNodes());
   }
   return data_.threads.anyWhole() ? suturing_.drawThreadsIn() : report;
-}
-
-LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
-  const Lattice& lattice = data_.body.lattice();
-  const LatticeState& state = data_.body.state();
-  LoadingPatch patch;
-  patch.name = config.name;
-  patch.nodes = lattice.nodesIn(config.box);
-  patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
-                                   [&](int node) { return isRemoved(state, node); }),
-                    patch.nodes.end());
-  if (patch.nodes.empty())
-    refusePatch(config.name, "no node in its box, " + textOf(config.box) + " m",
-                "a box that holds a node");
-  if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
-                  [&](int node) { return lattice.isFixed(node); })) {
-    refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
-  }
-  if (data_.methods.now().findsEquilibrium()) {
-    patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-  }
-  if (config.force) {
-    driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);
-  } else {
-    driveByDisplacement(config, patch);
-  }
-  return patch;
-}
-
-// Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
-LoadRamp LoadProgram::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
-  LoadRamp ramp;
-  ramp.target = target;
-  ramp.start = target;
-  const std::vector<Vec3>& displacement = data_.body.displacement();
-  for (RimSpring& spring : ramp.start.rim) spring.anchor = displacement[at(spring.node)];
-  ramp.start.place = PatchPlace();
-  if (standing != nullptr) {
-    for (RimSpring& spring : ramp.start.rim) {
-      for (const RimSpring& earlier : standing->rim) {
-        if (earlier.node == spring.node) spring.anchor = earlier.anchor;
-      }
-    }
-    if (standing->drive == target.drive) ramp.start.place = placeAbout(target.center, *standing);
-  }
-  if (byForce(target)) {
-    ramp.start.force = patchForce(ramp.start);
-    return ramp;
-  }
-  ramp.start.displacement = ownDisplacement(ramp.start, displacement);
-  return ramp;
-}
-
-Vec3 LoadProgram::patchForce(const LoadingPatch& patch) const {
-  const LatticeState& state = data_.body.state();
-  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
-  for (const int node : patch.nodes) forces[at(node)] = forces_.nodeForce(node);
-  for (const LoadingPatch& other : data_.loads.patches()) {
-    addContactForces(other, state.displacement, forces);
-  }
-  return answerOf(data_.body.lattice(), state, patch, onHardNodes(patch, forces)).force;
 }
 
 }  // namespace robot_tissue

@@ -36,6 +36,8 @@ class LoadProgram {
   SolveReport settleFromRest();
   SolveReport endComingBack(SolveReport report);
   LoadingPatch makePatch(const PatchConfig& config) const;
+  std::vector<LoadRamp> rampsTo(const std::vector<LoadingPatch>& targets) const;
+  bool comesToBalanceBefore(const std::vector<LoadingPatch>& targets);
   void placeStarts(std::vector<LoadRamp>& ramps);
   void layNewNodes(const LoadingPatch& standing, LoadingPatch& start) const;
   LoadRamp makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const;

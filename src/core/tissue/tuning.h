@@ -26,6 +26,9 @@ constexpr double kLeastOfFirst = 1.0 / 16.0;
 constexpr double kMostSteps = 10000.0;
 // Steps (1): 5 steps of a fifth are 5, not 6. Rounding.
 constexpr double kRounding = 1e-9;
+// Solves of a shape that is late, at most, before a new patch by force takes its shape there. More:
+// a load waits longer where solve after solve has no time. Chosen.
+constexpr int kMostBalances = 100;
 
 // Rounds of a load step.
 // Rounds in which the shape is what was solved for, at most. More: contacts that change to and fro

@@ -1,0 +1,192 @@
+// LoadProgram: the patches of a load, and where they start.
+#include <algorithm>
+#include <unordered_map>
+
+#include "base/text_of.h"
+#include "loads/patch_rim.h"
+#include "material/tissue_model.h"
+#include "tissue/load_program.h"
+#include "tissue/refused_patch.h"
+#include "tissue/tuning.h"
+
+namespace robot_tissue {
+namespace {
+
+// The center of a patch that turns is that of its nodes at rest.
+void driveByForce(const PatchConfig& config, const Lattice& lattice, bool may_turn,
+                  LoadingPatch& patch) {
+  patch.drive = LoadingPatch::Drive::kForce;
+  patch.force = *config.force;
+  if (config.turns && !may_turn) {
+    refusePatch(config.name, "turns: this method moves patches without turning them",
+                "turns false, or another method");
+  }
+  if (config.turns && areOnALine(lattice, patch.nodes)) {
+    refusePatch(config.name, "turns: its nodes are on a line, which nothing keeps from turning",
+                "turns false, or a box of nodes on more than one line");
+  }
+  patch.turns = config.turns;
+  patch.center = restCenter(lattice, patch.nodes);
+}
+
+void driveByDisplacement(const PatchConfig& config, LoadingPatch& patch) {
+  Vec3 displacement = Vec3::Zero();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& component = (*config.displacement)[axis];
+    patch.free_axis[axis] = !component;
+    displacement[static_cast<Eigen::Index>(axis)] = component.value_or(0.0);
+  }
+  patch.displacement.assign(patch.nodes.size(), displacement);
+  for (RimSpring& spring : patch.rim) {
+    spring.anchor = displacement;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (patch.free_axis[at(axis)]) spring.stiffness[axis] = 0.0;
+    }
+  }
+}
+
+// Where a patch's rim reaches nodes of another one, these are the other's alone.
+void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
+  std::unordered_map<int, const LoadingPatch*> owners;
+  for (const LoadingPatch& patch : patches) {
+    for (const int node : patch.nodes) owners[node] = &patch;
+  }
+  for (LoadingPatch& patch : patches) {
+    const auto foreign = [&](const RimSpring& spring) {
+      const auto owner = owners.find(spring.node);
+      return owner != owners.end() && owner->second != &patch;
+    };
+    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), foreign), patch.rim.end());
+  }
+}
+
+}  // namespace
+
+std::vector<LoadRamp> LoadProgram::rampsTo(const std::vector<LoadingPatch>& targets) const {
+  std::vector<LoadRamp> ramps;
+  for (const LoadingPatch& target : targets) {
+    ramps.push_back(makeRamp(target, data_.loads.find(target.name)));
+  }
+  return ramps;
+}
+
+// A new patch by force keeps the shape that its nodes have: where there was no time to balance
+// that, it is balanced first, as far as there is time now. False: there was nothing to do.
+bool LoadProgram::comesToBalanceBefore(const std::vector<LoadingPatch>& targets) {
+  const auto keeps_shape = [&](const LoadingPatch& target) {
+    const LoadingPatch* standing = data_.loads.find(target.name);
+    return byForce(target) && (standing == nullptr || !byForce(*standing));
+  };
+  const bool any = data_.methods.now().findsEquilibrium() &&
+                   std::any_of(targets.begin(), targets.end(), keeps_shape);
+  int solves = 0;
+  while (any && data_.outcome.is_late && !data_.bounds.isTimeOver() &&
+         solves < tuning::kMostBalances) {
+    solver_.solve({});
+    ++solves;
+  }
+  return solves > 0;
+}
+
+void LoadProgram::placeStarts(std::vector<LoadRamp>& ramps) {
+  for (LoadRamp& ramp : ramps) {
+    const LoadingPatch* standing = data_.loads.find(ramp.target.name);
+    if (standing != nullptr && byForce(ramp.target) && standing->nodes != ramp.target.nodes) {
+      layNewNodes(*standing, ramp.start);
+    }
+    ramp.patch = data_.loads.place(ramp.start);
+  }
+  leaveRimsToOwners(data_.loads.patches());
+}
+
+// Nodes that the patch did not hold so far, as a removal took them and they are there again, go
+// where its other nodes have them: it is one hard piece.
+void LoadProgram::layNewNodes(const LoadingPatch& standing, LoadingPatch& start) const {
+  const Lattice& lattice = data_.body.lattice();
+  const Eigen::Matrix3d& rotation = standing.place.rotation;
+  LatticeState& state = data_.body.change();
+  const std::vector<Vec3> own = ownDisplacement(standing, state.displacement);
+  Vec3 shift = Vec3::Zero();
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vec3 rest = lattice.restPosition(standing.nodes[i]);
+    shift += (rest + own[i] - rotation * rest) / static_cast<double>(own.size());
+  }
+  const auto laid = [&](int node) -> Vec3 {
+    const Vec3 rest = lattice.restPosition(node);
+    return rotation * rest + shift - rest;
+  };
+  const auto has = [](const auto& nodes, int node) {
+    return std::binary_search(nodes.begin(), nodes.end(), node);
+  };
+  for (const int node : start.nodes) {
+    if (!has(standing.nodes, node)) state.displacement[at(node)] = laid(node);
+  }
+  std::vector<int> rim_before;
+  for (const RimSpring& spring : standing.rim) rim_before.push_back(spring.node);
+  for (RimSpring& spring : start.rim) {
+    if (!has(rim_before, spring.node)) spring.anchor = laid(spring.node);
+  }
+}
+
+LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
+  const Lattice& lattice = data_.body.lattice();
+  const LatticeState& state = data_.body.state();
+  LoadingPatch patch;
+  patch.name = config.name;
+  patch.nodes = lattice.nodesIn(config.box);
+  patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
+                                   [&](int node) { return isRemoved(state, node); }),
+                    patch.nodes.end());
+  if (patch.nodes.empty())
+    refusePatch(config.name, "no node in its box, " + textOf(config.box) + " m",
+                "a box that holds a node");
+  if (std::any_of(patch.nodes.begin(), patch.nodes.end(),
+                  [&](int node) { return lattice.isFixed(node); })) {
+    refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
+  }
+  if (data_.methods.now().findsEquilibrium()) {
+    patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
+  }
+  if (config.force) {
+    driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);
+  } else {
+    driveByDisplacement(config, patch);
+  }
+  return patch;
+}
+
+// Starts where the patch stands, or where the nodes of a new one are, with the force it finds.
+LoadRamp LoadProgram::makeRamp(const LoadingPatch& target, const LoadingPatch* standing) const {
+  LoadRamp ramp;
+  ramp.target = target;
+  ramp.start = target;
+  const std::vector<Vec3>& displacement = data_.body.displacement();
+  for (RimSpring& spring : ramp.start.rim) spring.anchor = displacement[at(spring.node)];
+  ramp.start.place = PatchPlace();
+  if (standing != nullptr) {
+    for (RimSpring& spring : ramp.start.rim) {
+      for (const RimSpring& earlier : standing->rim) {
+        if (earlier.node == spring.node) spring.anchor = earlier.anchor;
+      }
+    }
+    if (standing->drive == target.drive) ramp.start.place = placeAbout(target.center, *standing);
+  }
+  if (byForce(target)) {
+    ramp.start.force = patchForce(ramp.start);
+    return ramp;
+  }
+  ramp.start.displacement = ownDisplacement(ramp.start, displacement);
+  return ramp;
+}
+
+Vec3 LoadProgram::patchForce(const LoadingPatch& patch) const {
+  const LatticeState& state = data_.body.state();
+  std::vector<Vec3> forces(state.displacement.size(), Vec3::Zero());
+  for (const int node : patch.nodes) forces[at(node)] = forces_.nodeForce(node);
+  for (const LoadingPatch& other : data_.loads.patches()) {
+    addContactForces(other, state.displacement, forces);
+  }
+  return answerOf(data_.body.lattice(), state, patch, onHardNodes(patch, forces)).force;
+}
+
+}  // namespace robot_tissue
