@@ -106,6 +106,22 @@ TEST_P(PartialCell, GradientIsTheEnergysSlope) {
   }
 }
 
+// Twisted, so that J is 1: what bends a thin fill hangs on its Poisson's ratio.
+TEST(StrainOfAPartialCell, IsThatOfItsEnergy) {
+  Corners twisted;
+  for (int c = 0; c < kCorners; ++c) {
+    const Vec3 place = restOf(c);
+    twisted[at(c)] = Vec3(0.3 / kSpacing * place.y() * place.z(), 0.0, 0.0);
+  }
+  for (int number = 0; number < kFills; ++number) {
+    const CellFill fill = fillNumber(number);
+    const ElasticCell cell(kModuli, kSpacing, twisted, &fill);
+    const double whole = 0.5 * kModuli.shear * std::pow(kSpacing, 3);
+    EXPECT_GT(cell.shapeStrain(), 1e-3) << number;
+    EXPECT_NEAR(cell.shapeStrain(), cell.energy() / whole, 1e-9) << number;
+  }
+}
+
 TEST_P(PartialCell, HessianIsTheGradientsSlope) {
   const CellHessian hessian = cellAt(shape_).hessian();
   constexpr double kStep = 1e-6 * kSpacing;

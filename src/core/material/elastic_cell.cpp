@@ -243,6 +243,10 @@ ElasticCell::Curve ElasticCell::neoHookean() const {
   return curve;
 }
 
+double ElasticCell::shapeStrain() const {
+  return neoHookean().value / moduli_.shear * invariant_ - 3.0;
+}
+
 // With n(J) the neo-Hookean a and x = n I1 / mu - 3: a = g' n; derivatives by J are g' times those
 // of n, and g'' times products of x's slopes.
 void ElasticCell::findLaw() {
@@ -357,12 +361,6 @@ Eigen::Matrix3d ElasticCell::block(int corner) const {
     density += barrier(squeezed_[at(i)]).curvature * slope * slope.transpose();
   }
   return volume_ * density;
-}
-
-double shapeStrain(double spacing, const ElasticCell::Reached& displacement, const CellFill* fill,
-                   const CellReach* reach) {
-  const Moduli unit{1.0, 0.0, 0.0};
-  return 2.0 * ElasticCell(unit, spacing, displacement, fill, reach).shapeEnergyDensity();
 }
 
 CellHessian ElasticCell::hessian() const {

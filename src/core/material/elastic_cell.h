@@ -41,10 +41,10 @@ class ElasticCell {
   // these moduli; `from`: the cell where the rate is taken from.
   void damp(const Moduli& viscous, const ElasticCell& from);
 
-  double energy() const;                                            // J, zero at rest
-  double shapeEnergyDensity() const { return volume_term_.value; }  // Pa, without the barrier
-  int nodeCount() const { return count_; }                          // corners, and nodes reached
-  Vec3 gradient(int corner) const;                                  // of the energy (N)
+  double energy() const;                    // J, zero at rest
+  double shapeStrain() const;               // x of elastic_law.h, J^(-2/3) I1 - 3
+  int nodeCount() const { return count_; }  // corners, and nodes reached
+  Vec3 gradient(int corner) const;          // of the energy (N)
   Eigen::Matrix3d block(int corner) const;  // second derivative in one corner alone (N/m)
   CellHessian hessian() const;
 
@@ -111,9 +111,5 @@ class ElasticCell {
   Curve volume_term_;  // as a function of J at constant I1
   std::optional<Damping> damping_;
 };
-
-// x of elastic_law.h, J^(-2/3) I1 - 3, of a cell.
-double shapeStrain(double spacing, const ElasticCell::Reached& displacement, const CellFill* fill,
-                   const CellReach* reach);
 
 }  // namespace robot_tissue

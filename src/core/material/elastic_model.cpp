@@ -67,10 +67,11 @@ int ElasticModel::cellsBeyondLaw(const LatticeState& state) const {
                   [](const Substance& substance) { return substance.moduli.stiffening > 0.0; });
   if (!stiffens) return 0;
   const auto is_beyond = [&](const Cell& cell) {
-    const double b = substanceOf(cell).moduli.stiffening;
-    return b > 0.0 && b * shapeStrain(lattice_.spacing(), reachedOf(state.displacement, cell),
-                                      cell.fill.get(), cell.reach.get()) >
-                          elastic_law::kMostExponent;
+    const Moduli moduli = cellModuli(cell);
+    if (!(moduli.stiffening > 0.0)) return false;
+    const ElasticCell shape(moduli, lattice_.spacing(), reachedOf(state.displacement, cell),
+                            cell.fill.get(), cell.reach.get());
+    return moduli.stiffening * shape.shapeStrain() > elastic_law::kMostExponent;
   };
   const std::vector<Cell>& cells = state.cells->all();
   return static_cast<int>(std::count_if(cells.begin(), cells.end(), is_beyond));
@@ -337,13 +338,6 @@ void ElasticModel::addElasticForces(const LatticeState& state, const std::vector
                     cell.fill.get(), cell.reach.get()),
         cell, forces);
   }
-}
-
-CellHessian ElasticModel::cellHessian(const LatticeState& state, int cell) const {
-  const Cell& one = state.cells->all()[at(cell)];
-  CellHessian hessian = shaped(state, one).hessian();
-  addInertia(one, hessian);
-  return hessian;
 }
 
 void ElasticModel::visitHessians(const LatticeState& state, const VisitHessian& visit) const {

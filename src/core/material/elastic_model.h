@@ -41,7 +41,6 @@ class ElasticModel : public EnergyModel {
   // The same without gravity and time step.
   void addElasticForces(const LatticeState& state, const std::vector<int>& cells,
                         std::vector<Vec3>& forces) const;
-  CellHessian cellHessian(const LatticeState& state, int cell) const override;
   void visitHessians(const LatticeState& state, const VisitHessian& visit) const override;
   double freeForceNorm(const LatticeState& state) const override;
   int cellsBeyondLaw(const LatticeState& state) const override;

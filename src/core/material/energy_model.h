@@ -45,9 +45,6 @@ class EnergyModel : public TissueModel {
   virtual void addForces(const LatticeState& state, const std::vector<int>& cells,
                          std::vector<Vec3>& forces) const = 0;
 
-  // Second derivative of one cell (index into state.cells->all()).
-  virtual CellHessian cellHessian(const LatticeState& state, int cell) const = 0;
-
   // Calls `visit` with the nodes (-1: none there) and the second derivative of every cell that has
   // energy, in a fixed order. Their sum is the energy's second derivative, but for the membrane's.
   using VisitHessian =

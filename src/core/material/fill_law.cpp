@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/material.h"
 #include "material/elastic_law.h"
 
 namespace robot_tissue {
@@ -20,11 +21,6 @@ SecondSlopes alongOwnAxes(const Eigen::Matrix3d& axes, int i, int j) {
   return of;
 }
 
-// nu = (3 K - 2 mu) / (6 K + 2 mu).
-double poissonRatioOf(double bulk_by_shear) {
-  return (3.0 * bulk_by_shear - 2.0) / (6.0 * bulk_by_shear + 2.0);
-}
-
 // Half way to what lends, in ratio.
 double raised(double spread, double lent) { return std::max(spread, std::sqrt(spread * lent)); }
 
@@ -35,7 +31,7 @@ double raised(double spread, double lent) { return std::max(spread, std::sqrt(sp
 Eigen::Matrix3d ownWeights(const CellFill& fill, double bulk_by_shear) {
   constexpr double kLeast = elastic_law::kLeastBending / 12.0;
   const double spread = raised(fill.spread[0], fill.lent);
-  const double firm = 1.0 + poissonRatioOf(bulk_by_shear);
+  const double firm = 1.0 + poissonRatio({1.0, bulk_by_shear});
   const Vec3 thin = (fill.spread[0] * fill.spread.cwiseInverse()).cwiseAbs2();
   const double both_long = thin[1] * thin[2];
   const double flat = thin[2] < 1.0 ? (1.0 - thin[1]) / (1.0 - thin[2]) : 0.0;
