@@ -79,6 +79,18 @@ TEST(Retune, SpringsHaveTheStiffnessOfTheirCells) {
             Tissue(hard, paperSolver()).lattice().springs().size());
 }
 
+TEST(Retune, ThatIsRefusedLeavesTheTissueAsItWas) {
+  const TissueConfig config = blockWith(1e4);
+  Tissue tissue(config, exactSolver());
+  tissue.load(press(config));
+  const Snapshot before(tissue);
+  SolverConfig unknown = exactSolver();
+  unknown.method = "none";
+  EXPECT_TRUE(mentions(inputErrorOf([&] { tissue.retune(blockWith(2e4), unknown); }), "none"));
+  expectUnchanged(tissue, before);
+  EXPECT_EQ(tissue.settle().status, SolveStatus::kOk);
+}
+
 TEST(Retune, CutsStayAndAreTakenBack) {
   const TissueConfig soft = blockWith(1e4), hard = blockWith(2e4);
   Tissue tissue(soft, exactSolver());

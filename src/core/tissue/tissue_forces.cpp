@@ -127,7 +127,7 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
 }
 
 std::optional<Recess> TissueForces::recessUnder(const BallPress& press) const {
-  if (!data_.methods.now().findsEquilibrium()) return std::nullopt;
+  if (!data_.methods.now().findsEquilibrium() || press.shares.empty()) return std::nullopt;
   const CellSet& cells = data_.body.cells();
   for (const NodeWeight& share : press.shares) {
     if (!isInFlatSurface(cells, share.node)) return std::nullopt;

@@ -11,6 +11,7 @@
 #include "saving/bytes.h"
 #include "saving/saved_state.h"
 #include "tissue/partings.h"
+#include "tissue/registry.h"
 
 namespace robot_tissue {
 namespace {
@@ -125,8 +126,7 @@ void TissueStates::take(const SavedState& saved) {
   data_.motion.stop();
   data_.endAside();
   data_.methods.forget();
-  data_.outcome.disturbed.clear();
-  data_.outcome.is_late = false;
+  data_.outcome = SolveOutcome();
   surgery_.setSpringsTorn(0);
   body.change() = saved.lattice;
   data_.loads.take(saved.loads, saved.due);
@@ -222,6 +222,8 @@ SolveReport TissueStates::undo(int count) {
 
 // What the method learned was of the other material.
 bool TissueStates::retune(const TissueConfig& tissue, const SolverConfig& solver) {
+  // What these refuse is refused before anything is another one.
+  makeMethod(solver, data_.body.lattice(), *makeModel(tissue, data_.body.lattice()));
   data_.methods.setConfig(solver);
   data_.bounds.setMaxMs(solver.max_ms);
   const std::uint64_t fingerprint = balanceFingerprint(tissue, solver);
