@@ -69,8 +69,7 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
   hold_.place(shape_);
   field_->bind(shape_, hold_);
   measurePatches();
-  if (depth_of_ != shape_.state.cells) findDepth();
-  depth_of_ = shape_.state.cells;
+  findDepth();
   findWave();
   const bool goes_through = model_.inertia() != nullptr && time_steps_ == TimeSteps::kGoneThrough;
   report.status = goes_through ? goThrough(course.iterations) : run(course);

@@ -103,6 +103,7 @@ class RelaxationMethod : public SolverMethod {
   bool look(Course& course);
   double lengthToGo(const std::vector<double>& ways) const;
   void findDepth();
+  std::vector<int> heldNodes() const;
   void findWave();
   double wayByForces() const;
   void lookAtWave(WaveLook look);
@@ -129,7 +130,8 @@ class RelaxationMethod : public SolverMethod {
   TimeSteps time_steps_;
   double seen_wave_ = 1.0;
   std::shared_ptr<const CellSet> depth_of_;
-  double left_length_ = 0.0;  // its correctionNorm (m)
+  std::vector<int> depth_from_;  // nodes
+  double left_length_ = 0.0;     // its correctionNorm (m)
   double left_error_ = 1.0;
   std::chrono::steady_clock::time_point started_;
 };

@@ -13,18 +13,28 @@ constexpr double kPi = 3.14159265358979;
 
 }  // namespace
 
-// Depth: cells from what holds the tissue (fixed nodes; without any, hard nodes of the first patch
-// that has some) to what is farthest from it, breadth first. It tells how slow the slowest wave is.
+// Fixed nodes; without any, hard nodes of the first patch that has some.
+std::vector<int> RelaxationMethod::heldNodes() const {
+  const CellSet& cells = *shape_.state.cells;
+  std::vector<int> held;
+  for (int node = 0; node < cells.nodeCount(); ++node) {
+    if (isFixed(lattice_, cells, node)) held.push_back(node);
+  }
+  for (std::size_t patch = 0; held.empty() && patch < shape_.patches.size(); ++patch) {
+    held = hold_.hardOf(patch);
+  }
+  return held;
+}
+
+// Depth: cells from what holds the tissue to what is farthest from it, breadth first. It tells how
+// slow the slowest wave is.
 void RelaxationMethod::findDepth() {
   const CellSet& cells = *shape_.state.cells;
-  std::vector<int> layer, next;
+  std::vector<int> layer = heldNodes(), next;
+  if (depth_of_ == shape_.state.cells && depth_from_ == layer) return;
+  depth_of_ = shape_.state.cells;
+  depth_from_ = layer;
   std::vector<std::uint8_t> seen(at(cells.nodeCount()), 0);
-  for (int node = 0; node < cells.nodeCount(); ++node) {
-    if (isFixed(lattice_, cells, node)) layer.push_back(node);
-  }
-  for (std::size_t patch = 0; layer.empty() && patch < shape_.patches.size(); ++patch) {
-    layer = hold_.hardOf(patch);
-  }
   for (const int node : layer) seen[at(node)] = 1;
   for (depth_ = 0.0; !layer.empty(); layer.swap(next)) {
     next.clear();
