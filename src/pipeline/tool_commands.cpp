@@ -1,6 +1,7 @@
 // Pipeline: what tools are told, to grasp, to let go and to push by a force.
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline_parts.h"
 #include "robot_tissue/pipeline/pipeline.h"
@@ -56,9 +57,12 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
   const bool may_repeat = before != nullptr && before->shape.cells == world_.tissue.state().cells;
   const StepReport& report = world_.report;
   const RobotPose told = world_.tools.complete(pose);
+  std::vector<std::size_t> driven;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    const std::size_t link = world_.tools.firstLink(tool);
-    if (!state_.drive.drives(tool) || ToolSet::isAway(told.links[link])) continue;
+    const bool stands = !ToolSet::isAway(told.links[world_.tools.firstLink(tool)]);
+    if (state_.drive.drives(tool) && stands) driven.push_back(tool);
+  }
+  for (const std::size_t tool : driven) {
     if (in_time && !may_repeat) {
       goes_on = goes_on || !state_.drive.isMet(tool, answerOf(world_, tool).force);
       continue;
@@ -76,13 +80,13 @@ bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
       world_.last_pose = parts_->motion.walk(state_.drive.driven(told, world_.tools));
       return !report.too_fast && !report.lost && !world_.deadline.isOver();
     };
+    const std::size_t link = world_.tools.firstLink(tool);
     const bool on = state_.drive.meetForce(
         tool, {parts_->ways.stepOf(link, world_.pose.links[link]),
                [&] { return answerOf(world_, tool).force; }, walk, [&] { return report.lost; }});
     goes_on = goes_on || on;
   }
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (!state_.drive.drives(tool)) continue;
+  for (const std::size_t tool : driven) {
     const bool is_off = state_.drive.isPushedOff(tool, answerOf(world_, tool).force);
     goes_on = goes_on || is_off;
   }
