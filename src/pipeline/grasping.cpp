@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "robot_tissue/core/same_bits.h"
@@ -15,10 +14,13 @@ namespace {
 
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
-std::string inMeters(double length) {
-  std::ostringstream text;
-  text << " (" << length << " m)";
-  return text.str();
+// Of the ways out of two jaws (unit).
+bool areOpposed(const Vec3& one, const Vec3& other) { return one.dot(other) <= tuning::kOpposed; }
+
+// By the ways out of a node's own jaw and of the other one.
+double shareOfOther(const WayOut& here, const WayOut& there) {
+  const double to_here = std::max(0.0, -here.depth_m), to_there = -there.depth_m;
+  return to_there > 0.0 ? to_here / (to_here + to_there) : 0.0;
 }
 
 }  // namespace
@@ -57,7 +59,7 @@ std::optional<Grasping::Pinch> Grasping::pinchAt(std::size_t tool, const RobotPo
   const Vec3 on_one = point + one->depth_m * one->normal;
   const Vec3 on_other = point + other->depth_m * other->normal;
   return Pinch{(on_one - on_other).norm(), 0.5 * (on_one + on_other),
-               one->normal.dot(other->normal) < 0.0};
+               areOpposed(one->normal, other->normal), one->depth_m + other->depth_m > 0.0};
 }
 
 // Of the surface, in a box around both; and what touches them.
@@ -113,19 +115,43 @@ std::optional<double> Grasping::gapAtTissue(std::size_t tool, const RobotPose& p
   return pinch ? std::optional<double>(pinch->gap) : std::nullopt;
 }
 
+std::size_t Grasping::otherJaw(std::size_t tool, std::size_t jaw) const {
+  const std::size_t first = world_.tools.firstJaw(tool);
+  return jaw == first ? first + 1 : first;
+}
+
 bool Grasping::grasps(std::size_t tool) const {
   const auto& seats = world_.sticking.attachments()[tool];
   return world_.tools[tool].role.holds &&
          std::any_of(seats.begin(), seats.end(), [](const auto& s) { return s.second.grasped; });
 }
 
-// Forgets how the jaws of a tool stood that comes in anew; that it was told to let go stays.
+// Forgets how the jaws of a tool stood that comes in anew; that it was told to let go stays, and
+// that the tissue is new to it.
 void Grasping::forgetJaws(std::size_t tool) {
   Jaws& jaws = jaws_[tool];
   if (jaws.let_go) return;
-  const bool were_apart = jaws.were_apart;
-  jaws = Jaws();
-  jaws.were_apart = were_apart;
+  jaws.state = Jaws::State::kUnseen;
+  jaws.loss = Jaws::Loss::kClosedBefore;
+}
+
+void Grasping::meetNewTissue() {
+  setTools(jaws_.size());
+  for (Jaws& jaws : jaws_) jaws.stood_before = true;
+}
+
+void Grasping::comeBackAround(std::size_t tool, const RobotPose& pose) {
+  if (!hasJaws(tool, pose) || jaws_[tool].stood_before) return;
+  const auto pinch = narrowestPinch(tool, pose);
+  const bool is_open = pinch && pinch->gap >= world_.tools[tool].grasp.close_gap;
+  if (is_open) jaws_[tool].state = Jaws::State::kOpen;
+}
+
+bool Grasping::areShut(std::size_t tool, const RobotPose& pose) const {
+  if (!hasJaws(tool, pose)) return false;
+  const auto pinch = narrowestPinch(tool, pose);
+  const double least = tuning::kShut * world_.tissue.lattice().spacing();
+  return pinch && (pinch->overlaps || pinch->gap < least);
 }
 
 // Before a load step: jaws that opened let go.
@@ -164,13 +190,24 @@ void Grasping::watchJaws(std::size_t tool) {
   if (!gap) {
     if (!touch) jaws.state = Jaws::State::kUnseen;
   } else if (jaws.state == Jaws::State::kUnseen) {
-    jaws.state = *gap < grasp.close_gap ? Jaws::State::kClosed : Jaws::State::kOpen;
+    const double stands = jaws.stood_before ? std::min(*gap, gapAsAsked(tool, *gap)) : *gap;
+    jaws.state = stands < grasp.close_gap ? Jaws::State::kClosed : Jaws::State::kOpen;
     jaws.loss = Jaws::Loss::kClosedBefore;
+    jaws.stood_before = false;
   } else if (jaws.state == Jaws::State::kClosed) {
-    if (*gap > grasp.open_gap) jaws.state = Jaws::State::kOpen;
+    if (std::min(*gap, gapAsAsked(tool, *gap)) > grasp.open_gap) jaws.state = Jaws::State::kOpen;
   } else if (*gap < grasp.close_gap && hold(tool) > 0) {
     jaws.state = Jaws::State::kClosed;
   }
+}
+
+// Where the robot has the jaws, seen from the middle of where they are narrowest (m): they do not
+// open by themselves as they come in from outside, each on its way.
+double Grasping::gapAsAsked(std::size_t tool, double otherwise) const {
+  const auto here = narrowestPinch(tool, world_.pose);
+  if (!here || !hasJaws(tool, world_.asked)) return otherwise;
+  const auto asked = pinchAt(tool, world_.asked, here->middle);
+  return asked ? asked->gap : otherwise;
 }
 
 // What is between the jaws sticks to the nearer one, and by its place between them to the other, in
@@ -178,130 +215,90 @@ void Grasping::watchJaws(std::size_t tool) {
 std::size_t Grasping::hold(std::size_t tool) {
   const std::size_t jaw = world_.tools.firstJaw(tool);
   const auto pinch = narrowestPinch(tool, world_.pose);
-  const double gap = pinch ? pinch->gap : world_.finder.gap(jaw, jaw + 1, world_.pose);
-  const std::vector<int> of_first = nodesBetweenJaws(tool, jaw, gap);
-  const std::vector<int> of_second = nodesBetweenJaws(tool, jaw + 1, gap);
-  const std::size_t count = of_first.size() + of_second.size();
-  if (count == 0) return 0;
-  Vec3 middle = Vec3::Zero();
-  for (const auto* nodes : {&of_first, &of_second}) {
-    for (const int node : *nodes) {
-      middle += world_.tissue.nodePosition(node) / static_cast<double>(count);
-    }
-  }
-  if (pinch) middle = pinch->middle;
-  jaws_[tool].grip = {world_.pose.links[jaw].inverse() * middle,
-                      world_.pose.links[jaw + 1].inverse() * middle};
+  if (!pinch) return 0;
+  std::vector<StickingContacts::Grip> grips = gripsOf(tool, jaw, pinch->gap);
+  for (const auto& grip : gripsOf(tool, jaw + 1, pinch->gap)) grips.push_back(grip);
+  if (grips.empty()) return 0;
+  jaws_[tool].grip = {world_.pose.links[jaw].inverse() * pinch->middle,
+                      world_.pose.links[jaw + 1].inverse() * pinch->middle};
   world_.sticking.letGo(static_cast<int>(tool));
   world_.sliding.clear(static_cast<int>(tool));
-  std::vector<StickingContacts::Grip> grips = gripsOf(of_first, jaw, jaw + 1);
-  for (const auto& grip : gripsOf(of_second, jaw + 1, jaw)) grips.push_back(grip);
   world_.sticking.hold(static_cast<int>(tool), grips, world_.pose, world_.tissue);
-  return count;
+  return grips.size();
 }
 
-// Were all of a node's place the nearer jaw's, jaws that close on would squeeze the middle alone.
-std::vector<StickingContacts::Grip> Grasping::gripsOf(const std::vector<int>& nodes,
-                                                      std::size_t jaw, std::size_t other) const {
+// What this jaw is to hold of the nodes between both, in their order, without those that are fixed
+// or others hold. Were all of a node's place the nearer jaw's, jaws that close on would squeeze the
+// middle alone.
+std::vector<StickingContacts::Grip> Grasping::gripsOf(std::size_t tool, std::size_t jaw,
+                                                      double gap) const {
+  const std::vector<std::uint8_t> taken = world_.sticking.takenNodes(world_.tissue);
+  const auto& seats = world_.sticking.attachments()[tool];
   std::vector<StickingContacts::Grip> grips;
-  for (const int node : nodes) {
-    StickingContacts::Grip grip{node, static_cast<int>(jaw), static_cast<int>(other), 0.0};
-    const Vec3 position = world_.tissue.nodePosition(node);
-    const auto here = world_.finder.wayOut(jaw, world_.pose.links[jaw], position, kAnywhere);
-    const auto there = world_.finder.wayOut(other, world_.pose.links[other], position, kAnywhere);
-    if (here && there && here->normal.dot(there->normal) <= tuning::kOpposed) {
-      const double to_here = std::max(0.0, -here->depth_m), to_there = -there->depth_m;
-      if (to_there > 0.0) grip.share_of_other = to_here / (to_here + to_there);
-    }
-    grips.push_back(grip);
+  for (const auto& [node, share] : nodesBetweenJaws(tool, jaw, gap)) {
+    if (isGone(world_.tissue.state(), node)) continue;
+    if (taken[at(node)] != 0 && seats.count(node) == 0) continue;
+    grips.push_back({node, static_cast<int>(jaw), static_cast<int>(otherJaw(tool, jaw)), share});
   }
   return grips;
 }
 
 // Nodes that the ways out of the two jaws lead to from opposite sides, with no more tissue on
-// either side than the jaws are apart (m); and nodes under touches, or pushed. Those nearest to
-// this jaw, without those that are fixed or others hold.
-std::vector<int> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const {
-  const std::size_t first = world_.tools.firstJaw(tool);
-  const std::size_t other = jaw == first ? first + 1 : first;
+// either side than the jaws are apart (m); and nodes under touches, or pushed, between the jaws.
+// Those nearest to this jaw, with the share of the other one in their place.
+std::map<int, double> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t jaw,
+                                                 double gap) const {
+  const std::size_t other = otherJaw(tool, jaw);
   const double reach = gap + world_.tissue.lattice().spacing();
-  std::vector<int> nodes;
+  std::map<int, double> shares;
   for (int node = 0; node < static_cast<int>(world_.tissue.state().displacement.size()); ++node) {
     const Vec3 position = world_.tissue.nodePosition(node);
     const auto here = world_.finder.wayOut(jaw, world_.pose.links[jaw], position, reach);
     if (!here) continue;
     const auto there = world_.finder.wayOut(other, world_.pose.links[other], position, reach);
-    if (!there || here->normal.dot(there->normal) > tuning::kOpposed) continue;
+    if (!there || !areOpposed(here->normal, there->normal)) continue;
     const double between = -(here->depth_m + there->depth_m);
     const bool nearer =
-        here->depth_m > there->depth_m || (here->depth_m == there->depth_m && jaw == first);
-    if (nearer && between <= reach) nodes.push_back(node);
+        here->depth_m > there->depth_m || (here->depth_m == there->depth_m && jaw < other);
+    if (nearer && between <= reach) shares[node] = shareOfOther(*here, *there);
   }
-  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
-    if (touch.contact.link != static_cast<int>(jaw)) continue;
-    if (touch.spring.multiplier <= 0.0) continue;
-    for (const NodeWeight& carrier : touch.spring.carriers) nodes.push_back(carrier.node);
-  }
-  const auto& seats = world_.sticking.attachments()[tool];
-  for (const auto& [node, seat] : seats) {
-    if (seat.link == static_cast<int>(jaw)) nodes.push_back(node);
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const std::vector<std::uint8_t> taken = world_.sticking.takenNodes(world_.tissue);
-  const auto is_others = [&](int node) {
-    return isGone(world_.tissue.state(), node) || (taken[at(node)] != 0 && seats.count(node) == 0);
+  const auto add = [&](int node) {
+    if (shares.count(node) == 0) shares[node] = shareAt(jaw, other, node);
   };
-  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), is_others), nodes.end());
-  return nodes;
+  for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
+    if (at(touch.contact.link) != jaw || !isPinched(touch)) continue;
+    for (const NodeWeight& carrier : touch.spring.carriers) add(carrier.node);
+  }
+  for (const auto& [node, seat] : world_.sticking.attachments()[tool]) {
+    const auto pinch = pinchAt(tool, world_.pose, world_.tissue.nodePosition(node));
+    if (at(seat.link) == jaw && pinch && pinch->is_between) add(node);
+  }
+  return shares;
 }
 
-std::string Grasping::whyItHoldsNothing(std::size_t tool, bool is_asked) const {
-  if (!world_.last_pose || grasps(tool) || !hasJaws(tool, world_.pose)) return "";
-  const Jaws& jaws = jaws_[tool];
-  const GraspConfig& grasp = world_.tools[tool].grasp;
-  const auto gap = gapAtTissue(tool, world_.pose);
-  if (!gap) {
-    const bool closed = *leastGap(tool, world_.pose, grasp.close_gap) < grasp.close_gap;
-    return closed || is_asked ? "no tissue is between its jaws" : "";
-  }
-  const std::string open_first =
-      ": its jaws must first open farther than grasp.open_gap" + inMeters(grasp.open_gap);
-  if (jaws.state == Jaws::State::kClosed) {
-    switch (jaws.loss) {
-      case Jaws::Loss::kClosedBefore:
-        return "its jaws were closed before tissue came between them" + open_first;
-      case Jaws::Loss::kReleased:
-        return "it was told to let go" + open_first;
-      case Jaws::Loss::kTorn:
-        return "it was pulled harder than it holds (grasp.max_force)" + open_first;
-    }
-  }
-  if (*gap < grasp.close_gap) return "what is between its jaws is fixed, or held by others";
-  const bool presses =
-      pushesWith(world_.tools.firstJaw(tool)) && pushesWith(world_.tools.firstJaw(tool) + 1);
-  if (!presses && !is_asked) return "";
-  return "where tissue is, its jaws are not closer than grasp.close_gap" +
-         inMeters(grasp.close_gap);
+double Grasping::shareAt(std::size_t jaw, std::size_t other, int node) const {
+  const Vec3 position = world_.tissue.nodePosition(node);
+  const auto here = world_.finder.wayOut(jaw, world_.pose.links[jaw], position, kAnywhere);
+  const auto there = world_.finder.wayOut(other, world_.pose.links[other], position, kAnywhere);
+  if (!here || !there || !areOpposed(here->normal, there->normal)) return 0.0;
+  return shareOfOther(*here, *there);
 }
 
 // A jaw pushes what it touches towards the other one.
 bool Grasping::pushesWith(std::size_t link) const {
   const auto& touches = world_.sliding.touches();
   return std::any_of(touches.begin(), touches.end(), [&](const auto& touch) {
-    if (at(touch.contact.link) != link || touch.spring.multiplier <= 0.0) return false;
-    const std::size_t first = world_.tools.firstJaw(at(touch.contact.tool));
-    const std::size_t other = link == first ? first + 1 : first;
-    const Vec3 point = pointOf(touch.spring, world_.tissue.state().displacement);
-    const auto there = world_.finder.wayOut(other, world_.pose.links[other], point, kAnywhere);
-    return there && there->normal.dot(touch.spring.normal) < tuning::kOpposed;
+    return at(touch.contact.link) == link && isPinched(touch);
   });
 }
 
-bool Grasping::jawsOverlap(std::size_t tool) const {
-  if (!world_.last_pose || !jaws_[tool].were_apart) return false;
-  const auto gap = leastGap(tool, world_.report.lost ? world_.asked : world_.pose, 0.0);
-  return gap && *gap <= 0.0;
+// Whether its jaw pushes that point towards the other one.
+bool Grasping::isPinched(const SlidingContacts::ContactConstraint& touch) const {
+  if (touch.spring.multiplier <= 0.0) return false;
+  const std::size_t other = otherJaw(at(touch.contact.tool), at(touch.contact.link));
+  const Vec3 point = pointOf(touch.spring, world_.tissue.state().displacement);
+  const auto there = world_.finder.wayOut(other, world_.pose.links[other], point, kAnywhere);
+  return there && areOpposed(there->normal, touch.spring.normal);
 }
 
 bool Grasping::grasp(std::size_t tool) {

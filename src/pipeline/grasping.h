@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,8 +22,10 @@ struct Jaws {
   enum class State { kUnseen, kOpen, kClosed };
   // What keeps closed jaws from holding.
   enum class Loss { kClosedBefore, kReleased, kTorn };
-  State state = State::kOpen;
+  State state = State::kUnseen;
   Loss loss = Loss::kClosedBefore;
+  // The tissue came anew, not the jaws: as the robot has them, they are open or closed.
+  bool stood_before = false;
   std::array<Vec3, 2> grip = {Vec3::Zero(), Vec3::Zero()};  // where, in each's frame (m)
   bool let_go = false;  // told to since the last step: in the next they do not take hold again
   bool were_apart = false;
@@ -44,6 +47,12 @@ class Grasping {
   void openJaws();
   void closeJaws();
   void forgetJaws(std::size_t tool);
+  // The tissue is another one: jaws that are closed hold none of it until they have opened.
+  void meetNewTissue();
+  // Jaws that come in from outside in that pose are open if tissue is between them there.
+  void comeBackAround(std::size_t tool, const RobotPose& pose);
+  // Whether the jaws leave no room for tissue between them, in that pose.
+  bool areShut(std::size_t tool, const RobotPose& pose) const;
   // A grasper holds what is between its jaws now. False: nothing is.
   bool grasp(std::size_t tool);
   // Returns whether it held something.
@@ -67,6 +76,7 @@ class Grasping {
     double gap = 0.0;  // m
     Vec3 middle = Vec3::Zero();
     bool is_between = false;  // the point is between them
+    bool overlaps = false;    // each is in the other there
   };
 
   // For narrowestPinch(): that is asked several times an update.
@@ -91,11 +101,14 @@ class Grasping {
   std::vector<Vec3> pointsNearJaws(std::size_t tool, const RobotPose& pose) const;
   std::optional<Pinch> narrowestPinch(std::size_t tool, const RobotPose& pose) const;
   void watchJaws(std::size_t tool);
+  double gapAsAsked(std::size_t tool, double otherwise) const;
   std::size_t hold(std::size_t tool);
-  std::vector<int> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
-  std::vector<StickingContacts::Grip> gripsOf(const std::vector<int>& nodes, std::size_t jaw,
-                                              std::size_t other) const;
+  std::vector<StickingContacts::Grip> gripsOf(std::size_t tool, std::size_t jaw, double gap) const;
+  std::map<int, double> nodesBetweenJaws(std::size_t tool, std::size_t jaw, double gap) const;
+  double shareAt(std::size_t jaw, std::size_t other, int node) const;
+  std::size_t otherJaw(std::size_t tool, std::size_t jaw) const;
   bool pushesWith(std::size_t link) const;
+  bool isPinched(const SlidingContacts::ContactConstraint& touch) const;
   std::vector<std::size_t> overpulled() const;
   bool tearOut(std::size_t tool);
   void lose(std::size_t tool);

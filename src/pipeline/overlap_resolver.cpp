@@ -179,11 +179,11 @@ bool OverlapResolver::resolveOverlap(const Links& links, RobotPose& pose) const 
 }
 
 // A tool that is in the tissue; the jaws of a grasper each for itself, so that they come back
-// around what is between them.
-bool OverlapResolver::resolveOverlap(std::size_t tool, RobotPose& pose) const {
+// around what is between them, unless nothing can be.
+bool OverlapResolver::resolveOverlap(std::size_t tool, JawsStand jaws, RobotPose& pose) const {
   const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
   bool was_inside = false;
-  if (world_.tools[tool].role.has_jaws) {
+  if (world_.tools[tool].role.has_jaws && jaws == JawsStand::kApart) {
     for (std::size_t link = first; link < end; ++link) {
       was_inside = resolveOverlap(Links{link, link + 1}, pose) || was_inside;
     }

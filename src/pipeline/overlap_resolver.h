@@ -11,11 +11,14 @@ namespace robot_tissue {
 
 class OverlapResolver {
  public:
+  // kShut: with no room for tissue between them.
+  enum class JawsStand { kApart, kShut };
+
   explicit OverlapResolver(const World& world) : world_(world) {}
 
   bool isInTissue(std::size_t tool, const RobotPose& pose) const;
   // Moves the tool in the pose until it is out of the tissue. True: it was inside.
-  bool resolveOverlap(std::size_t tool, RobotPose& pose) const;
+  bool resolveOverlap(std::size_t tool, JawsStand jaws, RobotPose& pose) const;
 
  private:
   static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);

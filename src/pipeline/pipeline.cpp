@@ -327,7 +327,7 @@ void Pipeline::forgetTools() {
   world_.sliding.clear();
   world_.forgetSearches();
   state_.touches = TouchState();
-  parts_->grasping.setTools(world_.tools.size());
+  parts_->grasping.meetNewTissue();
   state_.drive.setTools(world_.tools.size());
   parts_->blades.forget();
   parts_->burrs.forget();

@@ -162,7 +162,10 @@ void ToolMotion::startAnew(RobotPose& pose, Entry entry) {
 
 // A tool that is in the tissue there is outside of it in the pose, and told to come in from there.
 void ToolMotion::resolveOverlap(std::size_t tool, Entry entry, RobotPose& pose) {
-  if (!overlap_.resolveOverlap(tool, pose)) return;
+  const auto jaws = grasping_.areShut(tool, pose) ? OverlapResolver::JawsStand::kShut
+                                                  : OverlapResolver::JawsStand::kApart;
+  if (!overlap_.resolveOverlap(tool, jaws, pose)) return;
+  grasping_.comeBackAround(tool, pose);
   StepReport& report = world_.report;
   const auto& hooked = report.hooked;
   if (std::find(hooked.begin(), hooked.end(), tool) != hooked.end()) return;

@@ -225,6 +225,9 @@ constexpr double kOpposed = -0.5;
 constexpr double kSameOpening = 1e-12;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
+// Of the spacing (1): jaws that are nearer to each other have no room for tissue between them.
+// More: jaws that appear closed around little tissue come down on it. Chosen: no shape is so thin.
+constexpr double kShut = 0.1;
 
 // Spacings: a tool that is deeper than that where it appears is in the tissue. Rounding of where it
 // touches.
