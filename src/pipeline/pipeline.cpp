@@ -235,21 +235,6 @@ SutureResult Pipeline::suture(const SutureConfig& config) {
   return result;
 }
 
-void Pipeline::retune(const TissueConfig& tissue, const SolverConfig& solver) {
-  if (!world_.tissue.retune(tissue, solver)) return;
-  landing_ = Landing::ofScene(tissue, solver, supports_);
-  balance();
-  touch();
-}
-
-void Pipeline::setFriction(double friction) {
-  world_.tools.setFriction(friction);
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    world_.sliding.setFriction(static_cast<int>(tool), friction);
-  }
-  touch();
-}
-
 double Pipeline::stepsTo(const RobotPose& pose) const {
   return world_.last_pose ? parts_->ways.stepsBetween(
                                 *world_.last_pose,

@@ -218,6 +218,10 @@ constexpr double kDepthGrowth = 0.1;
 // Times that the way is halved to get less deep. Chosen.
 constexpr int kDepthTrials = 4;
 
+// Of the stiffness (1): tissue that became so much softer at once is met anew. More: friction is
+// forgotten more often; less: pushes of the stiffer tissue throw it away, at 1e-3 of it and less.
+constexpr double kFarSofter = 0.1;
+
 // Graspers and reports.
 // Cosine between the ways out of two jaws: below it, they lead to opposite sides. Chosen.
 constexpr double kOpposed = -0.5;

@@ -188,7 +188,8 @@ class Pipeline {
   bool drive(const RobotPose& pose, const Checkpoint* before);
   void touch();
   void describeTools();
-  void expectTouch();  // expected_touch.cpp
+  void expectTouch();                  // expected_touch.cpp
+  double stiffnessUnderTools() const;  // live_changes.cpp
   // late_work.cpp
   void loadOn();
   void finish();
