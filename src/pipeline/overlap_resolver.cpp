@@ -30,33 +30,40 @@ RobotPose OverlapResolver::moved(const Links& links, const Vec3& way, RobotPose 
 }
 
 // Of these links alone, without their gaps. Supports always stand in the pose.
-ContactSet OverlapResolver::overlapOf(const Links& links, const RobotPose& pose) const {
+ContactSet OverlapResolver::overlapOf(const Links& links, const RobotPose& pose,
+                                      const std::vector<Vec3>& vertices) const {
   RobotPose alone = world_.tools.complete({});
   const auto is_one = [&](std::size_t link) { return link >= links.first && link < links.end; };
   for (std::size_t link = links.first; link < links.end; ++link) {
     alone.links[link] = pose.links[link];
   }
-  ContactSet overlap =
-      world_.finder.find(alone, world_.tissue.surface(), world_.tissue.vertices(), 0.0);
+  ContactSet overlap = world_.finder.find(alone, world_.tissue.surface(), vertices, 0.0);
   auto& all = overlap.contacts;
   const auto is_others = [&](const Contact& contact) { return !is_one(at(contact.link)); };
   all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
   return overlap;
 }
 
+ContactSet OverlapResolver::overlapOf(const Links& links, const RobotPose& pose) const {
+  return overlapOf(links, pose, world_.tissue.vertices());
+}
+
 // A point in a shape of the links that is beneath the surface. Not any point of a link: tissue may
 // be between its shapes, as in a fork, or in a ring.
-std::optional<Vec3> OverlapResolver::pointBeneath(const Links& links, const RobotPose& pose) const {
+std::optional<Vec3> OverlapResolver::pointBeneath(const Links& links, const RobotPose& pose,
+                                                  const std::vector<Vec3>& vertices) const {
   for (std::size_t link = links.first; link < links.end; ++link) {
     if (ToolSet::isAway(pose.links[link])) continue;
     for (const Vec3& inner : world_.finder.innerPoints(link)) {
       const Vec3 point = pose.links[link] * inner;
-      if (world_.finder.isInside(point, world_.tissue.surface(), world_.tissue.vertices())) {
-        return point;
-      }
+      if (world_.finder.isInside(point, world_.tissue.surface(), vertices)) return point;
     }
   }
   return std::nullopt;
+}
+
+std::optional<Vec3> OverlapResolver::pointBeneath(const Links& links, const RobotPose& pose) const {
+  return pointBeneath(links, pose, world_.tissue.vertices());
 }
 
 bool OverlapResolver::isInTissue(const Links& links, const RobotPose& pose) const {
@@ -73,6 +80,15 @@ std::optional<double> OverlapResolver::depthIn(const Links& links, const RobotPo
 
 bool OverlapResolver::isInTissue(std::size_t tool, const RobotPose& pose) const {
   return isInTissue(Links{world_.tools.firstLink(tool), world_.tools.endLink(tool)}, pose);
+}
+
+bool OverlapResolver::isClear(std::size_t tool, const RobotPose& pose) const {
+  if (isInTissue(tool, pose)) return false;
+  const std::vector<Vec3> none(world_.tissue.state().displacement.size(), Vec3::Zero());
+  std::vector<Vec3> at_rest;
+  deform(world_.tissue.surface(), none, at_rest);
+  const Links links{world_.tools.firstLink(tool), world_.tools.endLink(tool)};
+  return deepest(overlapOf(links, pose, at_rest)) <= 0.0 && !pointBeneath(links, pose, at_rest);
 }
 
 // Unit directions out of the tissue that may be short: as the surface looks where the links go

@@ -17,13 +17,19 @@ class OverlapResolver {
   explicit OverlapResolver(const World& world) : world_(world) {}
 
   bool isInTissue(std::size_t tool, const RobotPose& pose) const;
+  // Whether the tool is in the tissue neither as that is nor as it is at rest.
+  bool isClear(std::size_t tool, const RobotPose& pose) const;
   // Moves the tool in the pose until it is out of the tissue. True: it was inside.
   bool resolveOverlap(std::size_t tool, JawsStand jaws, RobotPose& pose) const;
 
  private:
   static RobotPose moved(const Links& links, const Vec3& way, RobotPose pose);
   ContactSet overlapOf(const Links& links, const RobotPose& pose) const;
+  ContactSet overlapOf(const Links& links, const RobotPose& pose,
+                       const std::vector<Vec3>& vertices) const;
   std::optional<Vec3> pointBeneath(const Links& links, const RobotPose& pose) const;
+  std::optional<Vec3> pointBeneath(const Links& links, const RobotPose& pose,
+                                   const std::vector<Vec3>& vertices) const;
   bool isInTissue(const Links& links, const RobotPose& pose) const;
   std::optional<double> depthIn(const Links& links, const RobotPose& pose) const;
   std::vector<Vec3> waysOut(const Links& links, const RobotPose& pose) const;

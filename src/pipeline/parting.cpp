@@ -39,6 +39,7 @@ void Pipeline::goTo(RobotPose pose) {
   }
   if (world_.report.lost) parts_->motion.leaveStuck(pose);
   if (world_.report.lost) parts_->motion.leaveReleased(pose);
+  parts_->motion.leaveBehind(pose);
   parts_->motion.leaveJam(pose);
   if (world_.report.lost && last_good) parts_->motion.stayAt(*last_good, pose);
   parts_->motion.unhook(pose);

@@ -58,6 +58,7 @@ void addOfTools(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
       {report.hooked, Kind::kHooked, "dragged tissue away that was hooked on it: let go of it"},
       {report.jammed, Kind::kJammed,
        "let go where no shape followed, as between tools that meet: walked in anew from outside"},
+      {report.left, Kind::kTooFast, "left the tissue faster than could be followed: let go of it"},
       {report.torn_off, Kind::kTornOff,
        "lost the tissue: pulled harder than it holds (grasp.max_force)"},
       {report.torn_out, Kind::kTornOff,

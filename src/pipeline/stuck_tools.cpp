@@ -26,6 +26,35 @@ void ToolMotion::leaveStuck(RobotPose& pose) {
   world_.last_pose = walk(pose);
 }
 
+// Tools that fall behind on their way out of the tissue, and are clear of it where the robot has
+// them, let go: without them it comes to the same in the end. What a tool holds, and blades in
+// their wounds, are followed.
+void ToolMotion::leaveBehind(RobotPose& pose) {
+  std::vector<std::size_t> clear;
+  if (world_.report.too_fast && world_.report.jumped.empty() && !world_.tools.anyRigid()) {
+    for (const std::size_t tool : toolsBehind()) {
+      if (ways_.touchesTissue(tool) && !isAttached(tool) && overlap_.isClear(tool, pose)) {
+        clear.push_back(tool);
+      }
+    }
+  }
+  behind_.clear_in_a_row = clear.empty() ? 0 : behind_.clear_in_a_row + 1;
+  if (behind_.clear_in_a_row < tuning::kMostClearInARow) return;
+  behind_.clear_in_a_row = 0;
+  RobotPose from = *world_.last_pose;
+  for (const std::size_t tool : clear) {
+    from = world_.tools.withTool(tool, pose, from);
+    letGoOf(tool);
+    addOnce(tool, world_.report.left);
+  }
+  world_.last_pose = from;
+  const LoadStepEnd end = load_step_.advance(from);
+  if (end == LoadStepEnd::kUnderWay || end == LoadStepEnd::kOutOfTime) return;
+  world_.report.too_fast = false;
+  if (end != LoadStepEnd::kArrived) startAnew(pose, Entry::kLetGo);
+  world_.last_pose = walk(pose);
+}
+
 // Whether the tool drags tissue with it that it stands through: it pushes, is more than a spacing
 // away from where the tissue is at rest, and deeper in its surface than ShapeJudge lets it.
 bool ToolMotion::isHooked(std::size_t tool) const {

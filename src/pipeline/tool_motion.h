@@ -17,6 +17,7 @@ struct WayBehind {
   std::vector<Checkpoint> checkpoints;
   RobotPose last_goal;        // of the last walk
   int lost_in_a_row = 0;      // updates that no shape followed
+  int clear_in_a_row = 0;     // updates in which tools were behind that are clear of the tissue
   int late_iterations = 0;    // of a load step that is being finished
   bool begins_short = false;  // no shape followed the last load step, and time was over
 };
@@ -48,6 +49,7 @@ class ToolMotion {
   std::optional<Checkpoint> lastGood() const;
   void stayAt(const Checkpoint& last_good, const RobotPose& goal);
   void leaveStuck(RobotPose& pose);
+  void leaveBehind(RobotPose& pose);
   void leaveReleased(RobotPose& pose);
   void leaveJam(RobotPose& pose);
   void unhook(RobotPose& pose);

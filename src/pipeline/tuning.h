@@ -225,13 +225,13 @@ constexpr double kFarSofter = 0.1;
 // Graspers and reports.
 // Cosine between the ways out of two jaws: below it, they lead to opposite sides. Chosen.
 constexpr double kOpposed = -0.5;
+// Of the spacing (1): jaws that are nearer to each other have no room for tissue between them.
+// More: jaws that appear closed around little tissue come down on it. Chosen: no shape is so thin.
+constexpr double kShut = 0.1;
 // m, and of a turn (1): jaws that moved less relative to each other stand as they did. Rounding.
 constexpr double kSameOpening = 1e-12;
 // Of the pushes (1): a sum of them that has no direction, as where they cancel. Rounding.
 constexpr double kCancelled = 1e-6;
-// Of the spacing (1): jaws that are nearer to each other have no room for tissue between them.
-// More: jaws that appear closed around little tissue come down on it. Chosen: no shape is so thin.
-constexpr double kShut = 0.1;
 
 // Spacings: a tool that is deeper than that where it appears is in the tissue. Rounding of where it
 // touches.
@@ -311,6 +311,11 @@ constexpr double kFarthestPush = 200.0;
 // anew from outside. Less: a tool that slips for a moment lets go; more: jams last longer. Of 226
 // lost updates of three tools at random in 1,000, 130, 139, 157, 185 are left with 1, 2, 3, 4.
 constexpr int kMostLostInARow = 3;
+
+// Updates in a row in which a tool that is clear of the tissue is behind in it, after which that is
+// let go. Less: tissue snaps off a tool that leaves fast; more: it hangs on that for longer.
+// Chosen.
+constexpr int kMostClearInARow = 3;
 
 // Wrenches between solves (WrenchPrediction).
 // m: arm of a turn, at least, for tools that are all at their origin. Chosen.

@@ -18,12 +18,11 @@ class WayLengths {
   double stepsBetween(const RobotPose& from, const RobotPose& to) const;
   double freeSteps(const RobotPose& from, const RobotPose& to) const;
   std::vector<std::size_t> farFrom(const RobotPose& from, const RobotPose& goal) const;
+  bool touchesTissue(std::size_t tool) const;
   bool passesBy(std::size_t tool, const RobotPose& from, const RobotPose& to) const;
   bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
 
  private:
-  bool touchesTissue(std::size_t tool) const;
-
   const World& world_;
 };
 

@@ -60,5 +60,36 @@ TEST(JammedTools, LetGoAndAreToldSo) {
   EXPECT_EQ(saidOf(StepRemark::Kind::kInside, pipeline), "");
 }
 
+// With so few iterations a load step that the tool falls far behind.
+TEST(ToolBehind, ThatIsClearOfTheTissueLetsGoAndIsToldSo) {
+  Pipeline pipeline(block(), SolverConfig(), {withFriction(0.5, probe())});
+  walk(pipeline, -0.001, 0.012);
+  pipeline.setMostIterations(3);
+  const RobotPose out = pressed(-0.04);
+  std::string said;
+  int updates = 0;
+  while (++updates < 200) {
+    pipeline.step(out);
+    said += saidOf(StepRemark::Kind::kTooFast, pipeline);
+    if (pipeline.hasArrived() && !pipeline.report().changed) break;
+  }
+  EXPECT_LT(updates, 20);
+  EXPECT_NE(said.find("'probe' left the tissue faster"), std::string::npos) << said;
+  EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
+  EXPECT_EQ(pipeline.report().tools.front().force_on_tool, Vec3::Zero());
+}
+
+// Where the robot has it, it would meet the tissue again.
+TEST(ToolBehind, ThatIsNotClearOfTheTissueIsFollowed) {
+  Pipeline pipeline(block(), SolverConfig(), {withFriction(0.5, probe())});
+  walk(pipeline, -0.001, 0.012);
+  pipeline.setMostIterations(3);
+  for (int update = 0; update < 200; ++update) {
+    pipeline.step(pressed(0.002));
+    ASSERT_TRUE(pipeline.report().left.empty()) << update;
+  }
+  EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), 0.05);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_stuck_tools

@@ -50,6 +50,8 @@ struct StepReport {
   std::vector<std::size_t> hooked;  // dragged tissue away that they stood through, and let go of it
   // No shape followed them, or those that they meet: let go, and came in anew from outside.
   std::vector<std::size_t> jammed;
+  // Were behind in the tissue, and are clear of it where the robot has them: it let go of them.
+  std::vector<std::size_t> left;
   std::vector<std::size_t> torn_off;    // graspers that lost what they held
   std::vector<std::size_t> torn_out;    // graspers that took out what they held
   int springs_cut = 0;                  // by blades
