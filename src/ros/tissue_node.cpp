@@ -236,8 +236,9 @@ void TissueNode::follow() {
   status_ = statusOf(pipeline_, remarks);
   remember(remarks);
   const bool comes_anew = time_jumps_ > 0 && ros::SteadyTime::now() < grace_end_;
-  if (!comes_anew && (step.too_fast || !step.were_inside.empty() || !step.hooked.empty() ||
-                      !step.jammed.empty() || !step.torn_off.empty() || !step.torn_out.empty())) {
+  if (!comes_anew &&
+      (step.too_fast || step.lost || !step.were_inside.empty() || !step.hooked.empty() ||
+       !step.jammed.empty() || !step.torn_off.empty() || !step.torn_out.empty())) {
     ROS_WARN_STREAM_THROTTLE(1.0, status_.message);
   }
   publisher_.publish(pipeline_, last_look_up_.stamp, status_);
