@@ -189,8 +189,8 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   const auto has_rim = [](const LoadingPatch& load) { return !load.rim.empty(); };
   if (!opened.of_this_scene && std::any_of(saved.loads.begin(), saved.loads.end(), has_rim)) {
     throw InputError(
-        "has loads of another scene; allowed: a state without named loads, or of the same "
-        "material, regions, gravity, method and tolerance");
+        "has loads, and was saved with another material, regions, gravity, method or tolerance; "
+        "allowed: a state without named loads, or of the same ones");
   }
   // Where a blade passed, older versions did not keep: what they hold is balanced anew.
   const bool is_older = state.springs_cut > 0 && (extras & kHasPartings) == 0;
