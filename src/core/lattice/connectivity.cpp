@@ -92,8 +92,7 @@ std::vector<int> pieceOfNodes(const Lattice& lattice, const LatticeState& state)
   }
   for (const Cell& part : cells.all()) {
     if (!part.isPart() || part.own == 0) continue;
-    int own = 0;
-    while (!part.owns(own)) ++own;
+    const int own = part.lowestOwn();
     for (const int node : part.nodes) {
       if (cells.isGhost(node)) nodes.join(part.nodes[at(own)], node);
     }

@@ -100,13 +100,6 @@ class Holding {
   std::map<int, double> weights_;  // per node
 };
 
-double distanceTo(const TissueSurface& surface, int triangle, const Vec3& point) {
-  const MeshTriangle& corners = surface.triangles[at(triangle)];
-  const Corners places = {surface.rest[at(corners[0])], surface.rest[at(corners[1])],
-                          surface.rest[at(corners[2])]};
-  return (pointOf(places, nearestInTriangle(point, places)) - point).norm();
-}
-
 }  // namespace
 
 HeldSurface heldAround(const TissueSurface& surface, const SurfacePoint& point, double radius) {
@@ -114,7 +107,7 @@ HeldSurface heldAround(const TissueSurface& surface, const SurfacePoint& point, 
   std::vector<int> near;
   DisjointSets joined(static_cast<int>(surface.rest.size()));
   for (int triangle = 0; triangle < static_cast<int>(surface.triangles.size()); ++triangle) {
-    if (!(distanceTo(surface, triangle, center) < radius)) continue;
+    if (!(nearestIn(surface, surface.rest, triangle, center).distance < radius)) continue;
     near.push_back(triangle);
     const MeshTriangle& corners = surface.triangles[at(triangle)];
     joined.join(corners[0], corners[1]);

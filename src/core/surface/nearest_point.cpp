@@ -12,7 +12,8 @@ Corners cornersOf(const std::vector<Vec3>& vertices, const MeshTriangle& triangl
   return {vertices[at(triangle[0])], vertices[at(triangle[1])], vertices[at(triangle[2])]};
 }
 
-// At an infinite distance where the triangle has collapsed.
+}  // namespace
+
 NearestPoint nearestIn(const TissueSurface& surface, const std::vector<Vec3>& vertices,
                        int triangle, const Vec3& point) {
   const Corners corners = cornersOf(vertices, surface.triangles[at(triangle)]);
@@ -24,8 +25,6 @@ NearestPoint nearestIn(const TissueSurface& surface, const std::vector<Vec3>& ve
   }
   return nearest;
 }
-
-}  // namespace
 
 std::optional<NearestPoint> nearestPoint(const TissueSurface& surface,
                                          const std::vector<Vec3>& vertices, const Vec3& point) {

@@ -13,7 +13,12 @@ struct NearestPoint {
   double distance = 0.0;  // m
 };
 
-// `vertices`: of the surface, at rest or deformed. Of the triangles that are as near but for
+// `vertices`: of the surface, at rest or deformed. Of one triangle; at an infinite distance where
+// it has collapsed.
+NearestPoint nearestIn(const TissueSurface& surface, const std::vector<Vec3>& vertices,
+                       int triangle, const Vec3& point);
+
+// Of the triangles that are as near but for
 // `alike` (m), such as the two sides of a cut, that one whose inner place is nearest to `inside`.
 // None where the surface has no triangles.
 std::optional<NearestPoint> nearestPoint(const TissueSurface& surface,
