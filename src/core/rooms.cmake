@@ -3,7 +3,7 @@
 robot_tissue_room(base
   PUBLIC carriers.h compat.h contact_set.h deadline.h disjoint_sets.h grid_box.h part_of_way.h robot_pose.h
     same_bits.h shared_const.h sparse_values.h types.h
-  FILES text_of.h)
+  FILES steady_numbers.h text_of.h)
 robot_tissue_room(simd
   USES base
   FILES field_kernel.cpp field_kernel.h lanes.h numbers.h sum_of_terms.h
@@ -59,7 +59,7 @@ robot_tissue_room(saving
     saved_pieces.h saved_state.cpp saved_state.h saved_sutures.cpp saved_sutures.h)
 robot_tissue_room(solvers
   USES base lattice loads
-  FILES solver_method.h)
+  FILES solve_clock.h solver_method.h)
 # Alone: members of a template that constrained_nodes.cpp instantiates as a whole, which Clang
 # refuses to do twice in one file.
 set_source_files_properties(src/core/solvers/multigrid/level/constrained_balance.cpp

@@ -85,7 +85,7 @@ TEST(Coarsening, OfAnOddBlockKeepsItsVolumeAndStartsItsOuterNodesFromThoseNextTo
   EXPECT_EQ(coarse.starts.size(), 9U);
   for (const Coarsening::Start& start : coarse.starts) {
     double sum = 0.0;
-    for (const NodeShare& share : start.fine) {
+    for (const NodeWeight& share : start.fine) {
       EXPECT_EQ(grid.placeOf(share.node)[0], 3);
       sum += share.weight;
     }
@@ -110,7 +110,7 @@ TEST(Coarsening, WhatACutPartsStaysPartedWhereverTheCutRuns) {
         const NodeShares shares = found != coarse.carried.end()
                                       ? found->carriers
                                       : sharesAround(coarse.grid, grid.placeOf(node));
-        for (const NodeShare& share : shares) side.insert(share.node);
+        for (const NodeWeight& share : shares) side.insert(share.node);
       }
     }
     for (const int node : nodes[0]) EXPECT_EQ(nodes[1].count(node), 0U) << "cut at " << x;
@@ -122,7 +122,7 @@ TEST(Coarsening, AroundAPlaceWeightsSumToOne) {
   EXPECT_EQ(sharesAround(coarse, {2, 4, 0}).size(), 1U);
   const NodeShares shares = sharesAround(coarse, {3, 5, 1});
   EXPECT_EQ(shares.size(), 8U);
-  for (const NodeShare& share : shares) EXPECT_EQ(share.weight, 0.125);
+  for (const NodeWeight& share : shares) EXPECT_EQ(share.weight, 0.125);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/steady_numbers.h"
 #include "solvers/baselines/soa_field.h"
 #include "solvers/baselines/tuning.h"
 
@@ -115,13 +116,12 @@ void ExplicitMethod::findFastest() {
   const int size = field_->size();
   const auto probe = static_cast<float>(tuning::kPowerProbe * lattice_.spacing() / field_->unit());
   findForces();
-  std::uint32_t random = 1;
+  SteadyNumbers random;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::copy(field_->moved()[axis], field_->moved()[axis] + size, field_->spare(kStart)[axis]);
     std::copy(field_->force()[axis], field_->force()[axis] + size, field_->spare(kLastForce)[axis]);
     for (int slot = 0; slot < size; ++slot) {
-      random = 1664525U * random + 1013904223U;
-      const float sign = (random >> 31U) != 0 ? probe : -probe;
+      const float sign = (random.next() >> 31U) != 0 ? probe : -probe;
       field_->spare(kVelocity)[axis][slot] = sign * field_->free()[axis][slot];
     }
   }

@@ -61,7 +61,7 @@ void RelaxationMethod::forget() { left_.clear(); }
 
 SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const std::vector<int>&,
                                     LatticeState& state) {
-  started_ = std::chrono::steady_clock::now();
+  clock_.start();
   SolveReport report;
   Course course;
   shape_ = {state, patches};
@@ -84,7 +84,7 @@ SolveReport RelaxationMethod::solve(std::vector<LoadingPatch>& patches, const st
   describe(course, report);
   state = std::move(shape_.state);
   patches = std::move(shape_.patches);
-  report.wall_ms = elapsedMs();
+  report.wall_ms = clock_.elapsedMs();
   return report;
 }
 
@@ -106,7 +106,7 @@ SolveStatus RelaxationMethod::run(Course& course) {
     iterate();
     ++course.iterations;
     if (course.iterations % stride() == 0 && look(course)) return SolveStatus::kOk;
-    if (options_.max_ms <= 0.0 || elapsedMs() <= options_.max_ms) continue;
+    if (!isLate()) continue;
     findForces();
     if (!std::isfinite(correctionNorm())) goBack(course);
     return SolveStatus::kLate;
@@ -341,12 +341,6 @@ void RelaxationMethod::describe(const Course& course, SolveReport& report) {
     held = std::max(held, tuning::kStill * lattice_.spacing() * field_->restStiffness(index));
   }
   if (held > 0.0) report.residual = unbalanced / held;
-}
-
-double RelaxationMethod::elapsedMs() const {
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - started_;
-  return elapsed.count();
 }
 
 }  // namespace robot_tissue

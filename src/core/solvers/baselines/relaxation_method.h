@@ -7,7 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "loads/dof_constraints.h"
 #include "material/elastic_model.h"
 #include "robot_tissue/core/solve_report.h"
+#include "solvers/solve_clock.h"
 #include "solvers/solver_method.h"
 
 namespace robot_tissue {
@@ -67,7 +67,7 @@ class RelaxationMethod : public SolverMethod {
 
   // kGoneThrough: from the shape at the step's start to that at its end; how many steps were made.
   virtual SolveStatus goThrough(int& /*steps*/) { return SolveStatus::kUnconverged; }
-  bool isLate() const { return options_.max_ms > 0.0 && elapsedMs() > options_.max_ms; }
+  bool isLate() const { return clock_.isOver(options_.max_ms); }
   int mostIterations() const { return std::min(options_.max_iterations, most_iterations_); }
 
   // Cells from what holds the tissue to what is farthest from it; in a time step, as far as it
@@ -115,7 +115,6 @@ class RelaxationMethod : public SolverMethod {
   void goBack(const Course& course);
   void measurePatches();
   void describe(const Course& course, SolveReport& report);
-  double elapsedMs() const;
 
   int most_iterations_ = std::numeric_limits<int>::max();
   std::vector<Eigen::MatrixXd> answers_;  // per patch by force: its stiffness, nodes held
@@ -133,7 +132,7 @@ class RelaxationMethod : public SolverMethod {
   std::vector<int> depth_from_;  // nodes
   double left_length_ = 0.0;     // its correctionNorm (m)
   double left_error_ = 1.0;
-  std::chrono::steady_clock::time_point started_;
+  SolveClock clock_;
 };
 
 }  // namespace robot_tissue

@@ -25,7 +25,7 @@ NewtonMethod::NewtonMethod(const Lattice& lattice, const EnergyModel& model,
 
 SolveReport NewtonMethod::solve(std::vector<LoadingPatch>& patches, const std::vector<int>&,
                                 LatticeState& state) {
-  started_ = std::chrono::steady_clock::now();
+  clock_.start();
   factorized_ = false;
   SolveReport report;
   ConstrainedState shape{state, patches};
@@ -36,7 +36,7 @@ SolveReport NewtonMethod::solve(std::vector<LoadingPatch>& patches, const std::v
   describe(shape, report);
   state = std::move(shape.state);
   patches = std::move(shape.patches);
-  report.wall_ms = elapsedMs();
+  report.wall_ms = clock_.elapsedMs();
   return report;
 }
 
@@ -98,7 +98,7 @@ SolveStatus NewtonMethod::iterate(ConstrainedState& shape, int& iterations) {
   for (iterations = 0; relative_ > options_.residual; ++iterations) {
     if (iterations >= std::min(options_.max_iterations, most_iterations_))
       return SolveStatus::kUnconverged;
-    const bool is_over = options_.max_ms > 0.0 && elapsedMs() > options_.max_ms;
+    const bool is_over = clock_.isOver(options_.max_ms);
     if (is_over && iterations > 0) return SolveStatus::kLate;
     if (!factorize(shape, unmoved)) return SolveStatus::kUnconverged;
     if (!search(solveFor(balance_.unbalanced), shape)) return SolveStatus::kUnconverged;
@@ -221,12 +221,6 @@ void NewtonMethod::describe(const ConstrainedState& shape, SolveReport& report) 
     squared += (balanced.state.displacement[node] - displacement[node]).squaredNorm();
   }
   report.error_estimate = std::sqrt(squared / moved_squared);
-}
-
-double NewtonMethod::elapsedMs() const {
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - started_;
-  return elapsed.count();
 }
 
 }  // namespace robot_tissue

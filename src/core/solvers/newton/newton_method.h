@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "solvers/newton/dof_map.h"
 #include "solvers/newton/equilibrium.h"
 #include "solvers/newton/sparse_factor.h"
+#include "solvers/solve_clock.h"
 #include "solvers/solver_method.h"
 
 namespace robot_tissue {
@@ -57,7 +57,6 @@ class NewtonMethod : public SolverMethod {
   bool improves(const Balance& trial, double promised) const;
   double capped(const ConstrainedState& shape, const Eigen::VectorXd& step) const;
   void describe(const ConstrainedState& shape, SolveReport& report);
-  double elapsedMs() const;
 
   const Lattice& lattice_;
   const EnergyModel& model_;
@@ -76,7 +75,7 @@ class NewtonMethod : public SolverMethod {
   std::unique_ptr<SparseFactor> factor_ = makeSparseFactor();
   Balance balance_;
   double relative_ = 0.0;  // the unbalanced force over what holds the tissue
-  std::chrono::steady_clock::time_point started_;
+  SolveClock clock_;
 };
 
 }  // namespace robot_tissue

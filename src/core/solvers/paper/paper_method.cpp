@@ -46,7 +46,7 @@ PaperMethod::PaperMethod(const Lattice& lattice, const TissueModel& model,
 
 SolveReport PaperMethod::solve(std::vector<LoadingPatch>& patches,
                                const std::vector<int>& disturbed, LatticeState& state) {
-  started_ = std::chrono::steady_clock::now();
+  clock_.start();
   SolveReport report;
   active_.clear();
   lockNodes(patches);
@@ -60,7 +60,7 @@ SolveReport PaperMethod::solve(std::vector<LoadingPatch>& patches,
   pushForcedPatches(patches, state, report);
   describe(patches, state, report);
   unlockNodes(patches);
-  report.wall_ms = elapsedMs();
+  report.wall_ms = clock_.elapsedMs();
   return report;
 }
 
@@ -293,14 +293,6 @@ void PaperMethod::describe(const std::vector<LoadingPatch>& patches, const Latti
   if (moved_squared > 0.0) report.error_estimate = std::sqrt(missing_squared / moved_squared);
 }
 
-double PaperMethod::elapsedMs() const {
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - started_;
-  return elapsed.count();
-}
-
-bool PaperMethod::outOfBudget() const {
-  return options_.max_ms > 0.0 && elapsedMs() > options_.max_ms;
-}
+bool PaperMethod::outOfBudget() const { return clock_.isOver(options_.max_ms); }
 
 }  // namespace robot_tissue

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/solve_report.h"
 #include "solvers/paper/layers.h"
+#include "solvers/solve_clock.h"
 #include "solvers/solver_method.h"
 
 namespace robot_tissue {
@@ -69,7 +69,6 @@ class PaperMethod : public SolverMethod {
                         const LatticeState& state) const;
   void describe(const std::vector<LoadingPatch>& patches, const LatticeState& state,
                 SolveReport& report) const;
-  double elapsedMs() const;
   bool outOfBudget() const;
 
   const Lattice& lattice_;
@@ -81,7 +80,7 @@ class PaperMethod : public SolverMethod {
   double rounding_force_ = 0.0;   // N; smaller forces are rounding errors
   double balanced_below_ = 0.0;   // N
   double reference_force_ = 0.0;  // N
-  std::chrono::steady_clock::time_point started_;
+  SolveClock clock_;
 };
 
 }  // namespace robot_tissue

@@ -86,11 +86,11 @@ void GridTransfer<Real>::restrictForces(const Field<Real>& fine, Field<Real>& co
     for (const auto& [node, carriers] : to_.carried) {
       const Real quarter = Real(0.25) * fine[axis][at(node)];
       if (node < fine_.beside) {
-        for (const NodeShare& share : sharesAround(to_.grid, placeOnCoarse(node))) {
+        for (const NodeWeight& share : sharesAround(to_.grid, placeOnCoarse(node))) {
           to[share.node] -= static_cast<Real>(share.weight) * quarter;
         }
       }
-      for (const NodeShare& share : carriers) {
+      for (const NodeWeight& share : carriers) {
         to[share.node] += static_cast<Real>(share.weight) * quarter;
       }
     }
@@ -114,7 +114,7 @@ void GridTransfer<Real>::restrictDisplacement(const Field<Real>& fine, const Gri
     }
     for (const Coarsening::Start& start : to_.starts) {
       double mean = 0.0;
-      for (const NodeShare& share : start.fine) {
+      for (const NodeWeight& share : start.fine) {
         mean += share.weight * static_cast<double>(fine[axis][at(share.node)]);
       }
       coarse[axis][at(start.node)] = static_cast<Real>(mean / kTwice);
@@ -137,7 +137,7 @@ void GridTransfer<Real>::prolong(const Field<Real>& now, const Field<Real>& star
     });
     for (const auto& [node, carriers] : to_.carried) {
       double mean = 0.0;
-      for (const NodeShare& share : carriers) {
+      for (const NodeWeight& share : carriers) {
         mean += share.weight * static_cast<double>(motion_[at(share.node)]);
       }
       fine[axis][at(node)] = static_cast<Real>(mean);

@@ -227,7 +227,7 @@ std::vector<LevelSpring::Carrier> LevelConstraints<Real>::freeCarriers(
   for (const LevelSpring::Carrier& carrier : fine) {
     std::optional<NodeShares>& shares = known.of_constrained[at(carrier.constrained)];
     if (!shares) shares = freeShares(index, carrier.node);
-    for (const NodeShare& share : *shares) {
+    for (const NodeWeight& share : *shares) {
       int& place = known.place_of[at(share.node)];
       if (place == 0) {
         carriers.push_back({share.node, 0.0});
@@ -245,7 +245,7 @@ NodeShares LevelConstraints<Real>::freeShares(std::size_t index, int fine_node) 
   if (grid_.level(index - 1).dirichletAxes(fine_node) == kAllAxes) return {};
   const GridLevel<Real>& coarse = grid_.level(index);
   NodeShares shares = grid_.transfer(index - 1).carriersOf(fine_node);
-  const auto stands = [&coarse](const NodeShare& share) {
+  const auto stands = [&coarse](const NodeWeight& share) {
     return coarse.dirichletAxes(share.node) == kAllAxes;
   };
   shares.erase(std::remove_if(shares.begin(), shares.end(), stands), shares.end());
@@ -277,7 +277,7 @@ void LevelConstraints<Real>::addTie(std::size_t index, int node, unsigned axes, 
   const GridLevel<Real>& coarse = grid_.level(index);
   LevelSpring spring;
   double weight = 0.0;
-  for (const NodeShare& carrier : carriers) {
+  for (const NodeWeight& carrier : carriers) {
     if (coarse.dirichletAxes(carrier.node) == kAllAxes) continue;
     if (group >= 0) {
       const auto& hard = coarse.constrained.groups[at(group)].nodes;

@@ -88,7 +88,7 @@ class PartEntries {
     return cell;
   }
   NodeShares operator()(NodeShares shares) const {
-    for (NodeShare& share : shares) share.node = (*this)(share.node);
+    for (NodeWeight& share : shares) share.node = (*this)(share.node);
     return shares;
   }
 

@@ -44,7 +44,7 @@ void NodeLoads<Real>::findMasses(const ElasticModel& model, const CellSet& cells
     for (int fine = 0; fine < on.levels[level - 1].count(); ++fine) {
       const double mass = masses_[level - 1][at(fine)];
       if (mass == 0.0) continue;
-      for (const NodeShare& carrier : on.transfers[level - 1].carriersOf(fine)) {
+      for (const NodeWeight& carrier : on.transfers[level - 1].carriersOf(fine)) {
         masses_[level][at(carrier.node)] += carrier.weight * mass;
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/steady_numbers.h"
 #include "simd/field_kernel.h"
 #include "solvers/multigrid/level/tuning.h"
 
@@ -39,16 +40,14 @@ GridLevel<Real>::GridLevel(const LevelGrid& grid, int beside, const std::vector<
 }
 
 // The power method at rest, u <- D^-1 K u, with the Rayleigh quotient (u, K u) / (u, D u); it
-// starts with pseudo-random numbers that are the same each time (a linear congruential generator:
-// Numerical Recipes).
+// starts with numbers that are the same each time.
 template <typename Real>
 void GridLevel<Real>::measureSteps() {
   findForces();
-  std::uint32_t number = 1;
+  SteadyNumbers numbers;
   for (auto& values : displacement) {
     for (std::size_t node = 0; node < values.size(); ++node) {
-      number = 1664525U * number + 1013904223U;
-      values[node] = free_[node] * (Real(number >> 8) / Real(1 << 24) - Real(0.5));
+      values[node] = free_[node] * numbers.nextReal<Real>();
     }
   }
   double greatest = 1.0;

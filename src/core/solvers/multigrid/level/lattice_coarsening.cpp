@@ -262,7 +262,7 @@ class Coarsener {
   void findCarriers(int node, const LevelCell& coarse) {
     NodeShares shares = sharesAround(result_.grid, fine_places_[at(node)]);
     bool usual = node < fine_.beside;
-    for (NodeShare& share : shares) {
+    for (NodeWeight& share : shares) {
       const Place point = result_.grid.placeOf(share.node);
       int corner = 0;
       for (int axis = 0; axis < 3; ++axis) {
@@ -292,8 +292,8 @@ class Coarsener {
     for (const int node : order) {
       NodeShares& fine = around[node];
       double sum = 0.0;
-      for (const NodeShare& share : fine) sum += share.weight;
-      for (NodeShare& share : fine) share.weight /= sum;
+      for (const NodeWeight& share : fine) sum += share.weight;
+      for (NodeWeight& share : fine) share.weight /= sum;
       if (!fine.empty()) result_.starts.push_back({node, fine});
     }
   }
@@ -322,7 +322,7 @@ class Coarsener {
         apart += std::abs(place[axis] - twice[axis]);
         furthest = std::max(furthest, std::abs(place[axis] - twice[axis]));
       }
-      const auto same = [node](const NodeShare& share) { return share.node == node; };
+      const auto same = [node](const NodeWeight& share) { return share.node == node; };
       if (furthest > 1 || std::any_of(fine.begin(), fine.end(), same)) continue;
       if (apart == 0) {
         fine = {{node, 1.0}};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robot_tissue/core/grid_box.h"
+#include "robot_tissue/core/types.h"
 #include "solvers/multigrid/level/level_cell.h"
 
 namespace robot_tissue {
@@ -30,11 +31,7 @@ struct LevelGrid {
   }
 };
 
-struct NodeShare {
-  int node = 0;
-  double weight = 0.0;
-};
-using NodeShares = std::vector<NodeShare>;  // weights sum to 1
+using NodeShares = std::vector<NodeWeight>;  // weights sum to 1
 
 struct Coarsening {
   LevelGrid grid;

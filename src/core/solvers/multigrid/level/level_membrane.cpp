@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/steady_numbers.h"
 #include "solvers/multigrid/level/tuning.h"
 
 namespace robot_tissue {
@@ -31,13 +32,13 @@ LevelMembrane<Real>::LevelMembrane(const LevelMembrane& fine,
       modulus_(fine.modulus_),
       of_vertices_(fine.of_vertices_) {
   for (const int entry : fine.entries_) {
-    for (const NodeShare& share : carriers[at(entry)]) entries_.push_back(share.node);
+    for (const NodeWeight& share : carriers[at(entry)]) entries_.push_back(share.node);
   }
   std::sort(entries_.begin(), entries_.end());
   entries_.erase(std::unique(entries_.begin(), entries_.end()), entries_.end());
   for (const int entry : fine.entries_) {
     shares_.emplace_back();
-    for (const NodeShare& share : carriers[at(entry)]) {
+    for (const NodeWeight& share : carriers[at(entry)]) {
       const auto own = std::lower_bound(entries_.begin(), entries_.end(), share.node);
       shares_.back().push_back({static_cast<int>(own - entries_.begin()), share.weight});
     }
@@ -106,20 +107,16 @@ void LevelMembrane<Real>::addForces(const Field<Real>& displacement, Field<Real>
   }
 }
 
-// The power method starts from numbers that are the same each time (a linear congruential
-// generator: Numerical Recipes).
+// The power method starts from numbers that are the same each time.
 template <typename Real>
 std::vector<Eigen::Matrix3d> LevelMembrane<Real>::diagonal(double greatest) {
   int steps = tuning::kPowerStepsAgain;
   if (stiffest_.empty()) {
     steps = tuning::kPowerSteps;
-    std::uint32_t number = 1;
+    SteadyNumbers numbers;
     stiffest_.assign(entries_.size(), Vec3::Zero());
     for (Vec3& motion : stiffest_) {
-      for (double& value : motion) {
-        number = 1664525U * number + 1013904223U;
-        value = static_cast<double>(number >> 8) / (1 << 24) - 0.5;
-      }
+      for (double& value : motion) value = numbers.nextReal();
     }
   }
   std::vector<Eigen::Matrix3d> diagonal = carriers_.diagonal(*of_vertices_);
