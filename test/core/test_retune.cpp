@@ -127,7 +127,7 @@ TEST(Retune, LoadsOfASavedStateAreOfItsMaterial) {
   const std::string saved = tissue.savedState();
   tissue.retune(hard, exactSolver());
   const std::string refusal = inputErrorOf([&] { tissue.readState(saved); });
-  EXPECT_TRUE(isOneLine(refusal) && mentions(refusal, "same material")) << refusal;
+  EXPECT_TRUE(isOneLine(refusal) && mentions(refusal, "another material")) << refusal;
   tissue.retune(soft, exactSolver());
   tissue.loadState(*tissue.readState(saved));
   EXPECT_EQ(tissue.stateHash(), before);
