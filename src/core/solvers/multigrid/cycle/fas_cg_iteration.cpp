@@ -74,13 +74,13 @@ bool FasCgIteration<Real>::areMembranesStiff(const SolveContext& solve) const {
   return solve.cycles > 0 && !solve.in_contact && estimator_.left().isAbove(tuning::kSlow);
 }
 
-// Cycles show it that coarse levels lead astray, as where tissue is bent far. From then on coarse
-// cells have relief, in further solves, too, which costs a tenth of a cycle. In contact cycles are
-// slow for other reasons.
+// Cycles show it that coarse levels lead astray, as where tissue is bent far: they hardly find less
+// to move than at the start. From then on coarse cells have relief, in further solves, too. In
+// contact cycles are slow for other reasons.
 template <typename Real>
 bool FasCgIteration<Real>::isBent(const SolveContext& solve) const {
   return !is_bent_ && !solve.in_contact && solve.cycles >= tuning::kCyclesBeforeRelief &&
-         shape_.levels().isWhole() && estimator_.left().isAbove(tuning::kSlow);
+         shape_.levels().isWhole() && !estimator_.left().isWithin(tuning::kLeadsAstray);
 }
 
 // Where the solve stands: kLate while there is hope.

@@ -59,10 +59,13 @@ constexpr int kLongSolve = 30;
 // Ways that are kept. 2, 4, 8, 16 from the first cycle on: sliver_pulled 639, 502, 821, 632 cycles,
 // one alone 1,663; ratio_10000 4,050, 1,866, 350, 141. Up: fewer cycles; two fields each.
 constexpr std::size_t kMostWays = 16;
-// Cycles of a solve without contacts after which, where they are slow, coarse cells have relief
-// (model.md). 1, 5, 12: bars that sag far take 54, 56 and 66 cycles (mean of nine). Up: those take
-// more; down: solves that need none pay for it, and end in other bits.
+// Cycles of a solve without contacts after which coarse cells have relief (model.md) where more
+// than this share of |x| is left. 1, 5, 12 cycles: bars that sag far take 54, 56 and 66 (mean of
+// nine). Without the share cells have relief that are squeezed, not bent: press_40 417 cycles for
+// 209, twist_180_by_45 a fold. 0.2 to 0.5: that one takes 664 to 709 cycles, 1: 2,868. Up: later,
+// where it is too late; down: in more solves that need none.
 constexpr int kCyclesBeforeRelief = 12;
+constexpr double kLeadsAstray = 0.4;
 // Share of a cycle's own slope that is left, at least, once it is conjugate to a way: below, this
 // one and older ones do not fit any more. 0.1: sliver_pulled took up to 1,973 cycles, mesh_ball_20
 // up to 338. Up: ways are forgotten sooner.
