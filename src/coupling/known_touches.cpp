@@ -36,7 +36,7 @@ class KnownTouches::NearestPushing {
  private:
   const std::vector<Touch>& touches_;
   const Vec3 point_;
-  double off_ = std::numeric_limits<double>::infinity();  // m
+  double off_ = kInfinity;  // m
   std::size_t touch_ = kNone;
 };
 

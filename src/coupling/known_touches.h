@@ -51,9 +51,9 @@ class KnownTouches {
   std::unordered_map<std::uint64_t, std::size_t> newest_;  // touch at a link's place
   std::vector<std::size_t> before_;                        // per touch: the next older one there
   bool has_trees_ = false;
-  std::size_t pushing_ = 0;                                // touches in `trees_`
+  std::size_t pushing_ = 0;                                // in `trees_`, or all in `strays_`
   std::map<int, Eigen::KdBVH<double, 3, Pushing>> trees_;  // per link: where those that push were
-  std::vector<std::size_t> strays_;                        // touches that have moved since
+  std::vector<std::size_t> strays_;                        // moved since, or all, if few
 };
 
 }  // namespace robot_tissue

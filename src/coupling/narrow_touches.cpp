@@ -94,6 +94,11 @@ void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
   }
 }
 
+// Whether it is known how the link's force grows along its way, if there is one.
+bool SlidingContacts::knowsGrowth(std::size_t link, const RobotPose& pose) const {
+  return growth_.isKnown(link) || pose.links[link].isApprox(since_links_[link], 0.0);
+}
+
 // Of balls that have only just met the tissue, by how deep they are in it: there is no force yet,
 // or it is not known how that grows.
 void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue) {
@@ -111,7 +116,7 @@ void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue)
       deepest = &touch;
       press.depth = depth;
     }
-    if (deepest == nullptr || (pushes && !recesses_[at(link)].is_new)) continue;
+    if (deepest == nullptr || (pushes && knowsGrowth(at(link), pose))) continue;
     const Ball* const ball = ballUnder({deepest}, pose.links[at(link)], tissue);
     press.radius = ball == nullptr ? 0.0 : ball->radius;
     press.shares = deepest->spring.carriers;

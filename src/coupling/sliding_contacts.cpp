@@ -42,7 +42,7 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
   for (ContactConstraint& touch : touches_) {
     touch.way.reset();
     const std::size_t link = at(touch.contact.link);
-    const Pose moved = pose.links[link] * since_links_[link].inverse();
+    const Pose moved = movedSince(link, pose);
     touch.spring.normal = moved.linear() * touch.spring.normal;
     const double drift = touch.drift.foresee(growth_.shareOfLastWay(link, pose.links[link]));
     touch.tool_point = moved * touch.tool_point + drift * touch.spring.normal;
@@ -52,6 +52,11 @@ void SlidingContacts::ride(const RobotPose& pose, const Tissue& tissue) {
     touch.stuck = touch.spring.multiplier > 0.0 ? 1.0 : shareOfTouch(moved, touch);
     anchor(pose, touch);
   }
+}
+
+// How the link moved since the last commit.
+Pose SlidingContacts::movedSince(std::size_t link, const RobotPose& pose) const {
+  return pose.links[link] * since_links_[link].inverse();
 }
 
 // Of the link's way in the load step, the share (1) on which it touches the point: as deep as that
@@ -68,7 +73,7 @@ double SlidingContacts::shareOfTouch(const Pose& moved, const ContactConstraint&
 // multiplier: where normal force goes from one touch to its neighbors, friction goes with it.
 void SlidingContacts::anchor(const RobotPose& pose, ContactConstraint& touch) const {
   const Pose& link = pose.links[at(touch.contact.link)];
-  const Pose moved = link * since_links_[at(touch.contact.link)].inverse();
+  const Pose moved = movedSince(at(touch.contact.link), pose);
   const Vec3 since = pointOf(touch.spring, *since_displacement_);
   touch.spring.anchor = since + touch.stuck * (moved * since - since);
   touch.spring.plane_way = touch.tool_point - moved.inverse() * touch.tool_point;
@@ -267,9 +272,7 @@ void SlidingContacts::add(const Contact& contact, KnownTouches& known, const Rob
   touches_.push_back(touch);
   ContactConstraint& added = touches_.back();
   put(contact, pose, tissue, held, added);
-  const std::size_t link = at(contact.link);
-  const Pose moved = pose.links[link] * since_links_[link].inverse();
-  added.stuck = shareOfTouch(moved, added);
+  added.stuck = shareOfTouch(movedSince(at(contact.link), pose), added);
   anchor(pose, added);
 }
 

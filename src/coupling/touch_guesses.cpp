@@ -29,9 +29,7 @@ void SlidingContacts::growAlongWay(const RobotPose& pose, const Tissue& tissue) 
     touch.spring.friction_bound *= times;
   }
   for (std::size_t link = 0; link < recesses_.size(); ++link) {
-    const bool moves = !pose.links[link].isApprox(since_links_[link], 0.0);
     recesses_[link] = LinkRecess();
-    recesses_[link].is_new = moves && !growth_.isKnown(link);
     setRecess(static_cast<int>(link), depths[link] + asked(link));
   }
 }

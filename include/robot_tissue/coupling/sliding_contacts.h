@@ -166,7 +166,6 @@ class SlidingContacts {
     double depth = 0.0;     // m
     double last_way = 0.0;  // m: of the last round
     double gain = 1.0;      // of the steps that are asked for
-    bool is_new = false;    // how the link's force grows along its way is not known
   };
 
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;
@@ -198,6 +197,7 @@ class SlidingContacts {
   void takeMeans(const Tissue& tissue);
   bool updateMultipliers(const Tissue& tissue);
   void pressHarder(const Tissue& tissue);
+  bool knowsGrowth(std::size_t link, const RobotPose& pose) const;
   void guessRecesses(const RobotPose& pose, const Tissue& tissue);
   void setRecess(int link, double depth);
   static bool tellsRecesses(const Tissue& tissue);
@@ -210,6 +210,7 @@ class SlidingContacts {
   void forgetRecesses();
   void goOnAsSolved(const TissueSurface& surface);
   void noteFacing(const RobotPose& pose);
+  Pose movedSince(std::size_t link, const RobotPose& pose) const;
   double shareOfTouch(const Pose& moved, const ContactConstraint& touch) const;
   void anchor(const RobotPose& pose, ContactConstraint& touch) const;
 
