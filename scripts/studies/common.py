@@ -71,9 +71,18 @@ def program(name, folder=None):
     folders = [folder] if folder else [PACKAGE / build for build in BUILDS]
     for place in folders:
         if (place / name).is_file():
+            refuse_stale(place / name)
             return (place / name).resolve()
     sys.exit(f"study: no program {name} in " + ", ".join(map(str, folders)) +
              f"; build it (target {name}) first, or give --programs FOLDER")
+
+
+def refuse_stale(program):
+    """A program that is older than a library of its build has another idea of what its classes hold."""
+    newer = [library.name for library in program.parent.parent.glob("librobot_tissue_*.so")
+             if library.stat().st_mtime > program.stat().st_mtime]
+    if newer:
+        sys.exit(f"study: {program} is older than {newer[0]}; build it anew (target {program.name})")
 
 
 def pyplot():

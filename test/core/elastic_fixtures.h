@@ -5,7 +5,7 @@
 #include <random>
 
 #include "block_fixtures.h"
-#include "deform_by.h"
+#include "../deform_by.h"
 #include "material/elastic_model.h"
 #include "solvers/newton/newton_method.h"
 
