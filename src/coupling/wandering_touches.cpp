@@ -20,8 +20,8 @@ Vec3 placeOnTool(const Contact& contact) {
 }  // namespace
 
 // What was found is taken by the touches that were nearest, each one; they keep their force. Those
-// that find none go on where they were followed, or leave their force to the nearest touch there
-// is. False: the update is not settled.
+// that find none go on where they were followed, if none is there yet, or leave their force to the
+// nearest touch there is. False: the update is not settled.
 bool SlidingContacts::wander(const ContactSet& found, const Tracked& tracked, const RobotPose& pose,
                              const Tissue& tissue, const Held& held) {
   std::vector<const Contact*> places;
@@ -46,8 +46,9 @@ bool SlidingContacts::wander(const ContactSet& found, const Tracked& tracked, co
   for (std::size_t i = 0; i < known; ++i) {
     if (!touches_[i].contact.wanders || touches_[i].found) continue;
     const bool is_followed = i < tracked.size() && tracked[i];
-    const bool stays = is_followed ? moveTo(*tracked[i], pose, tissue, held, touches_[i])
-                                   : handOn(touches_[i], reach, tissue);
+    const bool goes_on = is_followed && !isTaken(*tracked[i]);
+    const bool stays = goes_on ? moveTo(*tracked[i], pose, tissue, held, touches_[i])
+                               : handOn(touches_[i], reach, tissue);
     is_settled = stays && is_settled;
   }
   return is_settled;
@@ -69,6 +70,18 @@ std::vector<SlidingContacts::Wander> SlidingContacts::nearestFirst(
   }
   std::sort(all.begin(), all.end());
   return all;
+}
+
+// Whether a touch that wanders is at the place already. Two there would be one that is twice as
+// stiff.
+bool SlidingContacts::isTaken(const Contact& place) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const ContactConstraint& touch) {
+    const Contact& its = touch.contact;
+    if (!touch.found || !its.wanders || its.link != place.link) return false;
+    if (its.place.triangle != place.place.triangle) return false;
+    const Vec3 off = its.place.barycentric - place.place.barycentric;
+    return off.cwiseAbs().maxCoeff() < tuning::kSamePoint;
+  });
 }
 
 // True: it is where it was, or nearly.

@@ -408,6 +408,23 @@ TEST_F(PlaneOnABlock, SettledTouchesNeedNoFurtherRound) {
   EXPECT_EQ(rounds_, 1);
 }
 
+// They would be one that is twice as stiff.
+TEST_F(TwoBumpsOnABlock, TouchesThatWanderToOnePlaceBecomeOne) {
+  goTo(Vec3(0.02, 0.02, 0.03 - 5e-4));
+  Contact a = bump(Vec3(0.8, 0.1, 0.1)), b = bump(Vec3(0.1, 0.1, 0.8));
+  a.wanders = b.wanders = true;
+  contacts_.ride(pose_, *tissue_);
+  contacts_.meet({{a, b}}, pose_, *tissue_, held_);
+  contacts_.update({a, b}, {}, pose_, *tissue_, held_, Shape::kOnItsWay);  // they are in the plane
+  ASSERT_EQ(contacts_.touches().size(), 2u);
+  double both = 0.0;
+  for (const auto& touch : contacts_.touches()) both += touch.spring.multiplier;
+  contacts_.update({a, a}, {}, pose_, *tissue_, held_, Shape::kOnItsWay);
+  ASSERT_EQ(contacts_.touches().size(), 1u);
+  EXPECT_GT(both, 0.0);
+  EXPECT_GE(contacts_.touches().front().spring.multiplier, both);
+}
+
 // With one touch, which goes to the deeper one, rounds would go on to the last.
 TEST_F(TwoBumpsOnABlock, ATriangleThatLiesOnTwoPlacesHasATouchAtEach) {
   press(1.5e-3);

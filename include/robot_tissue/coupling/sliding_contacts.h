@@ -189,6 +189,7 @@ class SlidingContacts {
   std::vector<Wander> nearestFirst(const std::vector<const Contact*>& places, double reach);
   bool moveTo(const Contact& contact, const RobotPose& pose, const Tissue& tissue, const Held& held,
               ContactConstraint& touch);
+  bool isTaken(const Contact& place) const;
   bool handOn(const ContactConstraint& lost, double reach, const Tissue& tissue);
   bool take(const Contact& contact, KnownTouches& known, const RobotPose& pose,
             const Tissue& tissue, const Held& held);
