@@ -73,12 +73,16 @@ struct Body {
 };
 
 // Its tip and which way it points: from the link's origin to the middle of its shapes.
-void findTip(std::vector<Vec3> points, const std::vector<Ball>& balls, Body& body) {
+void findTip(const ContactFinder& finder, std::vector<Vec3> points, Body& body) {
   Box box;
   for (const Vec3& point : points) box.extend(point);
   const double same = kSameHeight * box.diagonal().norm();
   if (box.center().norm() > same) body.forwards = box.center().normalized();
-  for (const Ball& ball : balls) points.push_back(ball.center + ball.radius * body.forwards);
+  for (const Ball& ball : finder.balls(0)) {
+    const Vec3 foremost = ball.center + ball.radius * body.forwards;
+    const auto out = finder.wayOut(0, Pose::Identity(), foremost, same);
+    if (out && out->depth_m <= same) points.push_back(foremost);  // meshes may be round elsewhere
+  }
   double farthest = -std::numeric_limits<double>::infinity();
   for (const Vec3& point : points) farthest = std::max(farthest, point.dot(body.forwards));
   Vec3 sum = Vec3::Zero();
@@ -104,7 +108,7 @@ std::optional<Body> bodyOf(const ToolGeometry& tool) {
     const ContactFinder finder({body.tool});
     const std::vector<Vec3> points = finder.surfacePoints(0);
     if (points.empty()) continue;
-    findTip(points, finder.balls(0), body);
+    findTip(finder, points, body);
     return body;
   }
   return std::nullopt;

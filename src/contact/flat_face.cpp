@@ -141,6 +141,15 @@ class JoinedFaces {
         .has_value();
   }
 
+  // Whether the edge is inside the shape, as that of a shaft's end is in a ball on it.
+  bool isBuriedIn(std::size_t shape, const Part& part, const ShapeFace::Edge& edge) const {
+    const PlacedShape& other = link_[shape];
+    const double off = tuning::kJustBeyond * felt_;
+    const double padding = link_[part.shape].shape->padding();
+    const Vec3 probe = edge.foot + (padding + off) * part.face.normal - off * edge.outward;
+    return other.shape->distanceNear(other.shape_T_tissue * probe, 0.0).has_value();
+  }
+
   // Edges of all faces that are one with that of the base, as far as the point sees them from it.
   std::vector<FaceEdge> edgesAround(const Part& base) const {
     std::vector<FaceEdge> edges;
@@ -189,12 +198,13 @@ class JoinedFaces {
     return ends;
   }
 
-  // Whether no other shape goes on beyond the edge; else the faces that do.
+  // Whether no other shape goes on beyond the edge, or is around it; else the faces that go on.
   bool endsAt(const Part& part, const ShapeFace::Edge& edge, const Part& base,
               std::vector<const Part*>& joined) const {
     bool ends = true;
     for (std::size_t shape = 0; shape < link_.size(); ++shape) {
       if (shape == part.shape) continue;
+      if (isBuriedIn(shape, part, edge)) return false;
       const Part* other = partOf(shape, base);
       const bool goes_on =
           goesOn(shape, part, edge, felt_) ||

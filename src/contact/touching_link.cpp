@@ -7,6 +7,7 @@
 #include "inner_points.h"
 #include "link_penetration.h"
 #include "robot_tissue/core/same_bits.h"
+#include "round_tips.h"
 #include "triangle_minimum.h"
 
 namespace robot_tissue {
@@ -126,8 +127,14 @@ std::vector<Ball> TouchingLink::balls() const {
   std::vector<Ball> balls;
   for (std::size_t i = 0; i < in_use_; ++i) {
     const CollisionShape& shape = shapes[i];
-    if (shape.measures().type != ToolShape::Type::kSphere) continue;
-    balls.push_back({shape.poseInLink().translation(), shape.measures().radius + shape.padding()});
+    const Pose& link_T_shape = shape.poseInLink();
+    if (shape.measures().type == ToolShape::Type::kSphere) {
+      balls.push_back({link_T_shape.translation(), shape.measures().radius + shape.padding()});
+    }
+    if (!shape.isMesh()) continue;
+    for (const Ball& tip : roundTips(shape.mesh())) {
+      balls.push_back({link_T_shape * tip.center, tip.radius + shape.padding()});
+    }
   }
   return balls;
 }

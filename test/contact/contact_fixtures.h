@@ -196,6 +196,37 @@ inline std::vector<Triangle> ballTriangles(int rings, double radius) {
   return triangles;
 }
 
+// Closed around the z-axis: its outline from bottom to top, (distance from the axis, height), whose
+// ends are on the axis.
+inline std::vector<Triangle> revolvedTriangles(const std::vector<Eigen::Vector2d>& outline,
+                                               int segments) {
+  const auto point = [&](std::size_t ring, int segment) {
+    const double angle = 2.0 * M_PI * (segment % segments) / segments;
+    const double off = outline[ring].x();
+    return Vec3(off * std::cos(angle), off * std::sin(angle), outline[ring].y());
+  };
+  std::vector<Triangle> triangles;
+  for (std::size_t ring = 0; ring + 1 < outline.size(); ++ring) {
+    for (int k = 0; k < segments; ++k) {
+      const Vec3 a = point(ring, k), b = point(ring, k + 1);
+      const Vec3 c = point(ring + 1, k + 1), d = point(ring + 1, k);
+      if (ring > 0) triangles.push_back({{a, b, c}});
+      if (ring + 2 < outline.size()) triangles.push_back({{a, c, d}});
+    }
+  }
+  return triangles;
+}
+
+// A quarter of a circle from the axis on, its center so high on the axis: the end of a rod.
+inline std::vector<Eigen::Vector2d> roundEnd(double radius, double center, int steps) {
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i <= steps; ++i) {
+    const double angle = 0.5 * M_PI * i / steps;
+    outline.emplace_back(radius * std::sin(angle), center - radius * std::cos(angle));
+  }
+  return outline;
+}
+
 // A prism: an outline in the x-z plane, counter-clockwise seen from -y, drawn out along y; `caps`
 // divides the outline into triangles of its corners.
 inline std::vector<Triangle> prismTriangles(const std::vector<Eigen::Vector2d>& outline,

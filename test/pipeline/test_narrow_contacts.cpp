@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "../contact/contact_fixtures.h"
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_narrow_contacts {
@@ -74,6 +75,49 @@ TEST_P(NarrowBall, WithAShaftFeelsAsMuch) {
     const double alone = goTo(depth).force_on_tool.z();
     pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + kBall - depth) + off}));
     EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), alone, 0.01 * alone) << depth;
+  }
+}
+
+// So does the round end of a mesh: without the law by twice as much, and by a third less.
+TEST_P(NarrowBall, OfAMeshFeelsAsMuch) {
+  TissueConfig tissue = block();
+  tissue.material.poisson_ratio = kPoisson;
+  std::vector<Eigen::Vector2d> rod = roundEnd(kBall, 0.0, 12);
+  rod.emplace_back(kBall, 0.05);
+  rod.emplace_back(0.0, 0.05);
+  ToolShape shape;
+  shape.type = ToolShape::Type::kMesh;
+  shape.resource = writeStl("round_rod.stl", revolvedTriangles(rod, 48));
+  Pipeline pipeline(tissue, SolverConfig(), {toolOf(shape)});
+  const Vec3 off = kSpacing * Vec3(GetParam()[0], GetParam()[1], 0.0);
+  for (int step = -1; step <= 6; ++step) {
+    const double depth = kStep * step;
+    const double ball = goTo(depth).force_on_tool.z();
+    pipeline.step(at({Vec3(kMiddle, kMiddle, kTop + kBall - depth) + off}));
+    if (step < 2) continue;
+    EXPECT_NEAR(pipeline.report().tools.front().force_on_tool.z(), ball, 0.1 * ball) << depth;
+  }
+}
+
+// A shaft as thick as its ball is not felt as a flat end, nor is more felt than with the ball
+// alone, until the shaft touches.
+TEST(Capsule, FeelsAsItsBall) {
+  constexpr double kTip = 0.005, kFine = 0.005;  // m
+  ToolShape ball, shaft;
+  ball.radius = kTip;
+  shaft.type = ToolShape::Type::kCylinder;
+  shaft.radius = kTip;
+  shaft.length = 0.03;
+  shaft.pose.translation().z() = 0.015;
+  ToolGeometry capsule = toolOf(ball);
+  capsule.links.front().shapes.push_back(shaft);
+  Pipeline whole(block("elastic", kFine), SolverConfig(), {capsule});
+  Pipeline alone(block("elastic", kFine), SolverConfig(), {toolOf(ball)});
+  for (int step = -1; step <= 16; ++step) {
+    const RobotPose pose = at({Vec3(0.0513, 0.0505, kTop + kTip - 0.0003 * step)});
+    whole.step(pose);
+    const double expected = alone.step(pose).tools.front().force_on_tool.z();
+    EXPECT_NEAR(whole.report().tools.front().force_on_tool.z(), expected, 1e-3 * expected) << step;
   }
 }
 

@@ -12,6 +12,11 @@ namespace {
 // lattice is right to 2 %. More: more rounds, for less.
 constexpr double kNarrow = 1.25;
 constexpr double kWide = 1.5;
+// Of the ball's radius (1), likewise: Hertz's contact is not wider than the ball. Less: light
+// touches of small balls hang on where nodes are; more: forces jump by a fifth where a ball is
+// nearly two radii deep. Chosen.
+constexpr double kWideAsBall = 1.15;
+constexpr double kWiderThanBall = 1.4;
 // Spacings: of smaller balls the recess is as large as they are, and tissue goes around them (0.2:
 // lost in a press by 1 to 3 mm; 0.4: forces jump by 24 % at one of five places).
 constexpr double kLeastRadius = 0.5;
@@ -44,8 +49,10 @@ Recess recessUnder(const BallPress& press, const Lattice& lattice, const Surface
   const double force = 4.0 / 3.0 * plane_modulus * contact * contact * contact / press.radius;
   const double width = contact / lattice.spacing();
   const bool is_thin = press.radius < kLeastRadius * lattice.spacing();
-  if (!(force > 0.0) || width >= kWide || is_thin) return {};
-  const double share = std::min(1.0, (kWide - width) / (kWide - kNarrow));
+  const double of_ball = contact / press.radius;
+  if (!(force > 0.0) || width >= kWide || of_ball >= kWiderThanBall || is_thin) return {};
+  const double share = std::min(1.0, (kWide - width) / (kWide - kNarrow)) *
+                       std::min(1.0, (kWiderThanBall - of_ball) / (kWiderThanBall - kWideAsBall));
   const double of_half_space = contact * contact / press.radius;
   const double of_lattice = force * sharedCompliance(lattice, moduli, press.shares);
   Recess recess;
