@@ -63,7 +63,7 @@ void addOfTools(const Pipeline& pipeline, std::vector<StepRemark>& remarks) {
        "lost the tissue: pulled harder than it holds (grasp.max_force)"},
       {report.torn_out, Kind::kTornOff,
        "tore out the tissue that it holds: pulled harder than that bears (grasp.max_force)"},
-      {report.jumped, Kind::kTooFast, "jumped, farther than is followed: the tools come in anew"},
+      {report.jumped, Kind::kTooFast, "jumped, farther than is followed: came in anew"},
   };
   for (const auto& some : all) {
     if (some.tools.empty()) continue;

@@ -172,18 +172,19 @@ void ToolMotion::resolveOverlap(std::size_t tool, Entry entry, RobotPose& pose) 
   addOnce(tool, entry == Entry::kAppears ? report.were_inside : report.jammed);
 }
 
-// A tool that stood nowhere comes in from outside, one that stands nowhere now lets go; the others
-// stay as they are.
-void ToolMotion::comeAndGo(RobotPose& pose, Entry entry) {
+// A tool that stood nowhere, or jumped, comes in from outside, one that stands nowhere now lets go;
+// the others stay as they are.
+void ToolMotion::comeAndGo(RobotPose& pose, Entry entry, const std::vector<std::size_t>& jumped) {
   RobotPose from = *world_.last_pose;
   bool any = false;
   Others came = Others::kNone;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
     const std::size_t first = world_.tools.firstLink(tool), end = world_.tools.endLink(tool);
-    if (first == end || ToolSet::isAway(from.links[first]) == ToolSet::isAway(pose.links[first])) {
-      continue;
-    }
-    if (waitsOutside(tool, came, pose)) continue;
+    const bool jumps = std::find(jumped.begin(), jumped.end(), tool) != jumped.end();
+    const bool stays =
+        first == end || ToolSet::isAway(from.links[first]) == ToolSet::isAway(pose.links[first]);
+    if (stays && !jumps) continue;
+    if (waitsOutside(tool, came, pose) && !jumps) continue;
     any = true;
     if (!ToolSet::isAway(pose.links[first])) came = Others::kCame;
     from = world_.tools.withTool(tool, pose, from);
@@ -250,11 +251,10 @@ void ToolMotion::goBackTo(RobotPose& pose) {
     load_step_.goBackTo(behind_.checkpoints.back());
   }
   const auto far = ways_.farFrom(reached(), pose);
-  if (!far.empty()) {
-    world_.report.too_fast = true;
-    world_.report.jumped = far;
-    startAnew(pose);
-  }
+  if (far.empty()) return;
+  world_.report.too_fast = true;
+  world_.report.jumped = far;
+  world_.tools.anyRigid() ? startAnew(pose) : comeAndGo(pose, Entry::kAppears, far);
 }
 
 std::optional<Checkpoint> ToolMotion::lastGood() const {

@@ -42,7 +42,8 @@ class ToolMotion {
   // What the last load step had no time for; tools come to where one that is under way leads.
   LoadStepEnd finishStanding();
   void startAnew(RobotPose& pose, Entry entry = Entry::kAppears);
-  void comeAndGo(RobotPose& pose, Entry entry = Entry::kAppears);
+  void comeAndGo(RobotPose& pose, Entry entry = Entry::kAppears,
+                 const std::vector<std::size_t>& jumped = {});
   void goBackTo(RobotPose& pose);
   // Where the tools are now, to stay there if no shape follows from a checkpoint; absent: these
   // tools have none.

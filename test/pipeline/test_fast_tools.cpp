@@ -280,5 +280,45 @@ TEST(FarTool, IsNeverBehindNorMakesOthersSo) {
   EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), force);
 }
 
+// Nor does it make others let go where it jumps past the tissue.
+TEST(JumpingTool, ComesInAnewAlone) {
+  Pipeline pipeline(ridge(), {}, {ridgeGripper("gripper", 0.008, 0.012), probe("other")});
+  const auto pose = [](double gap, double lift, double side) {
+    std::vector<Vec3> origins = jawsOnRidge(gap, lift);
+    origins.push_back(Vec3(side, 0.0, 0.3));
+    return at(origins);
+  };
+  for (double gap = 0.016; gap > 0.0069; gap -= 0.0005) pipeline.step(pose(gap, 0.0, 0.3));
+  for (double lift = 0.0; lift < 0.0041; lift += 0.0005) pipeline.step(pose(0.007, lift, 0.3));
+  const StepReport& report = pipeline.report();
+  ASSERT_TRUE(report.tools.front().grasps);
+  const Vec3 pull = report.tools.front().force_on_tool;
+  ASSERT_LT(pull.z(), -0.2);
+  pipeline.step(pose(0.007, 0.004, -0.3));
+  EXPECT_EQ(report.jumped, std::vector<std::size_t>{1});
+  EXPECT_TRUE(report.tools.front().grasps);
+  EXPECT_LT((report.tools.front().force_on_tool - pull).norm(), 0.01 * pull.norm());
+  EXPECT_FALSE(pipeline.step(pose(0.007, 0.004, -0.3)).too_fast);
+}
+
+TEST(JumpingTool, LetsGoAndIsMetWhereItCame) {
+  Pipeline pipeline(block(), {}, {probe(), probe("other")}), fresh(block(), {}, {probe()});
+  const Vec3 stands(0.045, kMiddle, kTop + 0.0085);
+  const auto pose = [&](const Vec3& probe) { return at({probe, stands}); };
+  const Vec3 first(0.015, kMiddle, kTop + 0.008), second(0.015, kMiddle, 0.5);
+  walk(pipeline, {first + Vec3(0.0, 0.0, 0.004), stands + Vec3(0.0, 0.0, 0.004)}, {first, stands});
+  pipeline.step(pose(second));
+  EXPECT_EQ(pipeline.report().jumped, std::vector<std::size_t>{0});
+  EXPECT_EQ(pipeline.report().tools.front().force_on_tool, Vec3::Zero());
+  walk(fresh, {stands + Vec3(0.0, 0.0, 0.004)}, {stands});
+  const Vec3 alone = fresh.report().tools.front().force_on_tool;
+  EXPECT_LT((pipeline.report().tools.back().force_on_tool - alone).norm(), 0.05 * alone.norm());
+  pipeline.step(pose(first));
+  EXPECT_EQ(pipeline.report().jumped, std::vector<std::size_t>{0});
+  EXPECT_TRUE(pipeline.hasArrived());
+  EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), 0.05);
+  EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.05 * kSpacing);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_fast_tools

@@ -45,7 +45,8 @@ struct StepReport {
   // Where too_fast or lost: tools not yet at their pose. Those that are nowhere near the tissue on
   // their way always are.
   std::vector<std::size_t> behind;
-  std::vector<std::size_t> jumped;  // too far to be followed: all tools let go and came in anew
+  // Too far to be followed: let go, and came in anew. With rigid patches all tools did.
+  std::vector<std::size_t> jumped;
   std::vector<std::size_t> were_inside;  // appeared inside the tissue and came in from outside
   std::vector<std::size_t> hooked;  // dragged tissue away that they stood through, and let go of it
   // No shape followed them, or those that they meet: let go, and came in anew from outside.
