@@ -308,6 +308,7 @@ bool Grasping::grasp(std::size_t tool) {
   const auto gap = gapAtTissue(tool, world_.pose);
   const bool closed = gap && *gap <= world_.tools[tool].grasp.open_gap;
   jaws.state = closed ? Jaws::State::kClosed : Jaws::State::kOpen;
+  jaws.let_go = false;
   return true;
 }
 

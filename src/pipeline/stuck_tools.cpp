@@ -5,11 +5,13 @@
 
 namespace robot_tissue {
 
-// Where no shape could follow, tools that have come out of the tissue by themselves let go.
+// Where no shape could follow, tools that have come out of the tissue by themselves let go, but for
+// what graspers hold.
 void ToolMotion::leaveStuck(RobotPose& pose) {
   RobotPose from = *world_.last_pose;
   bool any = false;
   for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
+    if (grasping_.grasps(tool)) continue;
     const RobotPose moved = world_.tools.withTool(tool, pose, from);
     if (ways_.stepsBetween(from, moved) == 0.0 || overlap_.isInTissue(tool, pose)) continue;
     any = true;

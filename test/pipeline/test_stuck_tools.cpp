@@ -91,5 +91,40 @@ TEST(ToolBehind, ThatIsNotClearOfTheTissueIsFollowed) {
   EXPECT_GT(pipeline.report().tools.front().force_on_tool.z(), 0.05);
 }
 
+// A gripper has lifted one end of a ridge; no shape follows plates that close on its other end.
+TEST(GripperBesideAJam, HoldsWhatItHoldsUntilItIsToldToLetGo) {
+  TissueConfig tissue = ridge();
+  tissue.shape.max().x() = 0.06;
+  tissue.fixed = {bottomOf(tissue.shape)};
+  const auto plate = [](int side) {
+    return toolOf(boxOf(Vec3(0.016, 0.004, 0.01), Vec3(0.0, 0.002 * side, 0.0)));
+  };
+  Pipeline pipeline(tissue, {}, {ridgeGripper("gripper", 0.008, 0.012), plate(-1), plate(1)});
+  const StepReport& report = pipeline.report();
+  const auto step = [&](double gap, double lift, double between_plates) {
+    std::vector<Vec3> origins = jawsOnRidge(gap, lift);
+    for (const Vec3& origin : jawsOnRidge(between_plates)) {
+      origins.push_back(origin + Vec3(0.032, 0.0, -0.002));
+    }
+    pipeline.step(at(origins));
+  };
+  constexpr double kHeld = 0.007, kLift = 0.004, kJammed = -0.002;
+  for (double gap = 0.016; gap > kHeld - 1e-4; gap -= 0.0005) step(gap, 0.0, 0.016);
+  for (double lift = 0.0; lift < kLift + 1e-4; lift += 0.0005) step(kHeld, lift, 0.016);
+  step(kHeld, kLift, kJammed);
+  ASSERT_TRUE(report.lost);
+  ASSERT_TRUE(report.tools.front().grasps);
+  pipeline.letGo(0);
+  pipeline.grasp(0);
+  step(kHeld, kLift, kJammed);
+  EXPECT_TRUE(report.tools.front().grasps) << "what it was told last";
+  step(kHeld, 0.016, kJammed);
+  EXPECT_TRUE(report.tools.front().grasps) << "its jaws are clear of the tissue that stays behind";
+  EXPECT_LT(report.tools.front().force_on_tool.z(), -0.2);
+  pipeline.letGo(0);
+  step(kHeld, 0.016, kJammed);
+  EXPECT_FALSE(report.tools.front().grasps);
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_stuck_tools
