@@ -1,9 +1,30 @@
 // ToolMotion: tools that no shape follows, or that drag tissue with them, let go and come in anew.
+#include <utility>
+
 #include "box_distance.h"
 #include "tool_motion.h"
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+// Those of the tools that were among them in so many updates in a row; for these it begins anew.
+std::vector<std::size_t> inARow(const std::vector<std::size_t>& tools, int updates, std::size_t all,
+                                std::vector<int>& counts) {
+  std::vector<int> before = std::exchange(counts, std::vector<int>(all, 0));
+  before.resize(all, 0);
+  std::vector<std::size_t> often;
+  for (const std::size_t tool : tools) {
+    if (before[tool] + 1 >= updates) {
+      often.push_back(tool);
+    } else {
+      counts[tool] = before[tool] + 1;
+    }
+  }
+  return often;
+}
+
+}  // namespace
 
 // Where no shape could follow, tools that have come out of the tissue by themselves let go, but for
 // what graspers hold.
@@ -40,11 +61,11 @@ void ToolMotion::leaveBehind(RobotPose& pose) {
       }
     }
   }
-  behind_.clear_in_a_row = clear.empty() ? 0 : behind_.clear_in_a_row + 1;
-  if (behind_.clear_in_a_row < tuning::kMostClearInARow) return;
-  behind_.clear_in_a_row = 0;
+  const std::vector<std::size_t> left =
+      inARow(clear, tuning::kMostClearInARow, world_.tools.size(), behind_.clear_in_a_row);
+  if (left.empty()) return;
   RobotPose from = *world_.last_pose;
-  for (const std::size_t tool : clear) {
+  for (const std::size_t tool : left) {
     from = world_.tools.withTool(tool, pose, from);
     letGoOf(tool);
     addOnce(tool, world_.report.left);
@@ -109,17 +130,15 @@ void ToolMotion::leaveReleased(RobotPose& pose) {
 // one that was thrown to the other side of the tissue. What a tool holds, and blades in their
 // wounds, stay; so do all where work is bounded for a scene, of which this takes a good part.
 void ToolMotion::leaveJam(RobotPose& pose) {
-  behind_.lost_in_a_row = world_.report.lost ? behind_.lost_in_a_row + 1 : 0;
-  if (behind_.lost_in_a_row < tuning::kMostLostInARow) return;
   if (world_.tools.anyRigid() || world_.tissue.patience().isForScene()) return;
-  behind_.lost_in_a_row = 0;
-  std::vector<std::size_t> jammed;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    if (ways_.isAt(tool, *world_.last_pose, pose) || isAttached(tool)) continue;
-    jammed.push_back(tool);
-    addOnce(tool, world_.report.jammed);
+  std::vector<std::size_t> behind;
+  for (std::size_t tool = 0; tool < world_.tools.size() && world_.report.lost; ++tool) {
+    if (!ways_.isAt(tool, *world_.last_pose, pose) && !isAttached(tool)) behind.push_back(tool);
   }
+  const std::vector<std::size_t> jammed =
+      inARow(behind, tuning::kMostLostInARow, world_.tools.size(), behind_.lost_in_a_row);
   if (jammed.empty()) return;
+  for (const std::size_t tool : jammed) addOnce(tool, world_.report.jammed);
   world_.report.lost = false;
   comeAnew(jammed, pose);
 }

@@ -15,9 +15,9 @@ namespace robot_tissue {
 // What is remembered of the tools' way so far.
 struct WayBehind {
   std::vector<Checkpoint> checkpoints;
-  RobotPose last_goal;        // of the last walk
-  int lost_in_a_row = 0;      // updates that no shape followed
-  int clear_in_a_row = 0;     // updates in which tools were behind that are clear of the tissue
+  RobotPose last_goal;  // of the last walk
+  // Per tool, updates in which it was behind: as no shape followed, and clear of the tissue.
+  std::vector<int> lost_in_a_row, clear_in_a_row;
   int late_iterations = 0;    // of a load step that is being finished
   bool begins_short = false;  // no shape followed the last load step, and time was over
 };

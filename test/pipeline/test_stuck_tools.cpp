@@ -60,6 +60,25 @@ TEST(JammedTools, LetGoAndAreToldSo) {
   EXPECT_EQ(saidOf(StepRemark::Kind::kInside, pipeline), "");
 }
 
+// It is behind only because they are, and only just so.
+TEST(JammedTools, DoNotMakeALateOneLetGo) {
+  const ToolShape box = boxOf(Vec3(0.02, 0.02, 0.02));
+  Pipeline pipeline(block("elastic", 0.01), {},
+                    {toolOf(box, "left"), toolOf(box, "right"), probe()});
+  const auto pose = [](double gap, double depth) {
+    const double off = 0.5 * gap + 0.01;
+    return at({Vec3(kMiddle - off, kMiddle, 0.03), Vec3(kMiddle + off, kMiddle, 0.03),
+               Vec3(kMiddle, 0.055, kTop + kRadius - depth)});
+  };
+  double gap = 0.062;
+  for (; gap > -0.01 && !pipeline.report().lost; gap -= 0.002) pipeline.step(pose(gap, 0.002));
+  ASSERT_EQ(pipeline.report().behind, (Tools{0, 1}));
+  pipeline.step(pose(gap -= 0.002, 0.002));
+  ASSERT_EQ(pipeline.report().behind, (Tools{0, 1}));
+  pipeline.step(pose(gap - 0.002, 0.003));
+  EXPECT_EQ(pipeline.report().jammed, (Tools{0, 1}));
+}
+
 // With so few iterations a load step that the tool falls far behind.
 TEST(ToolBehind, ThatIsClearOfTheTissueLetsGoAndIsToldSo) {
   Pipeline pipeline(block(), SolverConfig(), {withFriction(0.5, probe())});
@@ -77,6 +96,24 @@ TEST(ToolBehind, ThatIsClearOfTheTissueLetsGoAndIsToldSo) {
   EXPECT_NE(said.find("'probe' left the tissue faster"), std::string::npos) << said;
   EXPECT_EQ(greatestDisplacement(pipeline.tissue()), 0.0);
   EXPECT_EQ(pipeline.report().tools.front().force_on_tool, Vec3::Zero());
+}
+
+// As long as those that have left before it.
+TEST(ToolBehind, ThatLeavesAfterAnotherIsFollowedAsLong) {
+  Pipeline pipeline(block(), SolverConfig(),
+                    {withFriction(0.5, probe("first")), withFriction(0.5, probe("second"))});
+  const auto both = [](double first, double second) {
+    return std::vector<Vec3>{pressed(first, 0.015).links.front().translation(),
+                             pressed(second, 0.045).links.front().translation()};
+  };
+  walk(pipeline, both(-0.001, -0.001), both(0.01, 0.01));
+  pipeline.setMostIterations(3);
+  for (int update = 1; update < 3; ++update) {
+    pipeline.step(at(both(-0.04, 0.01)));
+    ASSERT_EQ(pipeline.report().behind, Tools{0});
+  }
+  pipeline.step(at(both(-0.04, -0.04)));
+  EXPECT_EQ(pipeline.report().left, Tools{0});
 }
 
 // Where the robot has it, it would meet the tissue again.
