@@ -24,28 +24,34 @@ std::vector<ToolTouch> pressingTouches(const Pipeline& pipeline) {
   return pressing;
 }
 
+struct BoxedTriangle {
+  MeshTriangle corners{};
+  Box box;  // deformed
+};
+
 // Whose box reaches into the box around the touches: each of these is on one of them.
-std::vector<MeshTriangle> trianglesAround(const std::vector<ToolTouch>& touches,
-                                          const Tissue& tissue) {
+std::vector<BoxedTriangle> trianglesAround(const std::vector<ToolTouch>& touches,
+                                           const Tissue& tissue) {
   Box around;
   for (const ToolTouch& touch : touches) around.extend(touch.point);
   const Box near = grownBy(tissue.lattice().spacing(), around);
-  std::vector<MeshTriangle> triangles;
+  std::vector<BoxedTriangle> triangles;
   for (const MeshTriangle& triangle : tissue.surface().triangles) {
     Box box;
     for (const int vertex : triangle) box.extend(tissue.vertices()[at(vertex)]);
-    if (box.intersects(near)) triangles.push_back(triangle);
+    if (box.intersects(near)) triangles.push_back({triangle, box});
   }
   return triangles;
 }
 
 // Shares the force (N) among the corners of the triangle that the point is on.
-void shareForce(const Tissue& tissue, const std::vector<MeshTriangle>& triangles, const Vec3& point,
-                double force, std::vector<double>& forces) {
+void shareForce(const Tissue& tissue, const std::vector<BoxedTriangle>& triangles,
+                const Vec3& point, double force, std::vector<double>& forces) {
   double nearest = std::numeric_limits<double>::infinity();
   MeshTriangle found{};
   Vec3 shares = Vec3::Zero();
-  for (const MeshTriangle& triangle : triangles) {
+  for (const auto& [triangle, box] : triangles) {
+    if (box.squaredExteriorDistance(point) >= nearest * nearest) continue;
     const Corners corners = deformedCorners(tissue, triangle);
     const Vec3 weights = nearestInTriangle(point, corners);
     const double distance = (pointOf(corners, weights) - point).norm();
@@ -64,7 +70,7 @@ std::vector<double> touchPressures(const Pipeline& pipeline) {
   std::vector<double> values(tissue.vertices().size(), 0.0);
   const std::vector<ToolTouch> touches = pressingTouches(pipeline);
   if (touches.empty()) return values;
-  const std::vector<MeshTriangle> near = trianglesAround(touches, tissue);
+  const std::vector<BoxedTriangle> near = trianglesAround(touches, tissue);
   for (const ToolTouch& touch : touches) {
     shareForce(tissue, near, touch.point, touch.normal_force, values);
   }
