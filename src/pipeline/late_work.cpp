@@ -56,13 +56,14 @@ bool Pipeline::hasArrived() const {
 // What the last solve had no time for.
 void Pipeline::finish() {
   world_.unfinished = false;
+  const bool is_open = world_.tissue.isLate() || !world_.tissue.areContactsSettled();
   if (anyToolIn(world_.tissue.patches(), world_)) {
     const LoadStepEnd end = parts_->motion.finishStanding();
     const bool is_under_way = end == LoadStepEnd::kUnderWay;
     if (end != LoadStepEnd::kArrived && !is_under_way) world_.report.lost = true;
     world_.unfinished = world_.unfinished || is_under_way;
     if (world_.report.lost) world_.report.behind = parts_->motion.toolsBehind();
-  } else if (world_.tissue.isLate() && !world_.tissue.isLoading()) {
+  } else if (is_open && !world_.tissue.isLoading()) {
     const Stopwatch watch(world_.report.solve_ms);
     parts_->load_step.balance();
     world_.sliding.commit(world_.pose, world_.tissue);

@@ -100,6 +100,33 @@ TEST(MaxIterations, ToolThatStandsSettles) {
   EXPECT_TRUE(any);
 }
 
+// What the supports alone touch, as no tool does any more, settles likewise.
+TEST(MaxIterations, TissueThatAToolLeftSettlesOnItsSupport) {
+  TissueConfig tissue = block();
+  tissue.shape.max() = Vec3(0.03, 0.03, 0.02);
+  tissue.fixed.clear();
+  tissue.gravity = Vec3(0.0, 0.0, -9.81);
+  tissue.material.young_modulus = 2e3;
+  bool any = false;
+  for (const double x : {0.015, 0.02}) {
+    Pipeline pipeline(tissue, {}, {withFriction(0.6, probe())}, {{"table", planeOf(true), 0.3}});
+    pipeline.settle();
+    pipeline.setMostIterations(5);
+    Vec3 center(x, 0.015, 0.021 + kRadius);
+    for (const double way : {-0.0048, 0.015}) {
+      const Vec3 end = center + way * Vec3::UnitZ();
+      walk(pipeline, {center}, {end}, way < 0.0 ? 0.0008 : 0.003);
+      center = end;
+    }
+    any = any || pipeline.isLate();
+    for (int update = 0; update < 3; ++update) pipeline.step(at({center}));
+    EXPECT_FALSE(pipeline.isLate()) << x;
+    EXPECT_TRUE(pipeline.stillPose().has_value()) << x;
+    EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk) << x;
+  }
+  EXPECT_TRUE(any);
+}
+
 // What is late is off by what is left to settle. Slips are to be found a step or two later.
 TEST(MaxIterations, ForcesAreThoseWithoutABoundButForSlips) {
   const std::vector<Vec3> bounded = forcesOfDrag(kMost), wanted = forcesOfDrag(0);
