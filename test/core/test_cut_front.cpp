@@ -71,6 +71,26 @@ TEST(CutFront, ForceFallsEvenlyAsTheBladeGoesThroughACell) {
   }
 }
 
+// Leaning by a quarter, 2.46 spacings deep, its end at this place along x (spacings).
+double forceLeaningAt(double place) {
+  const double lean = 0.25, z = (kCells[2] - 2.46) * kSpacing, top = 8.0 * kSpacing;
+  const double low = place * kSpacing, high = low + lean * (top - z);
+  const TissueConfig config = block();
+  SolverConfig solver;
+  solver.method = "newton";
+  Tissue tissue(config, solver);
+  tissue.cut({{low, -1.0, z}, {low, 1.0, z}, {high, 1.0, top}, {high, -1.0, top}});
+  return forceOf(tissue, config);
+}
+
+// Also where the blade's surface goes on through springs across it.
+TEST(CutFront, HoldsAsMuchWhereverALeaningCutIsBetweenTheNodes) {
+  const double force = forceLeaningAt(4.4);
+  for (const double place : {4.04, 4.1, 4.2, 4.7}) {
+    EXPECT_NEAR(forceLeaningAt(place), force, 0.03 * force) << place;
+  }
+}
+
 TEST(CutFront, AllMethodsFindTheSame) {
   const double force = forceAt(2.4);
   for (const char* method : {"layered", "explicit"}) {

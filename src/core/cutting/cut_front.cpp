@@ -55,7 +55,9 @@ Vec3 placeOf(const Lattice& lattice, const LatticeState& state, int node) {
   return lattice.restPosition(node) + state.displacement[at(node)];
 }
 
-// The blade's surface at a cell, as a plane that goes on.
+// The blade's surface at a cell, as it goes on: between the edges along the axis that is nearest to
+// its normal, if only such edges are severed, so that nodes that the front leaves together are
+// ahead of the blade; else as a plane.
 class CellPlane {
  public:
   CellPlane(const Lattice& lattice, const LatticeState& state, const BladeSurface& blade,
@@ -69,6 +71,13 @@ class CellPlane {
     const BladeSurface::Nearest nearest = blade.nearestTo(middle);
     for (std::size_t corner = 0; corner < kCorners; ++corner) {
       heights_[corner] = nearest.normal.dot(places_[corner] - nearest.point);
+    }
+    if (const std::optional<int> axis = axisAcross(state)) {
+      for (int corner = 0; corner < kCorners; ++corner) {
+        is_above_[at(corner)] = (corner >> *axis & 1) != 0;
+      }
+      fits_ = true;
+      return;
     }
     const double slack = kBesideBlade * lattice.spacing();
     for (const double shift : {0.0, slack, -slack}) {
@@ -93,6 +102,21 @@ class CellPlane {
   }
 
  private:
+  // The axis of all severed edges, if none is nearer to the normal; of two as near either will do.
+  std::optional<int> axisAcross(const LatticeState& state) const {
+    Vec3 rise = Vec3::Zero();
+    std::set<int> severed;
+    for (const CellEdge& edge : edges_) {
+      rise[edge.axis] += heights_[at(edge.other)] - heights_[at(edge.corner)];
+      if (state.severed[at(edge.spring)] != 0) severed.insert(edge.axis);
+    }
+    if (severed.size() != 1) return std::nullopt;
+    const int axis = *severed.begin();
+    const bool is_nearest =
+        std::abs(rise[axis]) >= (1.0 - kBesideBlade) * rise.cwiseAbs().maxCoeff();
+    return is_nearest ? std::optional<int>(axis) : std::nullopt;
+  }
+
   bool fitsSevered(const LatticeState& state) const {
     return std::all_of(edges_.begin(), edges_.end(), [&](const CellEdge& edge) {
       return state.severed[at(edge.spring)] == 0 || crosses(edge);
