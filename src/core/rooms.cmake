@@ -34,7 +34,7 @@ robot_tissue_room(surface
   PUBLIC curved_surface.h surface.h surface_strain.h
   FILES cell_parts.cpp cell_parts.h curved_surface.cpp cut_mesh_surface.cpp cut_mesh_surface.h cut_region.cpp cut_region.h
     divided_grid.cpp
-    divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h merged_skin.cpp merged_skin.h mesh_surface.cpp
+    divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h mean_curvature.cpp mean_curvature.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
     smooth_carriers.h surface.cpp surface_strain.cpp)
 robot_tissue_room(membrane
@@ -51,7 +51,7 @@ robot_tissue_room(loads
   USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
-    dof_constraints.h driven_places.cpp driven_places.h loading_patch.cpp narrow_contact.cpp narrow_contact.h patch_rim.cpp
+    dof_constraints.h driven_places.cpp driven_places.h loading_patch.cpp local_lattice.cpp local_lattice.h narrow_contact.cpp narrow_contact.h patch_rim.cpp
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base config lattice cutting loads
@@ -115,7 +115,7 @@ robot_tissue_room(tissue
   FILES body.cpp body.h contact_rounds.cpp front_ties.cpp front_ties.h history.cpp history.h kept_still.cpp kept_still.h
     load_program.cpp load_program.h load_ramp.h load_starts.cpp load_step_bound.cpp load_step_solver.cpp load_step_solver.h
     load_stepping.cpp load_stepping.h method_pair.cpp method_pair.h partings.h patience.cpp
-    piece_registry.cpp piece_registry.h refused_patch.h registry.cpp registry.h relaxed_pieces.cpp removals.cpp round_gain.h solve_bounds.cpp
+    piece_registry.cpp piece_registry.h pressed_surfaces.cpp pressed_surfaces.h refused_patch.h registry.cpp registry.h relaxed_pieces.cpp removals.cpp round_gain.h solve_bounds.cpp
     solve_bounds.h solve_outcome.h solve_total.h standing_loads.cpp standing_loads.h surgery.cpp surgery.h
     suturing.cpp suturing.h tearing.cpp threads.cpp threads.h time_integrator.cpp time_integrator.h
     time_stepping.cpp time_stepping.h tissue.cpp tissue_data.cpp tissue_data.h tissue_forces.cpp

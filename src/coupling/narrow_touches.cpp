@@ -62,6 +62,7 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
   const Ball* const ball = ballUnder(pushing, tissue_T_link, tissue);
   if (ball == nullptr) return {};
   axis.normalize();
+  press.axis = axis;
   press.radius = ball->radius;
   const Vec3 lowest = tissue_T_link * ball->center + ball->radius * axis;
   std::map<int, double> shares;
@@ -120,6 +121,7 @@ void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue)
     const Ball* const ball = ballUnder({deepest}, pose.links[at(link)], tissue);
     press.radius = ball == nullptr ? 0.0 : ball->radius;
     press.shares = deepest->spring.carriers;
+    press.axis = deepest->spring.normal;
     const auto guess = ball == nullptr ? std::nullopt : tissue.recessUnder(press);
     setRecess(link, guess.value_or(Recess()).depth);
   }

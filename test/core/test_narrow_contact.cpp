@@ -6,8 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "loads/local_lattice.h"
 #include "loads/narrow_contact.h"
 #include "loads/point_loads.h"
+#include "mesh_fixtures.h"
+#include "surface/mean_curvature.h"
 #include "tissue_fixtures.h"
 
 namespace robot_tissue::test_narrow_contact {
@@ -71,77 +74,172 @@ TEST(PointLoads, FarOffTheyAreAHalfSpaces) {
   }
 }
 
-// A force on one node: what is missing to a half-space's dent is the recess.
+// Around a force on it the lattice is looked at where no table is of it: here there is.
+TEST(LocalLattice, OfAFlatSurfaceGivesWayAsTheTableHasIt) {
+  for (const double ratio : {0.25, 0.35, 0.45, 0.49}) {
+    TissueConfig config = cube();
+    config.material.poisson_ratio = ratio;
+    const Lattice lattice(config);
+    const ElasticModel model(lattice, config);
+    const LatticeState rest = lattice.restState();
+    const double unit = 1e4 / 2.0 / (1.0 + ratio) * kSpacing;
+    const auto node = [&](int i, int j) { return lattice.node(kMiddle + i, kMiddle + j, kMiddle); };
+    const auto compliance = [&](const std::vector<NodeWeight>& shares) {
+      LocalLattice around;
+      const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
+      EXPECT_TRUE(around.take(shares, *moduli, lattice, rest, model));
+      EXPECT_TRUE(around.isDeepAt(topAt(0.5, 0.5), -Vec3::UnitZ()));
+      EXPECT_FALSE(around.isDeepAt(topAt(0.5, 0.5), Vec3::UnitZ()));
+      return unit * around.compliance(shares, -Vec3::UnitZ());
+    };
+    const double own = pointCompliance(ratio, 0.0), beside = pointCompliance(ratio, 1.0),
+                 across = pointCompliance(ratio, 2.0);
+    EXPECT_NEAR(compliance({{node(0, 0), 1.0}}), own, 0.013) << ratio;
+    EXPECT_NEAR(compliance({{node(0, 0), 0.5}, {node(1, 0), 0.5}}), 0.5 * (own + beside), 0.006);
+    EXPECT_NEAR(
+        compliance(
+            {{node(0, 0), 0.25}, {node(1, 0), 0.25}, {node(0, 1), 0.25}, {node(1, 1), 0.25}}),
+        0.25 * (own + 2.0 * beside + across), 0.001);
+  }
+}
+
+TEST(LocalLattice, TurnsWithTheTissueAndKnowsItsMaterial) {
+  TissueConfig config = cube();
+  Region stiff;
+  stiff.name = "stiff";
+  stiff.box = {Vec3::Zero(), kSpacing * Vec3(kCells, kCells, kMiddle - 2)};
+  stiff.material = config.material;
+  stiff.material.young_modulus = 1e5;
+  for (const bool is_layered : {false, true}) {
+    if (is_layered) config.regions.push_back(stiff);
+    const Lattice lattice(config);
+    const ElasticModel model(lattice, config);
+    LatticeState state = lattice.restState();
+    const std::vector<NodeWeight> shares = {{lattice.node(kMiddle, kMiddle, kMiddle), 1.0}};
+    LocalLattice around;
+    const auto moduli = LocalLattice::moduliUnder(shares, *state.cells, model);
+    EXPECT_NEAR(moduli->shear, kShear, 1e-6 * kShear);
+    EXPECT_EQ(around.take(shares, *moduli, lattice, state, model), !is_layered);
+    if (is_layered) continue;
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(1.2, Vec3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+    for (int node = 0; node < lattice.nodeCount(); ++node) {
+      const Vec3 place = lattice.restPosition(node);
+      state.displacement[at(node)] = turn * (1.1 * place) + Vec3(0.1, 0.2, 0.3) - place;
+    }
+    EXPECT_LT((around.turn(state.displacement) - turn).norm(), 1e-12);
+  }
+}
+
+TEST(MeanCurvature, IsThatOfABallAndOfACylinder) {
+  const Vec3 top(0.0, 0.0, 0.04);
+  const std::vector<Vec3> ball = sphereMesh(0.04, 4).vertices;
+  EXPECT_NEAR(meanCurvature(ball, top, Vec3::UnitZ(), 0.01), 25.0, 1.0);
+  EXPECT_NEAR(meanCurvature(ball, top, -Vec3::UnitZ(), 0.01), -25.0, 1.0) << "from inside";
+  EXPECT_EQ(meanCurvature(ball, 2.0 * top, Vec3::UnitZ(), 0.01), 0.0) << "nothing there";
+  std::vector<Vec3> flat, rod;
+  for (int i = -5; i <= 5; ++i) {
+    for (int j = -5; j <= 5; ++j) {
+      flat.emplace_back(0.002 * i, 0.002 * j, 0.04);
+      rod.emplace_back(0.04 * std::sin(0.05 * i), 0.002 * j, 0.04 * std::cos(0.05 * i));
+    }
+  }
+  EXPECT_NEAR(meanCurvature(flat, top, Vec3::UnitZ(), 0.01), 0.0, 1e-9);
+  EXPECT_NEAR(meanCurvature(rod, top, Vec3::UnitZ(), 0.01), 12.5, 1.0);
+}
+
+// Under a force on one node.
+PressedSurface flatUnderOneNode() {
+  return {kSpacing, {kShear, kPoisson}, 0.0, pointCompliance(kPoisson, 0.0) / (kShear * kSpacing)};
+}
+
+// What is missing to a half-space's dent is the recess.
 TEST(NarrowContact, WithItsRecessABallIsAsDeepAsInAHalfSpace) {
-  const Lattice lattice(cube());
-  const SurfaceModuli moduli{kShear, kPoisson};
-  BallPress press;
-  press.radius = 0.02;
-  press.force = 0.005;
-  press.shares = {{lattice.node(kMiddle, kMiddle, kMiddle), 1.0}};
   const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
-  const double contact = std::cbrt(0.75 * press.force * press.radius / plane_modulus);
-  const double of_lattice = press.force * pointCompliance(kPoisson, 0.0) / (kShear * kSpacing);
-  const double depth = contact * contact / press.radius;
-  const Recess alone = recessUnder(press, lattice, moduli);
-  EXPECT_NEAR(alone.depth + of_lattice, depth, 1e-12);
-  press.height = 1e-4;
-  EXPECT_NEAR(recessUnder(press, lattice, moduli).depth, alone.depth - 1e-4, 1e-12);
-  press.height = 0.0;
-  press.force = 0.0;
-  press.depth = depth;
-  EXPECT_NEAR(recessUnder(press, lattice, moduli).depth, alone.depth, 1e-12) << "by its depth";
+  for (const double curvature : {0.0, 20.0, -10.0}) {
+    PressedSurface surface = flatUnderOneNode();
+    surface.curvature = curvature;
+    BallPress press;
+    press.radius = 0.02;
+    press.force = 0.002;
+    const double of_both = 1.0 / (1.0 / press.radius + curvature);
+    const double contact = std::cbrt(0.75 * press.force * of_both / plane_modulus);
+    const double depth = contact * contact / of_both;
+    const Recess alone = recessUnder(press, surface);
+    EXPECT_NEAR(alone.depth + press.force * surface.compliance, depth, 1e-12) << curvature;
+    press.height = 1e-4;
+    const double higher = 1e-4 * press.radius / of_both;
+    EXPECT_NEAR(recessUnder(press, surface).depth, alone.depth - higher, 1e-12);
+    press.height = 0.0;
+    press.force = 0.0;
+    press.depth = depth;
+    EXPECT_NEAR(recessUnder(press, surface).depth, alone.depth, 1e-12) << "by its depth";
+  }
 }
 
 TEST(NarrowContact, WideOnesHaveNone) {
-  const Lattice lattice(cube());
   BallPress press;
   press.radius = 0.02;
-  press.shares = {{lattice.node(kMiddle, kMiddle, kMiddle), 1.0}};
   const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
+  PressedSurface surface = flatUnderOneNode();
+  const auto widen = [&](double width) {
+    press.force = 4.0 / 3.0 * plane_modulus * std::pow(width * kSpacing, 3) / press.radius;
+    return recessUnder(press, surface).depth;
+  };
   double last = 0.0;
   for (const double width : {1.2, 1.3, 1.4, 1.499}) {
-    press.force = 4.0 / 3.0 * plane_modulus * std::pow(width * kSpacing, 3) / press.radius;
-    const double depth = recessUnder(press, lattice, {kShear, kPoisson}).depth;
+    const double depth = widen(width);
     EXPECT_LT(depth, 0.0) << "one node alone goes deeper than a half-space";
     if (width > 1.3) {
       EXPECT_GT(depth, last) << "it fades out";
     }
     last = depth;
   }
-  press.force *= 1.01;
-  EXPECT_EQ(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
+  EXPECT_EQ(widen(1.501), 0.0);
+  surface.is_flat = false;
+  EXPECT_LT(widen(1.0), 0.0);
+  EXPECT_EQ(widen(1.101), 0.0) << "where the surface is bent sooner";
+}
+
+// A half-space's contact would be wider than the ball.
+TEST(NarrowContact, OfABallThatIsAllInHasNone) {
+  BallPress press;
+  press.radius = 0.8 * kSpacing;
+  const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
+  for (const double width : {1.1, 1.39, 1.41}) {
+    press.force = 4.0 / 3.0 * plane_modulus * std::pow(width * press.radius, 3) / press.radius;
+    EXPECT_EQ(recessUnder(press, flatUnderOneNode()).depth != 0.0, width < 1.4) << width;
+  }
 }
 
 TEST(NarrowContact, BallsThinnerThanASpacingHaveNone) {
-  const Lattice lattice(cube());
   BallPress press;
   press.depth = 1e-4;
-  press.shares = {{lattice.node(kMiddle, kMiddle, kMiddle), 1.0}};
   press.radius = 0.51 * kSpacing;
-  EXPECT_NE(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
+  EXPECT_NE(recessUnder(press, flatUnderOneNode()).depth, 0.0);
   press.radius = 0.49 * kSpacing;
-  EXPECT_EQ(recessUnder(press, lattice, {kShear, kPoisson}).depth, 0.0);
+  EXPECT_EQ(recessUnder(press, flatUnderOneNode()).depth, 0.0);
 }
 
-TEST(NarrowContact, ATissueTellsItOfItsFlatSurfaceAlone) {
+TEST(NarrowContact, ATissueTellsItWhereItIsAHalfSpace) {
   Tissue tissue(cube(), exact());
-  const auto under = [&](int i, int j, int k) {
+  const auto under = [&](int i, int j, int k, const Vec3& axis = -Vec3::UnitZ()) {
     BallPress press;
+    press.axis = axis;
     press.radius = 0.02;
     press.force = 0.005;
     press.shares = {{tissue.lattice().node(i, j, k), 1.0}};
     return tissue.recessUnder(press);
   };
   EXPECT_TRUE(under(kMiddle, kMiddle, kMiddle));
-  EXPECT_TRUE(under(0, kMiddle, kMiddle / 2)) << "a side";
-  EXPECT_FALSE(under(0, kMiddle, kMiddle)) << "an edge";
-  EXPECT_FALSE(under(kMiddle, kMiddle, 3)) << "inside";
+  EXPECT_TRUE(under(0, kMiddle, kMiddle / 2, Vec3::UnitX())) << "a side";
+  EXPECT_TRUE(under(0, kMiddle, kMiddle, Vec3(1.0, 0.0, -1.0).normalized())) << "an edge";
+  EXPECT_FALSE(under(0, kMiddle, kMiddle, -Vec3::UnitX())) << "out of it";
   const double x = topAt(0.5, 0.0).x(), low = topAt(0, 0).z() - 2.2 * kSpacing;
   EXPECT_GT(tissue.cut({{x, -1.0, low}, {x, 1.0, low}, {x, 1.0, 1.0}, {x, -1.0, 1.0}}).springs_cut,
             0);
-  EXPECT_FALSE(under(kMiddle, kMiddle, kMiddle)) << "beside a cut";
-  EXPECT_TRUE(under(kMiddle - 1, kMiddle, kMiddle));
+  EXPECT_LT(under(kMiddle, kMiddle, kMiddle)->depth, under(kMiddle - 2, kMiddle, kMiddle)->depth)
+      << "beside a cut it gives way more";
 }
 
 }  // namespace

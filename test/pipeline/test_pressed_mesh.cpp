@@ -59,6 +59,38 @@ TEST_F(PressedBall, SurfaceStaysOutOfTheToolAndComesBackToTheLastBit) {
   }
 }
 
+// Small balls touch less than a spacing's width: Hertz (1882) of two balls. Where the surface was,
+// between the nodes, they felt up to 2.2 times that. The ball of tissue is of triangles, up to 0.01
+// mm inside its sphere.
+TEST(SmallBallOnABall, FeelsAsHertzWhereverItTouches) {
+  constexpr double kTissue = 0.04, kProbe = 0.005, kModulus = 1e4, kPoisson = 0.45;
+  TissueConfig tissue;
+  tissue.mesh = std::make_shared<const TriangleMesh>(sphereMesh(kTissue, 5));
+  tissue.spacing = 0.005;
+  tissue.material.young_modulus = kModulus;
+  tissue.material.poisson_ratio = kPoisson;
+  tissue.fixed.push_back({Vec3(-1, -1, -1), Vec3(1, 1, -0.02)});
+  ToolShape ball;
+  ball.radius = kProbe;
+  const double of_both = 1.0 / (1.0 / kProbe + 1.0 / kTissue);
+  const auto hertz = [&](double depth) {
+    return 4.0 / 3.0 * kModulus / (1.0 - kPoisson * kPoisson) * std::sqrt(of_both) *
+           std::pow(depth, 1.5);
+  };
+  for (const Vec3& way : {Vec3(0, 0, 1), Vec3(0.3, 0.3, 1), Vec3(0.6, 0.2, 1), Vec3(1, 0, 1),
+                          Vec3(1, 0.5, 0.1), Vec3(1, 1, 1)}) {
+    const Vec3 out = way.normalized();
+    Pipeline pipeline(tissue, {}, {toolOf(ball)});
+    for (const double depth : {-0.0001, 0.0005, 0.001, 0.002}) {
+      pipeline.step(at({(kTissue + kProbe - depth) * out}));
+      const double force = pipeline.report().tools.front().force_on_tool.dot(out);
+      if (depth >= 0.0005) {
+        EXPECT_NEAR(force / hertz(depth), 1.0, 0.2) << depth << " m, " << way.transpose();
+      }
+    }
+  }
+}
+
 // The ball does not reach into the corners of the grid around it.
 TEST_F(PressedBall, ToolInAnEmptyCornerOfTheGridIsOutside) {
   const Vec3 corner = 0.999 * (kBall + kRadius) / std::sqrt(3.0) * Vec3::Ones();

@@ -1,17 +1,16 @@
 // A ball whose contact is narrower than the lattice tells apart (own).
 //
 // Under the force of one touch, or of a few, the surface has a dent of about a spacing, however
-// small the ball: what a light touch feels would hang on where it is between the nodes. Where the
-// tissue has a flat surface, how far it gives way under these forces is known without and with the
-// lattice:
+// small the ball: what a light touch feels would hang on where it is between the nodes. How far the
+// tissue gives way under these forces is known without and with the lattice:
 //
-//   d = a^2 / R,   a^3 = 3 F R / (4 E*),   E* = 2 mu / (1 - nu)     Hertz (1882), of a half-space
-//   c = sum over the nodes of w_a w_b C_ab F + z
+//   d = a^2 / R*,   a^3 = 3 F R* / (4 E*),   E* = 2 mu / (1 - nu)     Hertz (1882), of a half-space
+//   c = C F + z R / R*,   1 / R* = 1 / R + K
 //
-// with the radius R, the force F, its shares w at the nodes, C_ab how far the lattice's node a
-// goes when a unit of force is at b (point_loads.h) and z the mean height of what touches over the
-// ball's lowest point, the way as the force. What is farther off, as the ground, the lattice tells
-// right. So the ball touches as if its surface were d - c inside it.
+// with the ball's radius R, the tissue's mean curvature K at rest, the force F, the compliance C of
+// the lattice for forces that share F at its nodes (local_lattice.h) and z the mean height of what
+// touches over the ball's lowest point, the way as the force. What is farther off, as the ground,
+// the lattice tells right. So the ball touches as if its surface were d - c inside it.
 #pragma once
 
 #include <vector>
@@ -31,6 +30,7 @@ struct BallPress {
   double depth = 0.0;              // d (m)
   std::vector<NodeWeight> shares;  // w, sum to 1
   double height = 0.0;             // z (m)
+  Vec3 axis = Vec3::Zero();        // unit: the way it presses, into the tissue
 };
 
 struct Recess {

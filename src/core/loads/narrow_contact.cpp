@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "loads/point_loads.h"
-
 namespace robot_tissue {
 namespace {
 
@@ -12,6 +10,9 @@ namespace {
 // lattice is right to 2 %. More: more rounds, for less.
 constexpr double kNarrow = 1.25;
 constexpr double kWide = 1.5;
+// The same where the surface is not flat, and C less sure, of forces spread wide above all.
+constexpr double kNarrowIfBent = 0.5;
+constexpr double kWideIfBent = 1.1;
 // Of the ball's radius (1), likewise: Hertz's contact is not wider than the ball. Less: light
 // touches of small balls hang on where nodes are; more: forces jump by a fifth where a ball is
 // nearly two radii deep. Chosen.
@@ -22,42 +23,52 @@ constexpr double kWiderThanBall = 1.4;
 constexpr double kLeastRadius = 0.5;
 // Of the radius (1): the deepest recess. More: tissue comes past a ball's middle. Chosen.
 constexpr double kMostOfRadius = 0.25;
+// Of the ball's curvature (1): that of both is no less. Less: where tissue is hollow, as wide as
+// the ball, contacts count as wide. Chosen.
+constexpr double kLeastCurvature = 0.25;
 
-// Of the force of 1 N that nodes share (m/N).
-double sharedCompliance(const Lattice& lattice, const SurfaceModuli& moduli,
-                        const std::vector<NodeWeight>& shares) {
-  const double spacing = lattice.spacing();
-  double sum = 0.0;
-  for (const NodeWeight& one : shares) {
-    const Vec3 place = lattice.restPosition(one.node);
-    for (const NodeWeight& other : shares) {
-      const double squared = (lattice.restPosition(other.node) - place).squaredNorm();
-      sum += one.weight * other.weight *
-             pointCompliance(moduli.poisson_ratio, squared / (spacing * spacing));
-    }
+// Hertz's, of a force, or of a depth where there is none.
+struct HalfSpace {
+  double radius = 0.0;   // R* (m)
+  double contact = 0.0;  // a (m)
+  double force = 0.0;    // F (N)
+
+  HalfSpace(const BallPress& press, const SurfaceModuli& moduli, double curvature) {
+    const double of_ball = 1.0 / press.radius;
+    radius = 1.0 / std::max(of_ball + curvature, kLeastCurvature * of_ball);
+    const double plane_modulus = 2.0 * moduli.shear / (1.0 - moduli.poisson_ratio);
+    contact = press.force > 0.0 ? std::cbrt(0.75 * press.force * radius / plane_modulus)
+                                : std::sqrt(std::max(0.0, press.depth) * radius);
+    force = 4.0 / 3.0 * plane_modulus * contact * contact * contact / radius;
   }
-  return sum / (moduli.shear * spacing);
-}
+
+  // How far the law counts (1).
+  double share(const BallPress& press, double spacing, bool is_flat) const {
+    if (!(force > 0.0) || press.radius < kLeastRadius * spacing) return 0.0;
+    const double narrow = is_flat ? kNarrow : kNarrowIfBent, wide = is_flat ? kWide : kWideIfBent;
+    const double of_width = (wide - contact / spacing) / (wide - narrow);
+    const double of_ball =
+        (kWiderThanBall - contact / press.radius) / (kWiderThanBall - kWideAsBall);
+    return std::max(0.0, std::min(1.0, of_width)) * std::max(0.0, std::min(1.0, of_ball));
+  }
+};
 
 }  // namespace
 
-Recess recessUnder(const BallPress& press, const Lattice& lattice, const SurfaceModuli& moduli) {
-  const double plane_modulus = 2.0 * moduli.shear / (1.0 - moduli.poisson_ratio);
-  const double contact = press.force > 0.0
-                             ? std::cbrt(0.75 * press.force * press.radius / plane_modulus)
-                             : std::sqrt(std::max(0.0, press.depth) * press.radius);
-  const double force = 4.0 / 3.0 * plane_modulus * contact * contact * contact / press.radius;
-  const double width = contact / lattice.spacing();
-  const bool is_thin = press.radius < kLeastRadius * lattice.spacing();
-  const double of_ball = contact / press.radius;
-  if (!(force > 0.0) || width >= kWide || of_ball >= kWiderThanBall || is_thin) return {};
-  const double share = std::min(1.0, (kWide - width) / (kWide - kNarrow)) *
-                       std::min(1.0, (kWiderThanBall - of_ball) / (kWiderThanBall - kWideAsBall));
-  const double of_half_space = contact * contact / press.radius;
-  const double of_lattice = force * sharedCompliance(lattice, moduli, press.shares);
+bool isNarrow(const BallPress& press, double spacing, const SurfaceModuli& moduli) {
+  return HalfSpace(press, moduli, 0.0).share(press, spacing, true) > 0.0;
+}
+
+Recess recessUnder(const BallPress& press, const PressedSurface& surface) {
+  const HalfSpace half_space(press, surface.moduli, surface.curvature);
+  const double share = half_space.share(press, surface.spacing, surface.is_flat);
+  if (!(share > 0.0)) return {};
+  const double of_half_space = half_space.contact * half_space.contact / half_space.radius;
+  const double of_lattice = half_space.force * surface.compliance;
+  const double height = press.height * press.radius / half_space.radius;
   Recess recess;
   recess.depth =
-      std::min(share * (of_half_space - of_lattice - press.height), kMostOfRadius * press.radius);
+      std::min(share * (of_half_space - of_lattice - height), kMostOfRadius * press.radius);
   recess.step = std::max(0.0, std::min(2.0, 1.5 * of_lattice / of_half_space));
   return recess;
 }

@@ -1,7 +1,6 @@
 // The law of narrow contacts (robot_tissue/core/narrow_contact.h).
 #pragma once
 
-#include "robot_tissue/core/lattice.h"
 #include "robot_tissue/core/narrow_contact.h"
 
 namespace robot_tissue {
@@ -11,7 +10,19 @@ struct SurfaceModuli {
   double poisson_ratio = 0.0;
 };
 
+// What is pressed.
+struct PressedSurface {
+  double spacing = 0.0;  // of the lattice (m)
+  SurfaceModuli moduli;
+  double curvature = 0.0;   // K (1/m): > 0 where it bulges outwards
+  double compliance = 0.0;  // C (m/N)
+  bool is_flat = true;      // C is of the table of point loads
+};
+
+// Of a ball on a flat surface. What is curved is narrower.
+bool isNarrow(const BallPress& press, double spacing, const SurfaceModuli& moduli);
+
 // No recess under a contact that is wide.
-Recess recessUnder(const BallPress& press, const Lattice& lattice, const SurfaceModuli& moduli);
+Recess recessUnder(const BallPress& press, const PressedSurface& surface);
 
 }  // namespace robot_tissue

@@ -166,6 +166,14 @@ Vec3 ElasticModel::weight(const LatticeState& state) const {
 
 // The diagonal of ElasticCell::block at rest: h [mu / 3 + (K + mu / 3) / 16] along every axis; in a
 // cell filled in part the greatest of the three.
+CellHessian ElasticModel::stiffnessAtRest(const Cell& cell) const {
+  ElasticCell::Reached at_rest;
+  at_rest.fill(Vec3::Zero());
+  return ElasticCell(cellModuli(cell), lattice_.spacing(), at_rest, cell.fill.get(),
+                     cell.reach.get())
+      .hessian();
+}
+
 double ElasticModel::stiffnessAtRest(const CellSet& cells, int node) const {
   double stiffness = 0.0;
   cells.visitAround(node, [&](const CellSet::Meeting& met) {

@@ -51,6 +51,8 @@ class ElasticModel : public EnergyModel {
   }
   std::shared_ptr<const Membrane> membrane() const override { return membrane_; }
 
+  // Second derivative of the cell's energy at rest (N/m), without a time step.
+  CellHessian stiffnessAtRest(const Cell& cell) const;
   // Second derivative of the energy in this node alone (N/m).
   Eigen::Matrix3d nodeBlock(const LatticeState& state, int node) const;
 

@@ -4,6 +4,7 @@
 
 #include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
+#include "material/elastic_model.h"
 #include "material/tissue_model.h"
 
 namespace robot_tissue {
@@ -13,37 +14,6 @@ Vec3 forceOfPatches(const SolveReport& report) {
   Vec3 force = Vec3::Zero();
   for (const PatchAnswer& answer : report.patches) force += answer.force;
   return force;
-}
-
-// A node with four cells, none of which is filled, or left by cuts, in part alone.
-bool isInFlatSurface(const CellSet& cells, int node) {
-  if (cells.isGhost(node)) return false;
-  int whole = 0;
-  for (const CellSet::Meeting& met : cells.meetings(node)) {
-    if (cells.all()[at(met.cell)].share() < 1.0) return false;
-    ++whole;
-  }
-  return whole == 4;
-}
-
-// Whether the full cells beside and below the node are all of the same: a ball feels a layer that
-// begins a spacing below it otherwise than a half-space.
-bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
-  std::optional<Moduli> all;
-  const auto is_other = [&](const Cell& cell) {
-    if (cell.share() < 1.0) return false;
-    const Moduli moduli = model.moduliIn(cell);
-    if (!all) all = moduli;
-    return moduli.shear != all->shear || moduli.bulk != all->bulk;
-  };
-  for (const CellSet::Meeting& met : cells.meetings(node)) {
-    for (const int corner : cells.all()[at(met.cell)].nodes) {
-      for (const CellSet::Meeting& beside : cells.meetings(corner)) {
-        if (is_other(cells.all()[at(beside.cell)])) return false;
-      }
-    }
-  }
-  return true;
 }
 
 // Of named loads. What moves as one piece gives way otherwise than a node by itself.
@@ -127,17 +97,13 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
 }
 
 std::optional<Recess> TissueForces::recessUnder(const BallPress& press) const {
-  if (!data_.methods.now().findsEquilibrium() || press.shares.empty()) return std::nullopt;
-  const CellSet& cells = data_.body.cells();
+  const auto* elastic = dynamic_cast<const ElasticModel*>(&data_.body.model());
+  if (elastic == nullptr || !data_.methods.now().findsEquilibrium()) return std::nullopt;
   for (const NodeWeight& share : press.shares) {
-    if (!isInFlatSurface(cells, share.node)) return std::nullopt;
     if (isInOne(data_.loads, share.node)) return std::nullopt;
-    if (!isUniformAround(cells, data_.body.model(), share.node)) return std::nullopt;
   }
-  const Moduli moduli = data_.body.model().moduliAt(data_.body.state(), press.shares.front().node);
-  if (moduli.shear <= 0.0) return std::nullopt;
-  return robot_tissue::recessUnder(press, data_.body.lattice(),
-                                   {moduli.shear, poissonRatio(moduli)});
+  const std::optional<PressedSurface> surface = surfaces_.under(press, data_.body, *elastic);
+  return surface ? std::optional<Recess>(robot_tissue::recessUnder(press, *surface)) : std::nullopt;
 }
 
 }  // namespace robot_tissue

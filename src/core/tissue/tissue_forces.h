@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "robot_tissue/core/narrow_contact.h"
+#include "tissue/pressed_surfaces.h"
 #include "tissue/tissue_data.h"
 
 namespace robot_tissue {
@@ -22,6 +23,7 @@ class TissueForces {
 
  private:
   const TissueData& data_;
+  mutable PressedSurfaces surfaces_;
 };
 
 }  // namespace robot_tissue

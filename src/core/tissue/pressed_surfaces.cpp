@@ -1,0 +1,106 @@
+#include "tissue/pressed_surfaces.h"
+
+#include <algorithm>
+
+#include "loads/point_loads.h"
+#include "surface/mean_curvature.h"
+
+namespace robot_tissue {
+namespace {
+
+// Spacings: so far around a touch the tissue's curvature is looked at. More: smoother; less: small
+// bumps count. Chosen.
+constexpr double kSeenAround = 2.0;
+
+// A node with four cells, none of which is filled, or left by cuts, in part alone.
+bool isInFlatSurface(const CellSet& cells, int node) {
+  if (cells.isGhost(node)) return false;
+  int whole = 0;
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    if (cells.all()[at(met.cell)].share() < 1.0) return false;
+    ++whole;
+  }
+  return whole == 4;
+}
+
+// Whether the full cells beside and below the node are all of the same: a ball feels a layer that
+// begins a spacing below it otherwise than a half-space.
+bool isUniformAround(const CellSet& cells, const TissueModel& model, int node) {
+  std::optional<Moduli> all;
+  const auto is_other = [&](const Cell& cell) {
+    if (cell.share() < 1.0) return false;
+    const Moduli moduli = model.moduliIn(cell);
+    if (!all) all = moduli;
+    return moduli.shear != all->shear || moduli.bulk != all->bulk;
+  };
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    for (const int corner : cells.all()[at(met.cell)].nodes) {
+      for (const CellSet::Meeting& beside : cells.meetings(corner)) {
+        if (is_other(cells.all()[at(beside.cell)])) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Of 1 N that nodes of a flat surface share (m/N).
+double flatCompliance(const std::vector<NodeWeight>& shares, const Lattice& lattice,
+                      const SurfaceModuli& moduli) {
+  const double spacing = lattice.spacing();
+  double sum = 0.0;
+  for (const NodeWeight& one : shares) {
+    const Vec3 place = lattice.restPosition(one.node);
+    for (const NodeWeight& other : shares) {
+      const double squared = (lattice.restPosition(other.node) - place).squaredNorm();
+      sum += one.weight * other.weight *
+             pointCompliance(moduli.poisson_ratio, squared / (spacing * spacing));
+    }
+  }
+  return sum / (moduli.shear * spacing);
+}
+
+}  // namespace
+
+std::optional<PressedSurface> PressedSurfaces::under(const BallPress& press, const Body& body,
+                                                     const ElasticModel& model) {
+  const std::vector<NodeWeight>& shares = press.shares;
+  const CellSet& cells = body.cells();
+  if (shares.empty()) return std::nullopt;
+  const auto moduli = LocalLattice::moduliUnder(shares, cells, model);
+  PressedSurface surface;
+  surface.spacing = body.lattice().spacing();
+  if (!moduli || !isNarrow(press, surface.spacing, *moduli)) return std::nullopt;
+  surface.moduli = *moduli;
+  const auto is_flat = [&](const NodeWeight& share) { return isInFlatSurface(cells, share.node); };
+  const auto is_uniform = [&](const NodeWeight& share) {
+    return isUniformAround(cells, model, share.node);
+  };
+  if (!std::all_of(shares.begin(), shares.end(), is_flat)) {
+    return look(press, body, model, surface) ? std::optional<PressedSurface>(surface)
+                                             : std::nullopt;
+  }
+  if (!std::all_of(shares.begin(), shares.end(), is_uniform)) return std::nullopt;
+  surface.compliance = flatCompliance(shares, body.lattice(), *moduli);
+  return surface;
+}
+
+bool PressedSurfaces::look(const BallPress& press, const Body& body, const ElasticModel& model,
+                           PressedSurface& surface) {
+  if (model.hasMembranes()) return false;
+  const LatticeState& state = body.state();
+  const Lattice& lattice = body.lattice();
+  if (!around_.take(press.shares, surface.moduli, lattice, state, model)) return false;
+  const Vec3 inwards = around_.turn(state.displacement).transpose() * press.axis;
+  Vec3 place = Vec3::Zero();
+  for (const NodeWeight& share : press.shares) {
+    place += share.weight * restPosition(lattice, *state.cells, share.node);
+  }
+  if (!around_.isDeepAt(place, inwards)) return false;
+  surface.is_flat = false;
+  surface.compliance = around_.compliance(press.shares, inwards);
+  surface.curvature =
+      meanCurvature(body.surface().rest, place, -inwards, kSeenAround * surface.spacing);
+  return true;
+}
+
+}  // namespace robot_tissue

@@ -1,0 +1,28 @@
+// What a narrow contact presses, of the tissue as it is: of a flat surface of whole cells by the
+// table of point loads, elsewhere by the lattice around the force.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "loads/local_lattice.h"
+#include "loads/narrow_contact.h"
+#include "tissue/body.h"
+
+namespace robot_tissue {
+
+class PressedSurfaces {
+ public:
+  // Nothing where the contact is wide or the tissue is no half-space: thin, or of several materials
+  // near the force.
+  std::optional<PressedSurface> under(const BallPress& press, const Body& body,
+                                      const ElasticModel& model);
+
+ private:
+  bool look(const BallPress& press, const Body& body, const ElasticModel& model,
+            PressedSurface& surface);
+
+  LocalLattice around_;  // the last force that was on no flat surface
+};
+
+}  // namespace robot_tissue
