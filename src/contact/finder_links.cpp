@@ -22,6 +22,10 @@ void ContactFinder::useShapes(std::size_t link, std::size_t count) {
 
 double ContactFinder::reach(std::size_t link) const { return impl_->links[link].reach(); }
 
+std::vector<Vec3> ContactFinder::corners(std::size_t link) const {
+  return impl_->links[link].corners();
+}
+
 std::vector<Vec3> ContactFinder::surfacePoints(std::size_t link) const {
   return impl_->links[link].surfacePoints();
 }

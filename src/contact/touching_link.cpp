@@ -72,8 +72,8 @@ double TouchingLink::longestWay(const Pose& from, const Pose& to) const {
   return longest;
 }
 
-double TouchingLink::reach() const {
-  double farthest = 0.0;
+std::vector<Vec3> TouchingLink::corners() const {
+  std::vector<Vec3> corners;
   for (std::size_t i = 0; i < in_use_; ++i) {
     const CollisionShape& shape = shapes[i];
     if (shape.isPlane()) continue;
@@ -83,10 +83,15 @@ double TouchingLink::reach() const {
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                        (corner & 4) != 0 ? 1.0 : -1.0);
-      const Vec3 away = middle + shape.poseInLink().linear() * half.cwiseProduct(signs);
-      farthest = std::max(farthest, away.norm());
+      corners.push_back(middle + shape.poseInLink().linear() * half.cwiseProduct(signs));
     }
   }
+  return corners;
+}
+
+double TouchingLink::reach() const {
+  double farthest = 0.0;
+  for (const Vec3& corner : corners()) farthest = std::max(farthest, corner.norm());
   return farthest;
 }
 

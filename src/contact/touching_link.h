@@ -28,6 +28,7 @@ class TouchingLink {
   const PlacedLink& placedAt(const Pose& tissue_T_link) const;
   // As ContactFinder has them.
   double reach() const;
+  std::vector<Vec3> corners() const;
   std::vector<Vec3> surfacePoints() const;
   std::vector<Vec3> innerPoints() const;
   double thickness() const;

@@ -15,9 +15,13 @@ double WayLengths::stepOf(std::size_t link, const Pose& tissue_T_link) const {
                   tuning::kStepOfThickness * world_.thicknessNear(link, tissue_T_link));
 }
 
+double WayLengths::wayOf(std::size_t link, const RobotPose& from, const RobotPose& to) const {
+  return longestWay(from.links[link], to.links[link], world_.corners(link));
+}
+
 // A point of a link is never farther than half of its way from the nearer end.
 double WayLengths::stepOf(std::size_t link, const RobotPose& from, const RobotPose& to) const {
-  const double half = 0.5 * longestWay(from.links[link], to.links[link], world_.reach(link));
+  const double half = 0.5 * wayOf(link, from, to);
   const double thickness = std::min(world_.thicknessNear(link, from.links[link], half),
                                     world_.thicknessNear(link, to.links[link], half));
   return std::min(world_.tissue.stepLength(), tuning::kStepOfThickness * thickness);
@@ -26,7 +30,7 @@ double WayLengths::stepOf(std::size_t link, const RobotPose& from, const RobotPo
 double WayLengths::stepsBetween(const RobotPose& from, const RobotPose& to) const {
   double steps = 0.0;
   for (std::size_t link = 0; link < to.links.size(); ++link) {
-    const double way = longestWay(from.links[link], to.links[link], world_.reach(link));
+    const double way = wayOf(link, from, to);
     steps = std::max(steps, way / stepOf(link, from, to));
   }
   return steps;
@@ -39,7 +43,7 @@ std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotP
     double steps = 0.0;
     for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool);
          ++link) {
-      const double way = longestWay(from.links[link], goal.links[link], world_.reach(link));
+      const double way = wayOf(link, from, goal);
       // An edge that is too thin to be met in longer steps goes in.
       const bool cuts = world_.tools[tool].role.has_edge;
       steps = std::max(steps, way / (cuts ? world_.tissue.stepLength() : stepOf(link, from, goal)));
@@ -53,7 +57,7 @@ std::vector<std::size_t> WayLengths::farFrom(const RobotPose& from, const RobotP
 double WayLengths::freeSteps(const RobotPose& from, const RobotPose& to) const {
   double steps = std::numeric_limits<double>::infinity();
   for (std::size_t link = 0; link < world_.tools.linkCount(); ++link) {
-    if (longestWay(from.links[link], to.links[link], world_.reach(link)) == 0.0) continue;
+    if (wayOf(link, from, to) == 0.0) continue;
     const Box box = world_.bounds(link, from.links[link]);
     steps = std::min(steps, distance(box, world_.tissue.bounds()) / stepOf(link, from, to));
   }
@@ -77,7 +81,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
   if (touchesTissue(tool)) return false;
   Box around;
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    const double way = longestWay(from.links[link], to.links[link], world_.reach(link));
+    const double way = wayOf(link, from, to);
     for (const RobotPose* pose : {&from, &to}) {
       const Box box = world_.finder.bounds(link, pose->links[link]);
       around.extend(grownBy(0.5 * way, box));
@@ -89,7 +93,7 @@ bool WayLengths::passesBy(std::size_t tool, const RobotPose& from, const RobotPo
 bool WayLengths::isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const {
   const double still = tuning::kStandsStill * world_.tissue.lattice().spacing();
   for (std::size_t link = world_.tools.firstLink(tool); link < world_.tools.endLink(tool); ++link) {
-    if (longestWay(here.links[link], there.links[link], world_.reach(link)) > still) {
+    if (wayOf(link, here, there) > still) {
       return false;
     }
   }

@@ -23,6 +23,9 @@ class WayLengths {
   bool isAt(std::size_t tool, const RobotPose& here, const RobotPose& there) const;
 
  private:
+  // The longest way of a point of the link (m), at most.
+  double wayOf(std::size_t link, const RobotPose& from, const RobotPose& to) const;
+
   const World& world_;
 };
 

@@ -166,6 +166,15 @@ double World::reach(std::size_t link) const {
   return reach;
 }
 
+std::vector<Vec3> World::corners(std::size_t link) const {
+  std::vector<Vec3> corners = finder.corners(link);
+  const std::vector<Vec3> of_drill = drills.corners(link);
+  const std::vector<Vec3>& of_edge = edgeOn(link);
+  corners.insert(corners.end(), of_drill.begin(), of_drill.end());
+  corners.insert(corners.end(), of_edge.begin(), of_edge.end());
+  return corners;
+}
+
 double World::thicknessNear(std::size_t link, const Pose& tissue_T_link, double way) const {
   const Box near = grownBy(tissue.lattice().spacing() + way, tissue.bounds());
   return finder.thicknessIn(near, link, tissue_T_link);

@@ -61,6 +61,8 @@ struct World : WorldState {
   // Of the link's shapes and its edge: the farthest point from the
   // link's origin, and a box around them in the tissue's frame (m).
   double reach(std::size_t link) const;
+  // Points with all of these between them, in the link's frame (m).
+  std::vector<Vec3> corners(std::size_t link) const;
   Box bounds(std::size_t link, const Pose& tissue_T_link) const;
   // Smallest width of the link's shapes (m), of those that are within a spacing and a way (m) of
   // the tissue's box if any is.

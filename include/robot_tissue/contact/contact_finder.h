@@ -53,6 +53,9 @@ class ContactFinder {
   // Farthest that a point of the link is from the link's origin (m); 0 without shapes, and for a
   // plane.
   double reach(std::size_t link) const;
+  // Points with all of the link between them: corners of boxes around its shapes; link frame (m).
+  // None of a plane.
+  std::vector<Vec3> corners(std::size_t link) const;
   // Points of the surface of the link's shapes, corners, edges and rims among them; link frame (m).
   // None of a plane.
   std::vector<Vec3> surfacePoints(std::size_t link) const;

@@ -5,12 +5,17 @@
 #include <vector>
 
 #include "robot_tissue/core/robot_pose.h"
+#include "robot_tissue/core/types.h"
 
 namespace robot_tissue {
 
 // Longest way (m) that a point within `reach` (m) of the link's origin goes between two poses, at
 // most.
 double longestWay(const Pose& from, const Pose& to, double reach);
+// Likewise of the points between these (m, link frame), on the way of `between`. Much less where
+// the link turns about an axis that is nearer to them than its origin, as an instrument about its
+// shaft. Of no points: the way of the origin.
+double longestWay(const Pose& from, const Pose& to, const std::vector<Vec3>& corners);
 
 class StillPose {
  public:
