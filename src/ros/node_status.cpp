@@ -138,7 +138,9 @@ void TissueNode::diagnoseTools(diagnostic_updater::DiagnosticStatusWrapper& stat
   for (const StepRemark& remark : remarksOn(pipeline_)) {
     if (remark.kind == StepRemark::Kind::kJawsMeet) tools_said_[remark.kind] = remark.text;
   }
-  status.summary(DiagnosticStatus::OK, tools_said_.empty() ? "followed" : "");
+  const bool are_followed = last_look_up_.status == PoseLookUp::Status::kOk;
+  const std::string good = are_followed ? "followed" : "not followed: no good pose";
+  status.summary(DiagnosticStatus::OK, tools_said_.empty() ? good : "");
   for (const auto& [kind, text] : tools_said_) status.mergeSummary(DiagnosticStatus::WARN, text);
   tools_said_.clear();
   for (std::size_t tool = 0; tool < report.tools.size(); ++tool) {

@@ -9,6 +9,7 @@
 #include "robot_tissue/ros/request_checks.h"
 #include "robot_tissue/scene/patch_name.h"
 #include "robot_tissue/scene/state_file.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 namespace {
@@ -21,7 +22,8 @@ RemovedSpace spaceOf(const Remove::Request& request, const Pose& tissue_T_frame)
   requireWithin(Vec3(request.radius, 0.0, 0.0), kFarthestPoint, "m", "radius");
   if (request.radius == 0.0) return PlacedBox{Box(low, high), tissue_T_frame};
   if (request.radius < 0.0) {
-    throw InputError("radius: below 0 m; allowed: 0 for a box, or above");
+    throw InputError("radius: " + numberText(request.radius) +
+                     " m; allowed: 0 for a box, or above");
   }
   if (!low.isZero(0.0) || !high.isZero(0.0)) {
     throw InputError("min, max, radius: a box and a sphere given; allowed: one of them");

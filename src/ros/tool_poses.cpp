@@ -108,6 +108,10 @@ std::optional<ToolPoses::Newest> ToolPoses::newest(const std::string& frame) con
 Pose ToolPoses::frame(const std_msgs::Header& header) const {
   const std::string& frame = header.frame_id;
   if (frame.empty() || frame == tissue_frame_) return Pose::Identity();
+  if (frame.front() == '/') {
+    throw InputError("header.frame_id: '" + shortText(frame) +
+                     "' begins with '/'; allowed: a frame of tf2, whose names do not");
+  }
   try {
     const auto newest = buffer_.lookupTransform(tissue_frame_, frame, ros::Time(0));
     const double ahead = secondsBetween(newest.header.stamp, header.stamp);

@@ -14,6 +14,7 @@ TEST_F(MissingRobot, DescriptionThenFrameAreReportedAndWaitedFor) {
     return diagnostics_.count("tissue: transforms") > 0 &&
            diagnostics_["tissue: transforms"].level == diagnostic_msgs::DiagnosticStatus::ERROR;
   }));
+  EXPECT_EQ(diagnostics_["tissue: tools"].message, "not followed: no good pose");
   EXPECT_TRUE(waitFor([this] { return markers_.count("surface") > 0; })) << "tissue is not shown";
 
   std::string urdf;

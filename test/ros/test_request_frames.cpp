@@ -81,6 +81,12 @@ TEST_F(RequestFrame, OfAnotherTimeIsRefused) {
   EXPECT_NE(refusalOf("nowhere", 101.0).find("header.frame_id: 'nowhere'"), std::string::npos);
 }
 
+TEST_F(RequestFrame, WithASlashAheadIsRefusedForThat) {
+  EXPECT_NE(refusalOf("/camera", 0.0).find("header.frame_id: '/camera' begins with '/'; allowed: "),
+            std::string::npos)
+      << refusalOf("/camera", 0.0);
+}
+
 TEST_F(RequestFrame, ThatStandsIsThereAtAnyTime) {
   geometry_msgs::TransformStamped base = cameraAt(0.7, 50.0);
   base.child_frame_id = "base";
