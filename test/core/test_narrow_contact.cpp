@@ -212,12 +212,12 @@ TEST(NarrowContact, OfABallThatIsAllInHasNone) {
   }
 }
 
-TEST(NarrowContact, BallsThinnerThanASpacingHaveNone) {
+TEST(NarrowContact, NeedlesHaveNone) {
   BallPress press;
   press.depth = 1e-4;
-  press.radius = 0.51 * kSpacing;
+  press.radius = 0.21 * kSpacing;
   EXPECT_NE(recessUnder(press, flatUnderOneNode()).depth, 0.0);
-  press.radius = 0.49 * kSpacing;
+  press.radius = 0.19 * kSpacing;
   EXPECT_EQ(recessUnder(press, flatUnderOneNode()).depth, 0.0);
 }
 
