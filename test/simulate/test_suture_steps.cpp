@@ -81,5 +81,31 @@ TEST_F(Simulate, TellsOfSuturesWhereTheSceneHasSome) {
   EXPECT_EQ(entries("plain"), kFiles);
 }
 
+// The tissue leaves the box on its way up, and is found anew from rest, where the box is in it: the
+// thread has drawn it away from there.
+TEST(SutureSteps, AToolThatLeavesIsNotInTheWayBackFromRest) {
+  const RunResult result = run(R"(
+tissue:
+  shape: {type: box, min: [0, 0, 0], max: [0.08, 0.05, 0.04]}
+  spacing: 0.01
+  material: {young_modulus: 25669.8075433855, poisson_ratio: 0.4}
+solver: {tolerance: 0.01}
+tools:
+  - name: p
+    shapes: [{type: box, size: [0.014, 0.018570964422234094, 0.021]}]
+    friction: 0.0
+steps:
+  - load: {increments: 1, patches: [{name: hold, min: [-1, -1, -0.0001], max: [1, 1, 0.0001],
+                                     displacement: [0, 0, 0]}]}
+  - load: {increments: 1, patches: [{name: pull, min: [0.009, 0.009000000000000001, 0.04],
+                                     max: [0.02, 0.021, 0.04], force: [-0.2, -0.1377, 0.8]}]}
+  - suture: {from: [0.04, 0.03, 0.04], to: [0.06, 0.029778377014992766, 0.04], stiffness: 5100.0}
+  - move: {tool: p, from: {xyz: [0.05, 0.03, 0.06]},
+           to: {xyz: [0.05391557327078068, 0.03072679571437163, 0.04065037915779324]}}
+  - move: {tool: p, to: {xyz: [0.05391557327078068, 0.03072679571437163, 0.09131903631631588]}}
+)");
+  EXPECT_TRUE(result.allOk());
+}
+
 }  // namespace
 }  // namespace robot_tissue::test_suture_steps

@@ -144,12 +144,33 @@ SolveReport LoadProgram::follow(std::vector<LoadingPatch> tool_patches,
   if (data_.motion.isInTimeStep()) return solver_.solve(disturbed);
   if (data_.motion.isInTime()) return data_.asItIs();
   const bool from_rest = data_.methods.now().findsEquilibrium() ? last_left && returns : one_left;
-  if (from_rest) return solveFromRest();
+  if (from_rest) return comeBackFromTools();
   const bool one_there = !data_.loads.isUntouched();
   const SolveReport report = solver_.solve(disturbed);
   // The tissue left the last tool behind in the solve.
   const bool one_lost = one_there && data_.loads.isUntouched();
-  return one_lost && returns ? solveFromRest() : report;
+  return one_lost && returns ? comeBackFromTools() : report;
+}
+
+// Tissue does not go the way from rest: a tool that it left is not in that way, or it would hold up
+// each solve that takes a node past it. The shape that the way ends in may touch it again.
+SolveReport LoadProgram::comeBackFromTools() {
+  const bool acts_any =
+      data_.body.hasBodyLoad() || data_.threads.anyWhole() || !data_.loads.patches().empty();
+  SolveReport report;
+  {
+    const LoadStepSolver::NoContacts alone(solver_);
+    report = solveFromRest();
+  }
+  if (!acts_any || data_.loads.areComingBack()) return report;
+  solver_.renewContacts();
+  if (data_.loads.isUntouched()) return report;
+  SolveTotal total(report);
+  report = solver_.solve({});
+  total.add(report);
+  total.tellIn(report);
+  data_.outcome.report = report;
+  return report;
 }
 
 SolveReport LoadProgram::settle() {

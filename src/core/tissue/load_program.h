@@ -31,6 +31,7 @@ class LoadProgram {
   SolveReport settle();
 
  private:
+  SolveReport comeBackFromTools();
   SolveReport solveFromRest();
   void relax(const std::vector<int>& but_for);
   SolveReport settleFromRest();

@@ -5,6 +5,7 @@
 // show (kUnconverged). Whatever comes of it, the numbers of shape and report are finite.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "tissue/tissue_data.h"
@@ -26,6 +27,20 @@ class LoadStepSolver {
   void describeShape(SolveReport& report);
   bool mayShowUnsettled() const;  // Tissue::mayShowUnsettled
   void noteUnsettled();
+
+  // While there, solves look at no contacts.
+  class NoContacts {
+   public:
+    explicit NoContacts(LoadStepSolver& solver)
+        : solver_(solver), update_(std::exchange(solver.contact_update_, nullptr)) {}
+    ~NoContacts() { solver_.contact_update_ = update_; }
+    NoContacts(const NoContacts&) = delete;
+    NoContacts& operator=(const NoContacts&) = delete;
+
+   private:
+    LoadStepSolver& solver_;
+    ContactUpdate* update_;
+  };
 
  private:
   struct Rounds;      // of a solve and the look at the contacts after it
