@@ -178,6 +178,22 @@ TEST(Membranes, CutLetsThePressureOut) {
   EXPECT_EQ(tissue.state().displacement, blown);
 }
 
+// What the levels learned of the shape before is forgotten with it.
+TEST(Membranes, AfterAResetAllIsAsTheFirstTime) {
+  TissueConfig config = coveredBlock(6);
+  config.material.poisson_ratio = 0.3;
+  config.membranes[0].young_modulus = 1e5;
+  const LoadStep pull = loadOf(
+      {forcedPatch("pull", nodeBox(config, {3, 0, 3}, {4, 1, 3}), Vec3(-0.01, -0.02, -0.09))});
+  Tissue tissue(config, solverOf("layered"));
+  tissue.load(pull);
+  const std::vector<Vec3> first = tissue.state().displacement;
+  ASSERT_EQ(tissue.lastReport().status, SolveStatus::kOk);
+  tissue.reset();
+  tissue.load(pull);
+  EXPECT_EQ(tissue.state().displacement, first);
+}
+
 // Parted with the surface: a covered strip cut through is two, and nothing pulls across.
 TEST(Membranes, CutPartsThem) {
   TissueConfig config = blockOf(8, 4, 2);

@@ -113,7 +113,7 @@ class CompositeGrid {
 
   // As MembraneLevels.
   bool renewMembranes() { return membranes_.renew(levels_); }
-  void forgetMembranes() { membranes_.forget(); }
+  void forgetMembranes() { membranes_.forget(levels_); }
   void coupleMembranes(bool together) { membranes_.couple(together, levels_); }
 
   // Solves are of a time step from now on; null: they are not. What holds the nodes is to be bound

@@ -60,6 +60,14 @@ bool MembraneLevels<Real>::renew(Levels& levels) {
 }
 
 template <typename Real>
+void MembraneLevels<Real>::forget(Levels& levels) {
+  displacement_ = Field<Real>();
+  for (GridLevel<Real>& level : levels) {
+    if (level.membrane()) level.membrane()->forget();
+  }
+}
+
+template <typename Real>
 void MembraneLevels<Real>::couple(bool together, Levels& levels) const {
   for (GridLevel<Real>& level : levels) level.coupleMembrane(together);
 }

@@ -23,7 +23,7 @@ class MembraneLevels {
   // nearly, or there are none, and nothing changed.
   bool renew(Levels& levels);
   void couple(bool together, Levels& levels) const;  // as GridLevel::coupleMembrane
-  void forget() { displacement_ = Field<Real>(); }   // they are renewed, come what may
+  void forget(Levels& levels);  // they are renewed, come what may, as for the first time
 
  private:
   bool bind(Levels& levels);

@@ -37,6 +37,7 @@ class LevelMembrane {
   // Blocks on the diagonal of the stiffness, in the order of the entries, times what makes them at
   // least 1 / `greatest` of it in every motion.
   std::vector<Eigen::Matrix3d> diagonal(double greatest);
+  void forget() { stiffest_.clear(); }  // what was found of the last shape
 
  private:
   std::vector<Vec3> gather(const Field<Real>& displacement) const;
