@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "block_fixtures.h"
 #include "../deform_by.h"
+#include "block_fixtures.h"
 #include "material/elastic_model.h"
 #include "solvers/newton/newton_method.h"
 
