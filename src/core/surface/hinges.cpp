@@ -135,15 +135,16 @@ class HingeSeparator {
   // Each has two triangles: where the skin touches itself, more are of one and the same material.
   std::vector<int> wedgesOf(const std::vector<EdgePlace>& places) {
     std::vector<int> wedge_of = materialOf(places);
-    constexpr int kApart = 1 << 26;  // more than there are octants around an edge, or in all
+    // More than there are octants around a point, or owners of these triangles.
+    const int apart = kCorners + static_cast<int>(places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
       int before = 0;  // that run along the edge the same way
       for (std::size_t j = 0; j < i; ++j) {
         const bool is_same =
-            wedge_of[j] % kApart == wedge_of[i] && startOf(places[j]) == startOf(places[i]);
+            wedge_of[j] % apart == wedge_of[i] && startOf(places[j]) == startOf(places[i]);
         before += is_same ? 1 : 0;
       }
-      wedge_of[i] += kApart * before;
+      wedge_of[i] += apart * before;
     }
     return wedge_of;
   }
@@ -153,18 +154,24 @@ class HingeSeparator {
   // An edge inside the side of an octant has that octant on one side of it, another one beyond.
   std::vector<int> materialOf(const std::vector<EdgePlace>& places) {
     if (isPoint(places[0])) return wedgesAtPoint(places);
-    if (!findAround(places[0])) {
-      std::vector<int> owner_of;
-      for (const EdgePlace place : places) {
-        const Octant& owner = owners_[at(place / 3)];
-        owner_of.push_back(kCorners * owner.cell + owner.corner);
-      }
-      return owner_of;
-    }
+    if (!findAround(places[0])) return ownersOf(places);
     const std::array<int, 4> wedge = wedgesAround();
     std::vector<int> wedge_of;
     for (const EdgePlace place : places) wedge_of.push_back(wedge[numberAmong(around_, place)]);
     return wedge_of;
+  }
+
+  // Each by the first of the triangles that it owns.
+  std::vector<int> ownersOf(const std::vector<EdgePlace>& places) const {
+    std::vector<int> owner_of;
+    for (const EdgePlace place : places) {
+      const auto is_of_same = [&](EdgePlace other) {
+        return owners_[at(other / 3)] == owners_[at(place / 3)];
+      };
+      const auto first = std::find_if(places.begin(), places.end(), is_of_same);
+      owner_of.push_back(static_cast<int>(first - places.begin()));
+    }
+    return owner_of;
   }
 
   // Has no length, as where a mesh passes through a point of the half grid.
