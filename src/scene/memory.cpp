@@ -19,8 +19,6 @@ namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-constexpr double kSpringsPerNode = 3.0;
-
 // The number that the file holds; `otherwise` where there is no such file, or "max" in it.
 double numberIn(const std::string& path, double otherwise) {
   std::ifstream file(path);
@@ -161,7 +159,7 @@ double memoryOf(double nodes, const std::string& method) {
 
 double mostNodes(double bytes, const std::string& method) {
   double low = 0.0;
-  double high = std::numeric_limits<int>::max() / kSpringsPerNode;  // springs are numbered by int
+  double high = tuning::kMostNodes;
   if (memoryOf(high, method) <= bytes) return std::floor(high);
   while (high - low > 0.5) {
     const double middle = 0.5 * (low + high);

@@ -16,6 +16,10 @@ constexpr double kBytesPerGridCell = 45.0;
 constexpr double kBytesPerTriangle = 500.0;
 constexpr double kBytesPerMembraneTriangle = 2800.0;
 
+// Nodes of a scene, whatever the memory: cells, of which there are fewer, are numbered with 27 bits
+// (CellSet::Meeting), springs with 29. More, up to 2^27: less is left for the parts of cut cells.
+constexpr double kMostNodes = 1e8;
+
 // Bytes that are kept when they are free: of one array, at most (the C library takes no more), and
 // of what is at the heap's end. More: a node that drew a large tissue once holds the more memory.
 constexpr int kLargestKept = 32 << 20;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -261,7 +260,13 @@ TEST(Memory, NewtonTakesMoreANodeAndMoreSoForLargerLattices) {
     EXPECT_GT(memoryOf(most + 2.0, method), 1e9);
   }
   EXPECT_EQ(mostNodes(0.0, "newton"), 0.0);
-  EXPECT_LT(mostNodes(1e30, "layered"), std::numeric_limits<int>::max());
+}
+
+// The lattice numbers a node's cell with 27 bits, its springs with 29, of three a node.
+TEST(Memory, NoSceneHasMoreCellsOrSpringsThanCanBeNumbered) {
+  const double most = mostNodes(1e30, "layered");
+  EXPECT_LT(most, 1 << 27);
+  EXPECT_LT(3.0 * most, 1 << 29);
 }
 
 // An oblique rod of 4 mm: next to all of the grid around it is empty, and arrays of methods go over

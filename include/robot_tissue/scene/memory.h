@@ -32,7 +32,7 @@ void giveBackFreeMemory();
 // and below: what it takes with any of them.
 double memoryOf(double nodes, const std::string& method);
 
-// The most nodes whose memory is within `bytes`, and that are numbered by int.
+// The most nodes whose memory is within `bytes`, and whose cells and springs can be numbered.
 double mostNodes(double bytes, const std::string& method);
 
 // About how many nodes a mesh holds.
