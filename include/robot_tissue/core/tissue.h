@@ -158,8 +158,9 @@ class Tissue {
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
   // How much deeper than the lattice tells the ball goes into the tissue (narrow_contact.h). None
-  // where one of its nodes is not in a flat surface of whole cells of one material, or is in a
-  // named patch, and where the method finds no equilibrium or the model has no moduli.
+  // where the contact is wide, the tissue is of several materials around it or thinner than two
+  // spacings, one of its nodes is in a named patch, and where the method finds no equilibrium or
+  // the model has no moduli.
   std::optional<Recess> recessUnder(const BallPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
