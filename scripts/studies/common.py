@@ -78,9 +78,10 @@ def program(name, folder=None):
 
 
 def refuse_stale(program):
-    """A program that is older than a library of its build has another idea of what its classes hold."""
+    """A program that is older than a library that it needs has another idea of what its classes hold."""
+    needed = program.read_bytes()  # of these it holds the names
     newer = [library.name for library in program.parent.parent.glob("librobot_tissue_*.so")
-             if library.stat().st_mtime > program.stat().st_mtime]
+             if library.name.encode() in needed and library.stat().st_mtime > program.stat().st_mtime]
     if newer:
         sys.exit(f"study: {program} is older than {newer[0]}; build it anew (target {program.name})")
 
