@@ -41,6 +41,11 @@ int heaviest(const std::vector<NodeWeight>& shares) {
   return std::max_element(shares.begin(), shares.end(), is_less)->node;
 }
 
+bool isNear(const SurfaceModuli& a, const SurfaceModuli& b) {
+  return std::abs(a.shear - b.shear) <= kSameModuli * b.shear &&
+         std::abs(a.poisson_ratio - b.poisson_ratio) <= kSameModuli;
+}
+
 // Pa, of the material that fills the cell, as if it filled all of it.
 Moduli materialIn(const Cell& cell, const ElasticModel& model) {
   Moduli moduli = model.moduliIn(cell);
@@ -61,16 +66,18 @@ std::optional<SurfaceModuli> LocalLattice::moduliUnder(const std::vector<NodeWei
   return SurfaceModuli{material.shear, poissonRatio(material)};
 }
 
+bool LocalLattice::isAround(const std::vector<NodeWeight>& shares,
+                            const LatticeState& state) const {
+  return cells_ == state.cells && middle_ == heaviest(shares);
+}
+
 bool LocalLattice::take(const std::vector<NodeWeight>& shares, const SurfaceModuli& moduli,
                         const Lattice& lattice, const LatticeState& state,
                         const ElasticModel& model) {
   const int node = heaviest(shares);
   const CellSet& cells = *state.cells;
   if (isFixed(lattice, cells, node)) return false;
-  const auto inner_end = nodes_.begin() + static_cast<std::ptrdiff_t>(inner_);
-  const bool stays = cells_ == state.cells && moduli.shear == moduli_.shear &&
-                     moduli.poisson_ratio == moduli_.poisson_ratio &&
-                     std::find(nodes_.begin(), inner_end, node) != inner_end;
+  const bool stays = isAround(shares, state) && isNear(moduli, moduli_);
   if (!stays) {
     cells_ = state.cells;
     spacing_ = lattice.spacing();
@@ -110,7 +117,6 @@ void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells) {
         }
       }
     }
-    if (ring == 0) inner_ = nodes_.size();
   }
   own_cells_.assign(met.begin(), met.end());
 }
@@ -145,9 +151,7 @@ LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells,
 bool LocalLattice::isOfOneMaterial(const CellSet& cells, const ElasticModel& model) const {
   return std::all_of(own_cells_.begin(), own_cells_.end(), [&](int number) {
     const Moduli material = materialIn(cells.all()[at(number)], model);
-    const double off = std::abs(material.shear - moduli_.shear);
-    return off <= kSameModuli * moduli_.shear &&
-           std::abs(poissonRatio(material) - moduli_.poisson_ratio) <= kSameModuli;
+    return isNear({material.shear, poissonRatio(material)}, moduli_);
   });
 }
 

@@ -24,9 +24,10 @@ class LocalLattice {
   // Of what the node that bears most is in; none where that is nothing.
   static std::optional<SurfaceModuli> moduliUnder(const std::vector<NodeWeight>& shares,
                                                   const CellSet& cells, const ElasticModel& model);
-  // Goes to where the shares of a force are, and stays while that is around its middle. False where
-  // it can tell nothing: a share is elsewhere, or the tissue is of several materials there. The
-  // model must be that of the lattice.
+  // Whether it is around the node that bears most.
+  bool isAround(const std::vector<NodeWeight>& shares, const LatticeState& state) const;
+  // Goes there, if it is not. False where it can tell nothing: a share is elsewhere, or the tissue
+  // is of several materials there. The model must be that of the lattice.
   bool take(const std::vector<NodeWeight>& shares, const SurfaceModuli& moduli,
             const Lattice& lattice, const LatticeState& state, const ElasticModel& model);
 
@@ -51,7 +52,6 @@ class LocalLattice {
   SurfaceModuli moduli_;
   int middle_ = -1;
   std::vector<int> nodes_;                 // that move: the middle, then ring by ring
-  std::size_t inner_ = 0;                  // of them: the middle and the first ring
   std::vector<Vec3> places_;               // of nodes_, at rest (m)
   std::unordered_map<int, int> unknowns_;  // of nodes_: the first of three
   std::vector<int> own_cells_;             // that have one of them as a corner, ascending

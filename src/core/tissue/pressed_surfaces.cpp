@@ -84,20 +84,32 @@ std::optional<PressedSurface> PressedSurfaces::under(const BallPress& press, con
   return surface;
 }
 
+// What is told hangs on the force alone, not on the ones before.
+LocalLattice& PressedSurfaces::around(const BallPress& press, const Body& body) {
+  const auto known = std::find_if(around_.begin(), around_.end(), [&](const LocalLattice& one) {
+    return one.isAround(press.shares, body.state());
+  });
+  if (known != around_.end()) return *known;
+  LocalLattice& other = around_[oldest_];
+  oldest_ = (oldest_ + 1) % around_.size();
+  return other;
+}
+
 bool PressedSurfaces::look(const BallPress& press, const Body& body, const ElasticModel& model,
                            PressedSurface& surface) {
   if (model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
-  if (!around_.take(press.shares, surface.moduli, lattice, state, model)) return false;
-  const Vec3 inwards = around_.turn(state.displacement).transpose() * press.axis;
+  LocalLattice& here = around(press, body);
+  if (!here.take(press.shares, surface.moduli, lattice, state, model)) return false;
+  const Vec3 inwards = here.turn(state.displacement).transpose() * press.axis;
   Vec3 place = Vec3::Zero();
   for (const NodeWeight& share : press.shares) {
     place += share.weight * restPosition(lattice, *state.cells, share.node);
   }
-  if (!around_.isDeepAt(place, inwards)) return false;
+  if (!here.isDeepAt(place, inwards)) return false;
   surface.is_flat = false;
-  surface.compliance = around_.compliance(press.shares, inwards);
+  surface.compliance = here.compliance(press.shares, inwards);
   surface.curvature =
       meanCurvature(body.surface().rest, place, -inwards, kSeenAround * surface.spacing);
   return true;

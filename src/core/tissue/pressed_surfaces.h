@@ -2,6 +2,8 @@
 // table of point loads, elsewhere by the lattice around the force.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,7 +24,12 @@ class PressedSurfaces {
   bool look(const BallPress& press, const Body& body, const ElasticModel& model,
             PressedSurface& surface);
 
-  LocalLattice around_;  // the last force that was on no flat surface
+  LocalLattice& around(const BallPress& press, const Body& body);
+
+  // Around forces that were on no flat surface: in the rounds of a load step, and under several
+  // tools, the node that bears most goes to and fro.
+  std::array<LocalLattice, 4> around_;
+  std::size_t oldest_ = 0;
 };
 
 }  // namespace robot_tissue
