@@ -177,25 +177,29 @@ TEST(NarrowContact, WithItsRecessABallIsAsDeepAsInAHalfSpace) {
   }
 }
 
+// Of a ball of three spacings, that is half in, and of a large one.
 TEST(NarrowContact, WideOnesHaveNone) {
   BallPress press;
-  press.radius = 0.02;
   const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
   PressedSurface surface = flatUnderOneNode();
   const auto widen = [&](double width) {
     press.force = 4.0 / 3.0 * plane_modulus * std::pow(width * kSpacing, 3) / press.radius;
     return recessUnder(press, surface).depth;
   };
-  double last = 0.0;
-  for (const double width : {1.2, 1.3, 1.4, 1.499}) {
-    const double depth = widen(width);
-    EXPECT_LT(depth, 0.0) << "one node alone goes deeper than a half-space";
-    if (width > 1.3) {
-      EXPECT_GT(depth, last) << "it fades out";
+  for (const auto& [radius, wide] :
+       {std::pair(3.0 * kSpacing, 1.5), std::pair(10.0 * kSpacing, 2.4)}) {
+    press.radius = radius;
+    double last = 0.0;
+    for (const double width : {wide - 0.3, wide - 0.2, wide - 0.1, wide - 0.001}) {
+      const double depth = widen(width);
+      EXPECT_LT(depth, 0.0) << "one node alone goes deeper than a half-space";
+      if (width > wide - 0.2) {
+        EXPECT_GT(depth, last) << "it fades out";
+      }
+      last = depth;
     }
-    last = depth;
+    EXPECT_EQ(widen(wide + 0.001), 0.0);
   }
-  EXPECT_EQ(widen(1.501), 0.0);
   surface.is_flat = false;
   EXPECT_LT(widen(1.0), 0.0);
   EXPECT_EQ(widen(1.101), 0.0) << "where the surface is bent sooner";

@@ -78,6 +78,33 @@ TEST_P(NarrowBall, WithAShaftFeelsAsMuch) {
   }
 }
 
+// 1.3 to 1.6 spacings in radius, but a quarter of the ball's: by where it is between nodes it felt
+// up to 8 % more.
+TEST(WideShallowBall, FeelsAsMuchWhereverBetweenNodes) {
+  constexpr double kLarge = 0.06, kFirst = 0.003, kFurther = 0.0005;  // m
+  ToolShape ball;
+  ball.radius = kLarge;
+  TissueConfig tissue = block();
+  tissue.material.poisson_ratio = kPoisson;
+  std::array<double, 3> least, most;
+  least.fill(1e9);
+  most.fill(0.0);
+  for (const Vec3& off : {Vec3(0.0, 0.0, 0.0), Vec3(0.5, 0.5, 0.0), Vec3(0.5, 0.0, 0.0),
+                          Vec3(0.25, 0.1, 0.0), Vec3(0.3, 0.45, 0.0)}) {
+    Pipeline pipeline(tissue, SolverConfig(), {toolOf(ball)});
+    for (std::size_t depth = 0; depth < least.size(); ++depth) {
+      const double down = kFirst + kFurther * static_cast<double>(depth);
+      const Vec3 middle = Vec3(kMiddle, kMiddle, kTop + kLarge - down) + kSpacing * off;
+      const double force = pipeline.step(at({middle})).tools.front().force_on_tool.z();
+      least[depth] = std::min(least[depth], force);
+      most[depth] = std::max(most[depth], force);
+    }
+  }
+  for (std::size_t depth = 0; depth < least.size(); ++depth) {
+    EXPECT_LT(most[depth], 1.05 * least[depth]) << depth;
+  }
+}
+
 // So does the round end of a mesh: without the law by twice as much, and by a third less.
 TEST_P(NarrowBall, OfAMeshFeelsAsMuch) {
   TissueConfig tissue = block();
