@@ -211,12 +211,7 @@ void LoadStepper::follow(std::vector<LoadingPatch> patches) {
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
 double LoadStepper::deepestInRigid(const RobotPose& pose) {
-  double deepest = 0.0;
-  for (const Contact& contact :
-       touch_finder_.contactsAt(pose, world_.tissue.state().displacement).contacts) {
-    if (world_.tools.isRigid(contact.tool)) deepest = std::max(deepest, contact.depth_m);
-  }
-  return deepest;
+  return std::max(0.0, deepest(touch_finder_.stickingAt(pose, world_.tissue.state().displacement)));
 }
 
 // Nodes under a tool with a rigid patch go out of it.
@@ -224,13 +219,11 @@ void LoadStepper::pushRigid(const RobotPose& pose) {
   if (!world_.tools.anyRigid()) return;
   for (int pass = 0; pass < tuning::kPushPasses; ++pass) {
     ContactSet contacts =
-        touch_finder_.contactsAt(pose, world_.sticking.displacement(world_.tissue));
+        touch_finder_.stickingAt(pose, world_.sticking.displacement(world_.tissue));
     auto& all = contacts.contacts;
     const double touches = tuning::kStaysOnRigid * world_.tissue.lattice().spacing();
-    const auto is_others = [&](const Contact& contact) {
-      return !world_.tools.isRigid(contact.tool) || contact.depth_m < -touches;
-    };
-    all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
+    const auto is_off = [&](const Contact& contact) { return contact.depth_m < -touches; };
+    all.erase(std::remove_if(all.begin(), all.end(), is_off), all.end());
     if (pass == 0) world_.sticking.keepTouching(contacts, world_.tissue);
     if (deepest(contacts) <= 0.0) return;
     world_.sticking.pushOut(contacts, world_.tissue, pose);

@@ -197,6 +197,19 @@ ContactSet TouchFinder::contactsAt(const RobotPose& pose, const std::vector<Vec3
   return flatContacts(pose, vertices_, way);
 }
 
+ContactSet TouchFinder::stickingAt(const RobotPose& pose, const std::vector<Vec3>& displacement) {
+  ContactSet contacts = contactsAt(pose, displacement);
+  auto& all = contacts.contacts;
+  const auto slides = [&](const Contact& contact) { return !rims_.isSticking(contact.tool); };
+  all.erase(std::remove_if(all.begin(), all.end(), slides), all.end());
+  if (all.empty()) return contacts;
+  const Stopwatch watch(contact_ms_);
+  curved_.take(world_.tissue.surface(), vertices_);
+  state_.smooth.resize(pose.links.size(), 0.0);
+  for (Contact& contact : all) turn(pose, contact);
+  return contacts;
+}
+
 ContactSet TouchFinder::contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices) {
   ContactSet contacts = flatContacts(pose, vertices);
   curved_.take(world_.tissue.surface(), vertices);

@@ -32,6 +32,8 @@ class TouchFinder {
   // since the last search of this shape, at the places that it found; so touchesAt.
   ContactSet contactsAt(const RobotPose& pose, const std::vector<Vec3>& displacement,
                         double way = 0.0);
+  // Of tools that stick alone, with the planes that turnOut finds.
+  ContactSet stickingAt(const RobotPose& pose, const std::vector<Vec3>& displacement);
   // Of the curved surface with its vertices there.
   ContactSet contactsOf(const RobotPose& pose, const std::vector<Vec3>& vertices);
   ContactSet touchesAt(const RobotPose& pose, const std::vector<std::uint8_t>& held,

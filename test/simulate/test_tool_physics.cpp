@@ -223,6 +223,24 @@ TEST(ToolPhysics, ARigidToolPressesTheSixSpringLattice) {
   EXPECT_EQ(greatestDisplacement(result), 0.0);
 }
 
+// Also where its edges are on nodes, for which its sides are as near as its face: none is thrown
+// aside.
+TEST(ToolPhysics, ARigidBoxTakesWhatItPressesStraightDown) {
+  for (const std::string width : {"0.036", "0.04", "0.044"}) {
+    const RunResult result =
+        run(block() + "tools: [{name: punch, patch: rigid, shapes: [{type: box, size: [" + width +
+            ", " + width + ", 0.02]}]}]\nsteps:\n" +
+            placed("punch", Vec3(0.05, 0.05, 0.062), Vec3(0.05, 0.05, 0.058), 2));
+    EXPECT_TRUE(result.allOk()) << width;
+    const ToolRow pressed = result.tools.back();
+    EXPECT_GT(pressed.force.z(), 0.5) << width;
+    EXPECT_LT(pressed.force.head<2>().norm(), 0.02 * pressed.force.z()) << width;
+    for (const Vec3& way : result.displacement) {
+      EXPECT_LT(way.head<2>().norm(), 0.1 * kSpacing) << width;
+    }
+  }
+}
+
 // The wrench of a sphere without friction goes through its center.
 TEST(ToolPhysics, WrenchesAreAboutTheToolsOriginInTheTissuesFrame) {
   const RunResult result =
