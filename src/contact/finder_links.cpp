@@ -56,6 +56,10 @@ std::vector<Ball> ContactFinder::balls(std::size_t link) const {
   return impl_->links[link].balls();
 }
 
+std::vector<BoxOrCylinder> ContactFinder::boxesAndCylinders(std::size_t link) const {
+  return impl_->links[link].boxesAndCylinders();
+}
+
 Box ContactFinder::bounds(std::size_t link, const Pose& tissue_T_link) const {
   return boundsOf(impl_->links[link].placedAt(tissue_T_link));
 }

@@ -144,4 +144,24 @@ std::vector<Ball> TouchingLink::balls() const {
   return balls;
 }
 
+std::vector<BoxOrCylinder> TouchingLink::boxesAndCylinders() const {
+  std::vector<BoxOrCylinder> bodies;
+  for (std::size_t i = 0; i < in_use_; ++i) {
+    const ToolShape& measures = shapes[i].measures();
+    const double padding = shapes[i].padding();
+    BoxOrCylinder body;
+    body.shape = static_cast<int>(i);
+    body.link_T_shape = shapes[i].poseInLink();
+    if (measures.type == ToolShape::Type::kBox) {
+      body.half_size = 0.5 * measures.size + Vec3::Constant(padding);
+      bodies.push_back(body);
+    } else if (measures.type == ToolShape::Type::kCylinder) {
+      body.radius = measures.radius + padding;
+      body.half_size = Vec3(body.radius, body.radius, 0.5 * measures.length + padding);
+      bodies.push_back(body);
+    }
+  }
+  return bodies;
+}
+
 }  // namespace robot_tissue

@@ -1,4 +1,4 @@
-// Touches of balls whose contact is narrower than the lattice tells apart.
+// Touches of shapes whose contact is narrower than the lattice tells apart.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +8,36 @@
 #include "tuning.h"
 
 namespace robot_tissue {
+namespace {
+
+// Where it is farthest along a unit direction, shape's frame (m).
+Vec3 farthestPoint(const BoxOrCylinder& body, const Vec3& direction) {
+  Vec3 farthest;
+  for (int axis = 0; axis < 3; ++axis) {
+    farthest[axis] = std::copysign(body.half_size[axis], direction[axis]);
+  }
+  if (body.radius > 0.0) {
+    farthest.head<2>() = body.radius * direction.head<2>().stableNormalized();
+  }
+  return farthest;
+}
+
+// How far its surface is above its farthest point, at so much beside that (m, shape's frame): by
+// the faces that meet there, of a cylinder by its end.
+double heightBeside(const BoxOrCylinder& body, const Vec3& facing, const Vec3& off) {
+  constexpr double kUpright = 1e-3;  // 1: a face that hardly faces that way is beside it
+  const Vec3 beside = off - off.dot(facing) * facing;
+  double height = 0.0;
+  for (int axis = body.radius > 0.0 ? 2 : 0; axis < 3; ++axis) {
+    const double up = std::abs(facing[axis]);
+    if (up > kUpright) {
+      height = std::max(height, std::copysign(beside[axis], beside[axis] * facing[axis]) / up);
+    }
+  }
+  return height;
+}
+
+}  // namespace
 
 double SlidingContacts::recessOf(int link) const {
   return at(link) < recesses_.size() ? recesses_[at(link)].depth : 0.0;
@@ -46,13 +76,31 @@ const Ball* SlidingContacts::ballUnder(const Touches& touches, const Pose& tissu
   return nullptr;
 }
 
-// By what the link's multipliers are. Heights of planes are above where the ball is lowest, as seen
-// along the way it presses; the curved surface is off what nodes carry by a bulge.
+// The link's box or cylinder that all of these touch.
+const BoxOrCylinder* SlidingContacts::bodyUnder(const Touches& touches,
+                                                const Tissue& tissue) const {
+  if (touches.empty()) return nullptr;
+  const double least = 0.5 * tuning::kLeastThickness * tissue.lattice().spacing();
+  for (const BoxOrCylinder& body : forms_[at(touches.front()->contact.link)].bodies) {
+    const auto is_of_it = [&](const ContactConstraint* touch) {
+      return touch->contact.shape == body.shape;
+    };
+    if (body.half_size.minCoeff() >= least &&
+        std::all_of(touches.begin(), touches.end(), is_of_it)) {
+      return &body;
+    }
+  }
+  return nullptr;
+}
+
+// By what the link's multipliers are. Heights of planes are above where the shape is lowest, as
+// seen along the way it presses; the curved surface is off what nodes carry by a bulge, and a rim
+// gives way.
 Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
                                     const Tissue& tissue) const {
   Touches pushing;
   Vec3 axis = Vec3::Zero();
-  BallPress press;
+  NarrowPress press;
   for (const ContactConstraint& touch : touches_) {
     if (touch.contact.link != link || touch.spring.multiplier <= 0.0) continue;
     pushing.push_back(&touch);
@@ -60,15 +108,31 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
     axis += touch.spring.multiplier * touch.spring.normal;
   }
   const Ball* const ball = ballUnder(pushing, tissue_T_link, tissue);
-  if (ball == nullptr) return {};
+  const BoxOrCylinder* const body = ball == nullptr ? bodyUnder(pushing, tissue) : nullptr;
+  if (ball == nullptr && body == nullptr) return {};
   axis.normalize();
   press.axis = axis;
-  press.radius = ball->radius;
-  const Vec3 lowest = tissue_T_link * ball->center + ball->radius * axis;
+  Pose tissue_T_shape = tissue_T_link;
+  Vec3 lowest;
+  if (body != nullptr) {
+    tissue_T_shape = tissue_T_link * body->link_T_shape;
+    press.body = *body;
+    press.facing = tissue_T_shape.linear().transpose() * axis;
+    lowest = tissue_T_shape * farthestPoint(*body, press.facing);
+  } else {
+    press.radius = ball->radius;
+    lowest = tissue_T_link * ball->center + ball->radius * axis;
+  }
   std::map<int, double> shares;
   for (const ContactConstraint* touch : pushing) {
     const double share = touch->spring.multiplier / press.force;
-    press.height += share * (lowest - touch->tool_point + touch->contact.bulge).dot(axis);
+    double height = (lowest - touch->tool_point).dot(axis);
+    if (body != nullptr && touch->contact.wanders) {
+      const Vec3 off = tissue_T_shape.linear().transpose() * (touch->tool_point - lowest);
+      height = heightBeside(*body, press.facing, off);
+    }
+    press.height += share * (height + touch->contact.bulge.dot(axis) +
+                             touch->compliance.normal * touch->spring.multiplier);
     for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
   }
   for (const auto& [node, share] : shares) press.shares.push_back({node, share});
@@ -85,7 +149,7 @@ bool SlidingContacts::tellsRecesses(const Tissue& tissue) {
 void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (!tellsRecesses(tissue)) return;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
-    if (forms_[at(link)].balls.empty()) continue;
+    if (!forms_[at(link)].mayPressNarrowly()) continue;
     const Recess asked = recessAsked(link, pose.links[at(link)], tissue);
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
@@ -107,7 +171,7 @@ void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue)
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
     if (forms_[at(link)].balls.empty()) continue;
     const ContactConstraint* deepest = nullptr;
-    BallPress press;
+    NarrowPress press;
     bool pushes = false;
     for (const ContactConstraint& touch : touches_) {
       if (touch.contact.link != link) continue;

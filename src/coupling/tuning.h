@@ -108,6 +108,10 @@ constexpr double kEntryTime = 0.05;
 // Of the spacing (1): how far from a ball a touch of its may be taken to be, as planes are of where
 // a way out ends. More: what touches beside a ball counts as on it. Chosen.
 constexpr double kOffBall = 0.05;
+// Spacings: a box or a cylinder that is thinner has no law of narrow contacts. More: light touches
+// of thin tools hang on where nodes are; less: it would be recessed by its own size, and a needle
+// is lost. Chosen.
+constexpr double kLeastThickness = 0.5;
 // Of a step towards another recess of a narrow contact (1), once that goes to and fro. More: more
 // rounds where touches come and go with it. Chosen.
 constexpr double kLessToAndFro = 0.5;

@@ -21,6 +21,21 @@ std::vector<ToolGeometry> shapesOf(std::vector<ToolGeometry> tools, const HasSha
 
 }  // namespace
 
+std::vector<SlidingContacts::LinkForm> World::linkForms(
+    const std::vector<ToolGeometry>& all) const {
+  std::vector<SlidingContacts::LinkForm> forms;
+  for (const ToolGeometry& tool : all) {
+    const std::size_t first_jaw = tool.role.has_jaws ? tool.links.size() - 2 : tool.links.size();
+    for (std::size_t number = 0; number < tool.links.size(); ++number) {
+      const std::size_t link = forms.size();
+      forms.push_back({finder.thicknesses(link), finder.hasMesh(link), finder.balls(link), {}});
+      // What is between jaws is told by where the tissue is.
+      if (number < first_jaw) forms.back().bodies = finder.boxesAndCylinders(link);
+    }
+  }
+  return forms;
+}
+
 World::World(const TissueConfig& tissue_config, const SolverConfig& solver)
     : tissue(tissue_config, solver), tools({}, {}), finder({}), drills({}), edges({}) {}
 
@@ -45,11 +60,7 @@ void World::setTools(const std::vector<ToolGeometry>& geometry,
     const bool sticks = tool.patch == ToolConfig::Patch::kRigid;
     friction.push_back(sticks ? std::nullopt : std::optional<double>(tool.friction));
   }
-  std::vector<SlidingContacts::LinkForm> forms;
-  for (std::size_t link = 0; link < finder.linkCount(); ++link) {
-    forms.push_back({finder.thicknesses(link), finder.hasMesh(link), finder.balls(link)});
-  }
-  sliding = SlidingContacts(friction, forms);
+  sliding = SlidingContacts(friction, linkForms(all));
   asked = pose = tools.complete({});
   sliding.commit(pose, tissue);
   unfinished = false;

@@ -116,6 +116,8 @@ struct World : WorldState {
 
  private:
   void findSides();
+  // What contact is to know of each link, in the finder's order.
+  std::vector<SlidingContacts::LinkForm> linkForms(const std::vector<ToolGeometry>& all) const;
   void warnOfSizes(const std::vector<ToolGeometry>& geometry);
   std::vector<ToolShape> barsAlong(const std::vector<Vec3>& edge) const;
   std::vector<ToolGeometry> withEdges(std::vector<ToolGeometry> all) const;

@@ -162,7 +162,7 @@ TEST(Layered, ReleasedAtOnceGoesBackToRest) {
 
 // Nodes of cells that the ball only grazes are thrown over each other on the way down. Nothing that
 // is without material may keep them so.
-TEST(Layered, BallPressedByAThirdComesBack) {
+TEST(Layered, NarrowPressedByAThirdComesBack) {
   TissueConfig config;
   config.mesh = std::make_shared<const TriangleMesh>(sphereMesh(0.03, 4));
   config.spacing = 0.005;

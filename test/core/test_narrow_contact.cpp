@@ -159,7 +159,7 @@ TEST(NarrowContact, WithItsRecessABallIsAsDeepAsInAHalfSpace) {
   for (const double curvature : {0.0, 20.0, -10.0}) {
     PressedSurface surface = flatUnderOneNode();
     surface.curvature = curvature;
-    BallPress press;
+    NarrowPress press;
     press.radius = 0.02;
     press.force = 0.002;
     const double of_both = 1.0 / (1.0 / press.radius + curvature);
@@ -179,7 +179,7 @@ TEST(NarrowContact, WithItsRecessABallIsAsDeepAsInAHalfSpace) {
 
 // Of a ball of three spacings, that is half in, and of a large one.
 TEST(NarrowContact, WideOnesHaveNone) {
-  BallPress press;
+  NarrowPress press;
   const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
   PressedSurface surface = flatUnderOneNode();
   const auto widen = [&](double width) {
@@ -207,7 +207,7 @@ TEST(NarrowContact, WideOnesHaveNone) {
 
 // A half-space's contact would be wider than the ball.
 TEST(NarrowContact, OfABallThatIsAllInHasNone) {
-  BallPress press;
+  NarrowPress press;
   press.radius = 0.8 * kSpacing;
   const double plane_modulus = 2.0 * kShear / (1.0 - kPoisson);
   for (const double width : {1.1, 1.39, 1.41}) {
@@ -217,7 +217,7 @@ TEST(NarrowContact, OfABallThatIsAllInHasNone) {
 }
 
 TEST(NarrowContact, NeedlesHaveNone) {
-  BallPress press;
+  NarrowPress press;
   press.depth = 1e-4;
   press.radius = 0.21 * kSpacing;
   EXPECT_NE(recessUnder(press, flatUnderOneNode()).depth, 0.0);
@@ -228,7 +228,7 @@ TEST(NarrowContact, NeedlesHaveNone) {
 TEST(NarrowContact, ATissueTellsItWhereItIsAHalfSpace) {
   Tissue tissue(cube(), exact());
   const auto under = [&](int i, int j, int k, const Vec3& axis = -Vec3::UnitZ()) {
-    BallPress press;
+    NarrowPress press;
     press.axis = axis;
     press.radius = 0.02;
     press.force = 0.005;

@@ -79,9 +79,9 @@ TEST_P(NarrowBall, WithAShaftFeelsAsMuch) {
 }
 
 // 1.3 to 1.6 spacings in radius, but a quarter of the ball's: by where it is between nodes it felt
-// up to 8 % more.
+// up to 5 % more.
 TEST(WideShallowBall, FeelsAsMuchWhereverBetweenNodes) {
-  constexpr double kLarge = 0.06, kFirst = 0.003, kFurther = 0.0005;  // m
+  constexpr double kLarge = 0.03, kFirst = 0.0015, kFurther = 0.00025;  // m
   ToolShape ball;
   ball.radius = kLarge;
   TissueConfig tissue = block();
@@ -91,7 +91,9 @@ TEST(WideShallowBall, FeelsAsMuchWhereverBetweenNodes) {
   most.fill(0.0);
   for (const Vec3& off : {Vec3(0.0, 0.0, 0.0), Vec3(0.5, 0.5, 0.0), Vec3(0.5, 0.0, 0.0),
                           Vec3(0.25, 0.1, 0.0), Vec3(0.3, 0.45, 0.0)}) {
-    Pipeline pipeline(tissue, SolverConfig(), {toolOf(ball)});
+    ToolGeometry smooth = toolOf(ball);
+    smooth.friction = 0.0;
+    Pipeline pipeline(tissue, SolverConfig(), {smooth});
     for (std::size_t depth = 0; depth < least.size(); ++depth) {
       const double down = kFirst + kFurther * static_cast<double>(depth);
       const Vec3 middle = Vec3(kMiddle, kMiddle, kTop + kLarge - down) + kSpacing * off;
@@ -101,7 +103,7 @@ TEST(WideShallowBall, FeelsAsMuchWhereverBetweenNodes) {
     }
   }
   for (std::size_t depth = 0; depth < least.size(); ++depth) {
-    EXPECT_LT(most[depth], 1.05 * least[depth]) << depth;
+    EXPECT_LT(most[depth], 1.022 * least[depth]) << depth;
   }
 }
 

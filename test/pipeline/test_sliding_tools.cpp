@@ -57,7 +57,7 @@ TEST(SlidingTools, WithoutFrictionAnEdgeIsNotHeldBack) {
 }
 
 // A round tool touches the curved surface, not the triangles, which are off it by L^2 / 8 R.
-TEST(SlidingTools, ABallPressesACoarseLatticeAsAFineOne) {
+TEST(SlidingTools, ANarrowPressesACoarseLatticeAsAFineOne) {
   const auto force = [](double spacing) {
     Pipeline pipeline(block("elastic", spacing), methodOf("elastic"), {withFriction(0.0, probe())});
     walk(pipeline, -0.001, kDepth);

@@ -1,4 +1,4 @@
-// A ball whose contact is narrower than the lattice tells apart (own).
+// A ball, a box or a cylinder whose contact is narrower than the lattice tells apart (own).
 //
 // Under the force of one touch, or of a few, the surface has a dent of about a spacing, however
 // small the ball: what a light touch feels would hang on where it is between the nodes. How far the
@@ -11,8 +11,11 @@
 // the lattice for forces that share F at its nodes (local_lattice.h) and z the mean height of what
 // touches over the ball's lowest point, the way as the force. What is farther off, as the ground,
 // the lattice tells right. So the ball touches as if its surface were d - c inside it.
+// Of boxes and cylinders, on their faces, edges and sides, d is that of a rectangle, a wedge or a
+// lying cylinder (loads/footprint.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "robot_tissue/core/types.h"
@@ -24,13 +27,23 @@ struct Ball {
   double radius = 0.0;         // m
 };
 
-struct BallPress {
-  double radius = 0.0;             // R (m)
-  double force = 0.0;              // F (N); 0: that of `depth`
-  double depth = 0.0;              // d (m)
-  std::vector<NodeWeight> shares;  // w, sum to 1
-  double height = 0.0;             // z (m)
-  Vec3 axis = Vec3::Zero();        // unit: the way it presses, into the tissue
+// Of a link; a cylinder is along its z.
+struct BoxOrCylinder {
+  int shape = 0;  // number in its link
+  Pose link_T_shape = Pose::Identity();
+  Vec3 half_size = Vec3::Zero();  // m
+  double radius = 0.0;            // of a cylinder (m); 0: a box
+};
+
+struct NarrowPress {
+  double radius = 0.0;                // R of a ball (m); 0: `body` presses
+  std::optional<BoxOrCylinder> body;  // its depth without a force is not known
+  double force = 0.0;                 // F (N); 0: that of `depth`
+  double depth = 0.0;                 // d (m)
+  std::vector<NodeWeight> shares;     // w, sum to 1
+  double height = 0.0;                // z (m)
+  Vec3 axis = Vec3::Zero();           // unit: the way it presses, into the tissue
+  Vec3 facing = Vec3::Zero();         // the same in the frame of `body`
 };
 
 struct Recess {

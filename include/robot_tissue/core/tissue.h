@@ -161,7 +161,7 @@ class Tissue {
   // where the contact is wide, the tissue is of several materials around it or thinner than two
   // spacings, one of its nodes is in a named patch, and where the method finds no equilibrium or
   // the model has no moduli.
-  std::optional<Recess> recessUnder(const BallPress& press) const;
+  std::optional<Recess> recessUnder(const NarrowPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.
   void setContactUpdate(ContactUpdate* update);

@@ -17,8 +17,8 @@
 // its plane is in the tool by `entry`, which goes to zero. At once it would have a speed that it
 // never had, and viscosity would answer to that.
 //
-// Under a ball whose contact is narrower than the lattice tells apart the planes are inside it by a
-// recess (NarrowContact), which hangs on what it presses with; the surface is shown where it is.
+// Under a shape whose contact is narrower than the lattice tells apart the planes are inside it by
+// a recess (NarrowContact), which hangs on what it presses with; the surface is shown where it is.
 //
 // At the rim of a flat face a touch gives way, by a compliance c: its plane is c times the
 // multiplier below the tool's, its spring k in series with 1 / c. Then the gap goes to -c f. (With
@@ -82,9 +82,12 @@ class SlidingContacts {
 
   // What is to be known of a link.
   struct LinkForm {
-    std::vector<double> thicknesses;  // of its shapes (m)
-    bool is_uneven = false;           // a mesh: a triangle may lie on it at several places
-    std::vector<Ball> balls;          // among its shapes; link's frame
+    std::vector<double> thicknesses;    // of its shapes (m)
+    bool is_uneven = false;             // a mesh: a triangle may lie on it at several places
+    std::vector<Ball> balls;            // among its shapes; link's frame
+    std::vector<BoxOrCylinder> bodies;  // likewise
+
+    bool mayPressNarrowly() const { return !balls.empty() || !bodies.empty(); }
   };
 
   SlidingContacts() = default;  // of no tools
@@ -207,6 +210,7 @@ class SlidingContacts {
   using Touches = std::vector<const ContactConstraint*>;
   const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
                         const Tissue& tissue) const;
+  const BoxOrCylinder* bodyUnder(const Touches& touches, const Tissue& tissue) const;
   void forgetLost(const Held& held);
   void forgetRecesses();
   void goOnAsSolved(const TissueSurface& surface);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loads/footprint.h"
+
 namespace robot_tissue {
 namespace {
 
@@ -32,6 +34,16 @@ constexpr double kWiderThanBall = 1.4;
 constexpr double kLeastRadius = 0.2;
 // Of the radius (1): the deepest recess. More: tissue comes past a ball's middle. Chosen.
 constexpr double kMostOfRadius = 0.25;
+// Spacings: boxes and cylinders are recessed down to a dent of the first, and not at all from the
+// second on. More: right farther down; less: where the tissue's walls stand beside a flat end it is
+// drawn in that by as much as it is recessed, and more. Chosen.
+constexpr double kFlatEndsDown = 0.6;
+constexpr double kNoFlatEnds = 1.2;
+// Spacings: the deepest recess of a box or a cylinder. More: right farther down; less: tissue is
+// drawn in the tool less deep. Chosen.
+constexpr double kMostOfSpacing = 0.2;
+// Of the force (1): so much more tells how the depth of a box or a cylinder grows with it.
+constexpr double kMoreForce = 0.01;
 // Of the ball's curvature (1): that of both is no less. Less: where tissue is hollow, as wide as
 // the ball, contacts count as wide. Chosen.
 constexpr double kLeastCurvature = 0.25;
@@ -49,7 +61,7 @@ struct HalfSpace {
   double contact = 0.0;  // a (m)
   double force = 0.0;    // F (N)
 
-  HalfSpace(const BallPress& press, const SurfaceModuli& moduli, double curvature) {
+  HalfSpace(const NarrowPress& press, const SurfaceModuli& moduli, double curvature) {
     const double of_ball = 1.0 / press.radius;
     radius = 1.0 / std::max(of_ball + curvature, kLeastCurvature * of_ball);
     const double plane_modulus = 2.0 * moduli.shear / (1.0 - moduli.poisson_ratio);
@@ -59,7 +71,7 @@ struct HalfSpace {
   }
 
   // How far the law counts (1).
-  double share(const BallPress& press, double spacing, bool is_flat) const {
+  double share(const NarrowPress& press, double spacing, bool is_flat) const {
     if (!(force > 0.0) || press.radius < kLeastRadius * spacing) return 0.0;
     const double width = contact / spacing, of_ball = contact / press.radius;
     const double shallow = fadeOut(of_ball, kShallow, kNotShallow);
@@ -70,13 +82,47 @@ struct HalfSpace {
   }
 };
 
+double planeModulus(const SurfaceModuli& moduli) {
+  return 2.0 * moduli.shear / (1.0 - moduli.poisson_ratio);
+}
+
+// How far the law counts of a box or a cylinder (1).
+double shareOf(const Footprint& footprint, double spacing) {
+  return footprint.share * fadeOut(0.5 * footprint.width / spacing, kNarrow, kWide);
+}
+
+Recess recessUnderBody(const NarrowPress& press, const PressedSurface& surface) {
+  if (press.force <= 0.0) return {};
+  const auto under = [&](double force) {
+    return footprintOf(*press.body, press.facing, force, planeModulus(surface.moduli));
+  };
+  const Footprint here = under(press.force), more = under((1.0 + kMoreForce) * press.force);
+  const double of_half_space = here.depth + here.height;
+  const double share = shareOf(here, surface.spacing) *
+                       fadeOut(of_half_space / surface.spacing, kFlatEndsDown, kNoFlatEnds);
+  if (!(share > 0.0)) return {};
+  const double of_lattice = press.force * surface.compliance + press.height;
+  const double growth = (more.depth + more.height - of_half_space) / kMoreForce;
+  const double most = kMostOfSpacing * surface.spacing;
+  Recess recess;
+  recess.depth = std::clamp(share * (of_half_space - of_lattice), -most, most);
+  recess.step = growth > 0.0 ? std::clamp(of_lattice / growth, 0.0, 2.0) : 1.0;
+  return recess;
+}
+
 }  // namespace
 
-bool isNarrow(const BallPress& press, double spacing, const SurfaceModuli& moduli) {
+bool isNarrow(const NarrowPress& press, double spacing, const SurfaceModuli& moduli) {
+  if (press.body) {
+    return press.force > 0.0 &&
+           shareOf(footprintOf(*press.body, press.facing, press.force, planeModulus(moduli)),
+                   spacing) > 0.0;
+  }
   return HalfSpace(press, moduli, 0.0).share(press, spacing, true) > 0.0;
 }
 
-Recess recessUnder(const BallPress& press, const PressedSurface& surface) {
+Recess recessUnder(const NarrowPress& press, const PressedSurface& surface) {
+  if (press.body) return recessUnderBody(press, surface);
   const HalfSpace half_space(press, surface.moduli, surface.curvature);
   const double share = half_space.share(press, surface.spacing, surface.is_flat);
   if (!(share > 0.0)) return {};

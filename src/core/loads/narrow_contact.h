@@ -19,10 +19,10 @@ struct PressedSurface {
   bool is_flat = true;      // C is of the table of point loads
 };
 
-// Of a ball on a flat surface. What is curved is narrower.
-bool isNarrow(const BallPress& press, double spacing, const SurfaceModuli& moduli);
+// On a flat surface. What is curved is narrower.
+bool isNarrow(const NarrowPress& press, double spacing, const SurfaceModuli& moduli);
 
 // No recess under a contact that is wide.
-Recess recessUnder(const BallPress& press, const PressedSurface& surface);
+Recess recessUnder(const NarrowPress& press, const PressedSurface& surface);
 
 }  // namespace robot_tissue

@@ -61,7 +61,7 @@ double flatCompliance(const std::vector<NodeWeight>& shares, const Lattice& latt
 
 }  // namespace
 
-std::optional<PressedSurface> PressedSurfaces::under(const BallPress& press, const Body& body,
+std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, const Body& body,
                                                      const ElasticModel& model) {
   const std::vector<NodeWeight>& shares = press.shares;
   const CellSet& cells = body.cells();
@@ -85,7 +85,7 @@ std::optional<PressedSurface> PressedSurfaces::under(const BallPress& press, con
 }
 
 // What is told hangs on the force alone, not on the ones before.
-LocalLattice& PressedSurfaces::around(const BallPress& press, const Body& body) {
+LocalLattice& PressedSurfaces::around(const NarrowPress& press, const Body& body) {
   const auto known = std::find_if(around_.begin(), around_.end(), [&](const LocalLattice& one) {
     return one.isAround(press.shares, body.state());
   });
@@ -95,9 +95,9 @@ LocalLattice& PressedSurfaces::around(const BallPress& press, const Body& body) 
   return other;
 }
 
-bool PressedSurfaces::look(const BallPress& press, const Body& body, const ElasticModel& model,
+bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const ElasticModel& model,
                            PressedSurface& surface) {
-  if (model.hasMembranes()) return false;
+  if (press.body || model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);

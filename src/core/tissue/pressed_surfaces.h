@@ -17,14 +17,14 @@ class PressedSurfaces {
  public:
   // Nothing where the contact is wide or the tissue is no half-space: thin, or of several materials
   // near the force.
-  std::optional<PressedSurface> under(const BallPress& press, const Body& body,
+  std::optional<PressedSurface> under(const NarrowPress& press, const Body& body,
                                       const ElasticModel& model);
 
  private:
-  bool look(const BallPress& press, const Body& body, const ElasticModel& model,
+  bool look(const NarrowPress& press, const Body& body, const ElasticModel& model,
             PressedSurface& surface);
 
-  LocalLattice& around(const BallPress& press, const Body& body);
+  LocalLattice& around(const NarrowPress& press, const Body& body);
 
   // Around forces that were on no flat surface: in the rounds of a load step, and under several
   // tools, the node that bears most goes to and fro.

@@ -56,7 +56,7 @@ Vec3 Tissue::nodePosition(int node) const { return parts_->data.body.nodePositio
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->forces.rimCompliance(node, depth);
 }
-std::optional<Recess> Tissue::recessUnder(const BallPress& press) const {
+std::optional<Recess> Tissue::recessUnder(const NarrowPress& press) const {
   return parts_->forces.recessUnder(press);
 }
 void Tissue::setContactUpdate(ContactUpdate* update) { parts_->solver.setContactUpdate(update); }

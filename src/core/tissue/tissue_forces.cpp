@@ -96,7 +96,7 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
   return RimCompliance{compliance(law.across), compliance(law.along), compliance(law.normal)};
 }
 
-std::optional<Recess> TissueForces::recessUnder(const BallPress& press) const {
+std::optional<Recess> TissueForces::recessUnder(const NarrowPress& press) const {
   const auto* elastic = dynamic_cast<const ElasticModel*>(&data_.body.model());
   if (elastic == nullptr || !data_.methods.now().findsEquilibrium()) return std::nullopt;
   for (const NodeWeight& share : press.shares) {

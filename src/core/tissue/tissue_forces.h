@@ -19,7 +19,7 @@ class TissueForces {
   Vec3 forceOfFixedNodes() const;
   double stiffening(int node) const;
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
-  std::optional<Recess> recessUnder(const BallPress& press) const;
+  std::optional<Recess> recessUnder(const NarrowPress& press) const;
 
  private:
   const TissueData& data_;
