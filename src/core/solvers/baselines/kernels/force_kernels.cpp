@@ -20,31 +20,23 @@ ROBOT_TISSUE_INLINE void pullCorners(const SoaArrays& lanes, const ColoredLayout
   for (int i = 0; i < kLanes; ++i) {
     Modes mx = cellModes(x, k, i), my = cellModes(y, k, i), mz = cellModes(z, k, i);
     Strain strain{};
-    if constexpr (kStiffens) strain = strainOf(mx, my, mz, above.side);
+    if constexpr (kStiffens) strain = strainOf(mx, my, mz, kFromLowest);
     mx.x -= 1.0F;
     my.y -= 1.0F;
     mz.z -= 1.0F;
     const float invariant = invariantOf(mx, my, mz);
-    // Cofactors of the columns x, y, z of the modes.
-    const float xx = my.y * mz.z - mz.y * my.z, xy = mz.y * mx.z - mx.y * mz.z;
-    const float xz = mx.y * my.z - my.y * mx.z;
-    const float yx = my.z * mz.x - mz.z * my.x, yy = mz.z * mx.x - mx.z * mz.x;
-    const float yz = mx.z * my.x - my.z * mx.x;
-    const float zx = my.x * mz.y - mz.x * my.y, zy = mz.x * mx.y - mx.x * mz.y;
-    const float zz = mx.x * my.y - my.x * mx.y;
-    const float volume = -(mx.x * xx + my.x * xy + mz.x * xz);
+    const Cofactors by = cofactorsOf(mx, my, mz);
+    const float volume = -(mx.x * by.of_x.x + my.x * by.of_y.x + mz.x * by.of_z.x);
     Stiffening s = stiffeningOf(shears[i], volume);
     if constexpr (kStiffens) {
       const float w = stiffeningOf(1.0F, volume).a;
-      const float by =
+      const float slope =
           strainStiffeningOf(lanes.stiffening[block + i], shapeStrainOf(strain, w)).slope;
-      s.a *= by;
-      s.slope *= by;
+      s.a *= slope;
+      s.slope *= slope;
     }
     const float p = -(0.5F * s.slope * invariant + bulks[i] * (volume - 1.0F));
-    spread(gradientModes(mx, s.a, p * xx, p * yx, p * zx), pull[0], i);
-    spread(gradientModes(my, s.a, p * xy, p * yy, p * zy), pull[1], i);
-    spread(gradientModes(mz, s.a, p * xz, p * yz, p * zz), pull[2], i);
+    spreadAll(mx, my, mz, s.a, p, by, pull, i);
   }
 }
 

@@ -29,6 +29,15 @@ ROBOT_TISSUE_INLINE Modes gradientModes(const Modes& m, float a, float jx, float
           bent * m.xz,  bent * m.yz,  kThird * a * m.xyz};
 }
 
+// Gradients in the corners along all axes: of a I1 / 2, and of -J times p.
+ROBOT_TISSUE_INLINE void spreadAll(const Modes& mx, const Modes& my, const Modes& mz, float a,
+                                   float p, const Cofactors& by, Lane pull[3][kCorners], int i) {
+  const Vector &x = by.of_x, &y = by.of_y, &z = by.of_z;
+  spread(gradientModes(mx, a, p * x.x, p * x.y, p * x.z), pull[0], i);
+  spread(gradientModes(my, a, p * y.x, p * y.y, p * y.z), pull[1], i);
+  spread(gradientModes(mz, a, p * z.x, p * z.y, p * z.z), pull[2], i);
+}
+
 // The barrier at one corner of each cell, in its four nodes.
 ROBOT_TISSUE_INLINE void addBarrierPull(const SoaArrays& lanes, const ColoredLayout::Around& above,
                                         int block, int corner, Lane pull[3][kCorners]) {

@@ -120,6 +120,9 @@ struct Strain {
   float growth, excess;
 };
 
+// `side` of a cell that is seen from its lowest corner.
+constexpr float kFromLowest[3] = {-1.0F, -1.0F, -1.0F};
+
 ROBOT_TISSUE_INLINE Strain strainOf(const Modes& mx, const Modes& my, const Modes& mz,
                                     const float side[3]) {
   const float xx = side[0] * mx.x, yx = side[0] * my.x, zx = side[0] * mz.x;
@@ -145,6 +148,18 @@ ROBOT_TISSUE_INLINE float shapeStrainOf(const Strain& strain, float w) {
 struct Vector {
   float x, y, z;
 };
+
+// Derivatives of -J, as seen from the lowest corner, by the modes of one axis of the places: by
+// those along x, y and z.
+struct Cofactors {
+  Vector of_x, of_y, of_z;
+};
+
+ROBOT_TISSUE_INLINE Cofactors cofactorsOf(const Modes& mx, const Modes& my, const Modes& mz) {
+  return {{my.y * mz.z - mz.y * my.z, my.z * mz.x - mz.z * my.x, my.x * mz.y - mz.x * my.y},
+          {mz.y * mx.z - mx.y * mz.z, mz.z * mx.x - mx.z * mz.x, mz.x * mx.y - mx.x * mz.y},
+          {mx.y * my.z - my.y * mx.z, mx.z * my.x - my.z * mx.x, mx.x * my.y - my.x * mx.y}};
+}
 
 ROBOT_TISSUE_INLINE Vector cross(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -19,6 +19,18 @@ struct CellConstraints {
   Lane volume_pull[3][kCorners];
 };
 
+// Twice the density of what resists a change of shape, mu (J^(-2/3) I1 - 3), small ones not rounded
+// off; `a` as in Stiffening.
+ROBOT_TISSUE_INLINE float shapeEnergyOf(float shear, const Strain& strain, float a) {
+  const float growth = strain.growth, volume = 1.0F + growth;
+  const float from = volume > kFlattest ? volume : kFlattest;
+  const float root = inverseCubeRoot(from);
+  const float r = from * root;  // J^(2/3)
+  const float lean =
+      shear * root * root * (strain.excess - 3.0F * growth * (2.0F + growth) / (r * r + r + 1.0F));
+  return volume > kFlattest ? lean : a * (3.0F + strain.excess) - 3.0F * shear;
+}
+
 template <bool kStiffens>
 ROBOT_TISSUE_INLINE void measure(const SoaArrays& lanes, const ColoredLayout::Around& above,
                                  int block, CellConstraints& cells) {
@@ -31,48 +43,31 @@ ROBOT_TISSUE_INLINE void measure(const SoaArrays& lanes, const ColoredLayout::Ar
   for (int corner = 0; corner < kCorners; ++corner) k[corner] = above.corner[corner];
   for (int i = 0; i < kLanes; ++i) {
     Modes mx = cellModes(x, k, i), my = cellModes(y, k, i), mz = cellModes(z, k, i);
-    // J - 1 and I1 - 3 from the displacement's gradient, so that small ones are not rounded off.
-    const float trace = -(mx.x + my.y + mz.z);
-    const float minors =
-        mx.x * my.y - mx.y * my.x + my.y * mz.z - my.z * mz.y + mx.x * mz.z - mx.z * mz.x;
-    const float cube = mx.x * (my.y * mz.z - my.z * mz.y) + mx.y * (my.z * mz.x - my.x * mz.z) +
-                       mx.z * (my.x * mz.y - my.y * mz.x);
-    const float growth = trace + minors - cube;
-    const float excess = 2.0F * trace + invariantOf(mx, my, mz);
+    const Strain strain = strainOf(mx, my, mz, kFromLowest);
     mx.x -= 1.0F;
     my.y -= 1.0F;
     mz.z -= 1.0F;
-    const float volume = 1.0F + growth, invariant = 3.0F + excess;
+    const float volume = 1.0F + strain.growth, invariant = 3.0F + strain.excess;
     Stiffening s = stiffeningOf(shears[i], volume);
-    const float from = volume > kFlattest ? volume : kFlattest;
-    const float root = inverseCubeRoot(from);
-    const float r = from * root;  // J^(2/3)
-    const float lean =
-        shears[i] * root * root * (excess - 3.0F * growth * (2.0F + growth) / (r * r + r + 1.0F));
-    float energy = volume > kFlattest ? lean : s.a * invariant - 3.0F * shears[i];
+    float energy = shapeEnergyOf(shears[i], strain, s.a);
     if constexpr (kStiffens) {
-      const float strain = shapeStrainOf({growth, excess}, stiffeningOf(1.0F, volume).a);
-      const StrainStiffening g = strainStiffeningOf(lanes.stiffening[block + i], strain);
+      const float of_shape = shapeStrainOf(strain, stiffeningOf(1.0F, volume).a);
+      const StrainStiffening g = strainStiffeningOf(lanes.stiffening[block + i], of_shape);
       energy = shears[i] * g.value;
       s.a *= g.slope;
       s.slope *= g.slope;
     }
     cells.energy[i] = energy > 0.0F ? energy : 0.0F;
     const float firm = std::sqrt(bulks[i]);
-    cells.volume[i] = firm * growth;
-    const float xx = my.y * mz.z - mz.y * my.z, xy = mz.y * mx.z - mx.y * mz.z;
-    const float xz = mx.y * my.z - my.y * mx.z;
-    const float yx = my.z * mz.x - mz.z * my.x, yy = mz.z * mx.x - mx.z * mz.x;
-    const float yz = mx.z * my.x - my.z * mx.x;
-    const float zx = my.x * mz.y - mz.x * my.y, zy = mz.x * mx.y - mx.x * mz.y;
-    const float zz = mx.x * my.y - my.x * mx.y;
-    const float p = -0.5F * s.slope * invariant;
-    spread(gradientModes(mx, s.a, p * xx, p * yx, p * zx), cells.shape_pull[0], i);
-    spread(gradientModes(my, s.a, p * xy, p * yy, p * zy), cells.shape_pull[1], i);
-    spread(gradientModes(mz, s.a, p * xz, p * yz, p * zz), cells.shape_pull[2], i);
-    spread({-firm * xx, -firm * yx, -firm * zx, 0.0F, 0.0F, 0.0F, 0.0F}, cells.volume_pull[0], i);
-    spread({-firm * xy, -firm * yy, -firm * zy, 0.0F, 0.0F, 0.0F, 0.0F}, cells.volume_pull[1], i);
-    spread({-firm * xz, -firm * yz, -firm * zz, 0.0F, 0.0F, 0.0F, 0.0F}, cells.volume_pull[2], i);
+    cells.volume[i] = firm * strain.growth;
+    const Cofactors by = cofactorsOf(mx, my, mz);
+    spreadAll(mx, my, mz, s.a, -0.5F * s.slope * invariant, by, cells.shape_pull, i);
+    const auto alone = [firm](const Vector& v) -> Modes {
+      return {-firm * v.x, -firm * v.y, -firm * v.z, 0.0F, 0.0F, 0.0F, 0.0F};
+    };
+    spread(alone(by.of_x), cells.volume_pull[0], i);
+    spread(alone(by.of_y), cells.volume_pull[1], i);
+    spread(alone(by.of_z), cells.volume_pull[2], i);
   }
 }
 
@@ -124,6 +119,23 @@ ROBOT_TISSUE_INLINE void damp(const SoaArrays& lanes, const SoaDamping& damping,
   }
 }
 
+// How far the corners go along the two constraints' gradients, so that both are met at once: the
+// first one is the root of the energy, whose gradient is half that of the energy over it.
+ROBOT_TISSUE_INLINE void solvePair(const CellConstraints& cells, const Answers& answers,
+                                   Lane& by_shape, Lane& by_volume) {
+  for (int i = 0; i < kLanes; ++i) {
+    const float root = std::sqrt(cells.energy[i]);
+    const float over = cells.energy[i] > kLeastEnergy ? 1.0F / root : 0.0F;
+    const float shape = root + over * answers.shape_rate[i];
+    const float volume = cells.volume[i] + answers.volume_rate[i];
+    const float a = answers.shape[i] * over * over + 1.0F, b = answers.both[i] * over;
+    const float c = answers.volume[i] + 1.0F;
+    const float by = -1.0F / (a * c - b * b);
+    by_shape[i] = over * by * (c * shape - b * volume);
+    by_volume[i] = by * (a * volume - b * shape);
+  }
+}
+
 }  // namespace
 
 ROBOT_TISSUE_CLONES
@@ -146,17 +158,7 @@ void projectBlock(const SoaArrays& lanes, const float* const mobility[3],
   addAnswers(mobility, block, above, cells, answers);
   if (damping != nullptr) damp(lanes, *damping, block, above, cells, answers);
   Lane by_shape, by_volume;
-  for (int i = 0; i < kLanes; ++i) {
-    const float root = std::sqrt(cells.energy[i]);
-    const float over = cells.energy[i] > kLeastEnergy ? 1.0F / root : 0.0F;
-    const float shape = root + over * answers.shape_rate[i];
-    const float volume = cells.volume[i] + answers.volume_rate[i];
-    const float a = answers.shape[i] * over * over + 1.0F, b = answers.both[i] * over;
-    const float c = answers.volume[i] + 1.0F;
-    const float by = -1.0F / (a * c - b * b);
-    by_shape[i] = over * by * (c * shape - b * volume);
-    by_volume[i] = by * (a * volume - b * shape);
-  }
+  solvePair(cells, answers, by_shape, by_volume);
   for (int corner = 0; corner < kCorners; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
       const float* const mobile = mobility[axis] + block + above.corner[corner];
