@@ -127,6 +127,15 @@ void requireNotRemoved(const LatticeState& state, const LoadingPatch& load) {
   }
 }
 
+// A rim's springs are as stiff as the tissue that they were made for.
+void requireNoRims(const std::vector<LoadingPatch>& loads) {
+  const auto has_rim = [](const LoadingPatch& load) { return !load.rim.empty(); };
+  if (std::none_of(loads.begin(), loads.end(), has_rim)) return;
+  throw InputError(
+      "has loads, and was saved with another material, regions, gravity, method or tolerance; "
+      "allowed: a state without named loads, or of the same ones");
+}
+
 }  // namespace
 
 std::uint64_t fingerprintOf(const Lattice& lattice, SplitCells split) {
@@ -186,12 +195,7 @@ SavedState decodeState(const Lattice& lattice, SplitCells split, std::string_vie
   takeDisplacement(lattice, state, in);
   saved.loads = takeLoads(lattice, in);
   for (const LoadingPatch& load : saved.loads) requireNotRemoved(state, load);
-  const auto has_rim = [](const LoadingPatch& load) { return !load.rim.empty(); };
-  if (!opened.of_this_scene && std::any_of(saved.loads.begin(), saved.loads.end(), has_rim)) {
-    throw InputError(
-        "has loads, and was saved with another material, regions, gravity, method or tolerance; "
-        "allowed: a state without named loads, or of the same ones");
-  }
+  if (!opened.of_this_scene) requireNoRims(saved.loads);
   // Where a blade passed, older versions did not keep: what they hold is balanced anew.
   const bool is_older = state.springs_cut > 0 && (extras & kHasPartings) == 0;
   saved.in_balance = in.u8() == 1 && opened.of_this_scene && !is_older;

@@ -65,6 +65,18 @@ std::vector<Vec3> TimeIntegrator::rateFrom() const {
   return from;
 }
 
+double TimeIntegrator::leastWay() const {
+  double way = 0.0, displacement = 0.0;
+  for (std::size_t node = 0; node < before_.size(); ++node) {
+    way += (duration_ * motion_->velocity[node]).squaredNorm();
+    displacement += before_[node].squaredNorm();
+  }
+  return std::max(
+      {tuning::kSolvedOfWay * std::sqrt(way),
+       tuning::kSolvedOfDisplacement * std::sqrt(displacement),
+       tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(before_.size()))});
+}
+
 const InertialTerm& TimeIntegrator::begin(const LatticeState& state, Damping damping,
                                           const CellForces& cell_forces) {
   if (!motion_) wake(state);
@@ -80,18 +92,11 @@ const InertialTerm& TimeIntegrator::begin(const LatticeState& state, Damping dam
   term_.velocity = v;
   term_.free_motion.resize(nodes);
   term_.force.resize(nodes);
-  double way = 0.0, displacement = 0.0;
   for (std::size_t node = 0; node < nodes; ++node) {
-    way += (h * v[node]).squaredNorm();
-    displacement += before_[node].squaredNorm();
     term_.free_motion[node] = before_[node] + h * v[node];
     term_.force[node] = masses_[node] * term_.per_mass * term_.free_motion[node];
   }
-  term_.least_way =
-      std::max({tuning::kSolvedOfWay * std::sqrt(way),
-                tuning::kSolvedOfDisplacement * std::sqrt(displacement),
-                tuning::kLeastSolved * spacing_ * std::sqrt(static_cast<double>(nodes))}) /
-      term_.elastic_scale;  // so that forces are as exact
+  term_.least_way = leastWay() / term_.elastic_scale;  // so that forces are as exact
   term_.rate_from.clear();
   if (damping_time_ == 0.0) return term_;
   if (damping == Damping::kOfStrain) {

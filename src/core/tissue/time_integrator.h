@@ -90,8 +90,6 @@ class TimeIntegrator {
   // The step ended in that shape, and with these velocities (m/s) where the method has found them
   // itself; where nothing moves any more, the nodes are at rest.
   void end(const LatticeState& state, const std::vector<Vec3>* velocities);
-  // Estimated error of the last step over the one allowed.
-  double errorRatio() const { return error_ratio_; }
   bool isRefused() const;  // it is to be made anew, shorter
 
   double longestStep() const;  // from here on (s)
@@ -102,6 +100,7 @@ class TimeIntegrator {
   double massFactor() const { return scheme_ == Scheme::kBackwardEuler ? 1.0 : 2.0; }
   double rateFactor() const;
   std::vector<Vec3> rateFrom() const;  // displacements where the rate of f is taken from
+  double leastWay() const;  // of all nodes together, below which a solve is exact enough (m)
   bool comesNowhere(const LatticeState& state);
   double negligibleWay(double displacement) const;
   double turnOf(const LatticeState& state) const;
@@ -115,9 +114,9 @@ class TimeIntegrator {
   std::vector<Vec3> before_;
   std::vector<double> masses_;
   InertialTerm term_;
-  double error_ratio_ = 0.0;
-  std::vector<Vec3> mark_;  // displacements some time ago
-  double mark_age_ = 0.0;   // s
+  double error_ratio_ = 0.0;  // estimated error of the last step over the one allowed
+  std::vector<Vec3> mark_;    // displacements some time ago
+  double mark_age_ = 0.0;     // s
 };
 
 }  // namespace robot_tissue

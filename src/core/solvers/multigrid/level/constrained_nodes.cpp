@@ -242,6 +242,16 @@ void ConstrainedNodes<Real>::joinAlong(const LevelSpring& spring, const Vec3& di
 }
 
 template <typename Real>
+void ConstrainedNodes<Real>::addToGroup(const ConstrainedNode& hard, const Vec3& force_on_it,
+                                        Find what) {
+  const std::size_t group = at(hard.group);
+  const Jacobian jacobian = jacobianAt(groups[group], hard.arm);
+  force[group] += jacobian.transpose() * force_on_it;
+  if (what == Find::kForces) return;
+  group_stiffness_[group] += jacobian.transpose() * hard.stiffness * jacobian;
+}
+
+template <typename Real>
 void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
                                         const Field<Real>& displacement, Find what,
                                         Field<Real>& forces) {
@@ -265,13 +275,7 @@ void ConstrainedNodes<Real>::findForces(const CellOperator<Real>& cells,
   for (const int spring : acting_) addSpring(springs[at(spring)], what);
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const ConstrainedNode& constrained = all_[i];
-    if (constrained.group >= 0) {
-      const std::size_t group = at(constrained.group);
-      const Jacobian jacobian = jacobianAt(groups[group], constrained.arm);
-      force[group] += jacobian.transpose() * forces_[i];
-      if (what != Find::kForces)
-        group_stiffness_[group] += jacobian.transpose() * constrained.stiffness * jacobian;
-    }
+    if (constrained.group >= 0) addToGroup(constrained, forces_[i], what);
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_held = (constrained.held >> axis & 1U) != 0;
       forces[at(axis)][at(constrained.node)] =

@@ -150,6 +150,7 @@ class ConstrainedNodes {
   std::vector<Vec3> balancingTogether() const;
   std::vector<Vec3> timesTogether(const std::vector<Vec3>& motions) const;
   void shortenTogether(double longest);
+  void addToGroup(const ConstrainedNode& hard, const Vec3& force_on_it, Find what);
   static void holdInStiffness(ConstrainedNode& constrained);
   void findInverses() const;
   void invertGroups();
