@@ -8,6 +8,20 @@
 #include "tool_reports.h"
 
 namespace robot_tissue {
+namespace {
+
+// The driven tools; one that stands nowhere goes nowhere.
+std::vector<std::size_t> standingOf(const ForceDrive& drive, const RobotPose& told,
+                                    const ToolSet& tools) {
+  std::vector<std::size_t> standing;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    const bool is_away = ToolSet::isAway(told.links[tools.firstLink(tool)]);
+    if (drive.drives(tool) && !is_away) standing.push_back(tool);
+  }
+  return standing;
+}
+
+}  // namespace
 
 void Pipeline::grasp(std::size_t tool) {
   const std::string name = "tool '" + world_.tools.nameOf(tool) + "'";
@@ -50,18 +64,14 @@ void Pipeline::push(std::size_t tool, const std::optional<Vec3>& force) {
 
 // True: a driven tool has a way left to go. Without time a correction goes on from where the last
 // one led. In time that would leave the tissue where it is: the update is made again, to another
-// end, unless it changed the tissue itself. A tool that stands nowhere goes nowhere.
+// end, unless it changed the tissue itself.
 bool Pipeline::drive(const RobotPose& pose, const Checkpoint* before) {
   bool goes_on = false;
   const bool in_time = world_.tissue.isInTime();
   const bool may_repeat = before != nullptr && before->shape.cells == world_.tissue.state().cells;
   const StepReport& report = world_.report;
   const RobotPose told = world_.tools.complete(pose);
-  std::vector<std::size_t> driven;
-  for (std::size_t tool = 0; tool < world_.tools.size(); ++tool) {
-    const bool stands = !ToolSet::isAway(told.links[world_.tools.firstLink(tool)]);
-    if (state_.drive.drives(tool) && stands) driven.push_back(tool);
-  }
+  const std::vector<std::size_t> driven = standingOf(state_.drive, told, world_.tools);
   for (const std::size_t tool : driven) {
     if (in_time && !may_repeat) {
       goes_on = goes_on || !state_.drive.isMet(tool, answerOf(world_, tool).force);
