@@ -100,6 +100,17 @@ void TissueNode::remember(const std::vector<StepRemark>& remarks) {
   was_late_ = was_late_ || (pipeline_.report().late && !stillSettles(pipeline_));
 }
 
+void TissueNode::addDiagnostics() {
+  diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
+                              parameters_.scene.solver.method.c_str(),
+                              pipeline_.tissue().lattice().nodeCount());
+  rate_told_ = ros::SteadyTime::now();
+  diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
+  diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
+  diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
+  diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
+}
+
 // Poses may come as seldom as they do: `~rate` is how often they are followed at most.
 void TissueNode::diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const ros::SteadyTime now = ros::SteadyTime::now();

@@ -53,14 +53,7 @@ TissueNode::TissueNode(const ros::NodeHandle& private_node)
                                                publisher_, tool_poses_, [this] { wake(); });
   live_ = std::make_unique<LiveParameters>(
       private_node_, parameters_, [this](const NodeParameters& wanted) { retune(wanted); });
-  diagnostics_.setHardwareIDf("%s %s: %d nodes", parameters_.scene.tissue.model.c_str(),
-                              parameters_.scene.solver.method.c_str(),
-                              pipeline_.tissue().lattice().nodeCount());
-  rate_told_ = ros::SteadyTime::now();
-  diagnostics_.add("update rate", this, &TissueNode::diagnoseRate);
-  diagnostics_.add("transforms", this, &TissueNode::diagnoseTransforms);
-  diagnostics_.add("tools", this, &TissueNode::diagnoseTools);
-  diagnostics_.add("solver", this, &TissueNode::diagnoseSolver);
+  addDiagnostics();
   timer_ = private_node_.createTimer(period(), [this](const ros::TimerEvent&) { onTimer(); });
   if (ros::Time::isSimTime()) {
     steady_timer_ = private_node_.createSteadyTimer(

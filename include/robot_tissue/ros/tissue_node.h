@@ -59,6 +59,7 @@ class TissueNode {
               TissuePublisher::Wrenches wrenches = TissuePublisher::Wrenches::kNone);
   void giveBackMemory();
   // node_status.cpp
+  void addDiagnostics();
   void remember(const std::vector<StepRemark>& remarks);
   void diagnoseRate(diagnostic_updater::DiagnosticStatusWrapper& status);
   void diagnoseTransforms(diagnostic_updater::DiagnosticStatusWrapper& status);
