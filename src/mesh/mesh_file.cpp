@@ -100,8 +100,6 @@ TriangleMesh readByName(const std::string& path, const Vec3& scale, std::string*
 
 }  // namespace
 
-bool isMeshName(const std::string& path) { return meshReaderFor(path) != nullptr; }
-
 std::string pathOfFileAddress(const std::string& address) {
   return decoded(address.substr(kFile.size()));
 }

@@ -11,9 +11,6 @@ namespace robot_tissue {
 constexpr std::size_t kLargestMeshFile = 100000000;  // bytes
 const std::string kMeshFileRule = "a mesh file: STL, OBJ or DAE, up to 100 MB";
 
-// Whether the name ends as that of a mesh file that is read.
-bool isMeshName(const std::string& path);
-
 // `resource`: package:// or file:// address; nothing is fetched from the network, and a path does
 // not leave its package; %XX in an address is a byte. The name tells the format, and the content
 // must be of it. The triangles are as in the file, with coordinates times `scale`: not joined, not
