@@ -145,18 +145,22 @@ bool SlidingContacts::tellsRecesses(const Tissue& tissue) {
   return !tissue.hasTime() && tissue.lastReport().status == SolveStatus::kOk;
 }
 
-// After a solve: by less once it goes to and fro, as touches come and go with it.
-void SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
-  if (!tellsRecesses(tissue)) return;
+// After a solve; false: one goes so far that it is to be solved again. By less once it goes to and
+// fro, as touches come and go with it.
+bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
+  if (!tellsRecesses(tissue)) return true;
+  bool stay = true;
   for (int link = 0; link < static_cast<int>(forms_.size()); ++link) {
     if (!forms_[at(link)].mayPressNarrowly()) continue;
     const Recess asked = recessAsked(link, pose.links[at(link)], tissue);
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
+    stay = stay && std::abs(way) <= tuning::kRecessStays * tissue.lattice().spacing();
     if (way * recess.last_way < 0.0) recess.gain *= tuning::kLessToAndFro;
     recess.last_way = way;
     setRecess(link, recess.depth + recess.gain * asked.step * way);
   }
+  return stay;
 }
 
 // Whether it is known how the link's force grows along its way, if there is one.
@@ -187,7 +191,8 @@ void SlidingContacts::guessRecesses(const RobotPose& pose, const Tissue& tissue)
     press.shares = deepest->spring.carriers;
     press.axis = deepest->spring.normal;
     const auto guess = ball == nullptr ? std::nullopt : tissue.recessUnder(press);
-    setRecess(link, guess.value_or(Recess()).depth);
+    const double most_outwards = tuning::kMostGuessedOutwards * std::max(0.0, press.depth);
+    setRecess(link, std::max(guess.value_or(Recess()).depth, -most_outwards));
   }
 }
 

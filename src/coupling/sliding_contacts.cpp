@@ -110,7 +110,7 @@ bool SlidingContacts::update(const Tracked& tracked, const ContactSet& found, co
   if (tissue.goesThroughTime()) takeMeans(tissue);
   for (ContactConstraint& touch : touches_) noteSolved(touch);
   is_settled_ = whole && updateMultipliers(tissue);
-  if (whole) renewRecesses(pose, tissue);
+  if (whole && !renewRecesses(pose, tissue)) is_settled_ = false;
   if (!whole) pressHarder(tissue);
   for (std::size_t i = 0; i < tracked.size(); ++i) {
     ContactConstraint& touch = touches_[i];

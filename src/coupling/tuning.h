@@ -108,6 +108,14 @@ constexpr double kEntryTime = 0.05;
 // Of the spacing (1): how far from a ball a touch of its may be taken to be, as planes are of where
 // a way out ends. More: what touches beside a ball counts as on it. Chosen.
 constexpr double kOffBall = 0.05;
+// Spacings: a recess that is farther from where the force asks for it is followed by another solve.
+// More: forces hang on how the tool came; less: more rounds. Chosen.
+constexpr double kRecessStays = 0.01;
+// Of the depth (1): how far a ball is taken to reach out by its first touch alone, where others
+// will bear, too. More: large balls that come fast press far too hard in the first solve (of 60 mm,
+// half a millimeter in one load step: 1.4 N for 0.28 in the end); less: small ones begin too deep.
+// Chosen.
+constexpr double kMostGuessedOutwards = 0.5;
 // Spacings: a box or a cylinder that is thinner has no law of narrow contacts. More: light touches
 // of thin tools hang on where nodes are; less: it would be recessed by its own size, and a needle
 // is lost. Chosen.

@@ -205,7 +205,7 @@ class SlidingContacts {
   void guessRecesses(const RobotPose& pose, const Tissue& tissue);
   void setRecess(int link, double depth);
   static bool tellsRecesses(const Tissue& tissue);
-  void renewRecesses(const RobotPose& pose, const Tissue& tissue);
+  bool renewRecesses(const RobotPose& pose, const Tissue& tissue);
   Recess recessAsked(int link, const Pose& tissue_T_link, const Tissue& tissue) const;
   using Touches = std::vector<const ContactConstraint*>;
   const Ball* ballUnder(const Touches& touches, const Pose& tissue_T_link,
