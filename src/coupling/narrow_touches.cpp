@@ -29,10 +29,7 @@ double heightBeside(const BoxOrCylinder& body, const Vec3& facing, const Vec3& o
   const Vec3 beside = off - off.dot(facing) * facing;
   double height = 0.0;
   for (int axis = body.radius > 0.0 ? 2 : 0; axis < 3; ++axis) {
-    const double up = std::abs(facing[axis]);
-    if (up > kUpright) {
-      height = std::max(height, std::copysign(beside[axis], beside[axis] * facing[axis]) / up);
-    }
+    if (std::abs(facing[axis]) > kUpright) height = std::max(height, beside[axis] / facing[axis]);
   }
   return height;
 }

@@ -211,7 +211,7 @@ void LoadStepper::follow(std::vector<LoadingPatch> patches) {
 
 // How deep the shape is in tools with rigid patches (m): the others' touches are the solver's.
 double LoadStepper::deepestInRigid(const RobotPose& pose) {
-  return std::max(0.0, deepest(touch_finder_.stickingAt(pose, world_.tissue.state().displacement)));
+  return deepest(touch_finder_.stickingAt(pose, world_.tissue.state().displacement));
 }
 
 // Nodes under a tool with a rigid patch go out of it.

@@ -11,8 +11,8 @@
 // the lattice for forces that share F at its nodes (local_lattice.h) and z the mean height of what
 // touches over the ball's lowest point, the way as the force. What is farther off, as the ground,
 // the lattice tells right. So the ball touches as if its surface were d - c inside it.
-// Of boxes and cylinders, on their faces, edges and sides, d is that of a rectangle, a wedge or a
-// lying cylinder (loads/footprint.h).
+// Of boxes and cylinders, on their faces, ends and sides, d is that of a rectangle or a lying
+// cylinder (loads/footprint.h).
 #pragma once
 
 #include <optional>

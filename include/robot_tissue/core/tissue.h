@@ -157,7 +157,7 @@ class Tissue {
   // Of a node `depth` spacings inside a plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
-  // How much deeper than the lattice tells the ball goes into the tissue (narrow_contact.h). None
+  // How much deeper than the lattice tells the shape goes into the tissue (narrow_contact.h). None
   // where the contact is wide, the tissue is of several materials around it or thinner than two
   // spacings, one of its nodes is in a named patch, and where the method finds no equilibrium or
   // the model has no moduli.

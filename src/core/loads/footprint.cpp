@@ -13,8 +13,7 @@ namespace {
 constexpr double kUnderFlat = 0.5;
 constexpr double kUnderCylinder = 0.3894;  // exp(-1/4) / 2
 constexpr double kUnderEdge = 0.3033;
-// A tilted strip's pressure is off its middle by pi a^2 / (4 l), l = p / (E* slope) (Johnson 1985).
-// Mean distance of that pressure from an edge, of half the width (1).
+// Mean distance of an edge's pressure from an edge, of half the width (1).
 constexpr double kMeanUnderEdge = 1.0 / M_PI;
 // Of a square to what the formula of strips tells (1): 1 / (2 E* 1.012 sqrt(A / pi)) (King 1987).
 constexpr double kMoreOfSquare = 0.047;
@@ -47,6 +46,8 @@ struct Side {
       only_part = std::clamp(2.0 - reach / size, 0.0, 1.0);
       to_edge = std::min(size, reach);
       asked = to_edge + std::min(thickness, load * slope);
+      // Tilted, but touching with all of it: the pressure is off its middle by pi a^2 / (4 reach),
+      // a half the size (Johnson 1985).
       const double even = 0.5 * (1.0 - M_PI / 8.0 * size / reach) * size;
       mean_height = slope * (only_part * to_edge * kMeanUnderEdge + (1.0 - only_part) * even);
     }
