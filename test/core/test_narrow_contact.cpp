@@ -87,7 +87,7 @@ TEST(LocalLattice, OfAFlatSurfaceGivesWayAsTheTableHasIt) {
     const auto compliance = [&](const std::vector<NodeWeight>& shares) {
       LocalLattice around;
       const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
-      EXPECT_TRUE(around.take(shares, *moduli, lattice, rest, model));
+      EXPECT_TRUE(around.take(shares, *moduli, {}, lattice, rest, model));
       EXPECT_TRUE(around.isDeepAt(topAt(0.5, 0.5), -Vec3::UnitZ()));
       EXPECT_FALSE(around.isDeepAt(topAt(0.5, 0.5), Vec3::UnitZ()));
       return unit * around.compliance(shares, -Vec3::UnitZ());
@@ -119,7 +119,7 @@ TEST(LocalLattice, TurnsWithTheTissueAndKnowsItsMaterial) {
     LocalLattice around;
     const auto moduli = LocalLattice::moduliUnder(shares, *state.cells, model);
     EXPECT_NEAR(moduli->shear, kShear, 1e-6 * kShear);
-    EXPECT_EQ(around.take(shares, *moduli, lattice, state, model), !is_layered);
+    EXPECT_EQ(around.take(shares, *moduli, {}, lattice, state, model), !is_layered);
     if (is_layered) continue;
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(1.2, Vec3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
@@ -129,6 +129,33 @@ TEST(LocalLattice, TurnsWithTheTissueAndKnowsItsMaterial) {
     }
     EXPECT_LT((around.turn(state.displacement) - turn).norm(), 1e-12);
   }
+}
+
+// A plane in which the nodes slide is one of mirror symmetry: half of a force does as much there as
+// all of it in the whole. What is missing to a flat surface is the same everywhere.
+TEST(LocalLattice, OfNodesThatAPatchLetsSlideIsHalfOfTheWhole) {
+  const TissueConfig config = cube();
+  const Lattice lattice(config);
+  const ElasticModel model(lattice, config);
+  const LatticeState rest = lattice.restState();
+  LoadingPatch plane;
+  plane.free_axis = {{false, true, true}};
+  for (int node = 0; node < lattice.nodeCount(); ++node) {
+    if (lattice.restPosition(node).x() < 0.5 * kSpacing) plane.nodes.push_back(node);
+  }
+  const auto spread = [&](int i, const HeldAxes& held) {
+    const auto compliance = [&](const std::vector<NodeWeight>& shares) {
+      LocalLattice around;
+      const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
+      EXPECT_TRUE(around.take(shares, *moduli, held, lattice, rest, model));
+      return around.compliance(shares, -Vec3::UnitZ());
+    };
+    const int own = lattice.node(i, kMiddle, kMiddle);
+    const int beside = lattice.node(i, kMiddle + 1, kMiddle);
+    return compliance({{own, 1.0}}) - compliance({{own, 0.6}, {beside, 0.4}});
+  };
+  const double whole = spread(kMiddle, {});
+  EXPECT_NEAR(spread(0, axesHeldBy({plane})), 2.0 * whole, 1e-9 * whole);
 }
 
 TEST(MeanCurvature, IsThatOfABallAndOfACylinder) {
@@ -244,6 +271,27 @@ TEST(NarrowContact, ATissueTellsItWhereItIsAHalfSpace) {
             0);
   EXPECT_LT(under(kMiddle, kMiddle, kMiddle)->depth, under(kMiddle - 2, kMiddle, kMiddle)->depth)
       << "beside a cut it gives way more";
+}
+
+// Held by a load it was taken to give way as if nothing held it: a ball beside that pressed itself
+// ever deeper.
+TEST(NarrowContact, WhatALoadHoldsStandsAsWhatIsFixed) {
+  TissueConfig config = cube();
+  NarrowPress press;
+  press.axis = Vec3(1.0, 0.0, -1.0).normalized();
+  press.radius = 0.02;
+  press.force = 0.005;
+  Tissue tissue(config, exact());
+  press.shares = {{tissue.lattice().node(0, kMiddle, kMiddle), 1.0}};
+  const double before = tissue.recessUnder(press)->depth;
+  const Box beside = {topAt(1.0 - kMiddle, -2.0), topAt(3.0 - kMiddle, 2.0)};
+  tissue.load(loadOf({displacedPatch("held", beside, Vec3::Zero())}));
+  config.fixed.push_back(beside);
+  const double fixed = Tissue(config, exact()).recessUnder(press)->depth;
+  EXPECT_GT(fixed, before + 0.001 * kSpacing);
+  EXPECT_DOUBLE_EQ(tissue.recessUnder(press)->depth, fixed);
+  tissue.release({"held"});
+  EXPECT_DOUBLE_EQ(tissue.recessUnder(press)->depth, before);
 }
 
 }  // namespace

@@ -174,6 +174,35 @@ TEST(Capsule, FeelsAsItsBall) {
   }
 }
 
+// A ball at the lower edge of a slab whose top a load holds: up to 2.6 times as much, as what is
+// held was taken to give way.
+TEST(BallBesideALoad, FeelsAsBesideWhatIsFixed) {
+  constexpr double kThick = 2.0 * kSpacing, kTip = 0.7 * kSpacing;  // m
+  TissueConfig slab = block();
+  slab.shape.max().z() = kThick;
+  slab.fixed.clear();
+  const Box top = {Vec3(-1.0, -1.0, kThick - 1e-6), Vec3(1.0, 1.0, 1.0)};
+  TissueConfig fixed_slab = slab;
+  fixed_slab.fixed.push_back(top);
+  ToolShape ball;
+  ball.radius = kTip;
+  Pipeline held(slab, SolverConfig(), {withFriction(0.0, toolOf(ball))});
+  Pipeline fixed(fixed_slab, SolverConfig(), {withFriction(0.0, toolOf(ball))});
+  PatchConfig patch;
+  patch.name = "held";
+  patch.box = top;
+  patch.displacement = {{0.0, 0.0, 0.0}};
+  held.load({1, {patch}});
+  const Vec3 inwards = Vec3(1.0, 0.0, 1.0).normalized();
+  for (int step = -2; step <= 10; ++step) {
+    const double depth = 0.05 * kSpacing * step;
+    const RobotPose pose = at({Vec3(0.0, kMiddle, 0.0) - (kTip - depth) * inwards});
+    const double expected = fixed.step(pose).tools.front().force_on_tool.norm();
+    EXPECT_NEAR(held.step(pose).tools.front().force_on_tool.norm(), expected, 0.25 * expected)
+        << depth << " m";
+  }
+}
+
 // Down to a ball's own size and beyond.
 TEST_P(NarrowBall, IsNotLetThroughHoweverSmall) {
   for (const double radius : {0.1 * kSpacing, 0.3 * kSpacing, 0.51 * kSpacing, 0.8 * kSpacing}) {

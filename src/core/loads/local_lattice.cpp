@@ -56,6 +56,18 @@ Moduli materialIn(const Cell& cell, const ElasticModel& model) {
 
 }  // namespace
 
+HeldAxes axesHeldBy(const std::vector<LoadingPatch>& patches) {
+  HeldAxes held;
+  for (const LoadingPatch& patch : patches) {
+    std::uint8_t mask = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (holds(patch, axis)) mask = static_cast<std::uint8_t>(mask | 1U << axis);
+    }
+    for (const int node : patch.nodes) held[node] = static_cast<std::uint8_t>(held[node] | mask);
+  }
+  return held;
+}
+
 std::optional<SurfaceModuli> LocalLattice::moduliUnder(const std::vector<NodeWeight>& shares,
                                                        const CellSet& cells,
                                                        const ElasticModel& model) {
@@ -72,21 +84,21 @@ bool LocalLattice::isAround(const std::vector<NodeWeight>& shares,
 }
 
 bool LocalLattice::take(const std::vector<NodeWeight>& shares, const SurfaceModuli& moduli,
-                        const Lattice& lattice, const LatticeState& state,
-                        const ElasticModel& model) {
+                        const HeldAxes& held_axes, const Lattice& lattice,
+                        const LatticeState& state, const ElasticModel& model) {
   const int node = heaviest(shares);
   const CellSet& cells = *state.cells;
-  if (isFixed(lattice, cells, node)) return false;
-  const bool stays = isAround(shares, state) && isNear(moduli, moduli_);
+  const bool stays = isAround(shares, state) && isNear(moduli, moduli_) && held_axes == held_axes_;
   if (!stays) {
     cells_ = state.cells;
     spacing_ = lattice.spacing();
     moduli_ = moduli;
+    held_axes_ = held_axes;
     make(node, lattice, cells, model);
     places_.clear();
     for (const int own : nodes_) places_.push_back(restPosition(lattice, cells, own));
   }
-  return factor_.info() == Eigen::Success && isOfOneMaterial(cells, model) &&
+  return unknown_count_ > 0 && factor_.info() == Eigen::Success && isOfOneMaterial(cells, model) &&
          std::all_of(shares.begin(), shares.end(),
                      [this](const NodeWeight& share) { return unknowns_.count(share.node) != 0; });
 }
@@ -95,30 +107,42 @@ void LocalLattice::make(int middle, const Lattice& lattice, const CellSet& cells
                         const ElasticModel& model) {
   middle_ = middle;
   findNodes(lattice, cells);
-  factor_.compute(stiffness(cells, model));
+  if (unknown_count_ > 0) factor_.compute(stiffness(cells, model));
 }
 
 // By cells, so that what a cut has parted is apart.
 void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells) {
-  nodes_ = {middle_};
-  unknowns_ = {{middle_, 0}};
+  nodes_.clear();
+  unknowns_.clear();
+  unknown_count_ = 0;
   std::set<int> met;
   std::size_t first = 0;
+  addNode(middle_, lattice, cells);
   for (int ring = 0; ring <= kRings; ++ring) {
     const std::size_t last = nodes_.size();
     for (; first < last; ++first) {
       for (const CellSet::Meeting& meeting : cells.meetings(nodes_[first])) {
         const int number = static_cast<int>(meeting.cell);
         if (!met.insert(number).second || ring == kRings) continue;
-        for (const int corner : cells.all()[at(number)].nodes) {
-          if (isFixed(lattice, cells, corner)) continue;
-          const int unknown = 3 * static_cast<int>(nodes_.size());
-          if (unknowns_.try_emplace(corner, unknown).second) nodes_.push_back(corner);
-        }
+        for (const int corner : cells.all()[at(number)].nodes) addNode(corner, lattice, cells);
       }
     }
   }
   own_cells_.assign(met.begin(), met.end());
+}
+
+// Unless it is there, or stands.
+void LocalLattice::addNode(int node, const Lattice& lattice, const CellSet& cells) {
+  const auto found = held_axes_.find(node);
+  const std::uint8_t held = found == held_axes_.end() ? std::uint8_t{0} : found->second;
+  if (held == kAllAxes || isFixed(lattice, cells, node)) return;
+  const auto [unknowns, is_new] = unknowns_.try_emplace(node);
+  if (!is_new) return;
+  nodes_.push_back(node);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const bool is_held = (held >> axis & 1U) != 0;
+    unknowns->second[axis] = is_held ? kNone : unknown_count_++;
+  }
 }
 
 LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells,
@@ -133,7 +157,10 @@ LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells,
     for (int i = 0; i < count; ++i) {
       const auto found = unknowns_.find(reached[at(i)]);
       if (found == unknowns_.end()) continue;
-      for (int axis = 0; axis < 3; ++axis) moving.emplace_back(3 * i + axis, found->second + axis);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int unknown = found->second[at(axis)];
+        if (unknown != kNone) moving.emplace_back(3 * i + axis, unknown);
+      }
     }
     for (const auto& [row, row_of_piece] : moving) {
       for (const auto& [column, column_of_piece] : moving) {
@@ -141,8 +168,7 @@ LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells,
       }
     }
   }
-  const auto size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  Matrix matrix(size, size);
+  Matrix matrix(unknown_count_, unknown_count_);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
@@ -189,9 +215,13 @@ bool LocalLattice::isDeepAt(const Vec3& place, const Vec3& inwards) const {
 
 double LocalLattice::compliance(const std::vector<NodeWeight>& shares,
                                 const Vec3& direction) const {
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(nodes_.size()));
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(unknown_count_);
   for (const NodeWeight& share : shares) {
-    force.segment<3>(unknowns_.at(share.node)) += share.weight * direction;
+    const std::array<int, 3>& unknowns = unknowns_.at(share.node);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double along = direction[static_cast<Eigen::Index>(axis)];
+      if (unknowns[axis] != kNone) force[unknowns[axis]] += share.weight * along;
+    }
   }
   const auto [below, above, part] = placeIn(kMissing, moduli_.poisson_ratio);
   const double missing = (1.0 - part) * below.compliance + part * above.compliance;

@@ -62,7 +62,8 @@ double flatCompliance(const std::vector<NodeWeight>& shares, const Lattice& latt
 }  // namespace
 
 std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, const Body& body,
-                                                     const ElasticModel& model) {
+                                                     const ElasticModel& model,
+                                                     const std::vector<LoadingPatch>& patches) {
   const std::vector<NodeWeight>& shares = press.shares;
   const CellSet& cells = body.cells();
   if (shares.empty()) return std::nullopt;
@@ -76,8 +77,8 @@ std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, c
     return isUniformAround(cells, model, share.node);
   };
   if (!std::all_of(shares.begin(), shares.end(), is_flat)) {
-    return look(press, body, model, surface) ? std::optional<PressedSurface>(surface)
-                                             : std::nullopt;
+    return look(press, body, model, patches, surface) ? std::optional<PressedSurface>(surface)
+                                                      : std::nullopt;
   }
   if (!std::all_of(shares.begin(), shares.end(), is_uniform)) return std::nullopt;
   surface.compliance = flatCompliance(shares, body.lattice(), *moduli);
@@ -96,12 +97,14 @@ LocalLattice& PressedSurfaces::around(const NarrowPress& press, const Body& body
 }
 
 bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const ElasticModel& model,
-                           PressedSurface& surface) {
+                           const std::vector<LoadingPatch>& patches, PressedSurface& surface) {
   if (press.body || model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);
-  if (!here.take(press.shares, surface.moduli, lattice, state, model)) return false;
+  if (!here.take(press.shares, surface.moduli, axesHeldBy(patches), lattice, state, model)) {
+    return false;
+  }
   const Vec3 inwards = here.turn(state.displacement).transpose() * press.axis;
   Vec3 place = Vec3::Zero();
   for (const NodeWeight& share : press.shares) {

@@ -18,11 +18,12 @@ class PressedSurfaces {
   // Nothing where the contact is wide or the tissue is no half-space: thin, or of several materials
   // near the force.
   std::optional<PressedSurface> under(const NarrowPress& press, const Body& body,
-                                      const ElasticModel& model);
+                                      const ElasticModel& model,
+                                      const std::vector<LoadingPatch>& patches);
 
  private:
   bool look(const NarrowPress& press, const Body& body, const ElasticModel& model,
-            PressedSurface& surface);
+            const std::vector<LoadingPatch>& patches, PressedSurface& surface);
 
   LocalLattice& around(const NarrowPress& press, const Body& body);
 

@@ -102,7 +102,8 @@ std::optional<Recess> TissueForces::recessUnder(const NarrowPress& press) const 
   for (const NodeWeight& share : press.shares) {
     if (isInOne(data_.loads, share.node)) return std::nullopt;
   }
-  const std::optional<PressedSurface> surface = surfaces_.under(press, data_.body, *elastic);
+  const std::optional<PressedSurface> surface =
+      surfaces_.under(press, data_.body, *elastic, data_.loads.patches());
   return surface ? std::optional<Recess>(robot_tissue::recessUnder(press, *surface)) : std::nullopt;
 }
 
