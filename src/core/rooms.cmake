@@ -39,9 +39,10 @@ robot_tissue_room(surface
     smooth_carriers.h surface.cpp surface_strain.cpp)
 robot_tissue_room(membrane
   USES base geometry config surface
-  FILES hinge.cpp hinge.h membrane.cpp membrane.h membrane_plan.cpp membrane_plan.h node_blocks.cpp
-    node_blocks.h pressed_triangle.cpp pressed_triangle.h sheet_law.cpp sheet_law.h
-    stretched_triangle.cpp stretched_triangle.h vertex_carriers.cpp vertex_carriers.h)
+  FILES bending_parts.cpp bending_parts.h hinge.cpp hinge.h membrane.cpp membrane.h
+    membrane_plan.cpp membrane_plan.h node_blocks.cpp node_blocks.h pressed_triangle.cpp
+    pressed_triangle.h sheet_law.cpp sheet_law.h stretched_triangle.cpp stretched_triangle.h
+    vertex_carriers.cpp vertex_carriers.h)
 robot_tissue_room(material
   USES base config lattice membrane
   FILES cell_modes.cpp cell_modes.h elastic_cell.cpp elastic_cell.h elastic_law.h

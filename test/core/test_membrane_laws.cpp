@@ -219,26 +219,57 @@ TEST(Membrane, StretchesFarAsNeoHookean) {
   EXPECT_LT(across.norm(), 1e-9 * std::abs(expected));
 }
 
+// Bending alone, of a sheet that has been moved so.
+template <typename Map>
+double bendingEnergy(const TissueSurface& surface, const MembraneConfig& config, Map map) {
+  MembraneConfig limp = config;
+  limp.thickness *= 1e-4;
+  limp.young_modulus *= 1e4;  // the same stretch, no bending
+  const Membrane membrane = membraneOn(surface, config);
+  const auto moved = movedBy(surface, membrane, map);
+  return membrane.energy(moved) - membraneOn(surface, limp).energy(moved);
+}
+
+Vec3 rolledUp(const Vec3& place, double curvature) {
+  const double angle = curvature * place.x();
+  return {std::sin(angle) / curvature, place.y(), (1.0 - std::cos(angle)) / curvature};
+}
+
 // A strip rolled to a part of a cylinder, without stretch: D / 2 kappa^2 of its area, but for the
 // outermost half squares, which have no hinge.
 TEST(Membrane, BendsAsAPlate) {
   const MembraneConfig config = sheet(0.3);
   const int n = 40, m = 4;
   const double size = 0.01, curvature = 1.5;
-  const TissueSurface surface = onNodes(flatSheet(n, m, size, 0.0));
-  const Membrane membrane = membraneOn(surface, config);
-  const auto moved = movedBy(surface, membrane, [&](const Vec3& p) {
-    const double angle = curvature * p.x();
-    return Vec3(std::sin(angle) / curvature, p.y(), (1.0 - std::cos(angle)) / curvature);
-  });
-  const double stretched = membrane.energy(moved);
-  MembraneConfig limp = config;
-  limp.thickness *= 1e-4;
-  limp.young_modulus *= 1e4;  // the same stretch, no bending
-  const double bent = stretched - membraneOn(surface, limp).energy(moved);
+  const double bent = bendingEnergy(onNodes(flatSheet(n, m, size, 0.0)), config,
+                                    [&](const Vec3& p) { return rolledUp(p, curvature); });
   const double expected =
       0.5 * sheetLaw(config).bending * curvature * curvature * (n - 1) * m * size * size;
   EXPECT_NEAR(bent, expected, 2e-3 * expected);
+}
+
+// Every other column of squares is a hair wide, as a cut may leave its triangles. Rolled up, the
+// sheet bends as any other; one side of a hair lifted by half its width, it does not.
+TEST(Membrane, ThinTrianglesBendWithTheirNeighbors) {
+  const MembraneConfig config = sheet(0.3);
+  const int n = 40, m = 4;
+  const double size = 0.01, hair = 1e-6 * size, curvature = 1.5;
+  TriangleMesh mesh = flatSheet(2 * n + 1, m, size, 0.0);
+  for (Vec3& vertex : mesh.vertices) {
+    const int column = static_cast<int>(std::lround(vertex.x() / size));
+    vertex.x() = column / 2 * size + column % 2 * hair;
+  }
+  const TissueSurface surface = onNodes(mesh);
+  const double bending = sheetLaw(config).bending;
+  const double bent =
+      bendingEnergy(surface, config, [&](const Vec3& p) { return rolledUp(p, curvature); });
+  const double expected = 0.5 * bending * curvature * curvature * (n - 1) * m * size * size;
+  EXPECT_NEAR(bent, expected, 2e-3 * expected);
+  const Vec3 lifted = surface.rest[at(n + 2 * (n + 1) * m / 2)];
+  const double kinked = bendingEnergy(surface, config, [&](const Vec3& p) {
+    return p == lifted ? Vec3(p + Vec3(0, 0, 0.5 * hair)) : p;
+  });
+  EXPECT_LT(std::abs(kinked), bending);
 }
 
 // Turned as a whole it has no energy; turned when deformed it has the same, and turned forces.

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
+
+#include "membrane/bending_parts.h"
 
 namespace robot_tissue {
 namespace {
@@ -100,19 +101,11 @@ void Membrane::addSheet(const TissueSurface& surface, const MembranePart& part) 
   }
 }
 
-// Where two triangles of the membrane run along an edge, one each way.
 void Membrane::addHinges(const TissueSurface& surface, const MembranePart& part) {
-  std::map<std::pair<int, int>, int> opposite;  // of a directed edge: the triangle's other corner
-  for (const int triangle : sheetOf(surface, part)) {
-    const MeshTriangle& corners = surface.triangles[at(triangle)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      opposite[{corners[i], corners[(i + 1) % 3]}] = corners[(i + 2) % 3];
-    }
-  }
-  for (const auto& [edge, corner] : opposite) {
-    const auto other = opposite.find({edge.second, edge.first});
-    if (edge.first > edge.second || other == opposite.end()) continue;
-    const std::array<int, 4> corners = {edge.first, edge.second, corner, other->second};
+  std::vector<MeshTriangle> sheet;
+  for (const int triangle : sheetOf(surface, part))
+    sheet.push_back(surface.triangles[at(triangle)]);
+  for (const std::array<int, 4>& corners : bendingEdges(surface.rest, sheet)) {
     const Hinge law(part.law.bending, placesAt<Hinge>(corners, surface.rest));
     elements_.push_back({law, corners});
   }
