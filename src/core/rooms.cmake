@@ -23,7 +23,7 @@ robot_tissue_room(lattice
   USES base geometry config
   PUBLIC cells.h composition.h filled_grid.h lattice.h lattice_state.h
   FILES cell_reach.h cells.cpp changed_cells.cpp changed_cells.h composition.cpp connectivity.cpp
-    connectivity.h filled_grid.cpp lattice.cpp piece_numbers.cpp
+    connectivity.h filled_grid.cpp held_layers.cpp held_layers.h lattice.cpp piece_numbers.cpp
     piece_numbers.h slivers.cpp slivers.h)
 robot_tissue_room(cutting
   USES base geometry config lattice
@@ -52,7 +52,7 @@ robot_tissue_room(loads
   USES base config lattice material
   PUBLIC contact_spring.h contact_update.h loading_patch.h narrow_contact.h solve_report.h
   FILES constrained_state.cpp constrained_state.h contact_spring.cpp dof_constraints.cpp
-    dof_constraints.h driven_places.cpp driven_places.h footprint.cpp footprint.h loading_patch.cpp local_lattice.cpp local_lattice.h narrow_contact.cpp narrow_contact.h patch_rim.cpp
+    dof_constraints.h driven_places.cpp driven_places.h footprint.cpp footprint.h loading_patch.cpp local_lattice.cpp local_lattice.h narrow_contact.cpp narrow_contact.h patch_bed.cpp patch_bed.h patch_rim.cpp
     patch_rim.h point_loads.cpp point_loads.h ratio_table.h rim_law.cpp rim_law.h solve_report.cpp suture_thread.cpp suture_thread.h)
 robot_tissue_room(saving
   USES base config lattice cutting loads

@@ -21,8 +21,14 @@ struct CellFill {
   Vec3 spread = Vec3::Constant(1.0 / 12.0);  // eigenvalues of the covariance, ascending
   double lent = 0.0;  // least of what it counts as spread across itself (core/lattice/slivers.h)
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // its eigenvectors, in columns
+  // Of a layer that fixed nodes beyond it hold (core/lattice/held_layers.h): the cell's side where
+  // they are (number 2 a is down axis a, 2 a + 1 up), else -1, and its thickness.
+  int held_side = -1;
+  double thickness = 1.0;
 
   Eigen::Matrix3d covariance() const;
+  bool isHeldAcross(int axis) const { return held_side >= 0 && held_side / 2 == axis; }
+  double firmness() const { return 1.0 / (thickness * thickness); }  // of its material's stiffness
   // Mean of the corner's trilinear shape function over the fill, which is its part of the cell's
   // mass. 1 in sum over the corners.
   double cornerShare(int corner) const;

@@ -77,6 +77,8 @@ struct Cell {
     return corner;
   }
   double share() const { return fill == nullptr ? 1.0 : fill->share; }  // of h^3, in (0, 1]
+  // What it has of the stiffness of its material in all of h^3.
+  double stiffnessShare() const { return fill == nullptr ? 1.0 : fill->share * fill->firmness(); }
   // What the corner carries of it, in eighths of a full cell.
   double eighthsAt(int corner) const {
     return fill == nullptr ? 1.0 : kCorners * fill->share * fill->cornerShare(corner);

@@ -5,6 +5,7 @@
 
 #include "cutting/cell_division.h"
 #include "cutting/cut_front.h"
+#include "lattice/held_layers.h"
 #include "lattice/slivers.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
@@ -222,7 +223,7 @@ void addLeft(const Lattice& lattice, const LatticeState& state, SplitCells split
     for (int corner = part; corner < kCorners; ++corner) {
       if (parts[at(corner)] == part) parted.own |= static_cast<std::uint8_t>(1 << corner);
     }
-    parted.fill = SharedConst<CellFill>(fillOf(fills[at(part)]));
+    parted.fill = SharedConst<CellFill>(partOfLayer(cell, parted, fillOf(fills[at(part)])));
     left.push_back(parted);
   }
 }

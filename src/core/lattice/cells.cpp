@@ -10,6 +10,15 @@
 #include "robot_tissue/core/lattice_state.h"
 
 namespace robot_tissue {
+namespace {
+
+// Then what is across that axis has another measure than between nodes.
+bool isHeldAcross(const Cell& cell, int axis) {
+  return cell.fill != nullptr && cell.fill->isHeldAcross(axis);
+}
+
+}  // namespace
+
 CellSet::CellSet(std::vector<Cell> cells, int lattice_nodes, std::vector<Ghost> ghosts)
     : cells_(std::move(cells)),
       ghosts_(std::move(ghosts)),
@@ -62,7 +71,8 @@ void CellSet::findReaches() {
     }
     SharedConst<CellReach> reach = reachOf(cell.share(), [&](int side) -> NeighborCell {
       const Cell* neighbor = across(cell, side);
-      if (neighbor == nullptr) return {};
+      if (neighbor == nullptr || isHeldAcross(cell, side / 2)) return {};
+      if (isHeldAcross(*neighbor, side / 2)) return {};
       return {&neighbor->nodes, neighbor->share()};
     });
     any = any || reach != nullptr;

@@ -5,6 +5,7 @@
 
 #include "geometry/mesh_slicing.h"
 #include "lattice/connectivity.h"
+#include "lattice/held_layers.h"
 #include "lattice/slivers.h"
 
 namespace robot_tissue {
@@ -72,12 +73,12 @@ Lattice::Lattice(const TissueConfig& config) : Lattice(config, filledGrid(config
 
 Lattice::Lattice(const TissueConfig& config, const FilledGrid& tissue) : grid_(tissue.grid) {
   placeNodes(tissue.filled);
+  fix(config.fixed);
   compositions_ = compositionsOf(config, tissue);
   placeCells(tissue);
   placeEighths(config);
   placeSprings();
   weigh(config);
-  fix(config.fixed);
 }
 
 // A node for every grid point that is a corner of a cell.
@@ -127,6 +128,7 @@ void Lattice::placeCells(const FilledGrid& tissue) {
   }
   cells.shrink_to_fit();
   stiffenSlivers(cells, nodeCount());
+  layOnFixedNodes(cells, fixed_);
   const bool are_all = hasAllPoints() && static_cast<int>(cells.size()) == grid_.cellCount();
   cells_ = are_all ? std::make_shared<const CellSet>(std::move(cells), size())
                    : std::make_shared<const CellSet>(std::move(cells), nodeCount());
@@ -205,7 +207,7 @@ double Lattice::springStiffness(const Spring& spring) const {
     if (here.has_spring_constants) {
       stiffness.add(here.spring_stiffness);
     } else {
-      stiffness.add(here.young_modulus, spacing(), cell.share());
+      stiffness.add(here.young_modulus, spacing(), cell.stiffnessShare());
     }
   }
   return stiffness.value();

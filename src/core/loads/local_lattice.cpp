@@ -49,8 +49,8 @@ bool isNear(const SurfaceModuli& a, const SurfaceModuli& b) {
 // Pa, of the material that fills the cell, as if it filled all of it.
 Moduli materialIn(const Cell& cell, const ElasticModel& model) {
   Moduli moduli = model.moduliIn(cell);
-  moduli.shear /= cell.share();
-  moduli.bulk /= cell.share();
+  moduli.shear /= cell.stiffnessShare();
+  moduli.bulk /= cell.stiffnessShare();
   return moduli;
 }
 

@@ -40,7 +40,8 @@ ElasticModel::ElasticModel(const Lattice& lattice, const TissueConfig& config)
 // A cell that is filled in part answers in part.
 Moduli ElasticModel::cellModuli(const Cell& cell) const {
   const Moduli& full = substanceOf(cell).moduli;
-  return {cell.share() * full.shear, cell.share() * full.bulk, full.stiffening};
+  const double share = cell.stiffnessShare();
+  return {share * full.shear, share * full.bulk, full.stiffening};
 }
 
 Vec3 ElasticModel::cornerWeight(const Cell& cell, int corner) const {

@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "base/text_of.h"
+#include "loads/patch_bed.h"
 #include "loads/patch_rim.h"
 #include "material/tissue_model.h"
 #include "tissue/load_program.h"
@@ -146,6 +147,10 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
   }
   if (data_.methods.now().findsEquilibrium()) {
     patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
+    const auto bed = bedOf(lattice, data_.body.model(), state, patch.nodes);
+    patch.rim.insert(patch.rim.end(), bed.begin(), bed.end());
+    std::sort(patch.rim.begin(), patch.rim.end(),
+              [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
   }
   if (config.force) {
     driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);

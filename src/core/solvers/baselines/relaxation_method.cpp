@@ -45,7 +45,7 @@ RelaxationMethod::RelaxationMethod(const Lattice& lattice, const ElasticModel& m
     const Moduli moduli = model.cellModuli(cell);
     mean_.shear += moduli.shear / count;
     mean_.bulk += moduli.bulk / count;
-    softness += cell.share() / moduli.shear / count;
+    softness += cell.stiffnessShare() / moduli.shear / count;
     for (int corner = 0; corner < kCorners; ++corner) {
       mean_density_ += model.cornerMass(cell, corner) / (count * volume);
     }

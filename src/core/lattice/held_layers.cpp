@@ -1,0 +1,87 @@
+#include "lattice/held_layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robot_tissue {
+namespace {
+
+// Of the spacing (1): layers count as so thick at least. Less: nodes next to them are all but held
+// themselves, and solves take longer. Chosen.
+constexpr double kThinnest = 0.05;
+
+// From the cell's side to where its material begins.
+double gapAt(const CellFill& fill, int side) {
+  const int axis = side / 2;
+  const double middle = fill.centroid[axis];
+  // Of a layer that reaches r to both sides the variance is r^2 / 3.
+  const double reach = std::sqrt(3.0 * std::max(0.0, fill.covariance()(axis, axis)));
+  const double gap = 0.5 - reach + (side % 2 == 0 ? middle : -middle);
+  return std::clamp(gap, 0.0, 1.0 - kThinnest);
+}
+
+// Moved along the axis.
+FillIntegrals shifted(const CellFill& fill, int axis, double by) {
+  const Vec3 shift = by * Vec3::Unit(axis);
+  const Eigen::Matrix3d cross = shift * fill.centroid.transpose();
+  FillIntegrals moved = integralsOf(fill);
+  moved.first += fill.share * shift;
+  moved.second += fill.share * (cross + cross.transpose() + shift * shift.transpose());
+  moved.triple += fill.share * by * fill.products((axis + 1) % 3, (axis + 2) % 3);
+  return moved;
+}
+
+// Towards the held side, by the gap between.
+CellFill laidOn(const CellFill& fill, const HeldLayer& layer) {
+  const double gap = 1.0 - layer.thickness;
+  CellFill laid = fillOf(shifted(fill, layer.side / 2, layer.side % 2 == 0 ? -gap : gap));
+  laid.lent = fill.lent;
+  laid.held_side = layer.side;
+  laid.thickness = layer.thickness;
+  return laid;
+}
+
+}  // namespace
+
+std::optional<HeldLayer> heldLayer(const Cell& cell, const std::function<bool(int node)>& is_held) {
+  if (cell.fill == nullptr) return std::nullopt;
+  const auto is_side_held = [&](int side) {
+    for (int r = 0; r < kFaceNodes; ++r) {
+      if (!is_held(cell.nodes[at(faceCorner(side, r))])) return false;
+    }
+    return true;
+  };
+  HeldLayer thinnest;
+  for (int side = 0; side < kSides; ++side) {
+    if (!is_side_held(side) || is_side_held(side ^ 1)) continue;
+    const double thickness = 1.0 - gapAt(*cell.fill, side);
+    if (thickness < thinnest.thickness) thinnest = {side, thickness};
+  }
+  return thinnest.thickness < 1.0 ? std::optional<HeldLayer>(thinnest) : std::nullopt;
+}
+
+void layOnFixedNodes(std::vector<Cell>& cells, const std::vector<std::uint8_t>& fixed) {
+  const auto is_fixed = [&](int node) { return fixed[at(node)] != 0; };
+  for (Cell& cell : cells) {
+    if (const auto layer = heldLayer(cell, is_fixed)) {
+      cell.fill = SharedConst<CellFill>(laidOn(*cell.fill, *layer));
+    }
+  }
+}
+
+CellFill partOfLayer(const Cell& whole, const Cell& part, const CellFill& fill) {
+  if (whole.fill == nullptr || whole.fill->held_side < 0) return fill;
+  const int side = whole.fill->held_side;
+  bool is_held = false;
+  for (int r = 0; r < kFaceNodes; ++r) is_held = is_held || part.owns(faceCorner(side, r));
+  if (!is_held) {
+    const double gap = 1.0 - whole.fill->thickness;
+    return fillOf(shifted(fill, side / 2, side % 2 == 0 ? gap : -gap));
+  }
+  CellFill layer = fill;
+  layer.held_side = side;
+  layer.thickness = whole.fill->thickness;
+  return layer;
+}
+
+}  // namespace robot_tissue
