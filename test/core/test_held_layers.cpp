@@ -67,8 +67,8 @@ Measured measured(TissueConfig config) {
   return found;
 }
 
-// Were the strain next to a face that over a whole spacing, the block would sag by up to seven times
-// as much.
+// Were the strain next to a face that over a whole spacing, the block would sag by up to seven
+// times as much.
 TEST(HeldLayers, FacesBetweenNodesAreHeldAndLoadedAsFacesOnNodes) {
   const Measured fitting = measured(blockBeside(0.0, kFitting));
   EXPECT_GT(fitting.force, 1.0);
@@ -80,6 +80,21 @@ TEST(HeldLayers, FacesBetweenNodesAreHeldAndLoadedAsFacesOnNodes) {
       EXPECT_NEAR(between.force / fitting.force, 1.0, 0.06) << spacing << ' ' << deeper;
       EXPECT_NEAR(between.slide / fitting.slide, 1.0, 0.06) << spacing << ' ' << deeper;
     }
+  }
+}
+
+// The plate ends between nodes, too. By its nodes alone it would feel 34 to 60 % less.
+TEST(HeldLayers, APlateIsAsWideAsItsBox) {
+  const auto force_at = [](double spacing) {
+    Tissue tissue(blockBeside(0.0, spacing), SolverConfig());
+    const Box box{Vec3(0.0151, 0.0151, kAbove.min().z()), Vec3(0.0355, 0.0355, 1.0)};
+    tissue.load(loadOf({displacedPatch("plate", box, {0.0, 0.0, -0.001})}));
+    EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk);
+    return -tissue.lastReport().patches.front().force.z();
+  };
+  const double fitting = force_at(0.5 * kFitting);
+  for (const double spacing : {0.0045, 0.005, 0.006}) {
+    EXPECT_NEAR(force_at(spacing) / fitting, 1.0, 0.1) << spacing;
   }
 }
 
@@ -152,8 +167,10 @@ TEST(HeldLayers, ALayerIsLaidOnTheNodesThatHoldIt) {
   Cell cell;
   for (int corner = 0; corner < kCorners; ++corner) cell.nodes[at(corner)] = corner;
   cell.fill = SharedConst<CellFill>(slab(0.1, 0.5));
-  const auto is_low = [](int node) { return node < 4; };
-  const auto layer = heldLayer(cell, is_low);
+  const auto of_sides = [&cell](std::vector<double> shares) {
+    return heldLayer(cell, [shares](int side) { return shares[at(side)]; });
+  };
+  const auto layer = of_sides({0.0, 0.5, 0.0, 0.0, 1.0, 0.0});
   ASSERT_TRUE(layer.has_value());
   EXPECT_EQ(layer->side, 4);
   EXPECT_NEAR(layer->thickness, 0.4, 1e-12);
@@ -165,9 +182,9 @@ TEST(HeldLayers, ALayerIsLaidOnTheNodesThatHoldIt) {
   EXPECT_NEAR(laid.share, 0.4, 1e-12);
   EXPECT_NEAR(cells.front().stiffnessShare(), 1.0 / 0.4, 1e-9);
   // The material reaches the nodes above, and no layer is held from both sides.
-  EXPECT_FALSE(heldLayer(cell, [](int node) { return node >= 4; }).has_value());
-  EXPECT_FALSE(heldLayer(cell, [](int) { return true; }).has_value());
-  EXPECT_FALSE(heldLayer(cell, [](int node) { return node < 3; }).has_value());
+  EXPECT_FALSE(of_sides({0.0, 0.0, 0.0, 0.0, 0.0, 1.0}).has_value());
+  EXPECT_FALSE(of_sides({0.0, 0.0, 0.0, 0.0, 1.0, 1.0}).has_value());
+  EXPECT_FALSE(of_sides({0.0, 0.0, 0.0, 0.0, 0.0, 0.0}).has_value());
   // A cut from side to side: what stands on the held nodes is a layer, what does not is where it
   // is.
   Cell below = cells.front(), above = cells.front();

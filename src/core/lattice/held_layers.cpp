@@ -10,6 +10,9 @@ namespace {
 // themselves, and solves take longer. Chosen.
 constexpr double kThinnest = 0.05;
 
+// Of the spacing: a gap that is none. Rounding.
+constexpr double kNoGap = 1e-3;
+
 // From the cell's side to where its material begins.
 double gapAt(const CellFill& fill, int side) {
   const int axis = side / 2;
@@ -17,7 +20,7 @@ double gapAt(const CellFill& fill, int side) {
   // Of a layer that reaches r to both sides the variance is r^2 / 3.
   const double reach = std::sqrt(3.0 * std::max(0.0, fill.covariance()(axis, axis)));
   const double gap = 0.5 - reach + (side % 2 == 0 ? middle : -middle);
-  return std::clamp(gap, 0.0, 1.0 - kThinnest);
+  return gap < kNoGap ? 0.0 : std::min(gap, 1.0 - kThinnest);
 }
 
 // Moved along the axis.
@@ -43,29 +46,31 @@ CellFill laidOn(const CellFill& fill, const HeldLayer& layer) {
 
 }  // namespace
 
-std::optional<HeldLayer> heldLayer(const Cell& cell, const std::function<bool(int node)>& is_held) {
+std::optional<HeldLayer> heldLayer(const Cell& cell,
+                                   const std::function<double(int side)>& held_share) {
   if (cell.fill == nullptr) return std::nullopt;
-  const auto is_side_held = [&](int side) {
-    for (int r = 0; r < kFaceNodes; ++r) {
-      if (!is_held(cell.nodes[at(faceCorner(side, r))])) return false;
-    }
-    return true;
-  };
-  HeldLayer thinnest;
+  HeldLayer layer;
+  double most_held = 0.0;
   for (int side = 0; side < kSides; ++side) {
-    if (!is_side_held(side) || is_side_held(side ^ 1)) continue;
+    const double held = held_share(side);
+    if (held <= 0.0 || held < most_held || held_share(side ^ 1) >= 1.0) continue;
     const double thickness = 1.0 - gapAt(*cell.fill, side);
-    if (thickness < thinnest.thickness) thinnest = {side, thickness};
+    if (thickness == 1.0 || (held == most_held && thickness >= layer.thickness)) continue;
+    layer = {side, thickness};
+    most_held = held;
   }
-  return thinnest.thickness < 1.0 ? std::optional<HeldLayer>(thinnest) : std::nullopt;
+  return layer.thickness < 1.0 ? std::optional<HeldLayer>(layer) : std::nullopt;
 }
 
 void layOnFixedNodes(std::vector<Cell>& cells, const std::vector<std::uint8_t>& fixed) {
-  const auto is_fixed = [&](int node) { return fixed[at(node)] != 0; };
   for (Cell& cell : cells) {
-    if (const auto layer = heldLayer(cell, is_fixed)) {
-      cell.fill = SharedConst<CellFill>(laidOn(*cell.fill, *layer));
-    }
+    const auto layer = heldLayer(cell, [&](int side) {
+      for (int r = 0; r < kFaceNodes; ++r) {
+        if (fixed[at(cell.nodes[at(faceCorner(side, r))])] == 0) return 0.0;
+      }
+      return 1.0;
+    });
+    if (layer) cell.fill = SharedConst<CellFill>(laidOn(*cell.fill, *layer));
   }
 }
 

@@ -17,9 +17,11 @@ struct HeldLayer {
   double thickness = 1.0;  // from the nodes across to where the material ends, of the spacing
 };
 
-// Nothing: all nodes of a side are held nowhere, or across from it, too, or the material reaches
-// them. Of several sides the one that is farthest from the material.
-std::optional<HeldLayer> heldLayer(const Cell& cell, const std::function<bool(int node)>& is_held);
+// `held_share` of a side: how much of it is held, 0 to 1. Of the side of which most is; of several
+// the one that is farthest from the material. Nothing: there is none, the one across is held, too,
+// or the material reaches it.
+std::optional<HeldLayer> heldLayer(const Cell& cell,
+                                   const std::function<double(int side)>& held_share);
 
 // Held are nodes outside of the surface, meant is the surface itself. As a share t of its cell,
 // with the strain along that, a layer would have t of a full cell's stiffness across itself; it has

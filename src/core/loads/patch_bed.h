@@ -11,11 +11,12 @@
 
 namespace robot_tissue {
 
-// The springs that a layer of thickness t lacks to be as stiff as it is
-// (core/lattice/held_layers.h): of a full cell's stiffness, against compression of a wide layer and
-// against shear, 1 / t - t. Ascending by node, with anchors at rest; none where the model has no
+// In: the patch's closed box of rest positions (m) and its nodes, ascending. Out: what a layer of
+// thickness t under the box lacks to be as stiff as it is (core/lattice/held_layers.h), of a full
+// cell's stiffness 1 / t - t. Ascending by node, anchors at rest; none where the model has no
 // moduli.
 std::vector<RimSpring> bedOf(const Lattice& lattice, const TissueModel& model,
-                             const LatticeState& state, const std::vector<int>& nodes);
+                             const LatticeState& state, const Box& box,
+                             const std::vector<int>& nodes);
 
 }  // namespace robot_tissue

@@ -147,7 +147,7 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
   }
   if (data_.methods.now().findsEquilibrium()) {
     patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-    const auto bed = bedOf(lattice, data_.body.model(), state, patch.nodes);
+    const auto bed = bedOf(lattice, data_.body.model(), state, config.box, patch.nodes);
     patch.rim.insert(patch.rim.end(), bed.begin(), bed.end());
     std::sort(patch.rim.begin(), patch.rim.end(),
               [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
