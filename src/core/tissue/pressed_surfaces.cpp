@@ -102,19 +102,15 @@ bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const Ela
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);
-  if (!here.take(press.shares, surface.moduli, axesHeldBy(patches), lattice, state, model)) {
+  if (!here.take(press.shares, press.axis, surface.moduli, axesHeldBy(patches), lattice, state,
+                 model) ||
+      !here.isDeep()) {
     return false;
   }
-  const Vec3 inwards = here.turn(state.displacement).transpose() * press.axis;
-  Vec3 place = Vec3::Zero();
-  for (const NodeWeight& share : press.shares) {
-    place += share.weight * restPosition(lattice, *state.cells, share.node);
-  }
-  if (!here.isDeepAt(place, inwards)) return false;
   surface.is_flat = false;
-  surface.compliance = here.compliance(press.shares, inwards);
-  surface.curvature =
-      meanCurvature(body.surface().rest, place, -inwards, kSeenAround * surface.spacing);
+  surface.compliance = here.compliance(press.shares);
+  surface.curvature = meanCurvature(body.surface().rest, here.place(), -here.inwards(),
+                                    kSeenAround * surface.spacing);
   return true;
 }
 
