@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "loads/half_space.h"
 #include "loads/local_lattice.h"
 #include "loads/narrow_contact.h"
 #include "loads/point_loads.h"
@@ -72,6 +73,18 @@ TEST(PointLoads, FarOffTheyAreAHalfSpaces) {
     EXPECT_DOUBLE_EQ(pointCompliance(ratio, 16.0), (1.0 - ratio) / (8.0 * M_PI));
     EXPECT_NEAR(pointCompliance(ratio, 9.0), (1.0 - ratio) / (6.0 * M_PI), 0.012);
   }
+}
+
+TEST(HalfSpace, GoesAsBoussinesqHasItOnTheSurfaceAndBelowTheForce) {
+  const SurfaceModuli moduli = {kShear, kPoisson};
+  const Vec3 down = -Vec3::UnitZ();
+  const double unit = kShear * kSpacing;
+  const Vec3 beside = unit * halfSpaceMotion(4.0 * kSpacing * Vec3::UnitX(), down, moduli);
+  EXPECT_NEAR(beside.dot(down), pointCompliance(kPoisson, 16.0), 1e-12);
+  EXPECT_NEAR(beside.x(), -(1.0 - 2.0 * kPoisson) / (16.0 * M_PI), 1e-12) << "to the force";
+  EXPECT_EQ(beside.y(), 0.0);
+  const Vec3 below = unit * halfSpaceMotion(2.0 * kSpacing * down, down, moduli);
+  EXPECT_LT((below - (3.0 - 2.0 * kPoisson) / (8.0 * M_PI) * down).norm(), 1e-12);
 }
 
 // Around a force on it the lattice is looked at where no table is of it: here there is.
