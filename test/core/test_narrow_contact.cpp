@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "loads/half_space.h"
 #include "loads/local_lattice.h"
 #include "loads/narrow_contact.h"
 #include "loads/point_loads.h"
@@ -74,6 +75,18 @@ TEST(PointLoads, FarOffTheyAreAHalfSpaces) {
   }
 }
 
+TEST(HalfSpace, GoesAsBoussinesqHasItOnTheSurfaceAndBelowTheForce) {
+  const SurfaceModuli moduli = {kShear, kPoisson};
+  const Vec3 down = -Vec3::UnitZ();
+  const double unit = kShear * kSpacing;
+  const Vec3 beside = unit * halfSpaceMotion(4.0 * kSpacing * Vec3::UnitX(), down, moduli);
+  EXPECT_NEAR(beside.dot(down), pointCompliance(kPoisson, 16.0), 1e-12);
+  EXPECT_NEAR(beside.x(), -(1.0 - 2.0 * kPoisson) / (16.0 * M_PI), 1e-12) << "to the force";
+  EXPECT_EQ(beside.y(), 0.0);
+  const Vec3 below = unit * halfSpaceMotion(2.0 * kSpacing * down, down, moduli);
+  EXPECT_LT((below - (3.0 - 2.0 * kPoisson) / (8.0 * M_PI) * down).norm(), 1e-12);
+}
+
 // Around a force on it the lattice is looked at where no table is of it: here there is.
 TEST(LocalLattice, OfAFlatSurfaceGivesWayAsTheTableHasIt) {
   for (const double ratio : {0.25, 0.35, 0.45, 0.49}) {
@@ -87,19 +100,46 @@ TEST(LocalLattice, OfAFlatSurfaceGivesWayAsTheTableHasIt) {
     const auto compliance = [&](const std::vector<NodeWeight>& shares) {
       LocalLattice around;
       const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
-      EXPECT_TRUE(around.take(shares, *moduli, {}, lattice, rest, model));
-      EXPECT_TRUE(around.isDeepAt(topAt(0.5, 0.5), -Vec3::UnitZ()));
-      EXPECT_FALSE(around.isDeepAt(topAt(0.5, 0.5), Vec3::UnitZ()));
-      return unit * around.compliance(shares, -Vec3::UnitZ());
+      EXPECT_TRUE(around.take(shares, Vec3::UnitZ(), *moduli, {}, lattice, rest, model));
+      EXPECT_FALSE(around.isDeep()) << "outwards";
+      EXPECT_TRUE(around.take(shares, -Vec3::UnitZ(), *moduli, {}, lattice, rest, model));
+      EXPECT_TRUE(around.isDeep());
+      return unit * around.compliance(shares);
     };
     const double own = pointCompliance(ratio, 0.0), beside = pointCompliance(ratio, 1.0),
                  across = pointCompliance(ratio, 2.0);
-    EXPECT_NEAR(compliance({{node(0, 0), 1.0}}), own, 0.013) << ratio;
-    EXPECT_NEAR(compliance({{node(0, 0), 0.5}, {node(1, 0), 0.5}}), 0.5 * (own + beside), 0.006);
+    EXPECT_NEAR(compliance({{node(0, 0), 1.0}}), own, 0.021) << ratio;
+    EXPECT_NEAR(compliance({{node(0, 0), 0.5}, {node(1, 0), 0.5}}), 0.5 * (own + beside), 0.009);
     EXPECT_NEAR(
         compliance(
             {{node(0, 0), 0.25}, {node(1, 0), 0.25}, {node(0, 1), 0.25}, {node(1, 1), 0.25}}),
-        0.25 * (own + 2.0 * beside + across), 0.001);
+        0.25 * (own + 2.0 * beside + across), 0.002);
+  }
+}
+
+// A wall two spacings thick gave way up to twice as much as all of the tissue, as if nothing were
+// behind it: on a support a ball was told nearly twice its force, at its edge eight times.
+TEST(LocalLattice, DoesNotHangOnWhatIsBehindAWall) {
+  const auto complianceOf = [](int thickness, bool is_fixed) {
+    TissueConfig config = cube();
+    config.shape.max().z() = kSpacing * thickness;
+    if (!is_fixed) config.fixed.clear();
+    const Lattice lattice(config);
+    const ElasticModel model(lattice, config);
+    const LatticeState rest = lattice.restState();
+    const std::vector<NodeWeight> shares = {{lattice.node(kMiddle, 0, thickness), 0.7},
+                                            {lattice.node(kMiddle, 1, thickness), 0.3}};
+    LocalLattice around;
+    const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
+    EXPECT_TRUE(around.take(shares, -Vec3::UnitZ(), *moduli, {}, lattice, rest, model));
+    EXPECT_TRUE(around.isDeep());
+    return around.compliance(shares);
+  };
+  const double expected = complianceOf(kMiddle, true);
+  for (const int thickness : {2, 3}) {
+    for (const bool is_fixed : {false, true}) {
+      EXPECT_NEAR(complianceOf(thickness, is_fixed), expected, 1e-9 * expected) << thickness;
+    }
   }
 }
 
@@ -119,7 +159,7 @@ TEST(LocalLattice, TurnsWithTheTissueAndKnowsItsMaterial) {
     LocalLattice around;
     const auto moduli = LocalLattice::moduliUnder(shares, *state.cells, model);
     EXPECT_NEAR(moduli->shear, kShear, 1e-6 * kShear);
-    EXPECT_EQ(around.take(shares, *moduli, {}, lattice, state, model), !is_layered);
+    EXPECT_EQ(around.take(shares, -Vec3::UnitZ(), *moduli, {}, lattice, state, model), !is_layered);
     if (is_layered) continue;
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(1.2, Vec3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
@@ -132,7 +172,7 @@ TEST(LocalLattice, TurnsWithTheTissueAndKnowsItsMaterial) {
 }
 
 // A plane in which the nodes slide is one of mirror symmetry: half of a force does as much there as
-// all of it in the whole. What is missing to a flat surface is the same everywhere.
+// all of it in the whole. What is around the piece goes as in a half-space, wherever.
 TEST(LocalLattice, OfNodesThatAPatchLetsSlideIsHalfOfTheWhole) {
   const TissueConfig config = cube();
   const Lattice lattice(config);
@@ -147,15 +187,15 @@ TEST(LocalLattice, OfNodesThatAPatchLetsSlideIsHalfOfTheWhole) {
     const auto compliance = [&](const std::vector<NodeWeight>& shares) {
       LocalLattice around;
       const auto moduli = LocalLattice::moduliUnder(shares, *rest.cells, model);
-      EXPECT_TRUE(around.take(shares, *moduli, held, lattice, rest, model));
-      return around.compliance(shares, -Vec3::UnitZ());
+      EXPECT_TRUE(around.take(shares, -Vec3::UnitZ(), *moduli, held, lattice, rest, model));
+      return around.compliance(shares);
     };
     const int own = lattice.node(i, kMiddle, kMiddle);
     const int beside = lattice.node(i, kMiddle + 1, kMiddle);
     return compliance({{own, 1.0}}) - compliance({{own, 0.6}, {beside, 0.4}});
   };
   const double whole = spread(kMiddle, {});
-  EXPECT_NEAR(spread(0, axesHeldBy({plane})), 2.0 * whole, 1e-9 * whole);
+  EXPECT_NEAR(spread(0, axesHeldBy({plane})), 2.0 * whole, 0.005 * whole);
 }
 
 TEST(MeanCurvature, IsThatOfABallAndOfACylinder) {

@@ -6,33 +6,29 @@
 #include <set>
 #include <utility>
 
-#include "loads/ratio_table.h"
+#include "loads/half_space.h"
 #include "robot_tissue/core/cells.h"
 #include "robot_tissue/core/lattice.h"
 
 namespace robot_tissue {
 namespace {
 
-// Cells: so far from the middle node others move. 2, 3, 4: the dent of a force on a flat surface is
-// 9, 7, 5 % less than in all of the tissue, before that is made up for; 1, 5, 15 ms on a block; 2,
+// Cells: so far from the middle node others move on their own. 2, 3, 4: 1, 5, 15 ms on a block; 2,
 // 3: 5, 15 ms on an organ.
 constexpr int kRings = 2;
 
-struct Missing {
-  double poisson_ratio;
-  double compliance;  // in force over shear modulus and spacing
-};
-
-// What is missing to a flat surface that goes on (doc/data/point_loads.csv), for a force that four
-// nodes share. Of one node it is 0.0005 to 0.0125 more.
-constexpr Missing kMissing[] = {{0.25, 0.0530}, {0.35, 0.0516}, {0.45, 0.0570}, {0.49, 0.0651}};
-
 // Of moduli (1), and between Poisson's ratios: a difference that is none. Rounding.
 constexpr double kSameModuli = 1e-6;
-// Spacings: so deep there has to be tissue, and so far aside a node there may be. Less: walls count
-// as half-spaces. Chosen.
+// Spacings: so deep there has to be tissue, which from there on goes as a half-space does, and so
+// far aside a node there may be. Less: walls count as half-spaces. Chosen.
 constexpr double kDeep = 1.6;
 constexpr double kAside = 1.0;
+
+struct Component {
+  int of_cell;   // row of its stiffness
+  int of_piece;  // 3 of each node
+  int unknown;
+};
 
 int heaviest(const std::vector<NodeWeight>& shares) {
   const auto is_less = [](const NodeWeight& a, const NodeWeight& b) {
@@ -83,93 +79,127 @@ bool LocalLattice::isAround(const std::vector<NodeWeight>& shares,
   return cells_ == state.cells && middle_ == heaviest(shares);
 }
 
-bool LocalLattice::take(const std::vector<NodeWeight>& shares, const SurfaceModuli& moduli,
-                        const HeldAxes& held_axes, const Lattice& lattice,
-                        const LatticeState& state, const ElasticModel& model) {
-  const int node = heaviest(shares);
+bool LocalLattice::take(const std::vector<NodeWeight>& shares, const Vec3& axis,
+                        const SurfaceModuli& moduli, const HeldAxes& held_axes,
+                        const Lattice& lattice, const LatticeState& state,
+                        const ElasticModel& model) {
   const CellSet& cells = *state.cells;
-  const bool stays = isAround(shares, state) && isNear(moduli, moduli_) && held_axes == held_axes_;
-  if (!stays) {
+  if (!isAround(shares, state) || !isNear(moduli, moduli_) || held_axes != held_axes_) {
     cells_ = state.cells;
     spacing_ = lattice.spacing();
     moduli_ = moduli;
     held_axes_ = held_axes;
-    make(node, lattice, cells, model);
-    places_.clear();
-    for (const int own : nodes_) places_.push_back(restPosition(lattice, cells, own));
+    middle_ = heaviest(shares);
+    findNodes(lattice, cells);
+    is_deep_.clear();
   }
-  return unknown_count_ > 0 && factor_.info() == Eigen::Success && isOfOneMaterial(cells, model) &&
+  if (moving_count_ == 0 || !isOfOneMaterial(cells, model)) return false;
+  inwards_ = turn(state.displacement).transpose() * axis;
+  place_ = Vec3::Zero();
+  for (const NodeWeight& share : shares) {
+    place_ += share.weight * restPosition(lattice, cells, share.node);
+  }
+  holdDeep(cells, model);
+  return unknown_count_ > 0 && factor_.info() == Eigen::Success &&
          std::all_of(shares.begin(), shares.end(),
-                     [this](const NodeWeight& share) { return unknowns_.count(share.node) != 0; });
-}
-
-void LocalLattice::make(int middle, const Lattice& lattice, const CellSet& cells,
-                        const ElasticModel& model) {
-  middle_ = middle;
-  findNodes(lattice, cells);
-  if (unknown_count_ > 0) factor_.compute(stiffness(cells, model));
+                     [this](const NodeWeight& share) { return numbers_.count(share.node) != 0; });
 }
 
 // By cells, so that what a cut has parted is apart.
 void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells) {
   nodes_.clear();
-  unknowns_.clear();
-  unknown_count_ = 0;
+  numbers_.clear();
+  const auto add = [&](int node, bool is_around) {
+    const std::uint8_t held = heldAt(node, lattice, cells);
+    if (held == kAllAxes && !is_around) return false;
+    if (!numbers_.try_emplace(node, static_cast<int>(nodes_.size())).second) return false;
+    nodes_.push_back({node, restPosition(lattice, cells, node), held});
+    return true;
+  };
   std::set<int> met;
-  std::size_t first = 0;
-  addNode(middle_, lattice, cells);
-  for (int ring = 0; ring <= kRings; ++ring) {
-    const std::size_t last = nodes_.size();
-    for (; first < last; ++first) {
-      for (const CellSet::Meeting& meeting : cells.meetings(nodes_[first])) {
-        const int number = static_cast<int>(meeting.cell);
-        if (!met.insert(number).second || ring == kRings) continue;
-        for (const int corner : cells.all()[at(number)].nodes) addNode(corner, lattice, cells);
+  std::vector<int> ring = {middle_};
+  add(middle_, false);
+  for (int number = 0; number <= kRings; ++number) {
+    std::vector<int> next;
+    for (const int node : ring) {
+      for (const CellSet::Meeting& meeting : cells.meetings(node)) {
+        const int cell = static_cast<int>(meeting.cell);
+        if (!met.insert(cell).second || number == kRings) continue;
+        for (const int corner : cells.all()[at(cell)].nodes) {
+          if (add(corner, false)) next.push_back(corner);
+        }
       }
     }
+    ring = std::move(next);
   }
   own_cells_.assign(met.begin(), met.end());
-}
-
-// Unless it is there, or stands.
-void LocalLattice::addNode(int node, const Lattice& lattice, const CellSet& cells) {
-  const auto found = held_axes_.find(node);
-  const std::uint8_t held = found == held_axes_.end() ? std::uint8_t{0} : found->second;
-  if (held == kAllAxes || isFixed(lattice, cells, node)) return;
-  const auto [unknowns, is_new] = unknowns_.try_emplace(node);
-  if (!is_new) return;
-  nodes_.push_back(node);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const bool is_held = (held >> axis & 1U) != 0;
-    unknowns->second[axis] = is_held ? kNone : unknown_count_++;
+  moving_count_ = static_cast<int>(nodes_.size());
+  for (const int number : own_cells_) {
+    for (const int node : reachedNodes(cells.all()[at(number)])) {
+      if (node >= 0) add(node, true);
+    }
   }
 }
 
-LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells,
-                                             const ElasticModel& model) const {
-  std::vector<Eigen::Triplet<double>> entries;
+std::uint8_t LocalLattice::heldAt(int node, const Lattice& lattice, const CellSet& cells) const {
+  const auto found = held_axes_.find(node);
+  if (isFixed(lattice, cells, node)) return kAllAxes;
+  return found == held_axes_.end() ? std::uint8_t{0} : found->second;
+}
+
+// What is deep does not move on its own, so that nothing hangs on what is below it.
+void LocalLattice::holdDeep(const CellSet& cells, const ElasticModel& model) {
+  std::vector<bool> is_deep;
+  is_deep.reserve(nodes_.size());
+  for (const PieceNode& node : nodes_) {
+    is_deep.push_back((node.place - place_).dot(inwards_) >= kDeep * spacing_);
+  }
+  if (is_deep == is_deep_) return;
+  is_deep_ = std::move(is_deep);
+  unknowns_.assign(nodes_.size(), {{kNone, kNone, kNone}});
+  unknown_count_ = 0;
+  for (int number = 0; number < moving_count_; ++number) {
+    if (is_deep_[at(number)]) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool is_held = (nodes_[at(number)].held >> axis & 1U) != 0;
+      if (!is_held) unknowns_[at(number)][axis] = unknown_count_++;
+    }
+  }
+  if (unknown_count_ > 0) factor_.compute(stiffness(cells, model));
+}
+
+// Of what moves on its own; to what does not, that is coupling_.
+LocalLattice::Matrix LocalLattice::stiffness(const CellSet& cells, const ElasticModel& model) {
+  std::vector<Eigen::Triplet<double>> own, others;
   for (const int number : own_cells_) {
     const Cell& cell = cells.all()[at(number)];
-    const CellHessian hessian = model.stiffnessAtRest(cell);
+    std::vector<Component> components, unknowns;
     const auto reached = reachedNodes(cell);
-    const auto count = static_cast<int>(hessian.rows() / 3);
-    std::vector<std::pair<int, int>> moving;  // row of the cell's, and of the piece
-    for (int i = 0; i < count; ++i) {
-      const auto found = unknowns_.find(reached[at(i)]);
-      if (found == unknowns_.end()) continue;
+    for (int i = 0; i < static_cast<int>(reached.size()); ++i) {
+      if (reached[at(i)] < 0) continue;
+      const int node = numbers_.at(reached[at(i)]);
       for (int axis = 0; axis < 3; ++axis) {
-        const int unknown = found->second[at(axis)];
-        if (unknown != kNone) moving.emplace_back(3 * i + axis, unknown);
+        components.push_back({3 * i + axis, 3 * node + axis, unknowns_[at(node)][at(axis)]});
+        if (components.back().unknown != kNone) unknowns.push_back(components.back());
       }
     }
-    for (const auto& [row, row_of_piece] : moving) {
-      for (const auto& [column, column_of_piece] : moving) {
-        entries.emplace_back(row_of_piece, column_of_piece, hessian(row, column));
+    if (unknowns.empty()) continue;
+    const CellHessian hessian = model.stiffnessAtRest(cell);
+    for (const Component& row : unknowns) {
+      for (const Component& column : components) {
+        const double entry = hessian(row.of_cell, column.of_cell);
+        if (column.unknown != kNone) {
+          own.emplace_back(row.unknown, column.unknown, entry);
+        } else {
+          others.emplace_back(row.unknown, column.of_piece, entry);
+        }
       }
     }
   }
+  coupling_.resize(unknown_count_, 3 * static_cast<Eigen::Index>(nodes_.size()));
+  coupling_.setFromTriplets(others.begin(), others.end());
   Matrix matrix(unknown_count_, unknown_count_);
-  matrix.setFromTriplets(entries.begin(), entries.end());
+  matrix.setFromTriplets(own.begin(), own.end());
   return matrix;
 }
 
@@ -184,16 +214,17 @@ bool LocalLattice::isOfOneMaterial(const CellSet& cells, const ElasticModel& mod
 // The rotation in the best linear map of the places to where they are.
 Eigen::Matrix3d LocalLattice::turn(const std::vector<Vec3>& displacement) const {
   Vec3 middle_at_rest = Vec3::Zero(), middle = Vec3::Zero();
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    middle_at_rest += places_[i];
-    middle += places_[i] + displacement[at(nodes_[i])];
+  const auto moving = nodes_.begin() + moving_count_;
+  for (auto one = nodes_.begin(); one != moving; ++one) {
+    middle_at_rest += one->place;
+    middle += one->place + displacement[at(one->node)];
   }
-  middle_at_rest /= static_cast<double>(nodes_.size());
-  middle /= static_cast<double>(nodes_.size());
+  middle_at_rest /= static_cast<double>(moving_count_);
+  middle /= static_cast<double>(moving_count_);
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Vec3 now = places_[i] + displacement[at(nodes_[i])] - middle;
-    products += now * (places_[i] - middle_at_rest).transpose();
+  for (auto one = nodes_.begin(); one != moving; ++one) {
+    const Vec3 now = one->place + displacement[at(one->node)] - middle;
+    products += now * (one->place - middle_at_rest).transpose();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
@@ -205,27 +236,44 @@ Eigen::Matrix3d LocalLattice::turn(const std::vector<Vec3>& displacement) const 
   return turn;
 }
 
-bool LocalLattice::isDeepAt(const Vec3& place, const Vec3& inwards) const {
-  return std::any_of(places_.begin(), places_.end(), [&](const Vec3& other) {
-    const double depth = (other - place).dot(inwards);
-    const double aside = (other - place - depth * inwards).norm();
-    return depth >= kDeep * spacing_ && aside <= kAside * spacing_;
-  });
+bool LocalLattice::isDeep() const {
+  for (std::size_t number = 0; number < nodes_.size(); ++number) {
+    const Vec3 off = nodes_[number].place - place_;
+    const double aside = (off - off.dot(inwards_) * inwards_).norm();
+    if (is_deep_[number] && aside <= kAside * spacing_) return true;
+  }
+  return false;
 }
 
-double LocalLattice::compliance(const std::vector<NodeWeight>& shares,
-                                const Vec3& direction) const {
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(unknown_count_);
-  for (const NodeWeight& share : shares) {
-    const std::array<int, 3>& unknowns = unknowns_.at(share.node);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double along = direction[static_cast<Eigen::Index>(axis)];
-      if (unknowns[axis] != kNone) force[unknowns[axis]] += share.weight * along;
+// Of what does not move on its own, 3 each.
+Eigen::VectorXd LocalLattice::motionAround() const {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(nodes_.size()));
+  for (int number = 0; number < static_cast<int>(nodes_.size()); ++number) {
+    const PieceNode& node = nodes_[at(number)];
+    if (!is_deep_[at(number)] && number < moving_count_) continue;
+    const Vec3 along = halfSpaceMotion(node.place - place_, inwards_, moduli_);
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_held = (node.held >> axis & 1U) != 0;
+      if (is_deep_[at(number)] || !is_held) motion[3 * number + axis] = along[axis];
     }
   }
-  const auto [below, above, part] = placeIn(kMissing, moduli_.poisson_ratio);
-  const double missing = (1.0 - part) * below.compliance + part * above.compliance;
-  return force.dot(factor_.solve(force)) + missing / (moduli_.shear * spacing_);
+  return motion;
+}
+
+double LocalLattice::compliance(const std::vector<NodeWeight>& shares) const {
+  const Eigen::VectorXd around = motionAround();
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(unknown_count_);
+  double way = 0.0;
+  for (const NodeWeight& share : shares) {
+    const int number = numbers_.at(share.node);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int unknown = unknowns_[at(number)][at(axis)];
+      const double part = share.weight * inwards_[axis];
+      if (unknown != kNone) force[unknown] += part;
+      if (unknown == kNone) way += part * around[3 * number + axis];
+    }
+  }
+  return way + force.dot(factor_.solve(force - coupling_ * around));
 }
 
 }  // namespace robot_tissue

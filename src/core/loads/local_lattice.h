@@ -1,8 +1,10 @@
 // A small piece of the lattice around a force on the tissue, at rest: how far the tissue gives way
 // there, as the lattice has it (own; doc/model.md, "Narrow contacts").
 //
-// Nodes that are up to two cells from the middle one move, those around them stand, as fixed ones
-// and those of loading patches do. What is missing for that is as of a flat surface that goes on.
+// Nodes that are up to two cells from the middle one, and not deep, move on their own. Those around
+// and below them go as in a half-space under the force, so that how far the tissue gives way does
+// not hang on what is on its other side: free, fixed or on a support, the lattice tells that right.
+// What is fixed or held by loading patches, and not deep, stands.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -35,40 +37,55 @@ class LocalLattice {
                                                   const CellSet& cells, const ElasticModel& model);
   // Whether it is around the node that bears most.
   bool isAround(const std::vector<NodeWeight>& shares, const LatticeState& state) const;
-  // Goes there, if it is not. False where it can tell nothing: a share is elsewhere, or the tissue
-  // is of several materials there. The model must be that of the lattice.
-  bool take(const std::vector<NodeWeight>& shares, const SurfaceModuli& moduli,
+  // Goes to a force along the axis, as the tissue is. False where it can tell nothing: a share is
+  // elsewhere, or the tissue is of several materials there. The model must be that of the lattice.
+  bool take(const std::vector<NodeWeight>& shares, const Vec3& axis, const SurfaceModuli& moduli,
             const HeldAxes& held_axes, const Lattice& lattice, const LatticeState& state,
             const ElasticModel& model);
 
-  // All of the following are of the piece taken.
+  // All of the following are of the piece and the force taken.
   // How it is turned, with these displacements (m).
   Eigen::Matrix3d turn(const std::vector<Vec3>& displacement) const;
-  // Whether there is tissue two spacings inwards from a place (at rest, m).
-  bool isDeepAt(const Vec3& place, const Vec3& inwards) const;
-  // The way of what carries the force along its unit direction, at rest, for 1 N (m/N).
-  double compliance(const std::vector<NodeWeight>& shares, const Vec3& direction) const;
+  // At rest: where the force is (m), and its unit direction.
+  const Vec3& place() const { return place_; }
+  const Vec3& inwards() const { return inwards_; }
+  // Whether there is tissue two spacings inwards.
+  bool isDeep() const;
+  // The way of what carries the force along its direction, at rest, for 1 N (m/N).
+  double compliance(const std::vector<NodeWeight>& shares) const;
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
   static constexpr int kNone = -1;
 
-  void make(int middle, const Lattice& lattice, const CellSet& cells, const ElasticModel& model);
+  struct PieceNode {
+    int node;
+    Vec3 place;         // at rest (m)
+    std::uint8_t held;  // bits 1 << axis
+  };
+
   void findNodes(const Lattice& lattice, const CellSet& cells);
-  void addNode(int node, const Lattice& lattice, const CellSet& cells);
-  Matrix stiffness(const CellSet& cells, const ElasticModel& model) const;
+  std::uint8_t heldAt(int node, const Lattice& lattice, const CellSet& cells) const;
+  void holdDeep(const CellSet& cells, const ElasticModel& model);
+  Matrix stiffness(const CellSet& cells, const ElasticModel& model);
+  Eigen::VectorXd motionAround() const;
   bool isOfOneMaterial(const CellSet& cells, const ElasticModel& model) const;
 
   std::shared_ptr<const CellSet> cells_;
   double spacing_ = 0.0;  // m
   SurfaceModuli moduli_;
   int middle_ = -1;
-  std::vector<int> nodes_;    // that move: the middle, then ring by ring
-  std::vector<Vec3> places_;  // of nodes_, at rest (m)
   HeldAxes held_axes_;
-  std::unordered_map<int, std::array<int, 3>> unknowns_;  // of nodes_, per axis; kNone: it is held
+  std::vector<PieceNode> nodes_;          // the middle, ring by ring, then those around them
+  int moving_count_ = 0;                  // of nodes_, the first, that may move on their own
+  std::unordered_map<int, int> numbers_;  // in nodes_
+  std::vector<int> own_cells_;            // that have one that may move as a corner, ascending
+  Vec3 place_ = Vec3::Zero();
+  Vec3 inwards_ = Vec3::Zero();
+  std::vector<bool> is_deep_;                 // of nodes_
+  std::vector<std::array<int, 3>> unknowns_;  // of nodes_, per axis; kNone: not on its own
   int unknown_count_ = 0;
-  std::vector<int> own_cells_;  // that have one of them as a corner, ascending
+  Matrix coupling_;  // unknowns to what does not move on its own, 3 of each of nodes_
   Eigen::SimplicialLDLT<Matrix> factor_;
 };
 

@@ -72,13 +72,17 @@ std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, c
   surface.spacing = body.lattice().spacing();
   if (!moduli || !isNarrow(press, surface.spacing, *moduli)) return std::nullopt;
   surface.moduli = *moduli;
-  const auto is_flat = [&](const NodeWeight& share) { return isInFlatSurface(cells, share.node); };
+  const HeldAxes held = axesHeldBy(patches);
+  const auto is_flat = [&](const NodeWeight& share) {
+    return isInFlatSurface(cells, share.node) && held.count(share.node) == 0 &&
+           !isFixed(body.lattice(), cells, share.node);
+  };
   const auto is_uniform = [&](const NodeWeight& share) {
     return isUniformAround(cells, model, share.node);
   };
   if (!std::all_of(shares.begin(), shares.end(), is_flat)) {
-    return look(press, body, model, patches, surface) ? std::optional<PressedSurface>(surface)
-                                                      : std::nullopt;
+    return look(press, body, model, held, surface) ? std::optional<PressedSurface>(surface)
+                                                   : std::nullopt;
   }
   if (!std::all_of(shares.begin(), shares.end(), is_uniform)) return std::nullopt;
   surface.compliance = flatCompliance(shares, body.lattice(), *moduli);
@@ -97,24 +101,20 @@ LocalLattice& PressedSurfaces::around(const NarrowPress& press, const Body& body
 }
 
 bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const ElasticModel& model,
-                           const std::vector<LoadingPatch>& patches, PressedSurface& surface) {
+                           const HeldAxes& held, PressedSurface& surface) {
   if (press.body || model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);
-  if (!here.take(press.shares, surface.moduli, axesHeldBy(patches), lattice, state, model)) {
+  if (!here.take(press.shares, press.axis, surface.moduli, held, lattice, state, model) ||
+      !here.isDeep()) {
     return false;
   }
-  const Vec3 inwards = here.turn(state.displacement).transpose() * press.axis;
-  Vec3 place = Vec3::Zero();
-  for (const NodeWeight& share : press.shares) {
-    place += share.weight * restPosition(lattice, *state.cells, share.node);
-  }
-  if (!here.isDeepAt(place, inwards)) return false;
   surface.is_flat = false;
-  surface.compliance = here.compliance(press.shares, inwards);
-  surface.curvature =
-      meanCurvature(body.surface().rest, place, -inwards, kSeenAround * surface.spacing);
+  surface.compliance = here.compliance(press.shares);
+  if (!(surface.compliance > 0.0)) return false;  // all of it on what stands, or moves in one piece
+  surface.curvature = meanCurvature(body.surface().rest, here.place(), -here.inwards(),
+                                    kSeenAround * surface.spacing);
   return true;
 }
 

@@ -1,7 +1,5 @@
 #include "tissue/tissue_forces.h"
 
-#include <algorithm>
-
 #include "loads/narrow_contact.h"
 #include "loads/rim_law.h"
 #include "material/elastic_model.h"
@@ -14,15 +12,6 @@ Vec3 forceOfPatches(const SolveReport& report) {
   Vec3 force = Vec3::Zero();
   for (const PatchAnswer& answer : report.patches) force += answer.force;
   return force;
-}
-
-// Of named loads. What moves as one piece gives way otherwise than a node by itself.
-bool isInOne(const StandingLoads& loads, int node) {
-  const std::vector<LoadingPatch>& patches = loads.patches();
-  const auto end = patches.begin() + static_cast<std::ptrdiff_t>(loads.named());
-  return std::any_of(patches.begin(), end, [node](const LoadingPatch& patch) {
-    return std::find(patch.nodes.begin(), patch.nodes.end(), node) != patch.nodes.end();
-  });
 }
 
 }  // namespace
@@ -99,9 +88,6 @@ std::optional<RimCompliance> TissueForces::rimCompliance(int node, double depth)
 std::optional<Recess> TissueForces::recessUnder(const NarrowPress& press) const {
   const auto* elastic = dynamic_cast<const ElasticModel*>(&data_.body.model());
   if (elastic == nullptr || !data_.methods.now().findsEquilibrium()) return std::nullopt;
-  for (const NodeWeight& share : press.shares) {
-    if (isInOne(data_.loads, share.node)) return std::nullopt;
-  }
   const std::optional<PressedSurface> surface =
       surfaces_.under(press, data_.body, *elastic, data_.loads.patches());
   return surface ? std::optional<Recess>(robot_tissue::recessUnder(press, *surface)) : std::nullopt;
