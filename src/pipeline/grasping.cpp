@@ -267,7 +267,9 @@ std::map<int, double> Grasping::nodesBetweenJaws(std::size_t tool, std::size_t j
   };
   for (const SlidingContacts::ContactConstraint& touch : world_.sliding.touches()) {
     if (at(touch.contact.link) != jaw || !isPinched(touch)) continue;
-    for (const NodeWeight& carrier : touch.spring.carriers) add(carrier.node);
+    for (const NodeWeight& carrier : touch.spring.carriers) {
+      if (carrier.weight >= tuning::kGripped) add(carrier.node);
+    }
   }
   for (const auto& [node, seat] : world_.sticking.attachments()[tool]) {
     const auto pinch = pinchAt(tool, world_.pose, world_.tissue.nodePosition(node));

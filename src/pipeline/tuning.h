@@ -225,6 +225,9 @@ constexpr double kFarSofter = 0.1;
 // Graspers and reports.
 // Cosine between the ways out of two jaws: below it, they lead to opposite sides. Chosen.
 constexpr double kOpposed = -0.5;
+// Of what a touched point is carried by (1): nodes with so much go with the jaws. As each corner of
+// a cell has it of the middle. Less: on meshes nodes beside the jaws are held, too.
+constexpr double kGripped = 0.125;
 // Of the spacing (1): jaws that are nearer to each other have no room for tissue between them.
 // More: jaws that appear closed around little tissue come down on it. Chosen: no shape is so thin.
 constexpr double kShut = 0.1;
