@@ -24,6 +24,10 @@ constexpr double kSameModuli = 1e-6;
 constexpr double kDeep = 1.6;
 constexpr double kAside = 1.0;
 
+// Of a cell (1): one with no more tells nothing of where tissue is, as what a surface only grazes
+// counts as filled by a thousandth all over (filled_grid.cpp).
+constexpr double kGrazed = 0.002;
+
 struct Component {
   int of_cell;   // row of its stiffness
   int of_piece;  // 3 of each node
@@ -236,13 +240,19 @@ Eigen::Matrix3d LocalLattice::turn(const std::vector<Vec3>& displacement) const 
   return turn;
 }
 
-bool LocalLattice::isDeep() const {
-  for (std::size_t number = 0; number < nodes_.size(); ++number) {
-    const Vec3 off = nodes_[number].place - place_;
-    const double aside = (off - off.dot(inwards_) * inwards_).norm();
-    if (is_deep_[number] && aside <= kAside * spacing_) return true;
-  }
-  return false;
+// By what cells hold, not by their nodes, of which a thin wall has some that are as far.
+bool LocalLattice::isDeep(const Lattice& lattice) const {
+  const CellFill full;
+  return std::any_of(own_cells_.begin(), own_cells_.end(), [&](int number) {
+    const Cell& cell = cells_->all()[at(number)];
+    const CellFill& fill = cell.fill == nullptr ? full : *cell.fill;
+    const Vec3 center = lattice.cellCenter(lattice.cells()[at(cell.place)]);
+    const Vec3 off = (center - place_) / spacing_ + fill.centroid;
+    const double depth = off.dot(inwards_), aside = (off - depth * inwards_).norm();
+    // Of a layer that reaches r to both sides the variance is r^2 / 3.
+    const double reach = std::sqrt(3.0 * std::max(0.0, inwards_.dot(fill.covariance() * inwards_)));
+    return cell.share() > kGrazed && aside <= kAside && depth + reach >= kDeep;
+  });
 }
 
 // Of what does not move on its own, 3 each.

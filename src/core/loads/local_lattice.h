@@ -49,8 +49,8 @@ class LocalLattice {
   // At rest: where the force is (m), and its unit direction.
   const Vec3& place() const { return place_; }
   const Vec3& inwards() const { return inwards_; }
-  // Whether there is tissue two spacings inwards.
-  bool isDeep() const;
+  // Whether the tissue is thick enough, inwards, to go as a half-space.
+  bool isDeep(const Lattice& lattice) const;
   // The way of what carries the force along its direction, at rest, for 1 N (m/N).
   double compliance(const std::vector<NodeWeight>& shares) const;
 

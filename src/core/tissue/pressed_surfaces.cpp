@@ -107,7 +107,7 @@ bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const Ela
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);
   if (!here.take(press.shares, press.axis, surface.moduli, held, lattice, state, model) ||
-      !here.isDeep()) {
+      !here.isDeep(lattice)) {
     return false;
   }
   surface.is_flat = false;
