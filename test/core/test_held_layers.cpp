@@ -138,15 +138,18 @@ TEST(HeldLayers, ACutLeavesItsPartsHeld) {
   EXPECT_NEAR(sagOf(0.003, 0.005) / sagOf(0.0, kFitting), 1.0, 0.05);
 }
 
+std::vector<Vec3> plane(double height, double to) {
+  return {Vec3(-1.0, -1.0, height), Vec3(to, -1.0, height), Vec3(to, 1.0, height),
+          Vec3(-1.0, 1.0, height)};
+}
+
 // Under half of the block, along its face. Divided where it is laid, the layer would leave the
 // wrong part of itself on either side of the cut, or next to nothing outside of its cell, where no
 // balance is found.
 TEST(HeldLayers, ACutAlongALayerLeavesWhatIsAboveAndBelowIt) {
   const auto forceAfterCut = [](double deeper, double spacing, double height) {
     Tissue tissue(blockBeside(deeper, spacing), SolverConfig());
-    const double to = 0.0258;
-    tissue.cut({Vec3(-1.0, -1.0, height), Vec3(to, -1.0, height), Vec3(to, 1.0, height),
-                Vec3(-1.0, 1.0, height)});
+    tissue.cut(plane(height, 0.0258));
     tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.001})}));
     EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk) << deeper << ' ' << height;
     return tissue.lastReport().patches.front().force.z();
@@ -158,6 +161,35 @@ TEST(HeldLayers, ACutAlongALayerLeavesWhatIsAboveAndBelowIt) {
           << deeper << ' ' << height;
     }
   }
+}
+
+// The plate's springs would hold what is below the cut: it felt 1.8 times what it should.
+TEST(HeldLayers, ACutUnderAPlatePartsItsSpringsToo) {
+  const auto forceOf = [](double deeper, double spacing) {
+    Tissue tissue(blockBeside(deeper, spacing), SolverConfig());
+    tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.0003})}));
+    const CutReport cut = tissue.cut(plane(0.0248, 0.0258));
+    EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
+    return cut.solve.patches.front().force.z();
+  };
+  const double fitting = forceOf(0.0, kFitting);
+  for (const double deeper : {0.001, 0.003}) {
+    EXPECT_NEAR(forceOf(deeper, 0.005) / fitting, 1.0, 0.12) << deeper;
+  }
+}
+
+// Springs to nodes that only the cut made would be to none once it is undone, and in no saved
+// state.
+TEST(HeldLayers, ACutUnderAPlateIsUndoneAndSaved) {
+  Tissue tissue(blockBeside(0.003, 0.005), SolverConfig());
+  tissue.cut(plane(0.0248, 0.0258));
+  tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.0003})}));
+  const double force = tissue.lastReport().patches.front().force.z();
+  const std::string saved = tissue.savedState();
+  EXPECT_EQ(tissue.undo(1).status, SolveStatus::kOk);
+  EXPECT_GT(tissue.lastReport().patches.front().force.z(), force);
+  tissue.loadState(*tissue.readState(saved));
+  EXPECT_EQ(tissue.lastReport().patches.front().force.z(), force);
 }
 
 // A layer is of the material next to the face; the mass, and so the weight, stays the mesh's own.
