@@ -138,6 +138,60 @@ TEST(HeldLayers, ACutLeavesItsPartsHeld) {
   EXPECT_NEAR(sagOf(0.003, 0.005) / sagOf(0.0, kFitting), 1.0, 0.05);
 }
 
+std::vector<Vec3> plane(double height, double to) {
+  return {Vec3(-1.0, -1.0, height), Vec3(to, -1.0, height), Vec3(to, 1.0, height),
+          Vec3(-1.0, 1.0, height)};
+}
+
+// Under half of the block, along its face. Divided where it is laid, the layer would leave the
+// wrong part of itself on either side of the cut, or next to nothing outside of its cell, where no
+// balance is found.
+TEST(HeldLayers, ACutAlongALayerLeavesWhatIsAboveAndBelowIt) {
+  const auto forceAfterCut = [](double deeper, double spacing, double height) {
+    Tissue tissue(blockBeside(deeper, spacing), SolverConfig());
+    tissue.cut(plane(height, 0.0258));
+    tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.001})}));
+    EXPECT_EQ(tissue.lastReport().status, SolveStatus::kOk) << deeper << ' ' << height;
+    return tissue.lastReport().patches.front().force.z();
+  };
+  for (const double height : {0.0004, 0.0008}) {
+    const double fitting = forceAfterCut(0.0, kFitting, height);
+    for (const double deeper : {0.001, 0.0025, 0.003}) {
+      EXPECT_NEAR(forceAfterCut(deeper, 0.005, height) / fitting, 1.0, 0.1)
+          << deeper << ' ' << height;
+    }
+  }
+}
+
+// The plate's springs would hold what is below the cut: it felt 1.8 times what it should.
+TEST(HeldLayers, ACutUnderAPlatePartsItsSpringsToo) {
+  const auto forceOf = [](double deeper, double spacing) {
+    Tissue tissue(blockBeside(deeper, spacing), SolverConfig());
+    tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.0003})}));
+    const CutReport cut = tissue.cut(plane(0.0248, 0.0258));
+    EXPECT_EQ(cut.solve.status, SolveStatus::kOk);
+    return cut.solve.patches.front().force.z();
+  };
+  const double fitting = forceOf(0.0, kFitting);
+  for (const double deeper : {0.001, 0.003}) {
+    EXPECT_NEAR(forceOf(deeper, 0.005) / fitting, 1.0, 0.12) << deeper;
+  }
+}
+
+// Springs to nodes that only the cut made would be to none once it is undone, and in no saved
+// state.
+TEST(HeldLayers, ACutUnderAPlateIsUndoneAndSaved) {
+  Tissue tissue(blockBeside(0.003, 0.005), SolverConfig());
+  tissue.cut(plane(0.0248, 0.0258));
+  tissue.load(loadOf({displacedPatch("plate", kAbove, {0.0, 0.0, 0.0003})}));
+  const double force = tissue.lastReport().patches.front().force.z();
+  const std::string saved = tissue.savedState();
+  EXPECT_EQ(tissue.undo(1).status, SolveStatus::kOk);
+  EXPECT_GT(tissue.lastReport().patches.front().force.z(), force);
+  tissue.loadState(*tissue.readState(saved));
+  EXPECT_EQ(tissue.lastReport().patches.front().force.z(), force);
+}
+
 // A layer is of the material next to the face; the mass, and so the weight, stays the mesh's own.
 TEST(HeldLayers, TheWeightIsTheMeshs) {
   TissueConfig held = blockBeside(0.003, 0.005), floating = held;
@@ -187,13 +241,17 @@ TEST(HeldLayers, ALayerIsLaidOnTheNodesThatHoldIt) {
   EXPECT_FALSE(of_sides({0.0, 0.0, 0.0, 0.0, 0.0, 0.0}).has_value());
   // A cut from side to side: what stands on the held nodes is a layer, what does not is where it
   // is.
+  EXPECT_NEAR((fillInMesh(laid).products - cell.fill->products).norm(), 0.0, 1e-12);
   Cell below = cells.front(), above = cells.front();
   below.own = 0x0f;
   above.own = 0xf0;
-  EXPECT_EQ(partOfLayer(cells.front(), below, laid).held_side, 4);
-  const CellFill freed = partOfLayer(cells.front(), above, laid);
+  const CellFill left = partOfLayer(cells.front(), below, slab(0.1, 0.2));
+  EXPECT_EQ(left.held_side, 4);
+  EXPECT_NEAR(left.centroid.z(), -0.45, 1e-12);
+  EXPECT_EQ(left.thickness, laid.thickness);
+  const CellFill freed = partOfLayer(cells.front(), above, slab(0.2, 0.5));
   EXPECT_EQ(freed.held_side, -1);
-  EXPECT_NEAR(freed.centroid.z(), 0.3, 1e-12);
+  EXPECT_NEAR(freed.centroid.z(), 0.35, 1e-12);
   EXPECT_EQ(freed.firmness(), 1.0);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cutting/cut_front.h"
+#include "lattice/held_layers.h"
 #include "robot_tissue/core/disjoint_sets.h"
 
 namespace robot_tissue {
@@ -296,7 +297,7 @@ std::array<FillIntegrals, kCorners> cornerFills(const Lattice& lattice, const La
     for (const Tetrahedron& solid : division.aroundCorner(corner)) even += integralsOver(solid);
   }
   if (cell.fill == nullptr) return fills;
-  const std::vector<HalfSpace> box = boxOf(*cell.fill);
+  const std::vector<HalfSpace> box = boxOf(fillInMesh(*cell.fill));
   double in_box = 0.0;
   for (int corner = 0; corner < kCorners; ++corner) {
     FillIntegrals& fill = fills[at(corner)];

@@ -23,8 +23,10 @@ double gapAt(const CellFill& fill, int side) {
   return gap < kNoGap ? 0.0 : std::min(gap, 1.0 - kThinnest);
 }
 
-// Moved along the axis.
-FillIntegrals shifted(const CellFill& fill, int axis, double by) {
+// Moved towards the side.
+FillIntegrals shifted(const CellFill& fill, int side, double by) {
+  const int axis = side / 2;
+  if (side % 2 == 0) by = -by;
   const Vec3 shift = by * Vec3::Unit(axis);
   const Eigen::Matrix3d cross = shift * fill.centroid.transpose();
   FillIntegrals moved = integralsOf(fill);
@@ -36,8 +38,7 @@ FillIntegrals shifted(const CellFill& fill, int axis, double by) {
 
 // Towards the held side, by the gap between.
 CellFill laidOn(const CellFill& fill, const HeldLayer& layer) {
-  const double gap = 1.0 - layer.thickness;
-  CellFill laid = fillOf(shifted(fill, layer.side / 2, layer.side % 2 == 0 ? -gap : gap));
+  CellFill laid = fillOf(shifted(fill, layer.side, gapAt(fill, layer.side)));
   laid.lent = fill.lent;
   laid.held_side = layer.side;
   laid.thickness = layer.thickness;
@@ -74,19 +75,17 @@ void layOnFixedNodes(std::vector<Cell>& cells, const std::vector<std::uint8_t>& 
   }
 }
 
+CellFill fillInMesh(const CellFill& fill) {
+  if (fill.held_side < 0) return fill;
+  return fillOf(shifted(fill, fill.held_side ^ 1, 1.0 - fill.thickness));
+}
+
 CellFill partOfLayer(const Cell& whole, const Cell& part, const CellFill& fill) {
   if (whole.fill == nullptr || whole.fill->held_side < 0) return fill;
-  const int side = whole.fill->held_side;
+  const HeldLayer layer{whole.fill->held_side, whole.fill->thickness};
   bool is_held = false;
-  for (int r = 0; r < kFaceNodes; ++r) is_held = is_held || part.owns(faceCorner(side, r));
-  if (!is_held) {
-    const double gap = 1.0 - whole.fill->thickness;
-    return fillOf(shifted(fill, side / 2, side % 2 == 0 ? gap : -gap));
-  }
-  CellFill layer = fill;
-  layer.held_side = side;
-  layer.thickness = whole.fill->thickness;
-  return layer;
+  for (int r = 0; r < kFaceNodes; ++r) is_held = is_held || part.owns(faceCorner(layer.side, r));
+  return is_held ? laidOn(fill, layer) : fill;
 }
 
 }  // namespace robot_tissue

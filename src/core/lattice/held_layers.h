@@ -29,8 +29,11 @@ std::optional<HeldLayer> heldLayer(const Cell& cell,
 // in the cell, too, and is 1 / t^2 times as firm: at small strains that is the layer's own energy.
 void layOnFixedNodes(std::vector<Cell>& cells, const std::vector<std::uint8_t>& fixed);
 
-// Of what a cut leaves of such a cell, as a part of its fill: a layer, too, if the part has fixed
-// nodes of its own; else material where it is.
+// Where the mesh has it.
+CellFill fillInMesh(const CellFill& fill);
+
+// Of what a cut leaves of such a cell, where the mesh has it: laid on the fixed nodes, too, if the
+// part has such nodes of its own; else material where it is.
 CellFill partOfLayer(const Cell& whole, const Cell& part, const CellFill& fill);
 
 }  // namespace robot_tissue

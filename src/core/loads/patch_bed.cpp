@@ -106,6 +106,8 @@ std::vector<RimSpring> bedOf(const Lattice& lattice, const TissueModel& model,
       const int across = cell.nodes[at(faceCorner(layer->side ^ 1, r))];
       const double there = is_on_plate ? layer->thickness / kFaceNodes : 0.0;
       const double lacking = shares[at(r)] / layer->thickness - there;
+      // Where a cut is between, the part on the plate is free across.
+      if (!cell.owns(faceCorner(layer->side ^ 1, r))) continue;
       if (lacking <= 0.0 || full.isZero(0.0) || is_held(across)) continue;
       stiffness.emplace(across, Vec3::Zero()).first->second += lacking * full;
     }

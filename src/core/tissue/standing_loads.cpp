@@ -26,6 +26,23 @@ void loseNodes(const LatticeState& state, LoadingPatch& patch) {
       patch.rim.end());
 }
 
+bool isOf(const LoadingPatch& patch, int node) {
+  return std::binary_search(patch.nodes.begin(), patch.nodes.end(), node);
+}
+
+// No tissue is left between the node, beside the patch, and the patch's own ones.
+bool isPartedFrom(const LoadingPatch& patch, int node, const CellSet& cells) {
+  if (isOf(patch, node)) return false;
+  for (const CellSet::Meeting& met : cells.meetings(node)) {
+    const Cell& cell = cells.all()[at(met.cell)];
+    if (!cell.owns(static_cast<int>(met.corner))) continue;
+    for (int corner = 0; corner < kCorners; ++corner) {
+      if (cell.owns(corner) && isOf(patch, cell.nodes[at(corner)])) return false;
+    }
+  }
+  return true;
+}
+
 std::ptrdiff_t offset(std::size_t number) { return static_cast<std::ptrdiff_t>(number); }
 
 }  // namespace
@@ -135,6 +152,15 @@ std::vector<std::string> StandingLoads::loseGoneNodes(const LatticeState& state,
     remove(number);
   }
   return lost;
+}
+
+void StandingLoads::loseParted(const CellSet& cells) {
+  forEach([&](LoadingPatch& patch) {
+    const auto is_parted = [&](const RimSpring& spring) {
+      return isPartedFrom(patch, spring.node, cells);
+    };
+    patch.rim.erase(std::remove_if(patch.rim.begin(), patch.rim.end(), is_parted), patch.rim.end());
+  });
 }
 
 void StandingLoads::forEach(const std::function<void(LoadingPatch&)>& change) {

@@ -51,6 +51,8 @@ class StandingLoads {
   // those.
   std::vector<std::string> loseGoneNodes(const LatticeState& state,
                                          std::vector<PatchAnswer>& answers);
+  // The springs to nodes that a cut has parted from their patches.
+  void loseParted(const CellSet& cells);
   void forEach(const std::function<void(LoadingPatch&)>& change);  // those that are due, too
 
   // Targets of named loads that had no time to come there.

@@ -22,6 +22,7 @@ Surgery::Surgery(const TissueConfig& tissue, TissueData& data, LoadStepSolver& s
 SolveReport Surgery::changeTopology(const std::vector<int>& disturbed) {
   const double before_ms = data_.bounds.leftMs();
   data_.body.change();
+  data_.loads.loseParted(data_.body.cells());
   data_.outcome.is_as_solved = false;
   data_.motion.noteOtherCells();
   data_.rebuildSurface();
