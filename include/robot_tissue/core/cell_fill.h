@@ -27,6 +27,9 @@ struct CellFill {
   double thickness = 1.0;
 
   Eigen::Matrix3d covariance() const;
+  // How far it reaches to both sides of its centroid along the unit direction, as a layer with its
+  // variance there.
+  double reachAlong(const Vec3& direction) const;
   bool isHeldAcross(int axis) const { return held_side >= 0 && held_side / 2 == axis; }
   double firmness() const { return 1.0 / (thickness * thickness); }  // of its material's stiffness
   // Mean of the corner's trilinear shape function over the fill, which is its part of the cell's

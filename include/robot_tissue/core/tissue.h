@@ -159,8 +159,8 @@ class Tissue {
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
   // How much deeper than the lattice tells the shape goes into the tissue (narrow_contact.h). None
   // where the contact is wide, the tissue is of several materials around it or thinner than two
-  // spacings, one of its nodes is in a named patch, and where the method finds no equilibrium or
-  // the model has no moduli.
+  // spacings, all that bears it is held, and where the method finds no equilibrium or the model has
+  // no moduli.
   std::optional<Recess> recessUnder(const NarrowPress& press) const;
 
   // Asked after each solve; null: nobody. It outlives the tissue, or is taken back.

@@ -1,10 +1,17 @@
 #include "robot_tissue/core/cell_fill.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 namespace robot_tissue {
 
 Eigen::Matrix3d CellFill::covariance() const { return products - centroid * centroid.transpose(); }
+
+// Of a layer that reaches r to both sides the variance is r^2 / 3.
+double CellFill::reachAlong(const Vec3& direction) const {
+  return std::sqrt(3.0 * std::max(0.0, direction.dot(covariance() * direction)));
+}
 
 // N = product over the axes of (1/2 + s_a x_a), s_a = 1 at the high end, else -1.
 double CellFill::cornerShare(int corner) const {

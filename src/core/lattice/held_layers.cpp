@@ -1,7 +1,6 @@
 #include "lattice/held_layers.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace robot_tissue {
 namespace {
@@ -17,8 +16,7 @@ constexpr double kNoGap = 1e-3;
 double gapAt(const CellFill& fill, int side) {
   const int axis = side / 2;
   const double middle = fill.centroid[axis];
-  // Of a layer that reaches r to both sides the variance is r^2 / 3.
-  const double reach = std::sqrt(3.0 * std::max(0.0, fill.covariance()(axis, axis)));
+  const double reach = fill.reachAlong(Vec3::Unit(axis));
   const double gap = 0.5 - reach + (side % 2 == 0 ? middle : -middle);
   return gap < kNoGap ? 0.0 : std::min(gap, 1.0 - kThinnest);
 }

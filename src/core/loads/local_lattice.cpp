@@ -56,14 +56,15 @@ Moduli materialIn(const Cell& cell, const ElasticModel& model) {
 
 }  // namespace
 
-HeldAxes axesHeldBy(const std::vector<LoadingPatch>& patches) {
-  HeldAxes held;
+std::optional<std::uint8_t> axesHeldBy(const std::vector<LoadingPatch>& patches, int node) {
+  std::optional<std::uint8_t> held;
   for (const LoadingPatch& patch : patches) {
-    std::uint8_t mask = 0;
+    if (!std::binary_search(patch.nodes.begin(), patch.nodes.end(), node)) continue;
+    unsigned mask = held.value_or(0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (holds(patch, axis)) mask = static_cast<std::uint8_t>(mask | 1U << axis);
+      if (holds(patch, axis)) mask |= 1U << axis;
     }
-    for (const int node : patch.nodes) held[node] = static_cast<std::uint8_t>(held[node] | mask);
+    held = static_cast<std::uint8_t>(mask);
   }
   return held;
 }
@@ -84,17 +85,20 @@ bool LocalLattice::isAround(const std::vector<NodeWeight>& shares,
 }
 
 bool LocalLattice::take(const std::vector<NodeWeight>& shares, const Vec3& axis,
-                        const SurfaceModuli& moduli, const HeldAxes& held_axes,
+                        const SurfaceModuli& moduli, const std::vector<LoadingPatch>& patches,
                         const Lattice& lattice, const LatticeState& state,
                         const ElasticModel& model) {
   const CellSet& cells = *state.cells;
-  if (!isAround(shares, state) || !isNear(moduli, moduli_) || held_axes != held_axes_) {
+  const HeldAt held_at = [&](int node) {
+    return isFixed(lattice, cells, node) ? kAllAxes
+                                         : axesHeldBy(patches, node).value_or(std::uint8_t{0});
+  };
+  if (!isAround(shares, state) || !isNear(moduli, moduli_) || !isAsHeld(held_at)) {
     cells_ = state.cells;
     spacing_ = lattice.spacing();
     moduli_ = moduli;
-    held_axes_ = held_axes;
     middle_ = heaviest(shares);
-    findNodes(lattice, cells);
+    findNodes(lattice, cells, held_at);
     is_deep_.clear();
   }
   if (moving_count_ == 0 || !isOfOneMaterial(cells, model)) return false;
@@ -109,12 +113,18 @@ bool LocalLattice::take(const std::vector<NodeWeight>& shares, const Vec3& axis,
                      [this](const NodeWeight& share) { return numbers_.count(share.node) != 0; });
 }
 
+// All corners of its cells are among its nodes.
+bool LocalLattice::isAsHeld(const HeldAt& held_at) const {
+  return std::all_of(nodes_.begin(), nodes_.end(),
+                     [&](const PieceNode& one) { return one.held == held_at(one.node); });
+}
+
 // By cells, so that what a cut has parted is apart.
-void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells) {
+void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells, const HeldAt& held_at) {
   nodes_.clear();
   numbers_.clear();
   const auto add = [&](int node, bool is_around) {
-    const std::uint8_t held = heldAt(node, lattice, cells);
+    const std::uint8_t held = held_at(node);
     if (held == kAllAxes && !is_around) return false;
     if (!numbers_.try_emplace(node, static_cast<int>(nodes_.size())).second) return false;
     nodes_.push_back({node, restPosition(lattice, cells, node), held});
@@ -143,12 +153,6 @@ void LocalLattice::findNodes(const Lattice& lattice, const CellSet& cells) {
       if (node >= 0) add(node, true);
     }
   }
-}
-
-std::uint8_t LocalLattice::heldAt(int node, const Lattice& lattice, const CellSet& cells) const {
-  const auto found = held_axes_.find(node);
-  if (isFixed(lattice, cells, node)) return kAllAxes;
-  return found == held_axes_.end() ? std::uint8_t{0} : found->second;
 }
 
 // What is deep does not move on its own, so that nothing hangs on what is below it.
@@ -249,9 +253,7 @@ bool LocalLattice::isDeep(const Lattice& lattice) const {
     const Vec3 center = lattice.cellCenter(lattice.cells()[at(cell.place)]);
     const Vec3 off = (center - place_) / spacing_ + fill.centroid;
     const double depth = off.dot(inwards_), aside = (off - depth * inwards_).norm();
-    // Of a layer that reaches r to both sides the variance is r^2 / 3.
-    const double reach = std::sqrt(3.0 * std::max(0.0, inwards_.dot(fill.covariance() * inwards_)));
-    return cell.share() > kGrazed && aside <= kAside && depth + reach >= kDeep;
+    return cell.share() > kGrazed && aside <= kAside && depth + fill.reachAlong(inwards_) >= kDeep;
   });
 }
 

@@ -11,7 +11,7 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -25,10 +25,9 @@
 
 namespace robot_tissue {
 
-// Per node, bits 1 << axis: components that a loading patch holds, or moves in one piece.
-using HeldAxes = std::map<int, std::uint8_t>;
-
-HeldAxes axesHeldBy(const std::vector<LoadingPatch>& patches);
+// Bits 1 << axis: components of the node that a loading patch holds, or moves in one piece;
+// nothing: it is in none.
+std::optional<std::uint8_t> axesHeldBy(const std::vector<LoadingPatch>& patches, int node);
 
 class LocalLattice {
  public:
@@ -40,8 +39,8 @@ class LocalLattice {
   // Goes to a force along the axis, as the tissue is. False where it can tell nothing: a share is
   // elsewhere, or the tissue is of several materials there. The model must be that of the lattice.
   bool take(const std::vector<NodeWeight>& shares, const Vec3& axis, const SurfaceModuli& moduli,
-            const HeldAxes& held_axes, const Lattice& lattice, const LatticeState& state,
-            const ElasticModel& model);
+            const std::vector<LoadingPatch>& patches, const Lattice& lattice,
+            const LatticeState& state, const ElasticModel& model);
 
   // All of the following are of the piece and the force taken.
   // How it is turned, with these displacements (m).
@@ -64,8 +63,10 @@ class LocalLattice {
     std::uint8_t held;  // bits 1 << axis
   };
 
-  void findNodes(const Lattice& lattice, const CellSet& cells);
-  std::uint8_t heldAt(int node, const Lattice& lattice, const CellSet& cells) const;
+  using HeldAt = std::function<std::uint8_t(int node)>;  // bits 1 << axis
+
+  bool isAsHeld(const HeldAt& held_at) const;
+  void findNodes(const Lattice& lattice, const CellSet& cells, const HeldAt& held_at);
   void holdDeep(const CellSet& cells, const ElasticModel& model);
   Matrix stiffness(const CellSet& cells, const ElasticModel& model);
   Eigen::VectorXd motionAround() const;
@@ -75,7 +76,6 @@ class LocalLattice {
   double spacing_ = 0.0;  // m
   SurfaceModuli moduli_;
   int middle_ = -1;
-  HeldAxes held_axes_;
   std::vector<PieceNode> nodes_;          // the middle, ring by ring, then those around them
   int moving_count_ = 0;                  // of nodes_, the first, that may move on their own
   std::unordered_map<int, int> numbers_;  // in nodes_

@@ -100,6 +100,7 @@ std::vector<RimSpring> bedOf(const Lattice& lattice, const TissueModel& model,
     const auto layer = heldLayer(cell, [&](int side) { return in_box.shareOf(side); });
     if (!layer) continue;
     const Vec3 full = fullStiffness(cell, *layer, model, lattice.spacing());
+    if (full.isZero(0.0)) continue;
     const Shares shares = in_box.sharesOf(layer->side);
     for (int r = 0; r < kFaceNodes; ++r) {
       const bool is_on_plate = is_held(cell.nodes[at(faceCorner(layer->side, r))]);
@@ -107,8 +108,8 @@ std::vector<RimSpring> bedOf(const Lattice& lattice, const TissueModel& model,
       const double there = is_on_plate ? layer->thickness / kFaceNodes : 0.0;
       const double lacking = shares[at(r)] / layer->thickness - there;
       // Where a cut is between, the part on the plate is free across.
-      if (!cell.owns(faceCorner(layer->side ^ 1, r))) continue;
-      if (lacking <= 0.0 || full.isZero(0.0) || is_held(across)) continue;
+      const bool is_parted = !cell.owns(faceCorner(layer->side ^ 1, r));
+      if (lacking <= 0.0 || is_parted || is_held(across)) continue;
       stiffness.emplace(across, Vec3::Zero()).first->second += lacking * full;
     }
   }

@@ -72,17 +72,16 @@ std::optional<PressedSurface> PressedSurfaces::under(const NarrowPress& press, c
   surface.spacing = body.lattice().spacing();
   if (!moduli || !isNarrow(press, surface.spacing, *moduli)) return std::nullopt;
   surface.moduli = *moduli;
-  const HeldAxes held = axesHeldBy(patches);
   const auto is_flat = [&](const NodeWeight& share) {
-    return isInFlatSurface(cells, share.node) && held.count(share.node) == 0 &&
+    return isInFlatSurface(cells, share.node) && !axesHeldBy(patches, share.node) &&
            !isFixed(body.lattice(), cells, share.node);
   };
   const auto is_uniform = [&](const NodeWeight& share) {
     return isUniformAround(cells, model, share.node);
   };
   if (!std::all_of(shares.begin(), shares.end(), is_flat)) {
-    return look(press, body, model, held, surface) ? std::optional<PressedSurface>(surface)
-                                                   : std::nullopt;
+    return look(press, body, model, patches, surface) ? std::optional<PressedSurface>(surface)
+                                                      : std::nullopt;
   }
   if (!std::all_of(shares.begin(), shares.end(), is_uniform)) return std::nullopt;
   surface.compliance = flatCompliance(shares, body.lattice(), *moduli);
@@ -101,12 +100,12 @@ LocalLattice& PressedSurfaces::around(const NarrowPress& press, const Body& body
 }
 
 bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const ElasticModel& model,
-                           const HeldAxes& held, PressedSurface& surface) {
+                           const std::vector<LoadingPatch>& patches, PressedSurface& surface) {
   if (press.body || model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);
-  if (!here.take(press.shares, press.axis, surface.moduli, held, lattice, state, model) ||
+  if (!here.take(press.shares, press.axis, surface.moduli, patches, lattice, state, model) ||
       !here.isDeep(lattice)) {
     return false;
   }

@@ -23,7 +23,7 @@ class PressedSurfaces {
 
  private:
   bool look(const NarrowPress& press, const Body& body, const ElasticModel& model,
-            const HeldAxes& held, PressedSurface& surface);
+            const std::vector<LoadingPatch>& patches, PressedSurface& surface);
 
   LocalLattice& around(const NarrowPress& press, const Body& body);
 
