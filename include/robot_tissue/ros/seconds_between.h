@@ -24,9 +24,10 @@ inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
   return static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
 }
 
-// In whole milliseconds, rounded up: what is beyond a bound is told so.
+// In whole milliseconds, rounded up, so that what is beyond a bound is told so; less than half of a
+// nanosecond, of which stamps are made, is rounding.
 inline std::string secondsText(double seconds) {
-  return numberText(std::ceil(1e3 * seconds) / 1e3);
+  return numberText(std::ceil(1e3 * seconds - 5e-7) / 1e3);
 }
 
 }  // namespace robot_tissue
