@@ -51,7 +51,9 @@ Findings checkTool(const Scene& scene, const ToolConfig& tool, const std::string
   try {
     const bool is_of_robot = namesLink(tool) && !urdf.empty();
     const LoadedTools loaded = is_of_robot ? loadTools(urdf, {tool}) : toolsOf({tool});
-    remedy = "mend the mesh, or its address and scale, or give the link `shapes` in the scene";
+    remedy =
+        "mend that shape (of a mesh: its file, address or scale), or give the link `shapes` in the "
+        "scene";
     // Without a URDF it is not known what is missing. They tell their remedies themselves.
     if (!urdf.empty()) {
       for (const std::string& warning : loaded.warnings) {

@@ -13,6 +13,7 @@ namespace robot_tissue {
 namespace {
 
 constexpr std::size_t kNamesToList = 8;
+const std::string kAllowedUrdf = "; allowed: a URDF that has the tools' links";
 
 struct ParsedUrdf {
   std::shared_ptr<const urdf::ModelInterface> model;
@@ -21,20 +22,22 @@ struct ParsedUrdf {
 
 ParsedUrdf parseUrdf(const std::string& urdf_xml) {
   if (urdf_xml.find_first_not_of(" \t\r\n") == std::string::npos) {
-    throw InputError("robot_description: is empty; the URDF that has the tools' links is needed");
+    throw InputError("robot_description: is empty" + kAllowedUrdf);
   }
   QuietConsole console;
   std::shared_ptr<const urdf::ModelInterface> model;
   try {
     model = urdf::parseURDF(urdf_xml);
   } catch (const std::exception& error) {
-    throw InputError(std::string("robot_description: is no valid URDF (") + error.what() + ")");
+    throw InputError(std::string("robot_description: is no valid URDF (") + error.what() + ")" +
+                     kAllowedUrdf);
   }
   if (!model) {
     const bool is_xacro = urdf_xml.find("xacro:") != std::string::npos;
     throw InputError(
         "robot_description: is no valid URDF" + console.reason() +
-        (is_xacro ? ": it is xacro, of which `xacro FILE > robot.urdf` makes a URDF" : ""));
+        (is_xacro ? ": it is xacro, of which `xacro FILE > robot.urdf` makes a URDF" : "") +
+        kAllowedUrdf);
   }
   return {model, console.errors()};
 }

@@ -14,6 +14,8 @@
 namespace robot_tissue {
 namespace {
 
+constexpr std::size_t kLongestReason = 200;  // characters; names in a file may have any number
+
 const std::string kPackage = "package://";
 const std::string kFile = "file://";
 
@@ -65,7 +67,8 @@ std::string packageFolder(const std::string& name) {
 }
 
 std::string pathInPackage(const std::string& place) {
-  const std::size_t slash = std::min(place.find('/'), place.size());
+  const std::size_t slash = place.find('/');
+  if (slash == std::string::npos) throw InputError("names a package, but no file of it");
   const std::string inner = std::filesystem::path("." + place.substr(slash)).lexically_normal();
   if (inner == ".." || startsWith(inner, "../")) throw InputError("its path leaves the package");
   return packageFolder(place.substr(0, slash)) + "/" + inner;
@@ -76,10 +79,11 @@ std::string pathOf(const std::string& resource) {
   return pathInPackage(decoded(resource.substr(kPackage.size())));
 }
 
-// A scale that is the unit heeds it.
+// Meters need no heed, and a scale that is the unit heeds it.
 std::string remarkOn(const DaeAsset& asset, const Vec3& scale) {
   const double off = (scale.cwiseAbs().array() - asset.unit).abs().maxCoeff();
-  if (off <= 1e-6 * asset.unit && asset.up_axis == "Z_UP") return "";
+  const bool counts = std::abs(asset.unit - 1.0) <= 1e-6 || off <= 1e-6 * asset.unit;
+  if (counts && asset.up_axis == "Z_UP") return "";
   std::ostringstream remark;
   remark.imbue(std::locale::classic());
   remark << "names the unit " << asset.unit << " m and the up axis " << asset.up_axis
@@ -92,6 +96,7 @@ TriangleMesh readByName(const std::string& path, const Vec3& scale, std::string*
   TriangleMesh (*const read)(const std::string&) = meshReaderFor(path);
   if (read == nullptr) throw InputError("its name ends neither in .stl nor .obj nor .dae");
   const std::string bytes = readRegularFile(path, kLargestMeshFile);
+  if (bytes.empty()) throw InputError("is empty");
   TriangleMesh mesh = read(bytes);
   if (mesh.triangles.empty()) throw InputError("has no triangles");
   if (remark != nullptr && read == readDae) *remark = remarkOn(readDaeAsset(bytes), scale);
@@ -120,7 +125,7 @@ TriangleMesh loadMeshFile(const std::string& resource, const Vec3& scale, std::s
     for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
     return mesh;
   } catch (const InputError& error) {
-    throw InputError("cannot be loaded (" + std::string(error.what()) + ")");
+    throw InputError("cannot be loaded (" + printable(error.what(), kLongestReason) + ")");
   }
 }
 

@@ -14,9 +14,7 @@ constexpr std::size_t kMostCorners = 1000;  // of one polygon
 // Words stand in messages.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kLongest = 20;
-  std::string text = "'";
-  for (const char c : word.substr(0, kLongest)) text += c >= 0x20 && c < 0x7f ? c : '?';
-  return text + (word.size() > kLongest ? "...'" : "'");
+  return "'" + printable(word, kLongest) + "'";
 }
 
 template <class Number>
@@ -25,7 +23,8 @@ Number parsed(std::string_view word, const char* allowed) {
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
   Number value{};
   if (compat::parsed(digits, value)) return value;
-  throw InputError(quoted(word) + " stands where " + allowed + " should");
+  const std::string there = word.empty() ? "nothing" : quoted(word);
+  throw InputError(there + " stands where " + allowed + " should");
 }
 
 // Corners of a polygon, looked at along its normal.
@@ -88,6 +87,12 @@ class Ears {
 };
 
 }  // namespace
+
+std::string printable(std::string_view text, std::size_t longest) {
+  std::string line;
+  for (const char c : text.substr(0, longest)) line += c >= 0x20 && c < 0x7f ? c : '?';
+  return line + (text.size() > longest ? "..." : "");
+}
 
 void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh) {
   if (mesh.triangles.size() + triangles <= kMostTriangles) return;

@@ -30,6 +30,9 @@ struct DaeAsset {
 };
 DaeAsset readDaeAsset(const std::string& bytes);
 
+// What a file says, for a message: ASCII on one line, cut short after so many characters.
+std::string printable(std::string_view text, std::size_t longest);
+
 // Throws where so many triangles more are too many.
 void requireRoomFor(std::size_t triangles, const TriangleMesh& mesh);
 

@@ -4,9 +4,12 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <string>
 
+#include "robot_tissue/core/types.h"
 #include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/scene/memory.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace {
 
@@ -14,6 +17,14 @@ namespace {
 void endOn(int signal) {
   const auto before = std::signal(signal, [](int) { ros::requestShutdown(); });
   if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup wants it
+}
+
+// What is left of the arguments when roscpp took its remappings.
+[[noreturn]] void refuseArgument(const std::string& argument) {
+  throw robot_tissue::InputError(
+      "'" + robot_tissue::shortText(argument) +
+      "': an argument; allowed: none but remappings (name:=value), as the scene is read from the "
+      "node's private parameters, which `roslaunch robot_tissue tissue.launch scene:=FILE` loads");
 }
 
 }  // namespace
@@ -25,6 +36,7 @@ int main(int argc, char** argv) {
   std::optional<ros::NodeHandle> private_node;
   try {
     ros::init(argc, argv, "robot_tissue");  // throws at a name that is none
+    if (argc > 1) refuseArgument(argv[1]);
     endOn(SIGTERM);
     endOn(SIGHUP);              // its terminal closed
     private_node.emplace("~");  // waits for the master

@@ -1,12 +1,12 @@
 // How the node is, in the words of its state and of the diagnostics.
 #include "robot_tissue/ros/node_status.h"
 
+#include <cstdio>
 #include <string>
 
 #include "robot_tissue/pipeline/step_remarks.h"
 #include "robot_tissue/ros/tissue_node.h"
 #include "robot_tissue/scene/memory.h"
-#include "robot_tissue/scene/value_text.h"
 #include "tuning.h"
 
 namespace robot_tissue {
@@ -46,6 +46,13 @@ void say(const std::string& word, const std::string& message, NodeStatus& status
   status.message += (status.message.empty() ? "" : "; ") + message;
 }
 
+// Of a way (m): three digits.
+std::string wayText(double way) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", way);
+  return text;
+}
+
 // Tools whose force (~apply_load) nothing answers, until they are released.
 void sayUnanswered(const Pipeline& pipeline, NodeStatus& status) {
   const std::vector<ToolReport>& tools = pipeline.report().tools;
@@ -53,7 +60,7 @@ void sayUnanswered(const Pipeline& pipeline, NodeStatus& status) {
     if (!tools[tool].unanswered) continue;
     say("UNCONVERGED",
         "nothing answers with the force on " + namesOf({tool}, pipeline.tools()) +
-            " (apply_load): it stands " + numberText(tools[tool].offset.norm()) +
+            " (apply_load): it stands " + wayText(tools[tool].offset.norm()) +
             " m from its pose; push it towards the tissue, or release it",
         status);
   }

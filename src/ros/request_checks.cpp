@@ -15,4 +15,14 @@ void requireWithin(const Vec3& vector, double most, const std::string& unit,
   }
 }
 
+void requireBelow(const Vec3& min, const Vec3& max, FlatBox flat) {
+  const std::string allowed = flat == FlatBox::kRefused ? "above" : "at or above";
+  for (int axis = 0; axis < 3; ++axis) {
+    if (max[axis] > min[axis] || (flat == FlatBox::kAllowed && max[axis] == min[axis])) continue;
+    const std::string name(1, "xyz"[axis]);
+    throw InputError("max." + name + ": " + numberText(max[axis]) + "; allowed: " + allowed +
+                     " min." + name + ", " + numberText(min[axis]) + " m");
+  }
+}
+
 }  // namespace robot_tissue

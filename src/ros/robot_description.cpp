@@ -25,14 +25,19 @@ std::optional<std::string> robotDescription(const ros::NodeHandle& private_node,
 }
 
 std::string urdfOfFile(const std::string& path) {
+  const std::string option = "--urdf = " + onOneLine(path) + ": ";
+  std::string urdf;
   try {
-    std::string urdf = readRegularFile(path, kLargestUrdf);
-    requireUrdf(urdf);
-    return urdf;
+    urdf = readRegularFile(path, kLargestUrdf);
   } catch (const InputError& error) {
-    throw InputError("--urdf = " + onOneLine(path) + ": " + error.what() +
-                     "; allowed: a URDF file that can be read");
+    throw InputError(option + error.what() + "; allowed: a URDF file that can be read");
   }
+  try {
+    requireUrdf(urdf);
+  } catch (const InputError& error) {
+    throw InputError(option + error.what());
+  }
+  return urdf;
 }
 
 }  // namespace robot_tissue

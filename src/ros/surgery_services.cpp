@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "robot_tissue/core/suture_ranges.h"
 #include "robot_tissue/pipeline/suture_names.h"
 #include "robot_tissue/ros/conversions.h"
 #include "robot_tissue/ros/node_status.h"
@@ -14,21 +15,39 @@
 namespace robot_tissue {
 namespace {
 
+// Of a request without a radius.
+void requireVolume(const Vec3& low, const Vec3& high) {
+  if (low.isZero(0.0) && high.isZero(0.0)) {
+    throw InputError("min, max, radius: all 0; allowed: min below max, or a radius above 0");
+  }
+  requireBelow(low, high, FlatBox::kRefused);
+}
+
 RemovedSpace spaceOf(const Remove::Request& request, const Pose& tissue_T_frame) {
   const Vec3 low = toVec3(request.min), high = toVec3(request.max), center = toVec3(request.center);
   requireWithin(low, kFarthestPoint, "m", "min");
   requireWithin(high, kFarthestPoint, "m", "max");
   requireWithin(center, kFarthestPoint, "m", "center");
   requireWithin(Vec3(request.radius, 0.0, 0.0), kFarthestPoint, "m", "radius");
-  if (request.radius == 0.0) return PlacedBox{Box(low, high), tissue_T_frame};
+  if (request.radius == 0.0) {
+    requireVolume(low, high);
+    return PlacedBox{Box(low, high), tissue_T_frame};
+  }
   if (request.radius < 0.0) {
     throw InputError("radius: " + numberText(request.radius) +
-                     " m; allowed: 0 for a box, or above");
+                     " m; allowed: above 0, or 0: the box of min and max");
   }
   if (!low.isZero(0.0) || !high.isZero(0.0)) {
     throw InputError("min, max, radius: a box and a sphere given; allowed: one of them");
   }
   return Sphere{tissue_T_frame * center, request.radius};
+}
+
+void requireStiffness(double stiffness) {
+  if (stiffness == 0.0 || (stiffness >= kSoftestSuture && stiffness <= kStiffestSuture)) return;
+  throw InputError(
+      "stiffness: " + numberText(stiffness) + "; allowed: " + numberText(kSoftestSuture) + " to " +
+      numberText(kStiffestSuture) + " N/m, or 0: " + numberText(SutureConfig().stiffness));
 }
 
 // Of one that speaks of a scene, where the ends of a suture are `from` and `to`.
@@ -150,6 +169,7 @@ void SurgeryServices::onSuture(const Suture::Request& request, Suture::Response&
   suture.from = tissue_T_request * suture.from;
   suture.to = tissue_T_request * suture.to;
   suture.rest_length = request.rest_length;
+  requireStiffness(request.stiffness);
   if (request.stiffness != 0.0) suture.stiffness = request.stiffness;
   suture.break_force = request.break_force;
   suture.bite = request.bite;

@@ -53,7 +53,7 @@ void TissueFollower::setTimeOf(PoseLookUp& look_up) {
   look_up.pose.stamp_s = clock_.advance(look_up.stamp, pipeline_.tissue().isMoving(), reached);
   if (clock_.leftOut() > 0.0) {
     ROS_WARN_STREAM_THROTTLE(1.0, "no pose came for a while, or updates take longer than that: for "
-                                      << clock_.leftOut()
+                                      << secondsText(clock_.leftOut())
                                       << " s of it the tissue's time stood still");
   }
 }

@@ -35,9 +35,7 @@ PatchConfig patchOf(const ApplyLoad::Request& request) {
   patch.box = {toVec3(request.min), toVec3(request.max)};
   requireWithin(patch.box.min(), kFarthestPoint, "m", "min");
   requireWithin(patch.box.max(), kFarthestPoint, "m", "max");
-  if ((patch.box.min().array() > patch.box.max().array()).any()) {
-    throw InputError("min: above max; allowed: min <= max along every axis");
-  }
+  requireBelow(patch.box.min(), patch.box.max(), FlatBox::kAllowed);
   if (request.displacement.size() + request.force.size() > 1) {
     throw InputError("displacement, force: " + std::to_string(request.displacement.size()) +
                      " and " + std::to_string(request.force.size()) +

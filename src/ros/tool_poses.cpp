@@ -25,7 +25,7 @@ Pose rigidPose(const geometry_msgs::TransformStamped& transform) {
 }
 
 std::string staleText(const std::string& link, double age_s, double timeout_s) {
-  return "the pose of link '" + link + "' is " + numberText(std::abs(age_s)) + " s " +
+  return "the pose of link '" + link + "' is " + secondsText(std::abs(age_s)) + " s " +
          (age_s > 0.0 ? "old" : "in the future") + "; allowed: " + numberText(timeout_s) +
          " (~tf_timeout)";
 }
@@ -85,7 +85,7 @@ PoseLookUp ToolPoses::lookUp(const ros::Time& now) const {
     }
   } catch (const tf2::TransformException& error) {
     found.message = "no transform from link '" + looked_up + "' to '" + tissue_frame_ +
-                    "': " + onOneLine(error.what());
+                    "': " + reasonText(error);
     return found;
   }
   found.pose.stamp_s = found.stamp.toSec();
@@ -117,8 +117,9 @@ Pose ToolPoses::frame(const std_msgs::Header& header) const {
     const double ahead = secondsBetween(newest.header.stamp, header.stamp);
     const bool is_asked = !header.stamp.isZero() && !isStatic(newest.header.stamp);
     if (is_asked && ahead > timeout_s_) {
-      throw InputError("header.stamp: " + numberText(ahead) + " s after the newest transform of '" +
-                       shortText(frame) + "'; allowed: at most " + numberText(timeout_s_) +
+      throw InputError("header.stamp: " + secondsText(ahead) +
+                       " s after the newest transform of '" + shortText(frame) +
+                       "'; allowed: at most " + numberText(timeout_s_) +
                        " (~tf_timeout), or 0: the newest");
     }
     const bool is_earlier = is_asked && ahead < 0.0;
@@ -128,11 +129,11 @@ Pose ToolPoses::frame(const std_msgs::Header& header) const {
     throw InputError("header.stamp: '" + shortText(frame) +
                      "' has no transform of then; allowed: one that the buffer holds, or 0: the "
                      "newest (" +
-                     shortText(error.what()) + ")");
+                     shortText(reasonText(error)) + ")");
   } catch (const tf2::TransformException& error) {
     throw InputError("header.frame_id: '" + shortText(frame) + "' has no transform to '" +
                      tissue_frame_ + "'; allowed: a connected frame, or none (" +
-                     shortText(error.what()) + ")");
+                     shortText(reasonText(error)) + ")");
   }
 }
 

@@ -21,8 +21,19 @@ constexpr double kOnItsWay = 1.0;
 constexpr double kAheadOfClock = 0.5;
 constexpr double kQuaternionSlack = 1e-2;  // of its square (1): tf2's
 
-// Why the buffer takes no such transform, whenever it comes; empty: it does.
+// As tf2 takes names: without the slash of earlier versions.
+std::string frameOf(const std::string& name) {
+  return name.substr(name.rfind('/', 0) == 0 ? 1 : 0);
+}
+
+// Why it is no transform, whenever it comes; empty: it is one. The buffer would say some of this,
+// of each that comes, in two lines each; infinite numbers it would take.
 std::string whyNone(const geometry_msgs::TransformStamped& transform) {
+  const std::string child = frameOf(transform.child_frame_id);
+  const std::string parent = frameOf(transform.header.frame_id);
+  if (child.empty()) return "its child_frame_id is empty";
+  if (parent.empty()) return "its frame_id is empty";
+  if (child == parent) return "its frame_id is the same";
   const auto& move = transform.transform.translation;
   const auto& turn = transform.transform.rotation;
   const double square = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z + turn.w * turn.w;
@@ -42,11 +53,11 @@ void TransformIntake::take(const tf2_msgs::TFMessage& message, Kind kind) {
   }
   warnOfAhead();
   for (const geometry_msgs::TransformStamped& transform : message.transforms) {
-    if (kind == Kind::kMoving && !hasPlace(transform)) continue;
-    try {
+    const std::string why = whyNone(transform);
+    if (!why.empty()) {
+      refuse(transform, why);
+    } else if (kind == Kind::kStatic || hasPlace(transform)) {
       put(transform, kind);
-    } catch (const tf2::TransformException& error) {
-      ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << onOneLine(error.what()));
     }
   }
 }
@@ -56,18 +67,27 @@ std::string TransformIntake::refused() const {
   return refused_;
 }
 
-// The buffer says itself, in the log, why it does not take one. It takes none twice, too.
-void TransformIntake::put(const geometry_msgs::TransformStamped& transform, Kind kind) {
-  buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
+// One of no frame is only warned of: no good one would ever take that back.
+void TransformIntake::refuse(const geometry_msgs::TransformStamped& transform,
+                             const std::string& why) {
   const std::string& frame = transform.child_frame_id;
-  const std::string why = whyNone(transform);
+  const std::string line = "the transform of '" + shortText(frame) + "' is left out, as " + why;
+  ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << line);
+  if (frame.empty()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (!why.empty()) {
-    refused_frame_ = frame;
-    refused_ = "the transform of '" + shortText(frame) + "' is left out, as " + why;
-  } else if (refused_frame_ == frame) {
-    refused_.clear();
+  refused_frame_ = frame;
+  refused_ = line;
+}
+
+// The buffer takes none twice.
+void TransformIntake::put(const geometry_msgs::TransformStamped& transform, Kind kind) {
+  try {
+    buffer_.setTransform(transform, "/tf", kind == Kind::kStatic);
+  } catch (const tf2::TransformException& error) {
+    ROS_WARN_STREAM_THROTTLE(10.0, "/tf: " << reasonText(error));
   }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (refused_frame_ == transform.child_frame_id) refused_.clear();
 }
 
 // Whether the buffer can take the transform: it is no farther ahead of the clock, or behind the
@@ -103,7 +123,7 @@ void TransformIntake::warnOfAhead() {
   if (ahead > most && (warned_.isZero() || now - warned_ > kWarnPeriod)) {
     warned_ = now;
     ROS_WARN_STREAM("/tf: the transform of '"
-                    << shortText(ahead_->frame) << "' is " << numberText(ahead)
+                    << shortText(ahead_->frame) << "' is " << secondsText(ahead)
                     << " s ahead of now and left out; allowed: at most " << numberText(most)
                     << " s, that the buffer holds");
   }

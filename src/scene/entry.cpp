@@ -49,7 +49,7 @@ std::string Entry::line(const std::string& reason) const {
   const std::string place = source_.empty() ? "" : onOneLine(source_) + at + ": ";
   const std::string key = path_.empty() ? "the scene" : onOneLine(path_);
   const std::string value = given() ? " = " + valueText(node_) : " is missing";
-  return place + key + value + ": " + reason;
+  return place + key + value + ": " + onOneLine(reason);
 }
 
 void Entry::fail(const std::string& reason) const { throw InputError(line(reason)); }

@@ -59,7 +59,7 @@ MapReader::MapReader(const Entry& map, std::vector<std::string> keys)
   for (const auto& item : map_.node()) {
     if (!item.first.IsScalar()) map_.fail("every key must be a word");
     const std::string& key = item.first.Scalar();
-    const Entry entry = map_.child(item.second, shortText(key));
+    const Entry entry = map_.child(item.second, key.empty() ? "\"\"" : shortText(key));
     if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) {
       const std::string nearest = nearestWord(key, keys_);
       entry.fail("unknown key" + (nearest.empty() ? "" : ", did you mean " + nearest + "?") +

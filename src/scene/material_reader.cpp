@@ -105,15 +105,16 @@ void requireAlone(const MapReader& map) {
 }
 
 void requireContrast(const MapReader& region, const Material& around, const Material& material) {
-  const double contrast = material.spring_stiffness
-                              ? *material.spring_stiffness / *around.spring_stiffness
-                              : material.young_modulus / around.young_modulus;
+  const double of_tissue =
+      material.spring_stiffness ? *around.spring_stiffness : around.young_modulus;
+  const double contrast =
+      (material.spring_stiffness ? *material.spring_stiffness : material.young_modulus) / of_tissue;
   if (std::max(contrast, 1.0 / contrast) <= ranges::kMostContrast) return;
   const Entry preset = region["preset"];
   const Entry by_number = region[material.spring_stiffness ? "spring_stiffness" : "young_modulus"];
   (preset.given() ? preset : by_number)
       .fail("must be within a factor of " + numberText(ranges::kMostContrast) +
-            " of tissue.material's");
+            " of tissue.material's, " + numberText(of_tissue));
 }
 
 }  // namespace

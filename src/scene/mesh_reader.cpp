@@ -72,8 +72,10 @@ TriangleMesh readMeshShape(const MapReader& map, const std::string& scene_folder
   requireInReach(resource, mesh, ranges::pickedPlace());
   mesh = welded(mesh);
   if (const auto fault = meshFault(mesh)) {
-    resource.fail("the mesh " + *fault +
-                  "; must be closed (mesh editors fill holes) and not intersect itself");
+    resource.fail(
+        "the mesh " + *fault +
+        "; must be closed (mesh editors fill holes), its triangles all facing outwards or all "
+        "inwards, and not intersect itself");
   }
   return facingOutward(std::move(mesh));
 }
@@ -90,8 +92,10 @@ void requireToolMesh(const Entry& resource, const std::string& address, const Ve
   }
   const auto fault = meshFault(welded(mesh));
   if (!fault || startsWith(*fault, "intersects itself")) return;  // a tool may, it is warned of
-  resource.fail("the mesh " + *fault +
-                "; must be closed (mesh editors fill holes) and have a volume");
+  resource.fail(
+      "the mesh " + *fault +
+      "; must be closed (mesh editors fill holes), its triangles all facing outwards or all "
+      "inwards, and have a volume");
 }
 
 void requireSpacingWithin(const Entry& spacing, const TriangleMesh& mesh) {

@@ -13,6 +13,17 @@
 namespace robot_tissue {
 namespace {
 
+constexpr std::size_t kDeepest =
+    100;  // a scene has ten; what is deeper than the stack ends a program
+constexpr const char* kAllowedText =
+    "must be YAML: indented by blanks, never tabs, a blank after each colon, every bracket closed";
+
+// What is YAML, but refused.
+class Refusal : public YAML::ParserException {
+ public:
+  using YAML::ParserException::ParserException;
+};
+
 // Counts the values of a document as a reader meets them: aliases of aliases stand for more values
 // than any memory holds, and one that stands within itself for no end of them.
 class ValueCounter : public YAML::EventHandler {
@@ -26,7 +37,7 @@ class ValueCounter : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     if (open_.count(anchor) > 0) {
-      throw YAML::ParserException(mark, "an alias stands within what it stands for");
+      throw Refusal(mark, "an alias stands within what it stands for, must not");
     }
     add(mark, values_.count(anchor) > 0 ? values_.at(anchor) : 1.0);
   }
@@ -50,8 +61,8 @@ class ValueCounter : public YAML::EventHandler {
   void add(const YAML::Mark& mark, double values) {
     count_ += values;
     if (count_ > kMostValues) {
-      throw YAML::ParserException(mark, "has more than " + numberText(kMostValues) +
-                                            " values, aliases counted as what they stand for");
+      throw Refusal(mark, "has more than " + numberText(kMostValues) +
+                              " values, aliases counted as what they stand for, must have fewer");
     }
   }
   void addLeaf(const YAML::Mark& mark, YAML::anchor_t anchor) {
@@ -60,6 +71,10 @@ class ValueCounter : public YAML::EventHandler {
   }
   void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
     collections_.push_back({anchor, count_});
+    if (collections_.size() > kDeepest) {
+      throw Refusal(mark, "lists and maps stand in one another more than " +
+                              std::to_string(kDeepest) + " deep, must not");
+    }
     if (anchor != 0) open_.insert(anchor);
     add(mark, 1.0);
   }
@@ -84,6 +99,12 @@ void requireFewValues(const std::string& text) {
   }
 }
 
+[[noreturn]] void refuse(const std::string& source, const YAML::Exception& error,
+                         const std::string& why) {
+  const std::string at = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
+  throw InputError(onOneLine(source) + at + ": " + why);
+}
+
 }  // namespace
 
 YAML::Node parseYaml(const std::string& text, const std::string& source) {
@@ -95,9 +116,10 @@ YAML::Node parseYaml(const std::string& text, const std::string& source) {
                        " YAML documents, must have one");
     }
     return documents.empty() ? YAML::Node() : documents.front();
+  } catch (const Refusal& error) {
+    refuse(source, error, error.msg);
   } catch (const YAML::Exception& error) {
-    const std::string at = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
-    throw InputError(onOneLine(source) + at + ": not YAML: " + onOneLine(error.msg));
+    refuse(source, error, "not YAML: " + onOneLine(error.msg) + ", " + kAllowedText);
   }
 }
 

@@ -23,6 +23,8 @@ constexpr mode_t kMode = 0666;                            // less the user's mas
 constexpr std::size_t kLongestFileName = 100;             // bytes
 constexpr std::size_t kMostBytes = std::size_t{1} << 32;  // of a file; 30 million nodes have less
 
+const std::string kAllowedToWrite = "; allowed: a file in a folder that can be made and written";
+
 [[noreturn]] void refuse(const std::string& name, const std::string& reason) {
   throw InputError("file = '" + shortText(name) + "': " + onOneLine(reason));
 }
@@ -65,7 +67,7 @@ class NewFile {
   }
 
  private:
-  [[noreturn]] void fail() const { refuse(name_, std::strerror(errno)); }
+  [[noreturn]] void fail() const { refuse(name_, std::strerror(errno) + kAllowedToWrite); }
 
   std::string name_;
   std::string path_;
@@ -100,11 +102,12 @@ bool writeStateFile(const std::string& folder, const std::string& name, const st
   requireStateFileName(name);
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) refuse(name, "cannot make the folder " + folder + ", " + error.message());
+  if (error)
+    refuse(name, "cannot make the folder " + folder + ", " + error.message() + kAllowedToWrite);
   const fs::file_status earlier = fs::symlink_status(fs::path(folder) / name, error);
-  if (earlier.type() == fs::file_type::none) refuse(name, error.message());
+  if (earlier.type() == fs::file_type::none) refuse(name, error.message() + kAllowedToWrite);
   if (fs::exists(earlier) && !fs::is_regular_file(earlier)) {
-    refuse(name, "is there, and no regular file");
+    refuse(name, "is there, and no regular file; allowed: a new file, or one to replace");
   }
   NewFile file(folder, name);
   file.write(bytes);

@@ -29,12 +29,7 @@ Sphere readSphere(const Entry& entry, const LengthRanges& lengths) {
 }
 
 Box readSpaceBox(const Entry& entry) {
-  const MapReader map(entry, {"min", "max"});
-  const Box box(map["min"].vec3(ranges::pickedPlace()), map["max"].vec3(ranges::pickedPlace()));
-  if (!(box.max().array() > box.min().array()).all()) {
-    map["max"].fail("must be above min along x, y and z");
-  }
-  return box;
+  return MapReader(entry, {"min", "max"}).box(ranges::pickedPlace(), FlatBox::kRefused);
 }
 
 }  // namespace

@@ -174,7 +174,7 @@ TEST_F(CheckSetup, MeshesOfTheRobotHaveRemediesOfTheirOwn) {
     return urdfOf("<mesh filename='file://" + (folder_ / name).string() + "'/>");
   };
   EXPECT_EQ(check(scene, mesh("none.obj")), kCannotRun);
-  EXPECT_TRUE(says("remedy: mend the mesh") && says("`shapes`")) << out_;
+  EXPECT_TRUE(says("remedy: mend that shape") && says("`shapes`")) << out_;
   const TriangleMesh box = boxMesh(Vec3(0.0, 0.0, 0.0), Vec3(0.01, 0.01, 0.01));
   write("tip.dae", daeText(box, "Z_UP", 1.0));
   EXPECT_EQ(check(scene, mesh("tip.dae")), kFine) << out_;

@@ -97,6 +97,15 @@ TEST_P(RemovalFrom, RefusesWhatLeavesNothing) {
     EXPECT_NE(refusal.find("; allowed: "), std::string::npos) << refusal;
     EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
   }
+  const Box flat(Vec3(0.01, 0.02, 0.05), Vec3(0.02, 0.03, 0.05));
+  EXPECT_EQ(inputErrorOf([&] {
+              tissue_.remove(PlacedBox{flat});
+            }).rfind("box: (0.01, 0.02, 0.05) to (0.02, 0.03, 0.05) m; allowed: ", 0),
+            0U);
+  EXPECT_EQ(inputErrorOf([&] {
+              tissue_.remove(Sphere{Vec3(1.0, 0.0, 0.0), -2.0});
+            }).rfind("sphere: at (1, 0, 0) m, of radius -2; allowed: ", 0),
+            0U);
   expectUnchanged(tissue_, before);
 }
 

@@ -28,11 +28,11 @@ struct Case {
   const char* names;  // what the message must hold
 };
 
-class BadParameter : public ::testing::TestWithParam<Case> {
+class BadArgument : public ::testing::Test {
  protected:
-  static Ended runNode(const std::string& name) {
+  static Ended runNode(const std::string& name, const std::string& argument = "") {
     const std::string command =
-        std::string("timeout 20 ") + NODE_PATH + " __name:=" + name + " 2>&1";
+        std::string("timeout 20 ") + NODE_PATH + " " + argument + " __name:=" + name + " 2>&1";
     Ended ended;
     FILE* pipe = popen(command.c_str(), "r");
     char buffer[512];
@@ -41,6 +41,8 @@ class BadParameter : public ::testing::TestWithParam<Case> {
     return ended;
   }
 };
+
+class BadParameter : public BadArgument, public ::testing::WithParamInterface<Case> {};
 
 TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
   const std::string name = std::string("bad_") + GetParam().name;
@@ -51,6 +53,14 @@ TEST_P(BadParameter, EndsTheNodeWithALineThatNamesIt) {
   const Ended ended = runNode(name);
   EXPECT_EQ(ended.exit_code, 2) << ended.output;
   EXPECT_NE(ended.output.find(GetParam().names), std::string::npos) << ended.output;
+}
+
+// As one writes it who knows `simulate`.
+TEST_F(BadArgument, EndsTheNodeWithALineThatSaysHowASceneIsGiven) {
+  const Ended ended = runNode("with_an_argument", "scene.yaml");
+  EXPECT_EQ(ended.exit_code, 2) << ended.output;
+  EXPECT_NE(ended.output.find("'scene.yaml': an argument; allowed: none but"), std::string::npos)
+      << ended.output;
 }
 
 INSTANTIATE_TEST_SUITE_P(

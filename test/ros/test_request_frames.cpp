@@ -4,6 +4,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <cmath>
+#include <limits>
 
 #include "robot_tissue/core/types.h"
 #include "robot_tissue/ros/tool_poses.h"
@@ -73,6 +74,19 @@ TEST_F(RequestFrame, TurnsAndStretchesNothing) {
   EXPECT_TRUE(poses_.frame(of("camera", 102.0)).linear().isApprox(turn, 1e-12));
 }
 
+// Numbers of a length that one reads, and no blanks at the end.
+TEST_F(RequestFrame, WhyThereIsNoPoseIsToldInShort) {
+  poses_.setLinks({"camera"});
+  EXPECT_EQ(poses_.lookUp(ros::Time(102.5018803)).message,
+            "the pose of link 'camera' is 1.502 s old; allowed: 0.5 (~tf_timeout)");
+  EXPECT_EQ(poses_.lookUp(ros::Time(101.50000001)).message,
+            "the pose of link 'camera' is 0.501 s old; allowed: 0.5 (~tf_timeout)");
+  poses_.setLinks({"lost"});
+  const std::string lost = poses_.lookUp(ros::Time(101.0)).message;
+  EXPECT_NE(lost.find("no transform from link 'lost' to 'tissue': "), std::string::npos) << lost;
+  EXPECT_NE(lost.back(), ' ') << lost;
+}
+
 TEST_F(RequestFrame, OfAnotherTimeIsRefused) {
   EXPECT_NE(refusalOf("camera", 101.6).find("header.stamp: 0.6 s after the newest"),
             std::string::npos);
@@ -140,6 +154,23 @@ TEST(TransformIntake, WhatIsNoTransformIsToldUntilAGoodOneComes) {
   EXPECT_NE(refused("tool", 0.1, 1.0), "") << "of another frame";
   EXPECT_EQ(refused("camera", 0.1, 1.0), "");
   EXPECT_NE(refused("camera", 0.1, 0.0).find("quaternion"), std::string::npos);
+  EXPECT_NE(refused("tissue", 0.1, 1.0).find("its frame_id is the same"), std::string::npos);
+}
+
+// The buffer takes infinite numbers, and looks them up.
+TEST(TransformIntake, InfiniteNumbersDoNotReachTheBuffer) {
+  tf2::BufferCore buffer;
+  ros::Time::init();
+  ros::Time::setNow(ros::Time(100.0));
+  TransformIntake intake(buffer, [] { return false; });
+  for (const double x : {0.1, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    tf2_msgs::TFMessage message;
+    message.transforms.push_back(cameraAt(x, 100.0 + (x == 0.1 ? 0.0 : 1.0)));
+    intake.take(message, TransformIntake::Kind::kMoving);
+  }
+  const auto newest = buffer.lookupTransform("tissue", "camera", ros::Time(0));
+  EXPECT_EQ(newest.transform.translation.x, 0.1);
+  EXPECT_EQ(newest.header.stamp, ros::Time(100.0));
 }
 
 }  // namespace

@@ -76,7 +76,9 @@ TEST_F(Surgery, BadFilesAreRefusedAndChangeNothing) {
   std::ofstream(fs::path(folder_) / "foreign") << "solid block\n";
   const auto foreign = ask("load_state", "foreign");
   EXPECT_FALSE(foreign.success);
-  EXPECT_NE(foreign.message.find("is no saved state"), std::string::npos) << foreign.message;
+  EXPECT_NE(foreign.message.find("file = 'foreign': is no saved state; allowed: "),
+            std::string::npos)
+      << foreign.message;
   press(0.003);
   press(-0.01);
   ASSERT_TRUE(waitForMarkers([this] { return lowestOfTop() == kTop; }));
@@ -139,6 +141,12 @@ TEST_F(Surgery, BadRemovalsAreRefusedAndChangeNothing) {
     EXPECT_FALSE(answer.success);
     EXPECT_NE(answer.message.find("allowed"), std::string::npos) << answer.message;
   }
+  EXPECT_EQ(remove(Remove::Request()).message,
+            "min, max, radius: all 0; allowed: min below max, or a radius above 0");
+  Remove::Request flat;
+  flat.max.x = flat.max.y = 0.02;
+  flat.min.z = flat.max.z = 0.05;
+  EXPECT_EQ(remove(flat).message, "max.z: 0.05; allowed: above min.z, 0.05 m");
   Remove::Request beside = ballAtTheTop();
   beside.center.x = 5.0;
   const auto answer = remove(beside);
@@ -186,6 +194,11 @@ TEST_F(Surgery, ASutureJoinsTwoPointsOfTheSurface) {
     EXPECT_FALSE(beyond.response.success) << beyond.request;
     EXPECT_NE(beyond.response.message.find("allowed"), std::string::npos);
   }
+  Suture pushing = call;
+  pushing.request.name = "s2";
+  pushing.request.stiffness = -5.0;
+  ASSERT_TRUE(ros::service::call("/tissue/suture", pushing));
+  EXPECT_EQ(pushing.response.message, "stiffness: -5; allowed: 1e-06 to 100000 N/m, or 0: 200");
   call.request.name = "s1";
   ASSERT_TRUE(ros::service::call("/tissue/suture", call));
   EXPECT_FALSE(call.response.success);

@@ -79,7 +79,7 @@ const std::vector<BadScene> kBadSteps = {
     {"RemoveEmptyBox",
      "cut: {corners: [[0.055, 0.02, 0.025]",
      "remove: {box: {min: [0, 0, 0], max: [1, 1, 0]}} #",
-     {"steps[2].remove.box.max = [1, 1, 0]", "must be above min along x, y and z"}},
+     {"steps[2].remove.box.max[2] = 0", "must be > min[2] = 0"}},
     {"UndoNothing",
      "cut: {corners: [[0.055, 0.02, 0.025]",
      "undo: {count: 0} #",

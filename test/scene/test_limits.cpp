@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "mesh_files.h"
 #include "robot_tissue/scene/memory.h"
 #include "robot_tissue/scene/patch_name.h"
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue::test_limits {
 namespace {
@@ -96,7 +98,8 @@ const std::vector<BadScene> kMeaningless = {
     {"Contrast",
      "young_modulus: 1.0e+5",
      "young_modulus: 1.0e+11",
-     {"tissue.regions[0].young_modulus = 1.0e+11", "within a factor of 1000000"}},
+     {"tissue.regions[0].young_modulus = 1.0e+11",
+      "within a factor of 1000000 of tissue.material's, 10000"}},
     {"Dense", "density: 900.0", "density: 1.0e+9", {"tissue.material.density", "to 1000000 in kg"}},
     {"Heavy", "-9.81", "-1.0e+9", {"tissue.gravity[2] = -1.0e+9", "to 10000 in m/s^2"}},
     {"Weightless", "-9.81", "-1.0e-9", {"tissue.gravity = [0.0, 0.0, -1.0e-9]", "zero or"}},
@@ -367,10 +370,38 @@ TEST_F(SceneText, AliasesOfAliasesAreRefused) {
 }
 
 TEST_F(SceneText, DeepNestingIsRefused) {
-  expectPart(refused("tissue: " + std::string(100000, '[')), "not YAML");
+  const std::string allowed = "deep, must not";
+  expectPart(refused("tissue: " + std::string(100000, '[')), allowed);
   std::string blocks;
   for (int i = 0; i < 20000; ++i) blocks += "- ";
-  expectPart(refused(blocks), "not YAML");
+  expectPart(refused(blocks), allowed);
+  expectPart(refused("a: " + std::string(99, '[') + std::string(99, ']')), "unknown key");
+}
+
+// Mistakes that editors make: the parser only says that something is illegal.
+TEST_F(SceneText, WhatYamlIsToldWhereItIsNone) {
+  for (const std::string text : {"tissue:\n\tspacing: 0.01\n",
+                                 "tissue:\n  spacing:0.01\n  model: elastic\n", "steps: [\n"}) {
+    expectPart(refused(text), "not YAML: ");
+    expectPart(refused(text), ", must be YAML: indented by blanks, never tabs");
+  }
+}
+
+TEST_F(SceneText, AKeyWithoutALetterIsNamed) {
+  expectPart(refused("\"\": 1\n"), "\"\" = 1: unknown key");
+}
+
+// Logs, and services' answers that a Python program decodes.
+TEST(ValueText, HasOnlyWhatATerminalAndADecoderTake) {
+  EXPECT_EQ(onOneLine("a\nb\tc\x7f"), "a\\nb?c?");
+  EXPECT_EQ(onOneLine("pr\xf6"
+                      "be \xe2\x88\x92 \xc3\xa9"),
+            "pr?be \xe2\x88\x92 \xc3\xa9");
+  EXPECT_EQ(onOneLine("\xc2\x9b"
+                      "31m \xe2\x80\xa8 \xed\xa0\x80"),
+            "?31m ? ???");
+  EXPECT_TRUE(isUtf8(onOneLine("\xf0\x9f\x98")));
+  EXPECT_EQ(reasonText(std::runtime_error("is \"lost\" .\n ")), "is \"lost\" .");
 }
 
 TEST_F(SceneText, OnlyRegularFilesUpToALimitAreRead) {

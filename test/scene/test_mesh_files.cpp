@@ -155,6 +155,7 @@ TEST(MeshFiles, ADaeFileInOtherUnitsOrAxesIsRemarkedOn) {
     return told;
   };
   EXPECT_EQ(remark("Z_UP", 1.0, 1.0), "");
+  EXPECT_EQ(remark("Z_UP", 1.0, 0.3), "") << "meters need no heed, however they are scaled";
   EXPECT_EQ(remark("Z_UP", 0.001, 0.001), "");
   for (const std::string& text :
        {remark("Z_UP", 0.001, 1.0), remark("Y_UP", 1.0, 1.0), remark("Y_UP", 0.001, 0.001)}) {
@@ -184,6 +185,28 @@ TEST(MeshFiles, OnlyRegularFilesAndLinksToThemAreRead) {
     const Entry entry(YAML::Node(name), "tissue.shape.resource", "scene.yaml");
     EXPECT_THROW(readResource(entry, meshFolder()), InputError) << name;
   }
+}
+
+TEST(MeshFiles, EmptyFilesAndPackagesWithoutAFileAreRefused) {
+  for (const char* name : {"empty.stl", "empty.obj", "empty.dae"}) {
+    writeFile(name, "");
+    expectRefused(name, "is empty");
+  }
+  EXPECT_NE(refusal("package://robot_tissue").find("names a package, but no file of it"),
+            std::string::npos);
+}
+
+// Of a name in a file: any bytes, and any number of them.
+TEST(MeshFiles, WhatAFileSaysStaysOnOneShortLine) {
+  std::string dae = daeText(box(), "Z_UP", 1.0);
+  const std::size_t place = dae.find("<mesh>");
+  ASSERT_NE(place, std::string::npos);
+  dae.insert(place, "<\xf6\x1b" + std::string(5000, 'x') + ">");
+  writeFile("named.dae", dae);
+  const std::string message = refusal("file://" + path("named.dae"));
+  EXPECT_NE(message.find("is no XML"), std::string::npos) << message;
+  EXPECT_LT(message.size(), 400U);
+  for (const char c : message) EXPECT_TRUE(c >= 0x20 && c < 0x7f) << message;
 }
 
 TEST(MeshFiles, LargeFilesAreRefusedWithTheLimit) {

@@ -124,7 +124,7 @@ TEST(MeshShape, EntriesThatAreNotAllowed) {
   expectRefusal(refusal("resource: package://no_such_package/box.stl"),
                 {"tissue.shape.resource = package://no_such_package/box.stl: cannot be loaded (no ",
                  "package no_such_package", "STL, OBJ or DAE"});
-  expectRefusal(refusal("resource: package://no_such_package"), {"package no_such_package"});
+  expectRefusal(refusal("resource: package://no_such_package"), {"names a package, but no file"});
   for (const char* scale : {"0", "-0.001", ".nan", "large", "{}", "[1, 1, 0]"}) {
     expectRefusal(refusal(std::string("resource: box.stl, scale: ") + scale),
                   {"tissue.shape.scale", "a number from 1e-09 to 1e+09"});
@@ -149,6 +149,7 @@ TEST(MeshShape, MeshWithoutAnInsideIsRefused) {
   TriangleMesh turned = boxMesh(kBoxMin, kBoxMax);
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
   expectMeshRefused(turned, "has 3 edges whose two triangles face opposite sides");
+  expectMeshRefused(turned, "its triangles all facing outwards or all inwards");
   expectMeshRefused(boxMesh(kBoxMin, Vec3(kBoxMax.x(), kBoxMax.y(), kBoxMin.z())), "has no volume");
   const TriangleMesh crossing =
       joined(boxMesh(kBoxMin, kBoxMax), moved(boxMesh(kBoxMin, kBoxMax), Vec3(0.05, 0.01, 0.01)));

@@ -4,7 +4,11 @@
 
 #include <ros/time.h>
 
+#include <cmath>
 #include <cstdint>
+#include <string>
+
+#include "robot_tissue/scene/value_text.h"
 
 namespace robot_tissue {
 
@@ -18,6 +22,12 @@ inline double secondsBetween(const ros::Time& from, const ros::Time& to) {
     nanoseconds += 1000000000;
   }
   return static_cast<double>(seconds) + 1e-9 * static_cast<double>(nanoseconds);
+}
+
+// In whole milliseconds, rounded up, so that what is beyond a bound is told so; less than half of a
+// nanosecond, of which stamps are made, is rounding.
+inline std::string secondsText(double seconds) {
+  return numberText(std::ceil(1e3 * seconds - 5e-7) / 1e3);
 }
 
 }  // namespace robot_tissue

@@ -35,6 +35,7 @@ class TransformIntake {
     ros::SteadyTime seen;
   };
 
+  void refuse(const geometry_msgs::TransformStamped& transform, const std::string& why);
   void put(const geometry_msgs::TransformStamped& transform, Kind kind);
   bool hasPlace(const geometry_msgs::TransformStamped& transform);
   bool isOfBefore(const ros::Time& now, const ros::Time& stamp) const;

@@ -62,7 +62,10 @@ MapReader readTyped(const Entry& entry, const KeyTable<Target>& common,
   std::vector<std::string> any_key = namesOf(common), names;
   for (const MapType<Target>& type : types) {
     names.push_back(type.name);
-    for (const Key<Target>& key : type.keys) any_key.push_back(key.name);
+    for (const Key<Target>& key : type.keys) {
+      const bool is_new = std::find(any_key.begin(), any_key.end(), key.name) == any_key.end();
+      if (is_new) any_key.push_back(key.name);
+    }
   }
   const std::string name = MapReader(entry, any_key)["type"].choice(names);
   const MapType<Target>& type = *std::find_if(

@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <exception>
 #include <optional>
 #include <string>
 
@@ -14,7 +15,8 @@ std::string valueText(const YAML::Node& node);
 // In quotes, or said to be one by its tag (!!str): "0.005" is no number.
 bool isText(const YAML::Node& scalar);
 
-// Control characters written as \n or ?, so that the text stays on its line.
+// Control characters and bytes that are no UTF-8 written as \n or ?: the text stays on its line,
+// and every reader of a message or log can decode it.
 std::string onOneLine(const std::string& text);
 
 // Whether all of its bytes are valid UTF-8: no overlong forms, no surrogates.
@@ -22,6 +24,9 @@ bool isUtf8(const std::string& text);
 
 // On one line and cut short after some 60 characters.
 std::string shortText(const std::string& text);
+
+// What a library says went wrong: on one line, without blanks at its end.
+std::string reasonText(const std::exception& error);
 
 // Short decimal text, up to nine digits.
 std::string numberText(double value);

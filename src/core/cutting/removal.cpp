@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
+#include "base/text_of.h"
 #include "cutting/cell_division.h"
 #include "cutting/cut_front.h"
 #include "cutting/split_cells.h"
@@ -26,14 +28,17 @@ void requireSpace(const RemovedSpace& space) {
     const bool finite =
         box.min().allFinite() && box.max().allFinite() && placed->tissue_T_box.matrix().allFinite();
     if (!finite || !(box.max().array() > box.min().array()).all()) {
-      throw InputError("box: not finite, or empty; allowed: min below max along x, y and z");
+      throw InputError("box: " + textOf(box) + " m; allowed: min below max along x, y and z");
     }
     return;
   }
   if (!std::holds_alternative<Sphere>(space)) return;
   const Sphere& sphere = std::get<Sphere>(space);
   if (!sphere.center.allFinite() || !std::isfinite(sphere.radius) || !(sphere.radius > 0.0)) {
-    throw InputError("sphere: not finite, or empty; allowed: a center and a radius above 0 m");
+    std::ostringstream radius;
+    radius << sphere.radius;
+    throw InputError("sphere: at " + textOf(sphere.center) + " m, of radius " + radius.str() +
+                     "; allowed: a finite center, and a radius above 0 m");
   }
 }
 

@@ -45,6 +45,11 @@ class ByteWriter {
   std::string bytes_;
 };
 
+// Of bytes that are no state, or no longer one.
+[[noreturn]] inline void refuseBytes(const std::string& problem) {
+  throw InputError(problem + "; allowed: a file as it was saved, whole and unchanged");
+}
+
 // Throws InputError where the bytes end too early.
 class ByteReader {
  public:
@@ -74,7 +79,7 @@ class ByteReader {
   bool isAtEnd() const { return bytes_.empty(); }
 
  private:
-  [[noreturn]] static void failAtEnd() { throw InputError("ends too early"); }
+  [[noreturn]] static void failAtEnd() { refuseBytes("ends too early"); }
 
   std::string_view take(std::size_t size) {
     if (size > bytes_.size()) failAtEnd();

@@ -12,7 +12,7 @@ constexpr double kLargest = 1e15;  // of any number of a load or suture; none is
 
 }  // namespace
 
-void failAsDamaged(const std::string& what) { throw InputError("is damaged: " + what); }
+void failAsDamaged(const std::string& what) { refuseBytes("is damaged: " + what); }
 
 double takeNumber(ByteReader& in) {
   const double value = in.f64();

@@ -57,8 +57,8 @@ struct Opened {
 };
 
 Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
-  if (bytes.substr(0, kMagic.size()) != kMagic) throw InputError("is no saved state");
-  if (bytes.size() < kHeaderBytes) throw InputError("ends too early");
+  if (bytes.substr(0, kMagic.size()) != kMagic) refuseBytes("is no saved state");
+  if (bytes.size() < kHeaderBytes) refuseBytes("ends too early");
   ByteReader header(bytes.substr(kMagic.size()));
   const std::uint32_t version = header.u32();
   if (version > kVersion) {
@@ -72,7 +72,7 @@ Opened open(std::string_view bytes, const StateFingerprint& fingerprint) {
     failAsDamaged("the header does not fit its checksum");
   }
   const std::string_view body = bytes.substr(kHeaderBytes);
-  if (body.size() < size) throw InputError("ends too early");
+  if (body.size() < size) refuseBytes("ends too early");
   if (body.size() > size || hashOf(body) != body_hash) {
     failAsDamaged("the content does not fit its checksum");
   }
