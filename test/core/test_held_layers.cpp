@@ -192,6 +192,35 @@ TEST(HeldLayers, ACutUnderAPlateIsUndoneAndSaved) {
   EXPECT_EQ(tissue.lastReport().patches.front().force.z(), force);
 }
 
+// As one that is put on anew: whether it was there before the cut, with another way since, or came
+// after it.
+TEST(HeldLayers, APlateOnMendedTissueHasAllOfItsSprings) {
+  const auto answerAfter = [](const std::vector<PatchConfig>& before, const PatchConfig& plate,
+                              bool cuts) {
+    Tissue tissue(blockBeside(0.003, 0.005), SolverConfig());
+    for (const PatchConfig& earlier : before) tissue.load(loadOf({earlier}));
+    if (cuts) tissue.cut(plane(0.0248, 0.0258));
+    tissue.load(loadOf({plate}));
+    if (cuts) {
+      EXPECT_EQ(tissue.undo(1).status, SolveStatus::kOk);
+    }
+    return tissue.lastReport().patches.front();
+  };
+  const auto pulled = [](double force) { return forcedPatch("plate", kAbove, {0.0, 0.0, force}); };
+  const auto raised = [](double way) { return displacedPatch("plate", kAbove, {0.0, 0.0, way}); };
+  const PatchAnswer whole = answerAfter({}, raised(0.0004), false);
+  const PatchAnswer pulled_whole = answerAfter({}, pulled(0.2), false);
+  for (const bool was_there : {false, true}) {
+    const auto before = [&](const PatchConfig& plate) {
+      return was_there ? std::vector<PatchConfig>{plate} : std::vector<PatchConfig>();
+    };
+    const PatchAnswer way = answerAfter(before(raised(0.0002)), raised(0.0004), true);
+    EXPECT_NEAR(way.force.z() / whole.force.z(), 1.0, 0.01) << was_there;
+    const PatchAnswer force = answerAfter(before(pulled(0.1)), pulled(0.2), true);
+    EXPECT_NEAR(force.displacement.z() / pulled_whole.displacement.z(), 1.0, 0.01) << was_there;
+  }
+}
+
 // A layer is of the material next to the face; the mass, and so the weight, stays the mesh's own.
 TEST(HeldLayers, TheWeightIsTheMeshs) {
   TissueConfig held = blockBeside(0.003, 0.005), floating = held;

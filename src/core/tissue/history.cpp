@@ -93,8 +93,14 @@ void History::end(const std::vector<LoadingPatch>& named_loads) {
   changes_.back().loads_after = hashOfLoads(named_loads);
 }
 
+const Box* History::boxOf(const std::string& load) const {
+  const auto found = boxes_.find(load);
+  return found == boxes_.end() ? nullptr : &found->second;
+}
+
 void History::clear() {
   changes_.clear();
+  boxes_.clear();
   tears_go_on_ = false;
 }
 

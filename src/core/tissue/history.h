@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "lattice/piece_numbers.h"
@@ -39,6 +41,10 @@ class History {
   bool begins(Kind kind, const std::vector<LoadingPatch>& named_loads);
   // Loads are to be others from here on: what tears then is a change of its own.
   void noteOtherLoads() { tears_go_on_ = false; }
+  // The closed box of rest positions (m) that the named load was last put on by: what it holds
+  // where tissue is taken back. Null: the load came with a saved state.
+  void noteBox(const std::string& load, const Box& box) { boxes_[load] = box; }
+  const Box* boxOf(const std::string& load) const;
   // Before the change, and after it.
   void begin(Kind kind, Entry before, const std::vector<LoadingPatch>& named_loads);
   bool isUnderWay() const { return is_under_way_; }
@@ -66,6 +72,7 @@ class History {
 
   std::size_t most_of_shapes_, most_of_topologies_;
   std::vector<Change> changes_;
+  std::map<std::string, Box> boxes_;  // by the name of the load
   bool is_under_way_ = false;
   bool tears_go_on_ = false;  // the next tear is one with the last change, if that is a tear
 };

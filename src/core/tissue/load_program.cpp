@@ -89,6 +89,7 @@ void LoadProgram::load(const LoadStep& step, const Tissue::OnIncrement& on_incre
                 most + (by_force ? "a smaller load" : wayText(way, data_.body.lattice().bounds())));
   }
   data_.history.noteOtherLoads();
+  for (const PatchConfig& config : step.patches) data_.history.noteBox(config.name, config.box);
   if (comesToBalanceBefore(targets)) ramps = rampsTo(targets);
   for (const LoadRamp& ramp : ramps) data_.loads.dropDue(ramp.target.name);
   placeStarts(ramps);

@@ -29,6 +29,8 @@ class LoadProgram {
   SolveReport follow(std::vector<LoadingPatch> tool_patches, const std::vector<int>& disturbed,
                      Bedding bedding);
   SolveReport settle();
+  // Cells are there again: the loads' springs are those of loads that are put on now.
+  void joinAnew();
 
  private:
   SolveReport comeBackFromTools();
@@ -37,6 +39,9 @@ class LoadProgram {
   SolveReport settleFromRest();
   SolveReport endComingBack(SolveReport report);
   LoadingPatch makePatch(const PatchConfig& config) const;
+  std::vector<int> nodesLeftIn(const Box& box) const;
+  std::vector<RimSpring> springsAround(const Box& box, const std::vector<int>& nodes) const;
+  void joinAnew(const Box& box, LoadingPatch& patch) const;
   std::vector<LoadRamp> rampsTo(const std::vector<LoadingPatch>& targets) const;
   bool comesToBalanceBefore(const std::vector<LoadingPatch>& targets);
   void placeStarts(std::vector<LoadRamp>& ramps);

@@ -1,6 +1,7 @@
 // LoadProgram: the patches of a load, and where they start.
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "base/text_of.h"
 #include "loads/patch_bed.h"
@@ -45,6 +46,29 @@ void driveByDisplacement(const PatchConfig& config, LoadingPatch& patch) {
     }
   }
 }
+
+// A patch as it stands, one hard piece: where it has nodes that it did not hold or join so far.
+class HardPiece {
+ public:
+  // The displacement of each of its nodes (m).
+  HardPiece(const Lattice& lattice, const LoadingPatch& patch, const std::vector<Vec3>& own)
+      : lattice_(lattice), rotation_(patch.place.rotation) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const Vec3 rest = lattice.restPosition(patch.nodes[i]);
+      shift_ += (rest + own[i] - rotation_ * rest) / static_cast<double>(own.size());
+    }
+  }
+
+  Vec3 displacementOf(int node) const {
+    const Vec3 rest = lattice_.restPosition(node);
+    return rotation_ * rest + shift_ - rest;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const Eigen::Matrix3d rotation_;
+  Vec3 shift_ = Vec3::Zero();
+};
 
 // Where a patch's rim reaches nodes of another one, these are the other's alone.
 void leaveRimsToOwners(std::vector<LoadingPatch>& patches) {
@@ -103,41 +127,74 @@ void LoadProgram::placeStarts(std::vector<LoadRamp>& ramps) {
 // Nodes that the patch did not hold so far, as a removal took them and they are there again, go
 // where its other nodes have them: it is one hard piece.
 void LoadProgram::layNewNodes(const LoadingPatch& standing, LoadingPatch& start) const {
-  const Lattice& lattice = data_.body.lattice();
-  const Eigen::Matrix3d& rotation = standing.place.rotation;
   LatticeState& state = data_.body.change();
-  const std::vector<Vec3> own = ownDisplacement(standing, state.displacement);
-  Vec3 shift = Vec3::Zero();
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vec3 rest = lattice.restPosition(standing.nodes[i]);
-    shift += (rest + own[i] - rotation * rest) / static_cast<double>(own.size());
-  }
-  const auto laid = [&](int node) -> Vec3 {
-    const Vec3 rest = lattice.restPosition(node);
-    return rotation * rest + shift - rest;
-  };
+  const HardPiece piece(data_.body.lattice(), standing,
+                        ownDisplacement(standing, state.displacement));
   const auto has = [](const auto& nodes, int node) {
     return std::binary_search(nodes.begin(), nodes.end(), node);
   };
   for (const int node : start.nodes) {
-    if (!has(standing.nodes, node)) state.displacement[at(node)] = laid(node);
+    if (!has(standing.nodes, node)) state.displacement[at(node)] = piece.displacementOf(node);
   }
   std::vector<int> rim_before;
   for (const RimSpring& spring : standing.rim) rim_before.push_back(spring.node);
   for (RimSpring& spring : start.rim) {
-    if (!has(rim_before, spring.node)) spring.anchor = laid(spring.node);
+    if (!has(rim_before, spring.node)) spring.anchor = piece.displacementOf(spring.node);
+  }
+}
+
+std::vector<int> LoadProgram::nodesLeftIn(const Box& box) const {
+  const LatticeState& state = data_.body.state();
+  std::vector<int> nodes = data_.body.lattice().nodesIn(box);
+  nodes.erase(
+      std::remove_if(nodes.begin(), nodes.end(), [&](int node) { return isRemoved(state, node); }),
+      nodes.end());
+  return nodes;
+}
+
+// Anchors at rest.
+std::vector<RimSpring> LoadProgram::springsAround(const Box& box,
+                                                  const std::vector<int>& nodes) const {
+  if (!data_.methods.now().findsEquilibrium()) return {};
+  const Body& body = data_.body;
+  std::vector<RimSpring> rim = rimOf(body.lattice(), body.model(), body.state(), box, nodes);
+  const auto bed = bedOf(body.lattice(), body.model(), body.state(), box, nodes);
+  rim.insert(rim.end(), bed.begin(), bed.end());
+  std::sort(rim.begin(), rim.end(),
+            [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
+  return rim;
+}
+
+// A load that a removal took nodes from has what is left of it until it is put on again.
+void LoadProgram::joinAnew() {
+  data_.loads.forEach([&](LoadingPatch& patch) {
+    const Box* box = patch.tool ? nullptr : data_.history.boxOf(patch.name);
+    if (box != nullptr && nodesLeftIn(*box) == patch.nodes) joinAnew(*box, patch);
+  });
+  leaveRimsToOwners(data_.loads.patches());
+}
+
+void LoadProgram::joinAnew(const Box& box, LoadingPatch& patch) const {
+  const HardPiece piece(
+      data_.body.lattice(), patch,
+      byForce(patch) ? ownDisplacement(patch, data_.body.displacement()) : patch.displacement);
+  const std::vector<RimSpring> earlier = std::exchange(patch.rim, springsAround(box, patch.nodes));
+  for (RimSpring& spring : patch.rim) {
+    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const RimSpring& other) {
+      return other.node == spring.node;
+    });
+    spring.anchor = same != earlier.end() ? same->anchor : piece.displacementOf(spring.node);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!holds(patch, axis)) spring.stiffness[static_cast<Eigen::Index>(axis)] = 0.0;
+    }
   }
 }
 
 LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
   const Lattice& lattice = data_.body.lattice();
-  const LatticeState& state = data_.body.state();
   LoadingPatch patch;
   patch.name = config.name;
-  patch.nodes = lattice.nodesIn(config.box);
-  patch.nodes.erase(std::remove_if(patch.nodes.begin(), patch.nodes.end(),
-                                   [&](int node) { return isRemoved(state, node); }),
-                    patch.nodes.end());
+  patch.nodes = nodesLeftIn(config.box);
   if (patch.nodes.empty())
     refusePatch(config.name, "no node in its box, " + textOf(config.box) + " m",
                 "a box that holds a node");
@@ -145,13 +202,7 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
                   [&](int node) { return lattice.isFixed(node); })) {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
-  if (data_.methods.now().findsEquilibrium()) {
-    patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-    const auto bed = bedOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-    patch.rim.insert(patch.rim.end(), bed.begin(), bed.end());
-    std::sort(patch.rim.begin(), patch.rim.end(),
-              [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
-  }
+  patch.rim = springsAround(config.box, patch.nodes);
   if (config.force) {
     driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);
   } else {

@@ -16,7 +16,7 @@ struct TissueParts {
   TissueParts(const TissueConfig& tissue, const SolverConfig& config)
       : data(tissue, config),
         surgery(tissue, data, solver),
-        states(tissue, config, data, solver, surgery, suturing) {}
+        states(tissue, config, data, solver, surgery, suturing, program) {}
 
   TissueData data;
   TissueForces forces{data};

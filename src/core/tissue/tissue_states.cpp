@@ -91,11 +91,13 @@ LatticeState asBefore(const Lattice& lattice, const History::Entry& entry, Split
 }  // namespace
 
 TissueStates::TissueStates(const TissueConfig& tissue, const SolverConfig& solver, TissueData& data,
-                           LoadStepSolver& load_step, Surgery& surgery, Suturing& suturing)
+                           LoadStepSolver& load_step, Surgery& surgery, Suturing& suturing,
+                           LoadProgram& program)
     : data_(data),
       solver_(load_step),
       surgery_(surgery),
       suturing_(suturing),
+      program_(program),
       balance_fingerprint_(balanceFingerprint(tissue, solver)) {}
 
 void TissueStates::reset() {
@@ -213,6 +215,7 @@ SolveReport TissueStates::undo(int count) {
   if (data_.threads.anyWhole()) data_.rebuildSurface();  // nodes may have other numbers than there
   data_.pieces.take(entry.pieces);
   data_.history.dropFrom(target);
+  program_.joinAnew();
   if (data_.motion.takesNoTime()) return surgery_.changeTopology({});
   data_.threads.loosen(body.displacement());
   surgery_.changeTopology(body.freeNodes());

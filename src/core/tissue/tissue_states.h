@@ -8,6 +8,7 @@
 #include <string>
 
 #include "saving/saved_state.h"
+#include "tissue/load_program.h"
 #include "tissue/surgery.h"
 #include "tissue/suturing.h"
 
@@ -16,7 +17,8 @@ namespace robot_tissue {
 class TissueStates {
  public:
   TissueStates(const TissueConfig& tissue, const SolverConfig& solver, TissueData& data,
-               LoadStepSolver& load_step, Surgery& surgery, Suturing& suturing);
+               LoadStepSolver& load_step, Surgery& surgery, Suturing& suturing,
+               LoadProgram& program);
 
   // As of Tissue.
   void reset();
@@ -36,6 +38,7 @@ class TissueStates {
   LoadStepSolver& solver_;
   Surgery& surgery_;
   Suturing& suturing_;
+  LoadProgram& program_;
   std::uint64_t balance_fingerprint_;  // of what the balance of a shape hangs on in the scene
 };
 
