@@ -146,11 +146,9 @@ LoadingPatch LoadProgram::makePatch(const PatchConfig& config) const {
     refusePatch(config.name, "its box holds fixed nodes", "a box of free nodes");
   }
   if (data_.methods.now().findsEquilibrium()) {
-    patch.rim = rimOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-    const auto bed = bedOf(lattice, data_.body.model(), state, config.box, patch.nodes);
-    patch.rim.insert(patch.rim.end(), bed.begin(), bed.end());
-    std::sort(patch.rim.begin(), patch.rim.end(),
-              [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
+    const TissueModel& model = data_.body.model();
+    const auto bed = bedOf(lattice, model, state, config.box, patch.nodes);
+    patch.rim = bed ? *bed : rimOf(lattice, model, state, config.box, patch.nodes);
   }
   if (config.force) {
     driveByForce(config, lattice, data_.methods.now().findsEquilibrium(), patch);
