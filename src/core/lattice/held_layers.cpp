@@ -12,15 +12,6 @@ constexpr double kThinnest = 0.05;
 // Of the spacing: a gap that is none. Rounding.
 constexpr double kNoGap = 1e-3;
 
-// From the cell's side to where its material begins.
-double gapAt(const CellFill& fill, int side) {
-  const int axis = side / 2;
-  const double middle = fill.centroid[axis];
-  const double reach = fill.reachAlong(Vec3::Unit(axis));
-  const double gap = 0.5 - reach + (side % 2 == 0 ? middle : -middle);
-  return gap < kNoGap ? 0.0 : std::min(gap, 1.0 - kThinnest);
-}
-
 // Moved towards the side.
 FillIntegrals shifted(const CellFill& fill, int side, double by) {
   const int axis = side / 2;
@@ -45,18 +36,21 @@ CellFill laidOn(const CellFill& fill, const HeldLayer& layer) {
 
 }  // namespace
 
-std::optional<HeldLayer> heldLayer(const Cell& cell,
-                                   const std::function<double(int side)>& held_share) {
+double gapAt(const CellFill& fill, int side) {
+  const int axis = side / 2;
+  const double middle = fill.centroid[axis];
+  const double reach = fill.reachAlong(Vec3::Unit(axis));
+  const double gap = 0.5 - reach + (side % 2 == 0 ? middle : -middle);
+  return gap < kNoGap ? 0.0 : std::min(gap, 1.0 - kThinnest);
+}
+
+std::optional<HeldLayer> heldLayer(const Cell& cell, const std::function<bool(int side)>& is_held) {
   if (cell.fill == nullptr) return std::nullopt;
   HeldLayer layer;
-  double most_held = 0.0;
   for (int side = 0; side < kSides; ++side) {
-    const double held = held_share(side);
-    if (held <= 0.0 || held < most_held || held_share(side ^ 1) >= 1.0) continue;
+    if (!is_held(side) || is_held(side ^ 1)) continue;
     const double thickness = 1.0 - gapAt(*cell.fill, side);
-    if (thickness == 1.0 || (held == most_held && thickness >= layer.thickness)) continue;
-    layer = {side, thickness};
-    most_held = held;
+    if (thickness < layer.thickness) layer = {side, thickness};
   }
   return layer.thickness < 1.0 ? std::optional<HeldLayer>(layer) : std::nullopt;
 }
@@ -65,9 +59,9 @@ void layOnFixedNodes(std::vector<Cell>& cells, const std::vector<std::uint8_t>& 
   for (Cell& cell : cells) {
     const auto layer = heldLayer(cell, [&](int side) {
       for (int r = 0; r < kFaceNodes; ++r) {
-        if (fixed[at(cell.nodes[at(faceCorner(side, r))])] == 0) return 0.0;
+        if (fixed[at(cell.nodes[at(faceCorner(side, r))])] == 0) return false;
       }
-      return 1.0;
+      return true;
     });
     if (layer) cell.fill = SharedConst<CellFill>(laidOn(*cell.fill, *layer));
   }

@@ -17,11 +17,13 @@ struct HeldLayer {
   double thickness = 1.0;  // from the nodes across to where the material ends, of the spacing
 };
 
-// `held_share` of a side: how much of it is held, 0 to 1. Of the side of which most is; of several
-// the one that is farthest from the material. Nothing: there is none, the one across is held, too,
-// or the material reaches it.
-std::optional<HeldLayer> heldLayer(const Cell& cell,
-                                   const std::function<double(int side)>& held_share);
+// From the cell's side to where its material begins, of the spacing; a layer is no thinner than a
+// least thickness.
+double gapAt(const CellFill& fill, int side);
+
+// Of the sides that are held, the one that is farthest from the material. Nothing: there is none,
+// the one across is held, too, or the material reaches it.
+std::optional<HeldLayer> heldLayer(const Cell& cell, const std::function<bool(int side)>& is_held);
 
 // Held are nodes outside of the surface, meant is the surface itself. As a share t of its cell,
 // with the strain along that, a layer would have t of a full cell's stiffness across itself; it has

@@ -10,10 +10,6 @@
 namespace robot_tissue {
 namespace {
 
-// Shear modulus times spacing (1): a rim spring is no stiffer. More: edges near the patch's hard
-// nodes are held more firmly, and iterations take longer. Chosen.
-constexpr double kHard = 1000.0;
-
 using GridIndex = std::array<int, 3>;
 
 // The edge of the patch, as seen from one of its nodes or one beside it.
@@ -100,7 +96,7 @@ class RimBuilder {
       }
     }
     if (compliance.maxCoeff() == 0.0) return std::nullopt;
-    const Vec3 stiffness = compliance.cwiseInverse().cwiseMin(kHard);
+    const Vec3 stiffness = compliance.cwiseInverse().cwiseMin(kHardestRim);
     if (stiffness.maxCoeff() == 0.0) return std::nullopt;
     return moduli.shear * lattice_.spacing() * stiffness;
   }

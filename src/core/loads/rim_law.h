@@ -9,6 +9,10 @@
 
 namespace robot_tissue {
 
+// Shear modulus times spacing (1): a rim spring is no stiffer. More: edges near the patch's hard
+// nodes are held more firmly, and iterations take longer. Chosen.
+constexpr double kHardestRim = 1000.0;
+
 struct RimMode {
   double shift = 0.0;      // spacings
   double stiffness = 0.0;  // of a node right at the edge, in shear modulus times spacing

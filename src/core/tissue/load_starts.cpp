@@ -157,12 +157,8 @@ std::vector<RimSpring> LoadProgram::springsAround(const Box& box,
                                                   const std::vector<int>& nodes) const {
   if (!data_.methods.now().findsEquilibrium()) return {};
   const Body& body = data_.body;
-  std::vector<RimSpring> rim = rimOf(body.lattice(), body.model(), body.state(), box, nodes);
   const auto bed = bedOf(body.lattice(), body.model(), body.state(), box, nodes);
-  rim.insert(rim.end(), bed.begin(), bed.end());
-  std::sort(rim.begin(), rim.end(),
-            [](const RimSpring& a, const RimSpring& b) { return a.node < b.node; });
-  return rim;
+  return bed ? *bed : rimOf(body.lattice(), body.model(), body.state(), box, nodes);
 }
 
 // A load that a removal took nodes from has what is left of it until it is put on again.
