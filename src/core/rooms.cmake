@@ -36,7 +36,7 @@ robot_tissue_room(surface
     divided_grid.cpp
     divided_grid.h held_surface.cpp held_surface.h hinges.cpp hinges.h mean_curvature.cpp mean_curvature.h merged_skin.cpp merged_skin.h mesh_surface.cpp
     mesh_surface.h nearest_point.cpp nearest_point.h octant_grid.cpp octant_grid.h smooth_carriers.cpp
-    smooth_carriers.h surface.cpp surface_strain.cpp)
+    smooth_carriers.h surface.cpp surface_strain.cpp undented.cpp undented.h)
 robot_tissue_room(membrane
   USES base geometry config surface
   FILES bending_parts.cpp bending_parts.h hinge.cpp hinge.h membrane.cpp membrane.h

@@ -22,16 +22,23 @@ Vec3 farthestPoint(const BoxOrCylinder& body, const Vec3& direction) {
   return farthest;
 }
 
-// How far its surface is above its farthest point, at so much beside that (m, shape's frame): by
-// the faces that meet there, of a cylinder by its end.
-double heightBeside(const BoxOrCylinder& body, const Vec3& facing, const Vec3& off) {
-  constexpr double kUpright = 1e-3;  // 1: a face that hardly faces that way is beside it
-  const Vec3 beside = off - off.dot(facing) * facing;
-  double height = 0.0;
-  for (int axis = body.radius > 0.0 ? 2 : 0; axis < 3; ++axis) {
-    if (std::abs(facing[axis]) > kUpright) height = std::max(height, beside[axis] / facing[axis]);
+// The place of it that is nearest, shape's frame (m).
+Vec3 nearestPoint(const BoxOrCylinder& body, const Vec3& place) {
+  Vec3 nearest = place.cwiseMax(-body.half_size).cwiseMin(body.half_size);
+  const double off_axis = place.head<2>().norm();
+  if (body.radius > 0.0 && off_axis > body.radius) {
+    nearest.head<2>() = body.radius / off_axis * place.head<2>();
   }
-  return height;
+  return nearest;
+}
+
+const SlidingContacts::ContactConstraint& hardest(
+    const std::vector<const SlidingContacts::ContactConstraint*>& touches) {
+  using Touch = SlidingContacts::ContactConstraint;
+  return **std::max_element(touches.begin(), touches.end(),
+                            [](const Touch* one, const Touch* other) {
+                              return one->spring.multiplier < other->spring.multiplier;
+                            });
 }
 
 }  // namespace
@@ -90,9 +97,10 @@ const BoxOrCylinder* SlidingContacts::bodyUnder(const Touches& touches,
   return nullptr;
 }
 
-// By what the link's multipliers are. Heights of planes are above where the shape is lowest, as
-// seen along the way it presses; the curved surface is off what nodes carry by a bulge, and a rim
-// gives way.
+// By what the link's multipliers are. Balls press the way their forces go, and what is flat the way
+// the surface looks: its touches' normals are those of its faces. Heights of planes are above where
+// the shape is lowest, as seen along that way; the curved surface is off what nodes carry by a
+// bulge, and a rim gives way.
 Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
                                     const Tissue& tissue) const {
   Touches pushing;
@@ -107,28 +115,28 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
   const Ball* const ball = ballUnder(pushing, tissue_T_link, tissue);
   const BoxOrCylinder* const body = ball == nullptr ? bodyUnder(pushing, tissue) : nullptr;
   if (ball == nullptr && body == nullptr) return {};
-  axis.normalize();
-  press.axis = axis;
+  press.axis = body == nullptr ? Vec3(axis.normalized())
+                               : tissue.inwardsAround(hardest(pushing).contact.place);
+  if (press.axis.isZero(0.0)) return {};
   Pose tissue_T_shape = tissue_T_link;
   Vec3 lowest;
   if (body != nullptr) {
     tissue_T_shape = tissue_T_link * body->link_T_shape;
     press.body = *body;
-    press.facing = tissue_T_shape.linear().transpose() * axis;
+    press.facing = tissue_T_shape.linear().transpose() * press.axis;
     lowest = tissue_T_shape * farthestPoint(*body, press.facing);
   } else {
     press.radius = ball->radius;
-    lowest = tissue_T_link * ball->center + ball->radius * axis;
+    lowest = tissue_T_link * ball->center + ball->radius * press.axis;
   }
   std::map<int, double> shares;
   for (const ContactConstraint* touch : pushing) {
     const double share = touch->spring.multiplier / press.force;
-    double height = (lowest - touch->tool_point).dot(axis);
+    Vec3 place = touch->tool_point;
     if (body != nullptr && touch->contact.wanders) {
-      const Vec3 off = tissue_T_shape.linear().transpose() * (touch->tool_point - lowest);
-      height = heightBeside(*body, press.facing, off);
+      place = tissue_T_shape * nearestPoint(*body, tissue_T_shape.inverse() * place);
     }
-    press.height += share * (height + touch->contact.bulge.dot(axis) +
+    press.height += share * ((lowest - place + touch->contact.bulge).dot(press.axis) +
                              touch->compliance.normal * touch->spring.multiplier);
     for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
   }
@@ -142,8 +150,9 @@ bool SlidingContacts::tellsRecesses(const Tissue& tissue) {
   return !tissue.hasTime() && tissue.lastReport().status == SolveStatus::kOk;
 }
 
-// After a solve; false: one goes so far that it is to be solved again. By less once it goes to and
-// fro, as touches come and go with it.
+// After a solve; false: one goes so far that it is to be solved again. By Newton's step, less what
+// is not known of how the lattice gives way; by less where the last two rounds tell so, as touches
+// come and go with the recess.
 bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue) {
   if (!tellsRecesses(tissue)) return true;
   bool stay = true;
@@ -153,9 +162,12 @@ bool SlidingContacts::renewRecesses(const RobotPose& pose, const Tissue& tissue)
     LinkRecess& recess = recesses_[at(link)];
     const double way = asked.depth - recess.depth;
     stay = stay && std::abs(way) <= tuning::kRecessStays * tissue.lattice().spacing();
-    if (way * recess.last_way < 0.0) recess.gain *= tuning::kLessToAndFro;
+    const double gone = recess.depth - recess.last_depth, changed = way - recess.last_way;
+    double step = tuning::kOfNewtonsStep * asked.step;
+    if (gone * changed < 0.0) step = std::min(step, -gone / changed);
     recess.last_way = way;
-    setRecess(link, recess.depth + recess.gain * asked.step * way);
+    recess.last_depth = recess.depth;
+    setRecess(link, recess.depth + step * way);
   }
   return stay;
 }

@@ -142,6 +142,21 @@ TEST(FlatTools, EdgesAreDrawnAnywhere) {
   }
 }
 
+// What its rim and its side touch is drawn at its edge, three spacings deep, too: of a vertex that
+// both touch, as the rim has it.
+TEST(FlatTools, AnUprightCylinderIsDrawnAtItsEdgeHoweverDeep) {
+  ToolShape shape;
+  shape.type = ToolShape::Type::kCylinder;
+  shape.radius = 0.008;
+  shape.length = 0.05;
+  Pipeline pipeline(block(), SolverConfig(), {withFriction(0.3, toolOf(shape))});
+  const double up = kTop + 0.5 * shape.length;
+  for (double depth = -0.0005; depth < 0.0151; depth += 0.00025) {
+    pipeline.step(at(std::vector<Vec3>{{kMiddle, kMiddle, up - depth}}));
+    EXPECT_LT(pipeline.report().tools.front().max_penetration, 0.1 * kSpacing) << depth;
+  }
+}
+
 TEST(FlatTools, CornersAreDrawn) {
   for (const double shift : {0.0, 0.1, 0.3, 0.5, 0.7}) {
     Pipeline pipeline(block(), SolverConfig(), {withFriction(0.0, toolOf(boxOf(kTool)))});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../core/mesh_fixtures.h"
 #include "pipeline_fixtures.h"
 
 namespace robot_tissue::test_narrow_bodies {
@@ -20,8 +21,10 @@ struct Place {
   double yaw;   // rad
 };
 
+// Around nodes with eight triangles, and with four.
 const std::vector<Place> kPlaces = {{0.0, 0.0, 0.0},  {0.5, 0.5, 0.0},  {0.5, 0.0, 0.0},
-                                    {0.25, 0.1, 0.0}, {0.3, 0.45, 0.4}, {0.1, 0.2, M_PI / 4.0}};
+                                    {0.25, 0.1, 0.0}, {0.3, 0.45, 0.4}, {0.1, 0.2, 0.25},
+                                    {1.0, 0.0, 0.0},  {1.25, 0.1, 0.0}};
 
 ToolShape cylinder(double radius, double length, bool lies) {
   ToolShape shape;
@@ -37,6 +40,15 @@ ToolShape cube(double side) {
   shape.type = ToolShape::Type::kBox;
   shape.size = Vec3::Constant(side);
   return shape;
+}
+
+// The block as a mesh, its top between the lattice's nodes.
+TissueConfig meshBlock() {
+  TissueConfig tissue = block("elastic", 0.92 * kSpacing);
+  tissue.fixed.front().min().z() -= kSpacing;
+  tissue.mesh =
+      std::make_shared<const TriangleMesh>(boxMesh(tissue.shape.min(), tissue.shape.max()));
+  return tissue;
 }
 
 class Press {
@@ -84,7 +96,39 @@ void expectFlatEnd(const ToolShape& shape, double half, double radius) {
 
 TEST(NarrowBody, ThatStandsFeelsWhatAHalfSpacePresses) {
   expectFlatEnd(cylinder(0.004, 0.02, false), 0.01, 0.004);
-  expectFlatEnd(cube(0.008), 0.004, 1.012 * 0.008 / std::sqrt(M_PI));
+  for (const double side : {0.006, 0.008}) {
+    expectFlatEnd(cube(side), 0.5 * side, 1.012 * side / std::sqrt(M_PI));
+  }
+}
+
+// Tilted by a little, on an edge, on a corner: what a fine lattice feels, on a mesh whose face
+// stands between the nodes, too. Without the law two to five times that.
+TEST(NarrowBody, ThatIsTiltedFeelsWhatAFineLatticeFeels) {
+  constexpr double kHalf = 0.006, kDeep = 0.001;  // m
+  for (const Vec3& towards : {Vec3(0.1, 0.0, 1.0), Vec3(0.2, 0.05, 1.0), Vec3(1.0, 0.0, 1.0)}) {
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(towards, Vec3::UnitZ());
+    const double lowest = kHalf * towards.lpNorm<1>() / towards.norm();
+    const auto force = [&](TissueConfig tissue, const Vec3& off) {
+      tissue.material.poisson_ratio = kPoisson;
+      Pipeline pipeline(tissue, SolverConfig(), {toolOf(cube(2.0 * kHalf))});
+      for (const double depth : {-kStep, 0.5 * kDeep, kDeep}) {
+        RobotPose pose = at({Vec3(kMiddle, kMiddle, kTop + lowest - depth) + off});
+        pose.links.front().linear() = turn.toRotationMatrix();
+        pipeline.step(pose);
+      }
+      EXPECT_EQ(pipeline.tissue().lastReport().status, SolveStatus::kOk);
+      return pipeline.report().tools.front().force_on_tool.z();
+    };
+    const double fine = force(block("elastic", 0.25 * kSpacing), Vec3::Zero());
+    EXPECT_GT(fine, 0.01);
+    for (const Place& place : {kPlaces[0], kPlaces[1], kPlaces[3], kPlaces[6]}) {
+      const Vec3 off = kSpacing * Vec3(place.x, place.y, 0.0);
+      EXPECT_NEAR(force(block("elastic", kSpacing), off), fine, 0.25 * fine)
+          << towards.transpose() << " at " << place.x << ' ' << place.y;
+      EXPECT_NEAR(force(meshBlock(), off), fine, 0.25 * fine)
+          << towards.transpose() << " on a mesh at " << place.x << ' ' << place.y;
+    }
+  }
 }
 
 // Up to 1.6 times as much without the law.

@@ -157,6 +157,9 @@ class Tissue {
   // Of a node `depth` spacings inside a plate's edge, < 0: beyond it (doc/model.md, "The rim").
   // None where cells at the node are filled in part, and where method or model have no rims.
   std::optional<RimCompliance> rimCompliance(int node, double depth) const;
+  // The way into the tissue (unit, tissue frame) as if the surface around the point, out to three
+  // spacings and up to folds at rest, had no dent; zero where it has no area.
+  Vec3 inwardsAround(const SurfacePoint& point) const;
   // How much deeper than the lattice tells the shape goes into the tissue (narrow_contact.h). None
   // where the contact is wide, the tissue is of several materials around it or thinner than two
   // spacings, all that bears it is held, and where the method finds no equilibrium or the model has

@@ -164,11 +164,11 @@ class SlidingContacts {
     int touches = 0;
   };
 
-  // How a link is recessed: as it is taken, and in the rounds of a load step.
+  // How a link is recessed, and was in the last round (m); `last_way`: how far from what was asked.
   struct LinkRecess {
-    double depth = 0.0;     // m
-    double last_way = 0.0;  // m: of the last round
-    double gain = 1.0;      // of the steps that are asked for
+    double depth = 0.0;
+    double last_depth = 0.0;
+    double last_way = 0.0;
   };
 
   double slackOf(const ContactConstraint& touch, const Tissue& tissue) const;

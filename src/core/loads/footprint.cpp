@@ -4,99 +4,112 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace robot_tissue {
 namespace {
 
-// Geometric mean distance of two points of the pressure across a strip, of half its width (1):
-// under a flat strip, a lying cylinder (Johnson 1985, 4.43) and an edge (5.3, as arcosh(a / x)).
+// Geometric mean distance of two points of the pressure under a flat strip, of half its width (1).
 constexpr double kUnderFlat = 0.5;
-constexpr double kUnderCylinder = 0.3894;  // exp(-1/4) / 2
-constexpr double kUnderEdge = 0.3033;
-// Mean distance of an edge's pressure from an edge, of half the width (1).
-constexpr double kMeanUnderEdge = 1.0 / M_PI;
 // Of a square to what the formula of strips tells (1): 1 / (2 E* 1.012 sqrt(A / pi)) (King 1987).
 constexpr double kMoreOfSquare = 0.047;
-// Tangents of the angle off lying, or standing, up to which a cylinder is known, and not at all.
-constexpr double kCylinderKnown = 0.5;
-constexpr double kCylinderOnRim = 0.8;
+// How much less the mean height is at a corner than along two edges (1), by the product of the
+// slopes that meet: from solutions for half-spaces (test_footprint.cpp), to 3 %.
+constexpr double kLowerAtCorner = 0.13;
+constexpr double kLowerIfSteep = 0.25;
 // Sides hang on each other. More: more exact; 12: to 1e-3.
 constexpr int kRounds = 12;
 
-// One way along the face that presses.
+// One way along the surface. What touches is `touches` wide; more of it would stand
+// `growth * touches^power` over the lowest place, mean under a flat punch's pressure (m).
 struct Side {
-  double size = 0.0;         // m
-  double slope = 0.0;        // how fast the face recedes from the surface that way (1)
-  double round = 0.0;        // radius of a lying cylinder (m), else 0
-  double touches = 0.0;      // m
-  double only_part = 0.0;    // 1: it touches at an edge alone, 0: with all of the face
-  double to_edge = 0.0;      // m: how far the face touches from its edge
-  double mean_height = 0.0;  // m: over the pressure
+  double growth = 0.0;
+  int power = 1;
+  double slope = 0.0;    // of the face (1)
+  double most = 0.0;     // m: all of the face
+  double touches = 0.0;  // m
+  double in_part = 0.0;  // 1: there is more of the face than touches
+  double size = 0.0;     // of what is flat (m)
 
-  // `load`: force for each length of the other side (N/m) over the plane modulus: m. Beyond the
-  // edge is the face beside, `thickness` (m) high.
-  void press(double load, double thickness) {
-    double asked = 0.0;
-    if (round > 0.0) {
-      asked = std::min(2.0 * round, 4.0 * std::sqrt(load * round / M_PI));
-      only_part = 1.0;
-      mean_height = touches * touches / (32.0 * round);
-    } else {
-      const double reach = slope > 0.0 ? load / slope : std::numeric_limits<double>::infinity();
-      only_part = std::clamp(2.0 - reach / size, 0.0, 1.0);
-      to_edge = std::min(size, reach);
-      asked = to_edge + std::min(thickness, load * slope);
-      // Tilted, but touching with all of it: the pressure is off its middle by pi a^2 / (4 reach),
-      // a half the size (Johnson 1985).
-      const double even = 0.5 * (1.0 - M_PI / 8.0 * size / reach) * size;
-      mean_height = slope * (only_part * to_edge * kMeanUnderEdge + (1.0 - only_part) * even);
-    }
-    touches = std::sqrt(touches * asked);
+  double height() const { return growth * std::pow(touches, power); }
+  // Where its height grows as fast with its logarithm as the depth falls (m).
+  void widen(double falls) {
+    const double asked = growth > 0.0 ? std::pow(falls / (power * growth), 1.0 / power)
+                                      : std::numeric_limits<double>::infinity();
+    in_part = std::min(1.0, most / asked);
+    touches = std::sqrt(touches * std::min(asked, most));
   }
-
-  // Tissue at a sharp edge comes to lie at the faces beside it, and the law with it to and fro.
-  double known() const { return round > 0.0 ? 1.0 : 1.0 - only_part; }
-
-  double spread() const {
-    if (round > 0.0) return kUnderCylinder;
-    return kUnderFlat + only_part * (kUnderEdge - kUnderFlat);
+  // How much tissue that bulges so (1/m) may fall off within what is flat (m): where it faces that,
+  // as far as is known from what touches within `reach` (m).
+  double bulge(double curvature, double reach) const {
+    const bool may_face = curvature * std::min(size, reach) > slope;
+    return may_face ? curvature * size * size / 8.0 : 0.0;
   }
 };
+
+// A face of that size (m) that recedes with a slope, and beyond its edge, at a right angle to it,
+// another one. Of all places of a strip across both it stands where its mean height is least:
+// arccos of how far the edge is off its middle, of half its width, is pi slope^2 / (1 + slope^2).
+Side edgeOf(double size, double slope, double thickness) {
+  Side side;
+  const double square = slope * slope, angle = M_PI * square / (1.0 + square);
+  if (slope > 0.0) side.growth = std::sin(angle) * (1.0 + square) / (2.0 * M_PI * slope);
+  side.slope = slope;
+  side.size = size;
+  side.most = std::min(2.0 * size / (1.0 + std::cos(angle)), size + thickness);
+  side.touches = side.most;
+  return side;
+}
+
+// Of that radius (m).
+Side roundOf(double radius, double most) {
+  Side side;
+  side.growth = 1.0 / (16.0 * radius);
+  side.power = 2;
+  side.most = side.touches = most;
+  return side;
+}
 
 struct Face {
-  std::array<Side, 2> sides;
-  double thickness = 0.0;  // m
-  double disc = 0.0;       // radius of a cylinder's end (m), else 0
-  double share = 1.0;
+  Side side, other;
+  double disc = 0.0;  // radius of a cylinder's end (m), else 0
+
+  // Where three faces meet, what touches is no rectangle but a triangle, and stands so much (1)
+  // less high.
+  double lower() const {
+    const double at_corner =
+        side.power == 1 && other.power == 1 ? side.in_part * other.in_part : 0.0;
+    return 1.0 / (1.0 + at_corner * (kLowerAtCorner + kLowerIfSteep * side.slope * other.slope));
+  }
 };
+
+// A cylinder's rim is round as seen along the way it presses, of its radius over the sine of the
+// angle between that and its axis.
+Face faceOfCylinder(const BoxOrCylinder& body, const Vec3& along) {
+  const double across = along.head<2>().norm(), length = 2.0 * body.half_size.z();
+  Face face;
+  if (across > along.z()) {
+    face.side = roundOf(body.radius / across, 2.0 * body.radius);
+    face.other = edgeOf(length, along.z() / across, 2.0 * body.radius);
+  } else {
+    const double size = std::sqrt(M_PI) * body.radius;  // a square of its area
+    face.disc = body.radius;
+    face.side = edgeOf(size, across / along.z(), length);
+    face.other = across > 0.0 ? roundOf(body.radius / across, size) : edgeOf(size, 0.0, length);
+  }
+  return face;
+}
 
 Face faceOf(const BoxOrCylinder& body, const Vec3& facing) {
   const Vec3 along = facing.cwiseAbs();
-  Face face;
-  if (body.radius > 0.0) {
-    const double across = along.head<2>().norm(), tilt = std::min(across, along.z());
-    const double off = tilt / std::max(across, along.z());
-    face.share = std::clamp((kCylinderOnRim - off) / (kCylinderOnRim - kCylinderKnown), 0.0, 1.0);
-    if (across > along.z()) {
-      face.thickness = 2.0 * body.radius;
-      face.sides[0].round = face.sides[0].size = body.radius;
-      face.sides[1] = {2.0 * body.half_size.z(), off, 0.0};
-    } else {
-      face.thickness = 2.0 * body.half_size.z();
-      face.disc = body.radius;
-      face.sides[0] = {std::sqrt(M_PI) * body.radius, off, 0.0};
-      face.sides[1] = {std::sqrt(M_PI) * body.radius, 0.0, 0.0};
-    }
-    return face;
-  }
+  if (body.radius > 0.0) return faceOfCylinder(body, along);
   std::array<int, 3> axes = {0, 1, 2};
   std::sort(axes.begin(), axes.end(), [&](int a, int b) { return along[a] > along[b]; });
-  face.thickness = 2.0 * body.half_size[axes[0]];
-  for (std::size_t side = 0; side < 2; ++side) {
-    const int axis = axes[side + 1];
-    face.sides[side] = {2.0 * body.half_size[axis], along[axis] / along[axes[0]], 0.0};
-  }
-  return face;
+  const double thickness = 2.0 * body.half_size[axes[0]];
+  const auto side = [&](int axis) {
+    return edgeOf(2.0 * body.half_size[axis], along[axis] / along[axes[0]], thickness);
+  };
+  return {side(axes[1]), side(axes[2]), 0.0};
 }
 
 // Of a tilted disc only a segment touches, which is no longer than its chord.
@@ -104,37 +117,50 @@ double chord(double radius, double height) {
   return height < radius ? 2.0 * std::sqrt(height * (2.0 * radius - height)) : 2.0 * radius;
 }
 
-// Mean, under a force that is even along a strip.
-double depthUnder(double load_of_all, double width, double length, double spread) {
-  const double distance = 0.5 * width * spread / length, squared = width / length * width / length;
-  const double even = std::asinh(1.0 / distance) - std::sqrt(1.0 + distance * distance) + distance;
-  return 2.0 * load_of_all / (M_PI * length) * even * (1.0 + kMoreOfSquare * squared);
-}
+// How far a half-space goes under a strip, and how that falls with the logarithm of its width and
+// of its length (m).
+struct Strip {
+  double depth = 0.0;
+  double by_width = 0.0;
+  double by_length = 0.0;
+
+  // `load`: force over plane modulus (m^2). `width` <= `length` (m).
+  Strip(double load, double width, double length) {
+    const double distance = 0.5 * kUnderFlat * width / length;
+    const double square = width / length * width / length, more = 1.0 + kMoreOfSquare * square;
+    const double far = std::sqrt(1.0 + distance * distance);
+    const double even = std::asinh(1.0 / distance) - far + distance;
+    const double scale = 2.0 * load / (M_PI * length);
+    depth = scale * even * more;
+    by_width = scale * ((far - distance) * more - 2.0 * kMoreOfSquare * square * even);
+    by_length = depth - by_width;
+  }
+};
 
 }  // namespace
 
 Footprint footprintOf(const BoxOrCylinder& body, const Vec3& facing, double force,
-                      double plane_modulus) {
+                      double plane_modulus, const Bulge& tissue) {
   Face face = faceOf(body, facing);
-  auto& [across, along] = face.sides;
   const double load = force / plane_modulus;  // m^2
-  across.touches = across.size;
-  along.touches = along.size;
+  Side *narrow = &face.side, *wide = &face.other;
   for (int round = 0; round < kRounds; ++round) {
-    across.press(load / along.touches, face.thickness);
-    along.press(load / across.touches, face.thickness);
+    if (narrow->touches > wide->touches) std::swap(narrow, wide);
+    const Strip strip(load, narrow->touches, wide->touches);
+    const double lower = face.lower();
+    narrow->widen(strip.by_width / lower);
+    wide->widen(strip.by_length / lower);
     if (face.disc > 0.0) {
-      along.touches = std::min(along.touches, chord(face.disc, across.touches));
+      face.other.touches = std::min(face.other.touches, chord(face.disc, face.side.touches));
     }
   }
-  const bool is_across = across.touches < along.touches;
-  const Side& narrow = is_across ? across : along;
-  const Side& wide = is_across ? along : across;
+  if (narrow->touches > wide->touches) std::swap(narrow, wide);
   Footprint footprint;
-  footprint.width = narrow.touches;
-  footprint.depth = depthUnder(load, narrow.touches, wide.touches, narrow.spread());
-  footprint.height = across.mean_height + along.mean_height;
-  footprint.share = face.share * across.known() * along.known();
+  footprint.width = narrow->touches;
+  footprint.bulge =
+      narrow->bulge(tissue.curvature, tissue.reach) + wide->bulge(tissue.curvature, tissue.reach);
+  footprint.depth = Strip(load, narrow->touches, wide->touches).depth +
+                    face.lower() * (narrow->height() + wide->height());
   return footprint;
 }
 

@@ -42,6 +42,12 @@ constexpr double kNoFlatEnds = 1.2;
 // Spacings: the deepest recess of a box or a cylinder. More: right farther down; less: tissue is
 // drawn in the tool less deep. Chosen.
 constexpr double kMostOfSpacing = 0.2;
+// Of the depth of a box or a cylinder (1): what is not known of it, as tissue bulges under it.
+// More: faces and long edges on organs are recessed by what they are not; less: fewer are. Chosen.
+constexpr double kLittleBulge = 0.1;
+constexpr double kMuchBulge = 0.3;
+// Spacings: so far from where it touches the surface may face a box's face. Chosen.
+constexpr double kPressedAround = 1.0;
 // Of the force (1): so much more tells how the depth of a box or a cylinder grows with it.
 constexpr double kMoreForce = 0.01;
 // Of the ball's curvature (1): that of both is no less. Less: where tissue is hollow, as wide as
@@ -88,24 +94,25 @@ double planeModulus(const SurfaceModuli& moduli) {
 
 // How far the law counts of a box or a cylinder (1).
 double shareOf(const Footprint& footprint, double spacing) {
-  return footprint.share * fadeOut(0.5 * footprint.width / spacing, kNarrow, kWide);
+  return fadeOut(0.5 * footprint.width / spacing, kNarrow, kWide) *
+         fadeOut(footprint.depth / spacing, kFlatEndsDown, kNoFlatEnds) *
+         fadeOut(footprint.bulge / footprint.depth, kLittleBulge, kMuchBulge);
 }
 
 Recess recessUnderBody(const NarrowPress& press, const PressedSurface& surface) {
   if (press.force <= 0.0) return {};
   const auto under = [&](double force) {
-    return footprintOf(*press.body, press.facing, force, planeModulus(surface.moduli));
+    return footprintOf(*press.body, press.facing, force, planeModulus(surface.moduli),
+                       {surface.curvature, kPressedAround * surface.spacing});
   };
   const Footprint here = under(press.force), more = under((1.0 + kMoreForce) * press.force);
-  const double of_half_space = here.depth + here.height;
-  const double share = shareOf(here, surface.spacing) *
-                       fadeOut(of_half_space / surface.spacing, kFlatEndsDown, kNoFlatEnds);
+  const double share = shareOf(here, surface.spacing);
   if (!(share > 0.0)) return {};
   const double of_lattice = press.force * surface.compliance + press.height;
-  const double growth = (more.depth + more.height - of_half_space) / kMoreForce;
+  const double growth = (more.depth - here.depth) / kMoreForce;
   const double most = kMostOfSpacing * surface.spacing;
   Recess recess;
-  recess.depth = std::clamp(share * (of_half_space - of_lattice), -most, most);
+  recess.depth = std::clamp(share * (here.depth - of_lattice), -most, most);
   recess.step = growth > 0.0 ? std::clamp(of_lattice / growth, 0.0, 2.0) : 1.0;
   return recess;
 }

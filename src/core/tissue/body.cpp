@@ -85,11 +85,12 @@ void Body::showRest() {
   bounds_ = boundsOf(vertices_);
 }
 
-// Nodes at rims, and their displacements as patches and tools have them (m); of_tools: where a
-// tool's spring is shown off its point.
+// Nodes at rims, and their displacements as patches and tools have them (m), the last of a node
+// counts; of_tools: where a tool's spring is shown off its point. Of several at a node, as of a
+// tool's edge and of its side, the one counts that is farthest off.
 std::vector<std::pair<int, Vec3>> Body::shownAsTheirOwn(const std::vector<LoadingPatch>& patches,
                                                         OffPoint of_tools) const {
-  std::vector<std::pair<int, Vec3>> own;
+  std::vector<std::pair<int, Vec3>> own, offs;
   for (const LoadingPatch& patch : patches) {
     if (!patch.rim.empty()) {
       const std::vector<Vec3> shown = ownDisplacement(patch, state_.displacement);
@@ -98,11 +99,13 @@ std::vector<std::pair<int, Vec3>> Body::shownAsTheirOwn(const std::vector<Loadin
     for (const ContactSpring& spring : patch.contacts) {
       const Vec3 off = of_tools(spring, state_.displacement);
       if (off.isZero(0.0)) continue;
-      for (const NodeWeight& carrier : spring.carriers) {
-        own.emplace_back(carrier.node, state_.displacement[at(carrier.node)] + off);
-      }
+      for (const NodeWeight& carrier : spring.carriers) offs.emplace_back(carrier.node, off);
     }
   }
+  std::stable_sort(offs.begin(), offs.end(), [](const auto& one, const auto& other) {
+    return one.second.squaredNorm() < other.second.squaredNorm();
+  });
+  for (const auto& [node, off] : offs) own.emplace_back(node, state_.displacement[at(node)] + off);
   return own;
 }
 

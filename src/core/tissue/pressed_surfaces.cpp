@@ -101,7 +101,7 @@ LocalLattice& PressedSurfaces::around(const NarrowPress& press, const Body& body
 
 bool PressedSurfaces::look(const NarrowPress& press, const Body& body, const ElasticModel& model,
                            const std::vector<LoadingPatch>& patches, PressedSurface& surface) {
-  if (press.body || model.hasMembranes()) return false;
+  if (model.hasMembranes()) return false;
   const LatticeState& state = body.state();
   const Lattice& lattice = body.lattice();
   LocalLattice& here = around(press, body);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "material/tissue_model.h"
+#include "surface/undented.h"
 #include "tissue/tissue_parts.h"
 
 namespace robot_tissue {
@@ -55,6 +56,10 @@ double Tissue::stiffening(int node) const { return parts_->forces.stiffening(nod
 Vec3 Tissue::nodePosition(int node) const { return parts_->data.body.nodePosition(node); }
 std::optional<RimCompliance> Tissue::rimCompliance(int node, double depth) const {
   return parts_->forces.rimCompliance(node, depth);
+}
+Vec3 Tissue::inwardsAround(const SurfacePoint& point) const {
+  constexpr double kWiderThanDents = 3.0;  // spacings: of narrow contacts. Chosen.
+  return inwardsAroundDent(surface(), vertices(), point, kWiderThanDents * lattice().spacing());
 }
 std::optional<Recess> Tissue::recessUnder(const NarrowPress& press) const {
   return parts_->forces.recessUnder(press);
