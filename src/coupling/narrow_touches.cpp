@@ -128,8 +128,7 @@ Recess SlidingContacts::recessAsked(int link, const Pose& tissue_T_link,
       const Vec3 off = tissue_T_shape.linear().transpose() * (touch->tool_point - lowest);
       height = heightBeside(*body, press.facing, off);
     }
-    press.height += share * (height + touch->contact.bulge.dot(axis) +
-                             touch->compliance.normal * touch->spring.multiplier);
+    press.height += share * (height + touch->contact.bulge.dot(axis) + rimRecess(*touch));
     for (const auto& [node, weight] : touch->spring.carriers) shares[node] += share * weight;
   }
   for (const auto& [node, share] : shares) press.shares.push_back({node, share});

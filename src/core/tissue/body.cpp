@@ -97,9 +97,13 @@ std::vector<std::pair<int, Vec3>> Body::shownAsTheirOwn(const std::vector<Loadin
     }
     for (const ContactSpring& spring : patch.contacts) {
       const Vec3 off = of_tools(spring, state_.displacement);
-      if (off.isZero(0.0)) continue;
-      for (const NodeWeight& carrier : spring.carriers) {
-        own.emplace_back(carrier.node, state_.displacement[at(carrier.node)] + off);
+      if (off.isZero(0.0) && spring.carrier_ways.empty()) continue;
+      for (std::size_t i = 0; i < spring.carriers.size(); ++i) {
+        const double way = spring.carrier_ways.empty() ? 0.0 : spring.carrier_ways[i];
+        const Vec3 shown = off + way * spring.normal;
+        if (shown.isZero(0.0)) continue;  // another touch may have a way for it
+        const int node = spring.carriers[i].node;
+        own.emplace_back(node, state_.displacement[at(node)] + shown);
       }
     }
   }
