@@ -201,7 +201,9 @@ constexpr double kTellsColumn = 1.5;
 constexpr double kBesideFace = -0.1;
 // Bilinear weight (1) that is none. Rounding.
 constexpr double kNoWeight = 1e-6;
-// Of the shear modulus times the spacing (1): columns are no softer. KSOFT
+// Of the shear modulus times the spacing (1): columns are no softer, a thousandth of one right at
+// the edge. More: a column that an edge has left holds the tissue; less: points between columns
+// that are all but free go far into the tool before they are pushed. Chosen.
 constexpr double kSoftestColumn = 0.01;
 // Cosine of two edges of a face that are on opposite sides. Chosen.
 constexpr double kOppositeEdges = -0.7;
