@@ -23,7 +23,7 @@ TissueConfig blockOf(double spacing, const Vec3& size = kSize) {
   tissue.spacing = spacing;
   tissue.material.young_modulus = 1e4;
   tissue.material.poisson_ratio = 0.45;
-  tissue.fixed.push_back(bottomOf(tissue.shape));
+  tissue.fixed.push_back({Vec3(-1, -1, -1), Vec3(1, 1, 1e-6)});  // nodes below a mesh, too
   return tissue;
 }
 
@@ -125,7 +125,7 @@ TEST(FlatToolsOnMeshes, StandOnWhatIsShown) {
   for (const Vec3& vertex : pipeline.tissue().vertices()) {
     const Vec3 off = vertex - placeOf(depth, x);
     if (off.head<2>().cwiseAbs().maxCoeff() > 0.01 - 0.3 * spacing) continue;
-    EXPECT_LT(off.z(), 0.02 * spacing) << vertex.transpose();
+    EXPECT_LT(off.z(), 0.03 * spacing) << vertex.transpose();
   }
 }
 
